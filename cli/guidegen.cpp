@@ -1,0 +1,82 @@
+// scumble guidegen.
+#include "guidegen/guidegen.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "io/guide_file.h"
+#include "transfer/transfer.h"
+
+namespace scumble {
+namespace {
+
+struct GuidegenVerb {
+  SceneOptions scene;
+  StyleOptions style;
+  std::string layers;
+  std::string compression = "zip";
+  std::string output;
+};
+
+void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Globals& globals) {
+  if (globals.json) {
+    nlohmann::ordered_json json;
+    json["output"] = verb.output;
+    json["width"] = made.guides.width();
+    json["height"] = made.guides.height();
+    json["layers"] = made.guides.layers().ToString();
+    for (const PlanItem& item : made.plan) {
+      json["plan"].push_back({{"layer", item.layer}, {"reason", item.reason}, {"cost", item.cost}});
+    }
+    for (const auto& [name, ms] : made.times) json["ms"][name] = ms;
+    Print(json.dump(2) + "\n");
+    return;
+  }
+  if (verb.scene.explain) Print(PlanToText(made.plan));
+  if (verb.output.empty()) return;
+  std::string steps;
+  for (const auto& [name, ms] : made.times) steps += fmt::format("{}{} {:.1f}", steps.empty() ? "" : ", ", name, ms);
+  Print(fmt::format("{}  {}; {} ms\n", verb.output, made.guides.layers().ToString(), steps));
+}
+
+Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& globals) {
+  SCUMBLE_ASSIGN(LayerSet layers, ParseLayers(verb.layers));
+  if (!verb.style.style.empty()) {
+    SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
+    layers.Add(RequiredLayers(style.transfer));
+  }
+  const bool plan_only = verb.output.empty();
+  if (plan_only && !verb.scene.explain) return UsageError("--output is required; --explain alone prints the plan");
+  ProgressBar bar("guidegen", globals.quiet);
+  SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(verb.scene, layers, globals, bar.Part(0.0, 1.0), plan_only));
+  if (!plan_only) {
+    Stopwatch watch;
+    SCUMBLE_RETURN_IF_ERROR(WriteGuides(verb.output, made.guides, {verb.scene.half, verb.compression}));
+    made.times.emplace_back("write", watch.Lap());
+  }
+  PrintResult(verb, made, globals);
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
+  auto verb = std::make_shared<GuidegenVerb>();
+  CLI::App* sub = app.add_subcommand("guidegen", "scene -> guides");
+  AddSceneOptions(*sub, verb->scene);
+  AddStyleOptions(*sub, verb->style, false);
+  sub->add_option("--layers", verb->layers,
+                  "layers on top of A, normal, depth, object, material: position, pref, albedo, luminance, shadow");
+  sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless")
+      ->capture_default_str();
+  sub->add_option("-o,--output", verb->output, "guide file to write: .exr");
+  AddGlobalOptions(*sub, globals);
+  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunGuidegenVerb(*verb, globals); }; });
+}
+
+}  // namespace scumble

@@ -1,0 +1,107 @@
+// scumble info: what is in a guide file, a scene or a style.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/options.h"
+#include "guidegen/load_scene.h"
+#include "io/guide_file.h"
+
+namespace scumble {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Expected<Json> DescribeGuides(const std::string& path) {
+  SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
+  Json json{{"kind", "guides"}, {"width", info.width}, {"height", info.height}, {"layers", info.layers.ToString()},
+            {"channels", info.channels}};
+  for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
+  for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
+  if (info.header.camera) json["camera"] = info.header.camera->name;
+  for (const auto& [name, value] : info.header.attributes) json[name] = value;
+  return json;
+}
+
+Expected<Json> DescribeScene(const std::string& path) {
+  SCUMBLE_ASSIGN(const Scene scene, LoadScene(path));
+  std::size_t triangles = 0;
+  for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangles.size();
+  Json json{{"kind", "scene"}, {"triangles", triangles}, {"textures", scene.textures.size()}};
+  const auto names = [&](const char* key, const auto& items, auto name_of) {
+    json[key] = Json::array();
+    for (const auto& item : items) {
+      if (json[key].empty() || json[key].back() != name_of(item)) json[key].push_back(name_of(item));
+    }
+  };
+  names("objects", scene.instances, [](const Instance& i) { return i.object; });
+  names("materials", scene.materials, [](const Material& m) { return m.name; });
+  names("cameras", scene.cameras, [](const Camera& c) { return c.name; });
+  names("lights", scene.lights, [](const Light& light) {
+    constexpr const char* kTypes[] = {"point", "spot", "sun"};
+    return light.name + " (" + kTypes[static_cast<int>(light.type)] + ")";
+  });
+  json["warnings"] = scene.warnings;
+  return json;
+}
+
+Expected<Json> DescribeStyle(const std::string& path) {
+  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}}));
+  constexpr const char* kMethods[] = {"litsphere", "styleblit", "bruteforce"};
+  Json json{{"kind", "style"}, {"name", style.name}, {"licence", style.licence}};
+  json["method"] = kMethods[static_cast<int>(style.transfer.method)];
+  json["threshold"] = style.transfer.threshold;
+  json["levels"] = style.transfer.levels;
+  json["blend_radius"] = style.transfer.blend_radius;
+  json["scale"] = style.transfer.scale;
+  for (const Exemplar& exemplar : style.exemplars) {
+    json["exemplars"].push_back(
+        fmt::format("{} {}×{}", exemplar.name, exemplar.picture.width, exemplar.picture.height));
+  }
+  return json;
+}
+
+std::string ToText(const Json& json) {
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    std::string shown;
+    if (value.is_array()) {
+      for (const Json& item : value) shown += (shown.empty() ? "" : ", ") + item.get<std::string>();
+      if (shown.empty()) shown = "none";
+    } else {
+      shown = value.is_string() ? value.get<std::string>() : value.dump();
+    }
+    text += fmt::format("{:<12} {}\n", key, shown);
+  }
+  return text;
+}
+
+Expected<Json> Describe(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".exr") return DescribeGuides(path);
+  if (ending == ".glb" || ending == ".gltf" || ending == ".obj" || ending == ".ply") return DescribeScene(path);
+  return DescribeStyle(path);
+}
+
+}  // namespace
+
+void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
+  CLI::App* sub = app.add_subcommand("info", "what is in a guide file, a scene or a style");
+  auto path = std::make_shared<std::string>();
+  sub->add_option("file", *path, "guide file, scene, or style")->required();
+  AddGlobalOptions(*sub, globals);
+  sub->callback([=, &globals, &chosen] {
+    chosen = [=, &globals]() -> Expected<ExitCode> {
+      SCUMBLE_ASSIGN(const Json json, Describe(*path));
+      Print(globals.json ? json.dump(2) + "\n" : ToText(json));
+      return ExitCode::kOk;
+    };
+  });
+}
+
+}  // namespace scumble

@@ -1,0 +1,181 @@
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "io/guide_file.h"
+#include "style/style_file.h"
+
+namespace scumble {
+
+namespace fs = std::filesystem;
+
+void AddGlobalOptions(CLI::App& verb, Globals& globals) {
+  verb.add_flag("-q,--quiet", globals.quiet, "say nothing but errors and warnings");
+  verb.add_flag("--json", globals.json, "results as one JSON object on stdout");
+  verb.add_option("--threads", globals.threads, "threads to use; 0: all")->check(CLI::Range(0, 1024));
+}
+
+Expected<Size> ParseSize(const std::string& text) {
+  const std::size_t cross = text.find_first_of("xX");
+  const std::string first = text.substr(0, cross);
+  const std::string second = cross == std::string::npos ? first : text.substr(cross + 1);
+  const auto side = [](const std::string& digits) {
+    int value = 0;
+    const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    return failure == std::errc() && end == digits.data() + digits.size() ? value : 0;
+  };
+  const Size size{side(first), side(second)};
+  if (size.width < 1 || size.height < 1 || size.width > kMaxImageSide || size.height > kMaxImageSide) {
+    return UsageError("--size " + text + ": expected WIDTHxHEIGHT, as in 1920x1080, each 1 to " +
+                      std::to_string(kMaxImageSide));
+  }
+  return size;
+}
+
+Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t least, std::size_t most,
+                                           const std::string& what) {
+  std::vector<double> numbers;
+  const char* position = text.data();
+  const char* const end = text.data() + text.size();
+  while (position <= end) {
+    double value = 0;
+    const auto [next, failure] = std::from_chars(position, end, value);
+    if (failure != std::errc() || (next != end && *next != ',') || !(value >= -1e9 && value <= 1e9)) break;
+    numbers.push_back(value);
+    if (next == end) {
+      if (numbers.size() < least || numbers.size() > most) break;
+      return numbers;
+    }
+    position = next + 1;
+  }
+  return UsageError(what + " " + text + ": expected " + std::to_string(least) +
+                    (most > least ? " to " + std::to_string(most) : "") + " numbers with commas between");
+}
+
+void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
+  verb.add_option("scene", options.scene, "scene file: .glb, .gltf, .obj, .ply")->required();
+  verb.add_option("--size", options.size, "WIDTHxHEIGHT in pixels, or one number for a square")->capture_default_str();
+  verb.add_option("--camera", options.camera, "camera by name; default: the scene's first");
+  verb.add_option("--view", options.view,
+                  "AZIMUTH,ELEVATION[,DISTANCE] instead of a camera: degrees from +Z towards +X, degrees above the "
+                  "horizon, metres (left out: the scene is framed)");
+  verb.add_option("--aa", options.aa, "N x N subsamples of the silhouette's coverage")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  verb.add_option("--normal-frame", options.normal_frame, "camera, or eye: normals relative to each pixel's own view")
+      ->check(CLI::IsMember({"camera", "eye"}))
+      ->capture_default_str();
+  verb.add_option("--isa", options.isa, "Embree's instruction set: sse2, sse4.2, avx, avx2, avx512; default: the best");
+  verb.add_flag("--half", options.half, "round colour layers to 16-bit half floats");
+  verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
+}
+
+double Stopwatch::Lap() {
+  const auto now = std::chrono::steady_clock::now();
+  const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+  last_ = now;
+  return ms;
+}
+
+namespace {
+
+Expected<std::optional<ViewAngles>> ParseView(const std::string& text) {
+  if (text.empty()) return std::optional<ViewAngles>();
+  SCUMBLE_ASSIGN(const auto numbers, ParseNumbers(text, 2, 3, "--view"));
+  if (numbers[1] < -90.0 || numbers[1] > 90.0) return UsageError("--view " + text + ": elevation must be -90 to 90");
+  if (numbers.size() == 3 && numbers[2] < 0.0) return UsageError("--view " + text + ": distance must be 0 or more");
+  return std::optional(ViewAngles{numbers[0], numbers[1], numbers.size() == 3 ? numbers[2] : 0.0});
+}
+
+void WarnIfNothingShows(const GuideSet& guides, const std::string& scene) {
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  if (std::any_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; })) return;
+  Warn(scene + ": the camera sees nothing, the picture is empty; try --view or another --camera");
+}
+
+}  // namespace
+
+Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
+                                 const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
+  SCUMBLE_ASSIGN(const auto view, ParseView(options.view));
+  Stopwatch watch;
+  SceneGuides result;
+  SCUMBLE_ASSIGN(Scene scene, LoadScene(options.scene));
+  for (const std::string& warning : scene.warnings) Warn(warning);
+  const double aspect = static_cast<double>(size.width) / size.height;
+  const bool needs_light = layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow);
+  SCUMBLE_ASSIGN(const PreparedView prepared, PrepareView(scene, options.camera, view, aspect, needs_light));
+  for (const std::string& note : prepared.notes) Say(globals, note);
+  result.times.emplace_back("load", watch.Lap());
+
+  GuidegenOptions guidegen;
+  guidegen.width = size.width, guidegen.height = size.height;
+  guidegen.layers = layers;
+  guidegen.aa = options.aa;
+  guidegen.normal_frame = options.normal_frame == "eye" ? NormalFrame::kEye : NormalFrame::kCamera;
+  guidegen.threads = globals.threads;
+  guidegen.isa = options.isa;
+  guidegen.progress = progress;
+  result.plan = PlanGuides(scene, guidegen);
+  if (plan_only) return result;
+
+  SCUMBLE_ASSIGN(GuidegenResult rendered, RenderGuides(scene, prepared.camera, guidegen));
+  result.times.emplace_back("build", rendered.build_ms);
+  result.times.emplace_back("rays", rendered.render_ms);
+  result.guides = std::move(rendered.guides);
+  if (options.half) RoundColorLayersToHalf(result.guides);
+  WarnIfNothingShows(result.guides, options.scene);
+  return result;
+}
+
+std::string PlanToText(const std::vector<PlanItem>& plan) {
+  std::size_t widest_layer = 5, widest_reason = 3;
+  for (const PlanItem& item : plan) {
+    widest_layer = std::max(widest_layer, item.layer.size());
+    widest_reason = std::max(widest_reason, item.reason.size());
+  }
+  std::string text = fmt::format("{:<{}}  {:<{}}  {}\n", "layer", widest_layer, "why", widest_reason, "cost");
+  for (const PlanItem& item : plan) {
+    text += fmt::format("{:<{}}  {:<{}}  {}\n", item.layer, widest_layer, item.reason, widest_reason, item.cost);
+  }
+  return text;
+}
+
+void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
+  auto* style = verb.add_option("--style", options.style,
+                                "style folder, style.toml, picture of a painted sphere, or a bundled style's name");
+  if (required) style->required();
+  verb.add_option("--set", options.sets, "KEY=VALUE overrides a key of style.toml, as transfer.blend_radius=0")
+      ->allow_extra_args(false);
+}
+
+std::vector<fs::path> StyleRoots() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) return {};
+  const fs::path above = program.parent_path().parent_path();
+  std::vector<fs::path> roots;
+  for (const fs::path& root : {above / "exemplars", above / "share" / "scumble" / "exemplars"}) {
+    if (fs::is_directory(root, failed)) roots.push_back(root);
+  }
+  return roots;
+}
+
+Expected<Style> OpenStyle(const StyleOptions& options) {
+  if (fs::exists(options.style)) return LoadStyle(options.style, options.sets);
+  std::string bundled;
+  for (const fs::path& root : StyleRoots()) {
+    for (const fs::path& style : FindStyles(root)) {
+      if (style.filename() == options.style) return LoadStyle(style, options.sets);
+      bundled += (bundled.empty() ? "" : ", ") + style.filename().string();
+    }
+  }
+  return InputError("there is no style " + options.style + ": neither a file or folder, nor one of the bundled ones (" +
+                    (bundled.empty() ? "none found" : bundled) + ")");
+}
+
+}  // namespace scumble

@@ -1,0 +1,84 @@
+// Groups of options that several verbs share, and what they turn into.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/command.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load_scene.h"
+#include "image/style.h"
+#include "io/picture_file.h"
+
+namespace scumble {
+
+void AddGlobalOptions(CLI::App& verb, Globals& globals);
+
+// "1280x720" or "512": width and height in pixels.
+struct Size {
+  int width = 0;
+  int height = 0;
+};
+Expected<Size> ParseSize(const std::string& text);
+
+// "a,b" or "a,b,c": that many numbers, `least` at the fewest. `what` is for the message.
+Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t least, std::size_t most,
+                                           const std::string& what);
+
+// Everything that turns a scene into guides.
+struct SceneOptions {
+  std::string scene;
+  std::string size = "1280x720";
+  std::string camera;
+  std::string view;
+  int aa = 1;
+  std::string normal_frame = "camera";
+  std::string isa;
+  bool half = false;
+  bool explain = false;
+};
+void AddSceneOptions(CLI::App& verb, SceneOptions& options);
+
+// Milliseconds by step, in the order they happened.
+using StepTimes = std::vector<std::pair<std::string, double>>;
+
+struct SceneGuides {
+  GuideSet guides;
+  std::vector<PlanItem> plan;
+  StepTimes times;
+};
+
+// Loads the scene and casts its guides; says camera and light decisions on stderr, warns of what the scene asks for in
+// vain and of a picture that shows nothing. With `plan_only` the guides stay empty.
+Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
+                                 const Progress& progress, bool plan_only);
+
+std::string PlanToText(const std::vector<PlanItem>& plan);
+
+struct StyleOptions {
+  std::string style;
+  std::vector<std::string> sets;
+};
+void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
+
+// A path, or the name of a bundled style.
+Expected<Style> OpenStyle(const StyleOptions& options);
+
+// Folders that may hold bundled styles: beside the build, or where `install` put them.
+std::vector<std::filesystem::path> StyleRoots();
+
+class Stopwatch {
+ public:
+  double Lap();
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace scumble

@@ -1,0 +1,31 @@
+// A progress bar with the time left, on terminals, for what takes more than two seconds.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "image/progress.h"
+
+namespace scumble {
+
+class ProgressBar {
+ public:
+  // Draws nothing when stderr is no terminal or `quiet`.
+  ProgressBar(std::string label, bool quiet);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  // A callback that reports [from, to] of the bar; valid while the bar lives.
+  Progress Part(double from, double to);
+
+ private:
+  void Update(double share);
+
+  std::string label_;
+  bool enabled_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point start_, last_draw_;
+};
+
+}  // namespace scumble

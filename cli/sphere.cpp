@@ -1,0 +1,75 @@
+// scumble sphere: the artist's kit.
+#include "style/sphere_kit.h"
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/options.h"
+#include "guidegen/guidegen.h"
+
+namespace scumble {
+namespace {
+
+struct SphereVerb {
+  int size = 1024;
+  std::vector<std::string> lights;
+  int aa = 4;
+  std::string isa;
+  std::string output;
+};
+
+Expected<KitLight> RenderLight(const SphereVerb& verb, const std::string& text, const Globals& globals) {
+  SCUMBLE_ASSIGN(const auto angles, ParseNumbers(text, 2, 2, "--light"));
+  if (angles[1] < -90.0 || angles[1] > 90.0) return UsageError("--light " + text + ": elevation must be -90 to 90");
+  SphereOptions options;
+  options.size = verb.size;
+  options.layers = {Layer::kPosition, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow};
+  options.aa = verb.aa;
+  options.light_azimuth = angles[0], options.light_elevation = angles[1];
+  options.threads = globals.threads;
+  options.isa = verb.isa;
+  SCUMBLE_ASSIGN(GuidegenResult rendered, RenderSphereGuides(options));
+  return KitLight{angles[0], angles[1], std::move(rendered.guides)};
+}
+
+Expected<ExitCode> RunSphereVerb(const SphereVerb& verb, const Globals& globals) {
+  std::vector<std::string> texts = verb.lights;
+  if (texts.empty()) texts = {"-40,40"};
+  std::vector<KitLight> lights;
+  for (const std::string& text : texts) {
+    SCUMBLE_ASSIGN(KitLight light, RenderLight(verb, text, globals));
+    lights.push_back(std::move(light));
+  }
+  SCUMBLE_ASSIGN(const auto files, WriteSphereKit(verb.output, std::move(lights)));
+  if (globals.json) {
+    nlohmann::ordered_json json;
+    for (const auto& file : files) json["files"].push_back(file.string());
+    Print(json.dump(2) + "\n");
+  } else {
+    for (const auto& file : files) Print(file.string() + "\n");
+    Say(globals, "paint over template.png, save it as lit.png in the same folder; HOWTO.txt says how");
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
+  auto verb = std::make_shared<SphereVerb>();
+  CLI::App* sub = app.add_subcommand("sphere", "a lit sphere to paint over: template, guides, starter style");
+  sub->add_option("--size", verb->size, "pixels of the sphere's square; the template has a margin around it")
+      ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  sub->add_option("--light", verb->lights,
+                  "AZIMUTH,ELEVATION of the light in degrees, azimuth to the right of the viewer; repeatable; "
+                  "default -40,40: upper left, over the shoulder")
+      ->allow_extra_args(false);
+  sub->add_option("--aa", verb->aa, "N x N subsamples of the silhouette")->check(CLI::Range(1, 16))->capture_default_str();
+  sub->add_option("--isa", verb->isa, "Embree's instruction set");
+  sub->add_option("-o,--output", verb->output, "folder to write to")->required();
+  AddGlobalOptions(*sub, globals);
+  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunSphereVerb(*verb, globals); }; });
+}
+
+}  // namespace scumble

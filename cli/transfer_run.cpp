@@ -1,0 +1,159 @@
+#include "cli/transfer_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "io/picture_file.h"
+#include "measure/coherence.h"
+#include "transfer/transfer.h"
+
+namespace scumble {
+namespace {
+
+// Frames a second as a fraction: "24", "23.976" or "24000/1001".
+struct FrameRate {
+  std::int64_t numerator = 24;
+  std::int64_t denominator = 1;
+};
+
+Expected<FrameRate> ParseFps(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto number = [](const std::string& part) {
+    double value = 0;
+    const auto [end, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return failure == std::errc() && end == part.data() + part.size() ? value : 0.0;
+  };
+  const double above = number(text.substr(0, slash));
+  const double below = slash == std::string::npos ? 1.0 : number(text.substr(slash + 1));
+  if (!(above > 0.0 && above <= 1e5 && below >= 1.0 && below <= 1e5)) {
+    return UsageError("--fps " + text + ": expected frames a second, as 24, 23.976 or 24000/1001");
+  }
+  return FrameRate{static_cast<std::int64_t>(above * 1000.0 + 0.5), static_cast<std::int64_t>(below * 1000.0 + 0.5)};
+}
+
+// One step's time over several runs.
+struct Spread {
+  double median = 0, least = 0, most = 0;
+};
+
+Spread SpreadOf(std::vector<double> samples) {
+  std::sort(samples.begin(), samples.end());
+  const std::size_t half = samples.size() / 2;
+  const double median = samples.size() % 2 ? samples[half] : 0.5 * (samples[half - 1] + samples[half]);
+  return {median, samples.front(), samples.back()};
+}
+
+using Steps = std::vector<std::pair<std::string, Spread>>;
+
+CoherenceReport CoherenceOf(const SourceField& field) {
+  std::vector<std::uint8_t> covered(field.level.size());
+  std::transform(field.level.begin(), field.level.end(), covered.begin(),
+                 [](std::int8_t level) { return level != SourceField::kNoSource; });
+  return MeasureCoherence({field.width, field.height, field.x, field.y, covered, {}});
+}
+
+std::string StepsToText(const Steps& steps, int repeat) {
+  std::string text;
+  double total = 0;
+  for (const auto& [name, spread] : steps) {
+    total += spread.median;
+    text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", name, spread.median);
+    if (repeat > 1 && spread.most > spread.least) text += fmt::format(" ({:.1f}–{:.1f})", spread.least, spread.most);
+  }
+  return text + fmt::format(", total {:.1f} ms", total);
+}
+
+std::string ToJson(const Style& style, const PreparedStyle& prepared, const SourceField& field,
+                   const PictureOptions& options, const Steps& steps) {
+  nlohmann::ordered_json json;
+  json["output"] = options.output;
+  json["style"] = style.name;
+  json["width"] = field.width;
+  json["height"] = field.height;
+  json["exemplar_size"] = prepared.exemplar->size();
+  json["levels"] = prepared.levels;
+  json["blend_radius"] = prepared.blend_radius;
+  const CoherenceReport coherence = CoherenceOf(field);
+  json["covered_pixels"] = coherence.covered;
+  json["coherence"] = coherence.share;
+  json["chunks"] = coherence.chunks;
+  json["mean_chunk_area"] = coherence.mean_chunk_area;
+  json["repeat"] = options.repeat;
+  for (const auto& [name, spread] : steps) {
+    json["ms"][name] = {{"median", spread.median}, {"min", spread.least}, {"max", spread.most}};
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
+  verb.add_option("-o,--output", options.output, "picture to write: .png, .tif, .exr or .jpg")->required();
+  verb.add_option("--over", options.over, "picture to composite over, of the same size");
+  verb.add_option("--bits", options.bits, "bits a channel: 8 or 16; .exr: 8 and 16 mean half, 32 float")
+      ->check(CLI::IsMember({8, 16, 32}))
+      ->capture_default_str();
+  verb.add_option("--png-level", options.png_level, "PNG compression, 0 fast to 9 small")
+      ->check(CLI::Range(0, 9))
+      ->capture_default_str();
+  verb.add_option("--frame", options.frame, "frame number, for transfer.jitter_fps")->capture_default_str();
+  verb.add_option("--fps", options.fps, "frames a second, as 24 or 24000/1001")->capture_default_str();
+  verb.add_option("--seed", options.seed, "another seed, another pattern of chunks")->capture_default_str();
+  verb.add_option("--repeat", options.repeat, "run the transfer so often, report median and spread")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+}
+
+Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const PictureOptions& options,
+                               const Globals& globals, const Progress& progress, StepTimes times) {
+  SCUMBLE_ASSIGN(const FrameRate fps, ParseFps(options.fps));
+  Stopwatch watch;
+  std::optional<Picture> over;
+  if (!options.over.empty()) {
+    SCUMBLE_ASSIGN(over, ReadPicture(options.over));
+    times.emplace_back("over", watch.Lap());
+  }
+  SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, guides.height()));
+  times.emplace_back("prepare", watch.Lap());
+
+  TransferOptions transfer;
+  transfer.seed = options.seed;
+  transfer.time_step = JitterStep(style.transfer.jitter_fps, options.frame, fps.numerator, fps.denominator);
+  transfer.threads = globals.threads;
+  transfer.over = over ? &*over : nullptr;
+  TransferScratch scratch;
+  Picture picture;
+  std::vector<double> match, vote, compose;
+  for (int run = 0; run < options.repeat; ++run) {
+    if (progress) {
+      transfer.progress = [&, run](double share) { return progress((run + share) / options.repeat); };
+    }
+    SCUMBLE_RETURN_IF_ERROR(Transfer(prepared, guides, transfer, scratch, picture));
+    match.push_back(scratch.times.match_ms);
+    vote.push_back(scratch.times.vote_ms);
+    compose.push_back(scratch.times.compose_ms);
+  }
+  watch.Lap();
+  SCUMBLE_RETURN_IF_ERROR(WritePicture(options.output, picture, {options.bits, options.png_level}));
+
+  Steps steps;
+  for (const auto& [name, ms] : times) steps.emplace_back(name, Spread{ms, ms, ms});
+  steps.emplace_back("match", SpreadOf(match));
+  steps.emplace_back("vote", SpreadOf(vote));
+  steps.emplace_back("compose", SpreadOf(compose));
+  const double write_ms = watch.Lap();
+  steps.emplace_back("write", Spread{write_ms, write_ms, write_ms});
+  if (globals.json) {
+    Print(ToJson(style, prepared, scratch.field, options, steps));
+  } else {
+    Print(fmt::format("{}  {}\n", options.output, StepsToText(steps, options.repeat)));
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace scumble

@@ -1,0 +1,31 @@
+// What `transfer` and `stylize` have in common: guides and a style in, a picture file out.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+#include "cli/options.h"
+#include "image/guides.h"
+#include "image/style.h"
+
+namespace scumble {
+
+struct PictureOptions {
+  std::string output;
+  std::string over;
+  int bits = 8;
+  int png_level = 6;
+  int frame = 0;
+  std::string fps = "24";
+  std::uint64_t seed = 0;
+  int repeat = 1;
+};
+void AddPictureOptions(CLI::App& verb, PictureOptions& options);
+
+// Prepares, transfers `repeat` times, writes the picture and prints its path with the time of each step: `times` holds
+// the steps before. Under --json the steps, coherence and sizes as an object.
+Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const PictureOptions& options,
+                               const Globals& globals, const Progress& progress, StepTimes times);
+
+}  // namespace scumble

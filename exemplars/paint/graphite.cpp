@@ -1,0 +1,84 @@
+// Graphite on white drawing paper: patches of hatching laid over one another, a hard pencil first and a soft one for
+// the core of the shade.
+#include "exemplars/paint/brush.h"
+#include "exemplars/paint/drawing.h"
+#include "exemplars/paint/paper.h"
+#include "exemplars/paint/sphere.h"
+#include "exemplars/paint/strokes.h"
+#include "exemplars/paint/styles.h"
+
+namespace scumble::paint {
+namespace {
+
+constexpr glm::vec3 kPaper{0.965f, 0.96f, 0.945f};
+constexpr glm::vec3 kHard{0.27f, 0.275f, 0.295f};
+constexpr glm::vec3 kSoft{0.12f, 0.122f, 0.138f};
+
+enum Pass : std::uint64_t { kTooth, kMottle, kRim, kSoftPass, kFirstHatch };
+
+// Darkness wanted: white paper in the light.
+float Target(glm::vec2 at) {
+  const float value = ShadingAt(at).value;
+  return 0.04f + 0.44f * Ramp(0.94f, 0.30f, value) + 0.31f * Ramp(0.38f, 0.05f, value);
+}
+
+// The axes lie in the light or near the rim, so that no circle of hatching closes in sight.
+constexpr glm::vec3 kAlongShade{-0.62f, 0.66f, 0.42f};
+constexpr glm::vec3 kDiagonal{-0.85f, 0.20f, 0.30f};
+constexpr glm::vec3 kAcross{0.20f, 0.90f, 0.25f};
+
+Status DrawHatching(Drawing& drawing, const Studio& studio) {
+  SCUMBLE_ASSIGN(Brush pencil, Brush::Load(studio.brushes, "deevad/2B_pencil"));
+  pencil.Radius(1.7f).Color(kHard);
+  HatchOptions hatch;
+  hatch.patches = 560;
+  hatch.strokes_min = 7;
+  hatch.strokes_max = 15;
+  hatch.spacing = 5.5f;
+  hatch.length_min = 60.0f;
+  hatch.length_max = 140.0f;
+  hatch.sway = 0.10f;
+  constexpr glm::vec3 kTurns[] = {kAlongShade, kAlongShade, kDiagonal, kAlongShade, kAcross};
+  constexpr int kRounds = 12;
+  for (int round = 0; round < kRounds; ++round) {
+    Chance chance(studio.seed, kFirstHatch + static_cast<std::uint64_t>(round));
+    const float progress = static_cast<float>(round) / (kRounds - 1);
+    const Round plan{kTurns[round % 5], glm::mix(0.60f, 1.0f, progress), glm::mix(0.42f, 0.80f, progress), hatch};
+    HatchRound(drawing, pencil, chance, Target, plan);
+  }
+  return Ok();
+}
+
+Status DrawAccents(Drawing& drawing, const Studio& studio) {
+  SCUMBLE_ASSIGN(Brush soft, Brush::Load(studio.brushes, "tanda/pencil-8b"));
+  soft.Radius(2.4f).Color(kSoft);
+  HatchOptions hatch;
+  hatch.patches = 420;
+  hatch.spacing = 6.0f;
+  hatch.length_min = 40.0f;
+  hatch.length_max = 90.0f;
+  for (int round = 0; round < 4; ++round) {
+    Chance chance(studio.seed, Hash(kSoftPass, round));
+    HatchRound(drawing, soft, chance, Target, {round == 1 ? kAcross : kAlongShade, 1.03f, 0.65f, hatch});
+  }
+
+  SCUMBLE_ASSIGN(Brush pencil, Brush::Load(studio.brushes, "deevad/2B_pencil"));
+  pencil.Radius(1.9f).Color(kSoft);
+  Chance rim(studio.seed, kRim);
+  const Touch contour = [](glm::vec2 at) { return 0.40f + 0.45f * Ramp(0.2f, 0.9f, DarknessAt(at)); };
+  pencil.Paint(drawing.canvas(), PlanRim(rim, contour, {.lines = 40, .inset = 9.0f, .deviation = 4.0f}));
+  return Ok();
+}
+
+}  // namespace
+
+Expected<Picture> PaintGraphite(const Studio& studio) {
+  const Field tooth = MakeTooth(studio.size, Tooth::kFine, 4.0f, Hash(studio.seed, kTooth));
+  const Colors paper = MakePaper(tooth, kPaper, 0.04f, Hash(studio.seed, kMottle));
+  Drawing drawing(paper, tooth, {.bite = 0.55f, .softness = 0.40f, .density = 1.1f});
+  SCUMBLE_RETURN_IF_ERROR(DrawHatching(drawing, studio));
+  SCUMBLE_RETURN_IF_ERROR(DrawAccents(drawing, studio));
+  return ToPicture(drawing.Look());
+}
+
+}  // namespace scumble::paint

@@ -1,0 +1,68 @@
+// Paints the exemplars: spheres for the styles that come with Scumble. Exit codes are those of `scumble`.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "exemplars/paint/styles.h"
+#include "io/picture_file.h"
+
+namespace {
+
+using namespace scumble;
+
+enum ExitCode { kOk = 0, kUsage = 2, kInput = 3, kOutput = 4 };
+
+int Report(const Error& error) {
+  std::cerr << "paint_exemplars: " << error.message << "\n";
+  switch (error.kind) {
+    case ErrorKind::kUsage:
+      return kUsage;
+    case ErrorKind::kOutput:
+      return kOutput;
+    default:
+      return kInput;
+  }
+}
+
+Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, const std::filesystem::path& folder) {
+  SCUMBLE_ASSIGN(const Picture picture, style.paint(studio));
+  const std::filesystem::path style_folder = folder / style.name;
+  std::error_code failure;
+  std::filesystem::create_directories(style_folder, failure);
+  if (failure) return OutputError(style_folder.string() + " cannot be made: " + failure.message());
+  const std::filesystem::path file = style_folder / "lit.png";
+  PictureWriteOptions options;
+  options.png_level = 9;
+  SCUMBLE_RETURN_IF_ERROR(WritePicture(file, picture, options));
+  std::cout << file.string() << "\n";
+  return Ok();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  paint::Studio studio;
+  studio.brushes = SCUMBLE_MYPAINT_BRUSHES;
+  std::string chosen = "all";
+  std::filesystem::path folder = ".";
+  std::vector<std::string> names{"all"};
+  for (const paint::StyleEntry& style : paint::kStyles) names.emplace_back(style.name);
+
+  CLI::App app{"Paints spheres in the styles that come with Scumble: FOLDER/NAME/lit.png"};
+  app.add_option("--style", chosen, "Which one")->check(CLI::IsMember(names))->capture_default_str();
+  app.add_option("--size", studio.size, "Pixels along a side")->check(CLI::Range(64, 8192))->capture_default_str();
+  app.add_option("--seed", studio.seed, "The same number paints the same picture")->capture_default_str();
+  app.add_option("--brushes", studio.brushes, "Folder of the brushes of mypaint-brushes")->capture_default_str();
+  app.add_option("-o", folder, "Folder to write to")->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kOk : kUsage;
+  }
+  for (const paint::StyleEntry& style : paint::kStyles) {
+    if (chosen != "all" && chosen != style.name) continue;
+    if (const Status status = PaintOne(style, studio, folder); !status) return Report(status.error());
+  }
+  return kOk;
+}

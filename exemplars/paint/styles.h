@@ -1,0 +1,35 @@
+// The styles, one file each: every mark is a libmypaint stroke planned on the sphere.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "image/picture.h"
+#include "image/status.h"
+
+namespace scumble::paint {
+
+struct Studio {
+  std::filesystem::path brushes;  // the folder that holds tanda/, deevad/, classic/
+  int size = 1024;
+  std::uint64_t seed = 1;
+};
+
+// The sphere fills the square; what lies outside it is continued paint or paper. Same studio, same picture.
+Expected<Picture> PaintCharcoal(const Studio& studio);
+Expected<Picture> PaintGraphite(const Studio& studio);
+Expected<Picture> PaintOil(const Studio& studio);
+Expected<Picture> PaintWatercolour(const Studio& studio);
+
+struct StyleEntry {
+  const char* name;
+  Expected<Picture> (*paint)(const Studio& studio);
+};
+inline constexpr StyleEntry kStyles[] = {
+    {"charcoal", PaintCharcoal},
+    {"graphite", PaintGraphite},
+    {"oil", PaintOil},
+    {"watercolour", PaintWatercolour},
+};
+
+}  // namespace scumble::paint

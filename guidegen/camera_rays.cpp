@@ -1,0 +1,122 @@
+#include "guidegen/camera_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace scumble {
+namespace {
+
+bool IsFinite(const glm::dmat4& matrix) {
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!std::isfinite(matrix[column][row])) return false;
+    }
+  }
+  return true;
+}
+
+// Right-handed unit axes that keep the viewing direction; false where the matrix has none.
+bool StraightenAxes(const glm::dmat4& matrix, glm::dmat3& axes) {
+  const glm::dvec3 up(matrix[1]);
+  const glm::dvec3 backward(matrix[2]);
+  const double backward_length = glm::length(backward);
+  const double up_length = glm::length(up);
+  if (!IsFinite(matrix) || !(backward_length > 0.0) || !(up_length > 0.0)) return false;
+  axes[2] = backward / backward_length;
+  const glm::dvec3 right = glm::cross(up / up_length, axes[2]);
+  const double right_length = glm::length(right);
+  if (!(right_length > 1e-9)) return false;
+  axes[0] = right / right_length;
+  axes[1] = glm::cross(axes[2], axes[0]);
+  return true;
+}
+
+// Empty when the camera can be used.
+std::string FindFault(const Camera& camera) {
+  if (camera.orthographic) {
+    if (!(camera.ymag > 0.0) || !std::isfinite(camera.ymag)) {
+      return "has the half height " + std::to_string(camera.ymag) + ": give it one above 0";
+    }
+  } else if (!(camera.yfov_degrees > 0.0 && camera.yfov_degrees < 180.0)) {
+    return "has the vertical angle " + std::to_string(camera.yfov_degrees) + " degrees: give it one between 0 and 180";
+  }
+  if (camera.aspect && (!(*camera.aspect > 0.0) || !std::isfinite(*camera.aspect))) {
+    return "has the aspect ratio " + std::to_string(*camera.aspect) + ": give it one above 0, or none";
+  }
+  if (!(std::max(camera.z_near, 0.0) < camera.z_far) || std::isnan(camera.z_near)) {
+    return "has its near plane at " + std::to_string(camera.z_near) + " and its far plane at " +
+           std::to_string(camera.z_far) + ": the near plane must come first";
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int height) {
+  const std::string who = "camera \"" + camera.name + "\" ";
+  if (const std::string fault = FindFault(camera); !fault.empty()) return InputError(who + fault);
+  CameraRays rays;
+  if (!StraightenAxes(camera.world_from_camera, rays.axes_)) {
+    return InputError(who + "has a matrix without a direction: its axes must be finite, not zero and not parallel");
+  }
+  rays.name_ = camera.name;
+  rays.eye_ = glm::dvec3(camera.world_from_camera[3]);
+  rays.orthographic_ = camera.orthographic;
+  rays.width_ = width;
+  rays.height_ = height;
+  rays.near_depth_ = std::max(camera.z_near, 0.0);
+  rays.far_depth_ = camera.z_far;
+
+  const double picture_aspect = double(width) / height;
+  const double half_height = camera.orthographic ? camera.ymag : std::tan(glm::radians(camera.yfov_degrees) / 2.0);
+  const bool keep_horizontal = camera.aspect && *camera.aspect > picture_aspect;
+  const double half_width = half_height * (keep_horizontal ? *camera.aspect : picture_aspect);
+  rays.half_extent_ = {half_width, keep_horizontal ? half_width / picture_aspect : half_height};
+  return rays;
+}
+
+ViewRay CameraRays::Through(double x, double y) const {
+  const double across = (2.0 * x - width_) / width_ * half_extent_.x;
+  const double up = (height_ - 2.0 * y) / height_ * half_extent_.y;
+  ViewRay ray;
+  (orthographic_ ? ray.origin : ray.direction) += glm::dvec3(across, up, 0.0);
+  return ray;
+}
+
+glm::dmat4 CameraRays::ViewFromObject(const glm::dmat4& world_from_object) const {
+  const glm::dmat3 view_from_world = glm::transpose(axes_);
+  const glm::dmat3 linear = view_from_world * glm::dmat3(world_from_object);
+  glm::dmat4 result(linear);
+  result[3] = glm::dvec4(ViewFromWorld(glm::dvec3(world_from_object[3])), 1.0);
+  return result;
+}
+
+GuideCamera CameraRays::ToGuideCamera() const {
+  GuideCamera camera;
+  camera.name = name_;
+  const glm::dmat3 view_from_world = glm::transpose(axes_);
+  camera.view_from_world = glm::dmat4(view_from_world);
+  camera.view_from_world[3] = glm::dvec4(-(view_from_world * eye_), 1.0);
+
+  glm::dmat4& clip = camera.clip_from_view;
+  clip = glm::dmat4(0.0);
+  clip[0][0] = 1.0 / half_extent_.x;
+  clip[1][1] = 1.0 / half_extent_.y;
+  if (orthographic_) {
+    const double n = near_depth_;
+    const double f = std::isinf(far_depth_) ? n + 1000.0 : far_depth_;
+    clip[2][2] = -2.0 / (f - n);
+    clip[3][2] = -(f + n) / (f - n);
+    clip[3][3] = 1.0;
+    return camera;
+  }
+  const double n = near_depth_ > 0.0 ? near_depth_ : std::min(0.01, far_depth_ / 2.0);
+  const bool endless = std::isinf(far_depth_);
+  clip[2][2] = endless ? -1.0 : -(far_depth_ + n) / (far_depth_ - n);
+  clip[3][2] = endless ? -2.0 * n : -2.0 * far_depth_ * n / (far_depth_ - n);
+  clip[2][3] = -1.0;
+  return camera;
+}
+
+}  // namespace scumble

@@ -1,0 +1,27 @@
+// The one ray caster under RenderGuides and RenderSphereGuides.
+#pragma once
+
+#include <vector>
+
+#include "guidegen/camera_rays.h"
+#include "guidegen/direct_light.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/surface.h"
+
+namespace scumble {
+
+// Objects and lights in the camera's view space.
+struct View {
+  CameraRays camera;
+  std::vector<PlacedObject> objects;
+  std::vector<PlacedLight> lights;  // looked at only where a layer needs them
+};
+
+// kUsage or kUnavailable where the options make no sense or ask for what is not built in.
+Status CheckOptions(const GuidegenOptions& options);
+
+// Fills the layers, the camera and the attributes; names of objects and materials are the caller's. `options` have
+// passed CheckOptions.
+Expected<GuidegenResult> CastGuides(View view, const GuidegenOptions& options);
+
+}  // namespace scumble

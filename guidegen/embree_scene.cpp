@@ -1,0 +1,173 @@
+#include "guidegen/embree_scene.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <array>
+
+#include "image/check.h"
+
+namespace scumble {
+namespace {
+
+struct IsaInfo {
+  const char* name;
+  RTCDeviceProperty native_packets;  // what tells Embree's instruction sets apart from outside
+};
+
+// Best first.
+constexpr std::array<IsaInfo, 5> kIsas = {{{"avx512", RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED},
+                                           {"avx2", RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED},
+                                           {"avx", RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED},
+                                           {"sse4.2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED},
+                                           {"sse2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED}}};
+
+// Embree believes whatever it is told and dies on the first unknown instruction, so the machine is asked first.
+bool MachineHas(const std::string& isa) {
+#if defined(__x86_64__)
+  if (isa == "sse2") return __builtin_cpu_supports("sse2");
+  if (isa == "sse4.2") return __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
+  if (isa == "avx") return __builtin_cpu_supports("avx");
+  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
+                    __builtin_cpu_supports("bmi2");
+  if (isa == "avx2") return avx2;
+  return avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+#else
+  return isa == "sse2";  // elsewhere Embree maps its SSE2 code to the machine's own vectors
+#endif
+}
+
+// The packet width that an instruction set promises must be there: a build of Embree without it falls back silently.
+RTCDevice OpenIfSupported(const IsaInfo& isa) {
+  if (!MachineHas(isa.name)) return nullptr;
+  RTCDevice device = rtcNewDevice(("isa=" + std::string(isa.name)).c_str());
+  if (device && rtcGetDeviceProperty(device, isa.native_packets) == 0) {
+    rtcReleaseDevice(device);
+    return nullptr;
+  }
+  return device;
+}
+
+std::string AvailableIsas() {
+  std::string names;
+  for (auto isa = kIsas.rbegin(); isa != kIsas.rend(); ++isa) {
+    RTCDevice device = OpenIfSupported(*isa);
+    if (!device) continue;
+    rtcReleaseDevice(device);
+    names += (names.empty() ? "" : ", ") + std::string(isa->name);
+  }
+  return names;
+}
+
+void FilterHits(const RTCFilterFunctionNArguments* args) {
+  const PlacedObject& object = *static_cast<const PlacedObject*>(args->geometryUserPtr);
+  const bool camera_rays = reinterpret_cast<const CastContext*>(args->context)->camera_rays;
+  const bool cull = camera_rays && !object.material->double_sided;
+  const unsigned count = args->N;
+  for (unsigned i = 0; i < count; ++i) {
+    if (args->valid[i] == 0) continue;
+    if (cull) {
+      const double along = double(RTCHitN_Ng_x(args->hit, count, i)) * RTCRayN_dir_x(args->ray, count, i) +
+                           double(RTCHitN_Ng_y(args->hit, count, i)) * RTCRayN_dir_y(args->ray, count, i) +
+                           double(RTCHitN_Ng_z(args->hit, count, i)) * RTCRayN_dir_z(args->ray, count, i);
+      if (along * object.winding > 0.0) {
+        args->valid[i] = 0;
+        continue;
+      }
+    }
+    const glm::dvec2 barycentric(RTCHitN_u(args->hit, count, i), RTCHitN_v(args->hit, count, i));
+    if (IsHole(object, RTCHitN_primID(args->hit, count, i), barycentric)) args->valid[i] = 0;
+  }
+}
+
+void FillVertices(RTCGeometry geometry, const PlacedObject& object) {
+  const std::vector<glm::vec3>& positions = object.mesh->positions;
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), positions.size()));
+  if (!vertices) return;
+  const glm::dmat3 linear(object.view_from_object);
+  const glm::dvec3 origin(object.view_from_object[3]);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const glm::vec3 vertex(linear * glm::dvec3(positions[i]) + origin);
+      for (int axis = 0; axis < 3; ++axis) vertices[3 * i + axis] = vertex[axis];
+    }
+  });
+}
+
+RTCGeometry MakeMesh(RTCDevice device, const PlacedObject& object) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  FillVertices(geometry, object);
+  const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                             sizeof(glm::uvec3), triangles.size());
+  if (!object.material->double_sided || MayHaveHoles(*object.material)) {
+    rtcSetGeometryIntersectFilterFunction(geometry, FilterHits);
+    rtcSetGeometryOccludedFilterFunction(geometry, FilterHits);
+  }
+  return geometry;
+}
+
+RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  auto* sphere = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), 1));
+  if (!sphere) return geometry;
+  const glm::vec4 centre(object.view_from_object[3]);
+  for (int axis = 0; axis < 3; ++axis) sphere[axis] = centre[axis];
+  sphere[3] = 1.0f;
+  return geometry;
+}
+
+}  // namespace
+
+Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa) {
+  EmbreeScene scene;
+  scene.objects_ = std::make_unique<std::vector<PlacedObject>>(std::move(objects));
+  SCUMBLE_RETURN_IF_ERROR(scene.OpenDevice(isa));
+  SCUMBLE_RETURN_IF_ERROR(scene.Commit());
+  return scene;
+}
+
+Status EmbreeScene::OpenDevice(const std::string& isa) {
+  bool known = isa.empty();
+  for (const IsaInfo& candidate : kIsas) {
+    if (!isa.empty() && isa != candidate.name) continue;
+    known = true;
+    device_.reset(OpenIfSupported(candidate));
+    if (device_) {
+      isa_ = candidate.name;
+      return Ok();
+    }
+  }
+  if (!known) {
+    return UsageError("isa \"" + isa + "\" is unknown: expected one of sse2, sse4.2, avx, avx2, avx512");
+  }
+  return UsageError("isa \"" + isa + "\" is not available on this machine with this Embree: choose one of " +
+                    AvailableIsas());
+}
+
+Status EmbreeScene::Commit() {
+  scene_.reset(rtcNewScene(device_.get()));
+  // Robust: no cracks between neighbours, and nothing thin is lost.
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  for (std::size_t i = 0; i < objects_->size(); ++i) {
+    PlacedObject& object = (*objects_)[i];
+    if (object.mesh && object.mesh->triangles.empty()) continue;
+    RTCGeometry geometry = object.mesh ? MakeMesh(device_.get(), object) : MakeSphere(device_.get(), object);
+    rtcSetGeometryUserData(geometry, &object);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(scene_.get());
+  const RTCError error = rtcGetDeviceError(device_.get());
+  if (error == RTC_ERROR_OUT_OF_MEMORY) {
+    return InputError("the scene does not fit into memory: give it fewer triangles or instances");
+  }
+  SCUMBLE_CHECK_EQ(int(error), int(RTC_ERROR_NONE));
+  return Ok();
+}
+
+}  // namespace scumble

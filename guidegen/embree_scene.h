@@ -1,0 +1,59 @@
+// Embree's device and committed scene, relative to the camera. The only place besides cast_guides.cpp that sees Embree.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "guidegen/surface.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// What Embree hands to filter functions. Camera rays do not see the back of single-sided surfaces; shadow rays do,
+// because a wall keeps its shadow when it is cut away for the viewer.
+struct CastContext {
+  explicit CastContext(bool for_camera_rays) : camera_rays(for_camera_rays) {
+    rtcInitIntersectContext(&embree);
+    embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  }
+  RTCIntersectContext embree;  // first: Embree passes its address on
+  bool camera_rays;
+};
+
+// Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.
+class EmbreeScene {
+ public:
+  // `isa` as in GuidegenOptions; one that is unknown, or that this machine or this build of Embree lacks, is a kUsage
+  // error. Builds in the calling thread's oneTBB arena, whose size is the only limit: Embree's own "threads=" would
+  // throttle oneTBB for the whole process. The hierarchy is the same at any thread count. Triangles with corners that
+  // are not finite are left out.
+  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa);
+
+  RTCScene handle() const { return scene_.get(); }
+  const std::string& isa() const { return isa_; }                         // what is in use, never empty
+  const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
+
+ private:
+  struct ReleaseDevice {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  };
+  struct ReleaseScene {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  };
+
+  EmbreeScene() = default;
+  Status OpenDevice(const std::string& isa);
+  Status Commit();
+
+  // Filter functions keep pointers to the objects, so they must not move with this. Order matters: the scene goes
+  // before its device, the device before the objects.
+  std::unique_ptr<std::vector<PlacedObject>> objects_;
+  std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
+  std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+  std::string isa_;
+};
+
+}  // namespace scumble

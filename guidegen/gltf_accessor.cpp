@@ -1,0 +1,258 @@
+#include "guidegen/gltf_accessor.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+namespace scumble {
+namespace {
+
+// An accessor without a buffer view is all zeros and needs no byte of the file, so its count needs a limit of its own.
+constexpr std::size_t kMaxZeroElements = 16'000'000;
+
+// `count` elements of `element_bytes` bytes, `stride` apart; null when the accessor has no data of its own.
+struct Block {
+  const unsigned char* data = nullptr;
+  std::size_t stride = 0;
+  std::size_t count = 0;
+};
+
+int ComponentBytes(int component_type) {
+  switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+int ComponentCount(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_SCALAR:
+      return 1;
+    case TINYGLTF_TYPE_VEC2:
+      return 2;
+    case TINYGLTF_TYPE_VEC3:
+      return 3;
+    case TINYGLTF_TYPE_VEC4:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+template <class T>
+T Load(const unsigned char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof(T));
+  return value;
+}
+
+float LoadComponent(const unsigned char* bytes, int component_type, bool normalized) {
+  const auto convert = [&](auto value, float most) {
+    const float f = static_cast<float>(value);
+    return normalized ? std::max(f / most, -1.0f) : f;
+  };
+  switch (component_type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return convert(Load<std::int8_t>(bytes), 127.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return convert(Load<std::uint8_t>(bytes), 255.0f);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return convert(Load<std::int16_t>(bytes), 32767.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return convert(Load<std::uint16_t>(bytes), 65535.0f);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return convert(Load<std::uint32_t>(bytes), 4294967295.0f);
+    default:
+      return Load<float>(bytes);
+  }
+}
+
+std::uint32_t LoadIndex(const unsigned char* bytes, int component_type) {
+  if (component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return Load<std::uint8_t>(bytes);
+  if (component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return Load<std::uint16_t>(bytes);
+  return Load<std::uint32_t>(bytes);
+}
+
+bool IsIndexType(int component_type) {
+  return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+         component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+         component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+// One accessor of one file, and how to complain about it.
+class Reader {
+ public:
+  Reader(const tinygltf::Model& model, const std::string& file, int index, const std::string& what)
+      : model_(model), file_(file), index_(index), what_(what) {}
+
+  Error Bad(const std::string& reason) const {
+    return InputError(file_ + ": " + what_ + ": accessor " + std::to_string(index_) + " " + reason +
+                      "; the file is corrupt or was cut short, export it again");
+  }
+
+  // Checks everything that does not need the values.
+  Status Open() {
+    if (index_ < 0 || std::size_t(index_) >= model_.accessors.size()) {
+      return Bad("does not exist, the file has " + std::to_string(model_.accessors.size()));
+    }
+    accessor_ = &model_.accessors[std::size_t(index_)];
+    components_ = ComponentCount(accessor_->type);
+    component_bytes_ = ComponentBytes(accessor_->componentType);
+    if (components_ == 0) return Bad("is a matrix, expected a scalar or a vector");
+    if (component_bytes_ == 0) {
+      return Bad("has the component type " + std::to_string(accessor_->componentType) + ", which glTF does not know");
+    }
+    if (accessor_->bufferView < 0) {
+      if (accessor_->count > kMaxZeroElements) {
+        return Bad("has " + std::to_string(accessor_->count) + " elements and no data");
+      }
+      return Ok();
+    }
+    SCUMBLE_ASSIGN(main_, Slice(accessor_->bufferView, accessor_->byteOffset, accessor_->count, element_bytes(), true));
+    return Ok();
+  }
+
+  const tinygltf::Accessor& accessor() const { return *accessor_; }
+  int components() const { return components_; }
+  std::size_t element_bytes() const { return std::size_t(components_) * component_bytes_; }
+  int component_bytes() const { return component_bytes_; }
+  const Block& main() const { return main_; }
+
+  // `count` elements inside a buffer view inside its buffer; sums and products are arranged so as not to overflow.
+  Expected<Block> Slice(int view_index, std::size_t offset, std::size_t count, std::size_t bytes, bool strided) const {
+    if (view_index < 0 || std::size_t(view_index) >= model_.bufferViews.size()) {
+      return Bad("uses buffer view " + std::to_string(view_index) + ", the file has " +
+                 std::to_string(model_.bufferViews.size()));
+    }
+    SCUMBLE_ASSIGN(const std::span<const unsigned char> view, ReadBufferView(model_, file_, view_index, what_));
+    const std::size_t view_stride = model_.bufferViews[std::size_t(view_index)].byteStride;
+    const std::size_t stride = strided && view_stride > 0 ? view_stride : bytes;
+    if (stride < bytes) return Bad("has elements longer than the stride of its buffer view");
+    if (count == 0) return Block{view.data(), stride, 0};
+    const std::size_t room = offset <= view.size() ? view.size() - offset : 0;
+    if (bytes > room || count - 1 > (room - bytes) / stride) {
+      return Bad("needs " + std::to_string(count) + " elements of " + std::to_string(bytes) + " bytes from byte " +
+                 std::to_string(offset) + " of buffer view " + std::to_string(view_index) + ", which has " +
+                 std::to_string(view.size()) + " bytes");
+    }
+    return Block{view.data() + offset, stride, count};
+  }
+
+  // Calls patch(element, bytes of its value) for every element that a sparse accessor replaces.
+  template <class Patch>
+  Status ForEachSparse(Patch patch) const {
+    if (!accessor_->sparse.isSparse) return Ok();
+    const auto& sparse = accessor_->sparse;
+    if (sparse.count < 0 || std::size_t(sparse.count) > accessor_->count) return Bad("has a wrong sparse count");
+    if (!IsIndexType(sparse.indices.componentType)) return Bad("has sparse indices of a wrong type");
+    if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) return Bad("has a negative sparse offset");
+    const std::size_t count = std::size_t(sparse.count);
+    SCUMBLE_ASSIGN(const Block indices, Slice(sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), count,
+                                              std::size_t(ComponentBytes(sparse.indices.componentType)), false));
+    SCUMBLE_ASSIGN(const Block values, Slice(sparse.values.bufferView, std::size_t(sparse.values.byteOffset), count,
+                                             element_bytes(), false));
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t element = LoadIndex(indices.data + i * indices.stride, sparse.indices.componentType);
+      if (element >= accessor_->count)
+        return Bad("replaces element " + std::to_string(element) + " of " + std::to_string(accessor_->count));
+      patch(element, values.data + i * values.stride);
+    }
+    return Ok();
+  }
+
+ private:
+  const tinygltf::Model& model_;
+  const std::string& file_;
+  const int index_;
+  const std::string& what_;
+  const tinygltf::Accessor* accessor_ = nullptr;
+  int components_ = 0;
+  int component_bytes_ = 0;
+  Block main_;
+};
+
+}  // namespace
+
+Expected<std::span<const unsigned char>> ReadBufferView(const tinygltf::Model& model, const std::string& file,
+                                                        int buffer_view, const std::string& what) {
+  const auto bad = [&](const std::string& reason) {
+    return InputError(file + ": " + what + ": buffer view " + std::to_string(buffer_view) + " " + reason +
+                      "; the file is corrupt or was cut short, export it again");
+  };
+  if (buffer_view < 0 || std::size_t(buffer_view) >= model.bufferViews.size()) {
+    return bad("does not exist, the file has " + std::to_string(model.bufferViews.size()));
+  }
+  const tinygltf::BufferView& view = model.bufferViews[std::size_t(buffer_view)];
+  if (view.buffer < 0 || std::size_t(view.buffer) >= model.buffers.size()) {
+    return bad("is in buffer " + std::to_string(view.buffer) + ", the file has " +
+               std::to_string(model.buffers.size()));
+  }
+  const std::vector<unsigned char>& data = model.buffers[std::size_t(view.buffer)].data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
+    return bad("has " + std::to_string(view.byteLength) + " bytes from byte " + std::to_string(view.byteOffset) +
+               " of a buffer of " + std::to_string(data.size()) + " bytes");
+  }
+  return std::span<const unsigned char>(data).subspan(view.byteOffset, view.byteLength);
+}
+
+Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::string& file, int accessor,
+                                    const std::string& what) {
+  Reader reader(model, file, accessor, what);
+  SCUMBLE_RETURN_IF_ERROR(reader.Open());
+  return reader.accessor().count;
+}
+
+Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
+                                const std::string& what) {
+  Reader reader(model, file, accessor, what);
+  SCUMBLE_RETURN_IF_ERROR(reader.Open());
+  const int type = reader.accessor().componentType;
+  const bool normalized = reader.accessor().normalized;
+  FloatTable table;
+  table.count = reader.accessor().count;
+  table.components = reader.components();
+  table.values.assign(table.count * std::size_t(table.components), 0.0f);
+  const auto put = [&](std::size_t element, const unsigned char* bytes) {
+    float* out = table.values.data() + element * std::size_t(table.components);
+    for (int c = 0; c < table.components; ++c) {
+      out[c] = LoadComponent(bytes + c * reader.component_bytes(), type, normalized);
+    }
+  };
+  const Block& block = reader.main();
+  for (std::size_t i = 0; i < block.count; ++i) put(i, block.data + i * block.stride);
+  SCUMBLE_RETURN_IF_ERROR(reader.ForEachSparse(put));
+  return table;
+}
+
+Expected<std::vector<std::uint32_t>> ReadIndices(const tinygltf::Model& model, const std::string& file, int accessor,
+                                                 std::size_t vertex_count, const std::string& what) {
+  Reader reader(model, file, accessor, what);
+  SCUMBLE_RETURN_IF_ERROR(reader.Open());
+  const int type = reader.accessor().componentType;
+  if (reader.components() != 1 || !IsIndexType(type)) return reader.Bad("is not a list of unsigned indices");
+  std::vector<std::uint32_t> indices(reader.accessor().count, 0);
+  const auto put = [&](std::size_t i, const unsigned char* bytes) { indices[i] = LoadIndex(bytes, type); };
+  const Block& block = reader.main();
+  for (std::size_t i = 0; i < block.count; ++i) put(i, block.data + i * block.stride);
+  SCUMBLE_RETURN_IF_ERROR(reader.ForEachSparse(put));
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] >= vertex_count) {
+      return reader.Bad("has the index " + std::to_string(indices[i]) + " at place " + std::to_string(i) +
+                        ", but there are only " + std::to_string(vertex_count) + " vertices");
+    }
+  }
+  return indices;
+}
+
+}  // namespace scumble

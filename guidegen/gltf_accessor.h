@@ -1,0 +1,44 @@
+// Reads glTF accessors, with every offset and count checked against the data that is really there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "guidegen/loader_util.h"
+#include "image/status.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace scumble {
+
+// The values of an accessor as floats: normalized integers are mapped to [0, 1] or [-1, 1], others converted.
+struct FloatTable {
+  std::size_t count = 0;
+  int components = 0;         // 1 … 4
+  std::vector<float> values;  // count × components
+};
+
+// Throughout, `file` and `what` ("mesh 'Cube', POSITION") are for the messages.
+
+// How many elements an accessor claims to have, once its index and its extent are known to be right.
+Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::string& file, int accessor,
+                                    const std::string& what);
+
+// Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused.
+Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
+                                const std::string& what);
+
+// Unsigned 8-, 16- or 32-bit scalars, each below `vertex_count`.
+Expected<std::vector<std::uint32_t>> ReadIndices(const tinygltf::Model& model, const std::string& file, int accessor,
+                                                 std::size_t vertex_count, const std::string& what);
+
+// The bytes of a buffer view, for embedded pictures. They live as long as the model.
+Expected<std::span<const unsigned char>> ReadBufferView(const tinygltf::Model& model, const std::string& file,
+                                                        int buffer_view, const std::string& what);
+
+}  // namespace scumble

@@ -1,0 +1,187 @@
+#include "guidegen/gltf_materials.h"
+
+#include <tiny_gltf.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "guidegen/gltf_accessor.h"
+#include "io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+std::string Label(const char* kind, int index, const std::string& name) {
+  return std::string(kind) + " " + std::to_string(index) + (name.empty() ? "" : " '" + Excerpt(name, 80) + "'");
+}
+
+TextureWrap WrapFromGltf(int wrap) {
+  if (wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return TextureWrap::kClamp;
+  if (wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return TextureWrap::kMirror;
+  return TextureWrap::kRepeat;
+}
+
+// A list of numbers inside an extension, or nothing where it is absent, too short or not finite.
+std::optional<std::vector<double>> Numbers(const tinygltf::Value& object, const std::string& key, std::size_t count) {
+  if (!object.Has(key)) return std::nullopt;
+  const tinygltf::Value& list = object.Get(key);
+  if (list.ArrayLen() != count) return std::nullopt;
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < count; ++i) {
+    const tinygltf::Value& value = list.Get(static_cast<int>(i));
+    if (!value.IsNumber() || !std::isfinite(value.GetNumberAsDouble())) return std::nullopt;
+    numbers.push_back(value.GetNumberAsDouble());
+  }
+  return numbers;
+}
+
+// KHR_texture_transform. The rotation is counter-clockwise for someone who looks at the picture, where v points down:
+// what Blender, Babylon and three.js do, while the matrix printed in the extension's text turns the other way.
+glm::mat3 UvTransform(const tinygltf::Value& extension) {
+  const auto offset = Numbers(extension, "offset", 2);
+  const auto scale = Numbers(extension, "scale", 2);
+  double angle = 0.0;
+  if (extension.Has("rotation") && extension.Get("rotation").IsNumber()) {
+    angle = extension.Get("rotation").GetNumberAsDouble();
+  }
+  if (!std::isfinite(angle)) angle = 0.0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  const double su = scale ? (*scale)[0] : 1.0, sv = scale ? (*scale)[1] : 1.0;
+  glm::dmat3 matrix(1.0);
+  matrix[0] = glm::dvec3(c * su, -s * su, 0.0);
+  matrix[1] = glm::dvec3(s * sv, c * sv, 0.0);
+  matrix[2] = glm::dvec3(offset ? (*offset)[0] : 0.0, offset ? (*offset)[1] : 0.0, 1.0);
+  return glm::mat3(matrix);
+}
+
+// The ending that fits a picture's first bytes, or nothing: glTF knows PNG, JPEG and, by extension, WebP. Neither the
+// file's mimeType nor its uri can be relied on.
+std::optional<std::string> EndingOf(std::span<const unsigned char> bytes) {
+  const auto starts_with = [&](std::size_t at, std::string_view magic) {
+    return bytes.size() >= at + magic.size() && std::memcmp(bytes.data() + at, magic.data(), magic.size()) == 0;
+  };
+  if (starts_with(0, "\x89PNG")) return ".png";
+  if (starts_with(0, "\xFF\xD8\xFF")) return ".jpg";
+  if (starts_with(0, "RIFF") && starts_with(8, "WEBP")) return ".webp";
+  return std::nullopt;
+}
+
+// Decodes each picture once and gives the indices of Scene::textures.
+class TextureLoader {
+ public:
+  TextureLoader(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings)
+      : model_(model), file_(file), scene_(scene), warnings_(warnings) {}
+
+  // `Info` is tinygltf's TextureInfo or NormalTextureInfo. An absent texture gives TextureUse with texture -1.
+  template <class Info>
+  Expected<TextureUse> Use(const Info& info, const std::string& owner) {
+    TextureUse use;
+    if (info.index < 0) return use;
+    if (std::size_t(info.index) >= model_.textures.size()) {
+      return InputError(file_ + ": " + owner + " uses texture " + std::to_string(info.index) + ", the file has " +
+                        std::to_string(model_.textures.size()) + ": export it again");
+    }
+    use.uv_set = info.texCoord;
+    if (const auto it = info.extensions.find("KHR_texture_transform"); it != info.extensions.end()) {
+      use.uv_transform = UvTransform(it->second);
+      if (it->second.Has("texCoord") && it->second.Get("texCoord").IsInt()) {
+        use.uv_set = it->second.Get("texCoord").GetNumberAsInt();
+      }
+    }
+    if (use.uv_set < 0 || use.uv_set > 1) {
+      warnings_.Add("textures on UV sets other than the first two are left out", owner);
+      return TextureUse{};
+    }
+    const tinygltf::Texture& texture = model_.textures[std::size_t(info.index)];
+    if (texture.sampler >= 0 && std::size_t(texture.sampler) < model_.samplers.size()) {
+      const tinygltf::Sampler& sampler = model_.samplers[std::size_t(texture.sampler)];
+      use.wrap_u = WrapFromGltf(sampler.wrapS);
+      use.wrap_v = WrapFromGltf(sampler.wrapT);
+      use.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    }
+    SCUMBLE_ASSIGN(use.texture, PictureOf(texture, owner));
+    return use;
+  }
+
+ private:
+  Expected<int> PictureOf(const tinygltf::Texture& texture, const std::string& owner) {
+    int source = texture.source;
+    if (const auto webp = texture.extensions.find("EXT_texture_webp"); source < 0 && webp != texture.extensions.end()) {
+      if (webp->second.Has("source") && webp->second.Get("source").IsInt()) {
+        source = webp->second.Get("source").GetNumberAsInt();
+      }
+    }
+    if (source < 0 || std::size_t(source) >= model_.images.size()) {
+      return InputError(file_ + ": " + owner +
+                        " has a texture without a picture that can be read; expected PNG, JPEG " + "or WebP");
+    }
+    if (const auto known = loaded_.find(source); known != loaded_.end()) return known->second;
+    const tinygltf::Image& image = model_.images[std::size_t(source)];
+    const std::string label = Label("image", source, image.uri.empty() ? image.name : image.uri);
+    std::span<const unsigned char> encoded(image.image);
+    if (image.bufferView >= 0) {
+      SCUMBLE_ASSIGN(encoded, ReadBufferView(model_, file_, image.bufferView, label));
+    }
+    if (encoded.empty()) {
+      return InputError(file_ + ": " + label + ", used by " + owner +
+                        ", is missing or empty: put it beside the scene, " +
+                        "or export to .glb, which holds its pictures");
+    }
+    const std::optional<std::string> ending = EndingOf(encoded);
+    if (!ending) {
+      return InputError(file_ + ": " + label + ", used by " + owner +
+                        ", is neither PNG, JPEG nor WebP: export it again");
+    }
+    // The decoder goes by the ending of the name.
+    const std::string name = file_ + ": image " + std::to_string(source) + *ending;
+    SCUMBLE_ASSIGN(Picture picture, DecodePicture(std::as_bytes(encoded), name));
+    scene_.textures.push_back(std::move(picture));
+    const int index = static_cast<int>(scene_.textures.size()) - 1;
+    loaded_[source] = index;
+    return index;
+  }
+
+  const tinygltf::Model& model_;
+  const std::string& file_;
+  Scene& scene_;
+  WarningCounter& warnings_;
+  std::map<int, int> loaded_;
+};
+
+}  // namespace
+
+Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene,
+                         WarningCounter& warnings) {
+  TextureLoader textures(model, file, scene, warnings);
+  UniqueNames names;
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    const tinygltf::Material& from = model.materials[i];
+    const std::string owner = Label("material", static_cast<int>(i), from.name);
+    Material material;
+    material.name = names.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
+    const std::vector<double>& factor = from.pbrMetallicRoughness.baseColorFactor;
+    for (int c = 0; c < 4 && std::size_t(c) < factor.size(); ++c) {
+      const float value = static_cast<float>(factor[std::size_t(c)]);
+      if (!std::isfinite(value) || value < 0.0f) {
+        return InputError(file + ": " + owner + " has the base colour factor " + std::to_string(value) +
+                          "; expected 0 … 1");
+      }
+      material.base_color[c] = value;
+    }
+    SCUMBLE_ASSIGN(material.base_color_texture, textures.Use(from.pbrMetallicRoughness.baseColorTexture, owner));
+    SCUMBLE_ASSIGN(material.normal_texture, textures.Use(from.normalTexture, owner));
+    material.normal_scale =
+        std::isfinite(from.normalTexture.scale) ? static_cast<float>(from.normalTexture.scale) : 1.0f;
+    if (from.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
+    if (from.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
+    material.alpha_cutoff = std::isfinite(from.alphaCutoff) ? static_cast<float>(from.alphaCutoff) : 0.5f;
+    material.double_sided = from.doubleSided;
+    scene.materials.push_back(std::move(material));
+  }
+  return Ok();
+}
+
+}  // namespace scumble

@@ -1,0 +1,22 @@
+// glTF materials and the pictures they use.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "guidegen/loader_util.h"
+#include "guidegen/scene.h"
+#include "image/status.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace scumble {
+
+// Appends every material of the file to scene.materials, in the file's order, and decodes the pictures that their base
+// colours and normal maps need (others are never looked at). A picture that is missing or cannot be decoded is an
+// error that names it.
+Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings);
+
+}  // namespace scumble

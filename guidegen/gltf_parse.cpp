@@ -1,0 +1,180 @@
+#include "guidegen/gltf_parse.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <new>
+#include <span>
+
+#include "guidegen/loader_util.h"
+
+namespace scumble {
+namespace {
+
+// tinygltf walks and frees extras by recursion; real files nest a dozen levels.
+constexpr int kMaxJsonDepth = 200;
+constexpr std::size_t kGlbHeaderBytes = 12;
+constexpr std::size_t kChunkHeaderBytes = 8;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+
+std::uint32_t ReadU32(std::span<const unsigned char> bytes, std::size_t at) {
+  return std::uint32_t(bytes[at]) | std::uint32_t(bytes[at + 1]) << 8 | std::uint32_t(bytes[at + 2]) << 16 |
+         std::uint32_t(bytes[at + 3]) << 24;
+}
+
+bool IsGlb(std::span<const unsigned char> bytes) {
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
+// Where the JSON of a .glb is. Every chunk must lie inside the file: tinygltf reads up to eight bytes beyond one that
+// does not.
+Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::span<const unsigned char> bytes) {
+  const auto bad = [&](const std::string& reason) {
+    return InputError(file + " is not a whole .glb file: " + reason + "; copy or export it again");
+  };
+  if (bytes.size() < kGlbHeaderBytes + kChunkHeaderBytes) {
+    return bad("it has only " + std::to_string(bytes.size()) + " bytes");
+  }
+  if (ReadU32(bytes, 4) != 2) {
+    return InputError(file + " is glTF version " + std::to_string(ReadU32(bytes, 4)) +
+                      "; expected version 2, export it as glTF 2.0");
+  }
+  const std::size_t length = ReadU32(bytes, 8);
+  if (length > bytes.size()) {
+    return bad("its header speaks of " + std::to_string(length) + " bytes, there are " + std::to_string(bytes.size()));
+  }
+  std::span<const unsigned char> json;
+  for (std::size_t at = kGlbHeaderBytes; at < length;) {
+    if (length - at < kChunkHeaderBytes) return bad("its last chunk is cut off");
+    const std::size_t chunk = ReadU32(bytes, at);
+    const std::uint32_t type = ReadU32(bytes, at + 4);
+    at += kChunkHeaderBytes;
+    if (chunk > length - at) return bad("a chunk of " + std::to_string(chunk) + " bytes does not fit in it");
+    if (json.empty() && type == kJsonChunk) json = bytes.subspan(at, chunk);
+    at += chunk;
+  }
+  if (json.empty()) return bad("it has no JSON chunk");
+  return json;
+}
+
+// The deepest nesting of brackets outside strings; a cheap look ahead of the parser proper.
+int JsonDepth(std::span<const unsigned char> json) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const unsigned char c = json[i];
+    if (in_string) {
+      if (c == '\\') {
+        ++i;
+      } else if (c == '"') {
+        in_string = false;
+      }
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, int, int, const unsigned char* bytes,
+                 int size, void*) {
+  image->as_is = true;
+  // Embedded pictures come with a pointer that nobody has checked; they are read later, from their buffer view.
+  if (image->bufferView >= 0) return true;
+  if (size < 0) {
+    if (error) *error += "a picture has more than two gigabytes";
+    return false;
+  }
+  image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+// tinygltf also looks in the current folder; only files beside the scene (or below or above it) belong to it.
+bool BesideScene(const std::string& name, void* base) {
+  const std::string& folder = *static_cast<const std::string*>(base);
+  if (name.rfind(folder, 0) != 0) return false;
+  std::error_code error;
+  return std::filesystem::is_regular_file(name, error) && !error;
+}
+
+bool ReadForTinygltf(std::vector<unsigned char>* out, std::string* error, const std::string& name, void*) {
+  const Expected<std::vector<std::byte>> bytes = ReadRegularFile(name);
+  if (!bytes) {
+    if (error) *error += bytes.error().message;
+    return false;
+  }
+  const std::span<const unsigned char> chars = AsChars(bytes.value());
+  out->assign(chars.begin(), chars.end());
+  return true;
+}
+
+bool NeverWrite(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+
+// tinygltf keeps going after some errors and drops what it could not read; one such note is harmless.
+std::string SeriousComplaints(std::string complaints) {
+  const std::string harmless = "JSON Chunk end does not aligned to a 4-byte boundary.";
+  if (const std::size_t at = complaints.find(harmless); at != std::string::npos) complaints.erase(at, harmless.size());
+  return complaints;
+}
+
+Status RunTinygltf(const std::string& file, std::string folder, std::span<const unsigned char> bytes,
+                   tinygltf::Model& model) {
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(&KeepEncoded, nullptr);
+  loader.SetFsCallbacks(
+      {&BesideScene, [](const std::string& name, void*) { return name; }, &ReadForTinygltf, &NeverWrite, &folder});
+  std::string errors, warnings;
+  bool ok = false;
+  const unsigned size = static_cast<unsigned>(bytes.size());
+  try {
+    if (IsGlb(bytes)) {
+      ok = loader.LoadBinaryFromMemory(&model, &errors, &warnings, bytes.data(), size, folder);
+    } else {
+      ok = loader.LoadASCIIFromString(&model, &errors, &warnings, reinterpret_cast<const char*>(bytes.data()), size,
+                                      folder);
+    }
+  } catch (const std::bad_alloc&) {
+    return InputError(file + " asks for more memory than there is: simplify the scene");
+  } catch (const std::exception& e) {
+    ok = false;
+    errors = e.what();
+  }
+  errors = SeriousComplaints(errors);
+  if (ok && errors.empty()) return Ok();
+  if (errors.empty()) errors = warnings.empty() ? "no reason given" : warnings;
+  return InputError(file + " is not valid glTF 2.0: " + Excerpt(errors, 300) +
+                    "; export it again, or check it with a glTF validator");
+}
+
+}  // namespace
+
+Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model) {
+  const std::string file = path.string();
+  SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path));
+  std::span<const unsigned char> bytes = AsChars(whole);
+  if (bytes.size() > std::numeric_limits<unsigned>::max()) {
+    return InputError(file +
+                      " has more than four gigabytes, glTF's limit for one file: move its buffers to .bin files");
+  }
+  if (bytes.size() >= 3 && bytes[0] == 0xEF && bytes[1] == 0xBB && bytes[2] == 0xBF) bytes = bytes.subspan(3);
+  if (bytes.empty()) return InputError(file + " is empty; expected a glTF 2.0 scene");
+  std::span<const unsigned char> json = bytes;
+  if (IsGlb(bytes)) {
+    SCUMBLE_ASSIGN(json, GlbJson(file, bytes));
+  }
+  if (JsonDepth(json) > kMaxJsonDepth) {
+    return InputError(file + " nests its JSON more than " + std::to_string(kMaxJsonDepth) +
+                      " levels deep; no scene needs that");
+  }
+  const std::filesystem::path folder = path.parent_path();
+  return RunTinygltf(file, folder.empty() ? "." : folder.string(), bytes, model);
+}
+
+}  // namespace scumble

@@ -1,0 +1,22 @@
+// The outer shell of a glTF file: container, JSON, buffers and encoded pictures, by tinygltf. Nothing is interpreted.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "image/status.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace scumble {
+
+// Fills `model` from a file. Pictures stay encoded in Image::image (those in buffer views stay in their buffer), and
+// one whose file is missing stays empty: only the materials know whether anybody wants it. Checks the container before
+// tinygltf sees it, refuses JSON nested too deeply for its recursion, and turns whatever it throws into an error that
+// names the file. Files beside the scene are read only if they are regular files.
+Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model);
+
+}  // namespace scumble

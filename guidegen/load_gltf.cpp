@@ -1,0 +1,355 @@
+#include "guidegen/load_gltf.h"
+
+#include <tiny_gltf.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "guidegen/gltf_materials.h"
+#include "guidegen/gltf_meshes.h"
+#include "guidegen/gltf_parse.h"
+#include "guidegen/loader_util.h"
+
+namespace scumble {
+namespace {
+
+constexpr int kMaxNodeDepth = 1024;
+constexpr double kLumensPerWatt = 683.0;
+constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
+
+// Extensions that a file may require: those read here, and those that change only shading that no guide holds.
+bool IsKnownExtension(std::string_view name) {
+  constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
+                                         "EXT_texture_webp"};
+  for (std::string_view known : kKnown) {
+    if (name == known) return true;
+  }
+  return name.rfind("KHR_materials_", 0) == 0 && name != "KHR_materials_pbrSpecularGlossiness";
+}
+
+bool AllFinite(const glm::dmat4& matrix) {
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) {
+      if (!std::isfinite(matrix[c][r])) return false;
+    }
+  }
+  return true;
+}
+
+// Rotation and translation only; the view direction is kept exactly, up as far as it goes.
+std::optional<glm::dmat4> WithoutScale(const glm::dmat4& world) {
+  const glm::dvec3 back(world[2]), up(world[1]);
+  if (!(glm::length(back) > 0.0)) return std::nullopt;
+  const glm::dvec3 z = glm::normalize(back);
+  const glm::dvec3 y_raw = up - z * glm::dot(z, up);
+  if (!(glm::length(y_raw) > 0.0)) return std::nullopt;
+  const glm::dvec3 y = glm::normalize(y_raw);
+  return glm::dmat4(glm::dvec4(glm::cross(y, z), 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), world[3]);
+}
+
+// A node of the hierarchy as reached from the scene's roots.
+struct Visit {
+  int node = 0;
+  int parent = -1;  // index of the parent's Visit
+  int depth = 0;
+  glm::dmat4 world{1.0};
+};
+
+class GltfLoader {
+ public:
+  explicit GltfLoader(std::string file) : file_(std::move(file)) {}
+
+  Expected<Scene> Load(const std::filesystem::path& path) {
+    SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, model_));
+    SCUMBLE_RETURN_IF_ERROR(CheckVersionAndExtensions());
+    SCUMBLE_RETURN_IF_ERROR(LoadGltfMaterials(model_, file_, scene_, warnings_));
+    SCUMBLE_ASSIGN(const std::vector<int> roots, ChooseRoots());
+    SCUMBLE_RETURN_IF_ERROR(WalkNodes(roots));
+    NameObjects();
+    for (std::size_t i = 0; i < visits_.size(); ++i) SCUMBLE_RETURN_IF_ERROR(LoadNode(i));
+    WarnOfIgnoredParts();
+    warnings_.MoveTo(scene_.warnings);
+    return std::move(scene_);
+  }
+
+ private:
+  std::string NodeLabel(int node) const {
+    const std::string& name = model_.nodes[std::size_t(node)].name;
+    return "node " + std::to_string(node) + (name.empty() ? "" : " '" + Excerpt(name, 80) + "'");
+  }
+
+  std::string NodeName(int node) const {
+    const std::string& name = model_.nodes[std::size_t(node)].name;
+    return name.empty() ? "node_" + std::to_string(node) : name;
+  }
+
+  Status CheckVersionAndExtensions() const {
+    if (model_.asset.version.rfind("2.", 0) != 0) {
+      return InputError(file_ + " is glTF version '" + Excerpt(model_.asset.version, 40) +
+                        "'; expected 2.0, export it as glTF 2.0");
+    }
+    std::string unknown;
+    for (const std::string& name : model_.extensionsRequired) {
+      if (!IsKnownExtension(name)) unknown += (unknown.empty() ? "" : ", ") + Excerpt(name, 80);
+    }
+    if (unknown.empty()) return Ok();
+    return InputError(file_ + " requires " + unknown + ", which cannot be read: export it without (for Draco or " +
+                      "meshopt: switch compression off)");
+  }
+
+  Expected<std::vector<int>> ChooseRoots() {
+    if (model_.scenes.empty()) {
+      std::vector<bool> is_child(model_.nodes.size(), false);
+      for (const tinygltf::Node& node : model_.nodes) {
+        for (int child : node.children) {
+          if (child >= 0 && std::size_t(child) < is_child.size()) is_child[std::size_t(child)] = true;
+        }
+      }
+      std::vector<int> roots;
+      for (std::size_t i = 0; i < is_child.size(); ++i) {
+        if (!is_child[i]) roots.push_back(static_cast<int>(i));
+      }
+      return roots;
+    }
+    const int chosen = model_.defaultScene < 0 ? 0 : model_.defaultScene;
+    if (std::size_t(chosen) >= model_.scenes.size()) {
+      return InputError(file_ + " names scene " + std::to_string(chosen) + " as its own, but has " +
+                        std::to_string(model_.scenes.size()) + ": export it again");
+    }
+    const tinygltf::Scene& scene = model_.scenes[std::size_t(chosen)];
+    if (model_.scenes.size() > 1) {
+      warnings_.Add("only one of the " + std::to_string(model_.scenes.size()) + " scenes in the file is loaded",
+                    scene.name.empty() ? "scene " + std::to_string(chosen) : "'" + Excerpt(scene.name, 80) + "'");
+    }
+    return scene.nodes;
+  }
+
+  // Depth first, in the file's order, without recursion: the depth is the file's to choose.
+  Status WalkNodes(const std::vector<int>& roots) {
+    std::vector<bool> seen(model_.nodes.size(), false);
+    std::vector<Visit> stack;
+    for (std::size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], -1, 0, glm::dmat4(1.0)});
+    while (!stack.empty()) {
+      Visit visit = stack.back();
+      stack.pop_back();
+      if (visit.node < 0 || std::size_t(visit.node) >= model_.nodes.size()) {
+        return InputError(file_ + ": node " + std::to_string(visit.node) + " does not exist, the file has " +
+                          std::to_string(model_.nodes.size()) + ": export it again");
+      }
+      if (seen[std::size_t(visit.node)]) {
+        return InputError(file_ + ": " + NodeLabel(visit.node) + " is reached twice; nodes must form a tree, without " +
+                          "cycles and with one parent each");
+      }
+      if (visit.depth > kMaxNodeDepth) {
+        return InputError(file_ + ": nodes are nested more than " + std::to_string(kMaxNodeDepth) + " levels deep");
+      }
+      seen[std::size_t(visit.node)] = true;
+      SCUMBLE_ASSIGN(const glm::dmat4 local, LocalTransform(visit.node));
+      visit.world = visit.world * local;
+      if (!AllFinite(visit.world))
+        return InputError(file_ + ": " + NodeLabel(visit.node) + " has an infinite transform");
+      const int index = static_cast<int>(visits_.size());
+      visits_.push_back(visit);
+      const std::vector<int>& children = model_.nodes[std::size_t(visit.node)].children;
+      for (std::size_t i = children.size(); i-- > 0;) {
+        stack.push_back({children[i], index, visit.depth + 1, visit.world});
+      }
+    }
+    return Ok();
+  }
+
+  Expected<glm::dmat4> LocalTransform(int index) const {
+    const tinygltf::Node& node = model_.nodes[std::size_t(index)];
+    const auto bad = [&](const char* what) {
+      return InputError(file_ + ": " + NodeLabel(index) + " has " + what + ": export it again");
+    };
+    const auto fits = [](const std::vector<double>& list, std::size_t count) {
+      return list.empty() || list.size() == count;
+    };
+    if (!fits(node.matrix, 16)) return bad("a matrix that is not 16 numbers");
+    if (!fits(node.translation, 3)) return bad("a translation that is not 3 numbers");
+    if (!fits(node.rotation, 4)) return bad("a rotation that is not 4 numbers");
+    if (!fits(node.scale, 3)) return bad("a scale that is not 3 numbers");
+    glm::dmat4 local(1.0);
+    if (!node.matrix.empty()) {
+      for (int i = 0; i < 16; ++i) local[i / 4][i % 4] = node.matrix[std::size_t(i)];
+      if (local[0][3] != 0.0 || local[1][3] != 0.0 || local[2][3] != 0.0 || local[3][3] != 1.0) {
+        return bad("a matrix with a projective part");
+      }
+      return local;
+    }
+    if (!node.translation.empty()) {
+      local = glm::translate(local, glm::dvec3(node.translation[0], node.translation[1], node.translation[2]));
+    }
+    if (!node.rotation.empty()) {
+      const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+      const double length = glm::length(q);
+      if (!(length > 0.0) || !std::isfinite(length)) return bad("a rotation of zero length");
+      local = local * glm::mat4_cast(q / length);
+    }
+    if (!node.scale.empty()) local = glm::scale(local, glm::dvec3(node.scale[0], node.scale[1], node.scale[2]));
+    return local;
+  }
+
+  // Ids are hashes of names, so objects of one name would be one object: those take their whole path instead.
+  void NameObjects() {
+    std::map<std::string, int> uses;
+    for (const Visit& visit : visits_) {
+      if (model_.nodes[std::size_t(visit.node)].mesh >= 0) ++uses[NodeName(visit.node)];
+    }
+    UniqueNames unique;
+    names_.resize(visits_.size());
+    for (bool duplicates : {false, true}) {
+      for (std::size_t i = 0; i < visits_.size(); ++i) {
+        if (model_.nodes[std::size_t(visits_[i].node)].mesh < 0) continue;
+        std::string name = NodeName(visits_[i].node);
+        if ((uses[name] > 1) != duplicates) continue;
+        for (int at = visits_[i].parent; duplicates && at >= 0; at = visits_[std::size_t(at)].parent) {
+          name = NodeName(visits_[std::size_t(at)].node) + "/" + name;
+        }
+        names_[i] = unique.Take(name);
+      }
+    }
+  }
+
+  Status LoadNode(std::size_t index) {
+    const Visit& visit = visits_[index];
+    const tinygltf::Node& node = model_.nodes[std::size_t(visit.node)];
+    if (node.mesh >= 0) SCUMBLE_RETURN_IF_ERROR(LoadInstances(index));
+    if (node.camera >= 0) SCUMBLE_RETURN_IF_ERROR(LoadCamera(visit));
+    const auto light = node.extensions.find("KHR_lights_punctual");
+    if (light != node.extensions.end() && light->second.Has("light") && light->second.Get("light").IsInt()) {
+      return LoadLight(visit, light->second.Get("light").GetNumberAsInt());
+    }
+    return Ok();
+  }
+
+  Status LoadInstances(std::size_t index) {
+    const Visit& visit = visits_[index];
+    const tinygltf::Node& node = model_.nodes[std::size_t(visit.node)];
+    if (std::size_t(node.mesh) >= model_.meshes.size()) {
+      return InputError(file_ + ": " + NodeLabel(visit.node) + " uses mesh " + std::to_string(node.mesh) +
+                        ", the file has " + std::to_string(model_.meshes.size()) + ": export it again");
+    }
+    if (node.skin >= 0) {
+      warnings_.Add("skeletons are ignored, skinned meshes keep their bind pose", NodeLabel(visit.node));
+    }
+    if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
+      warnings_.Add("EXT_mesh_gpu_instancing is ignored, such a mesh is seen once", NodeLabel(visit.node));
+    }
+    const double determinant = glm::determinant(glm::dmat3(visit.world));
+    if (determinant == 0.0 || !std::isfinite(1.0 / determinant)) {
+      warnings_.Add("objects that their transform flattens are left out", NodeLabel(visit.node));
+      return Ok();
+    }
+    const auto known = loaded_meshes_.find(node.mesh);
+    if (known == loaded_meshes_.end()) {
+      SCUMBLE_ASSIGN(loaded_meshes_[node.mesh], LoadGltfMesh(model_, file_, node.mesh, scene_, budget_, warnings_));
+    }
+    for (int mesh : loaded_meshes_[node.mesh]) scene_.instances.push_back({names_[index], mesh, visit.world});
+    return Ok();
+  }
+
+  Status LoadCamera(const Visit& visit) {
+    const int index = model_.nodes[std::size_t(visit.node)].camera;
+    const auto bad = [&](const std::string& what) {
+      return InputError(file_ + ": the camera of " + NodeLabel(visit.node) + " " + what + ": export it again");
+    };
+    if (std::size_t(index) >= model_.cameras.size()) return bad("does not exist");
+    const tinygltf::Camera& from = model_.cameras[std::size_t(index)];
+    Camera camera;
+    camera.name = model_.nodes[std::size_t(visit.node)].name;
+    if (camera.name.empty()) camera.name = from.name.empty() ? "camera_" + std::to_string(index) : from.name;
+    camera.name = camera_names_.Take(camera.name);
+    camera.orthographic = from.type == "orthographic";
+    if (camera.orthographic) {
+      const auto& lens = from.orthographic;
+      camera.ymag = std::abs(lens.ymag);
+      camera.aspect = std::abs(lens.xmag) / camera.ymag;
+      camera.z_near = lens.znear;
+      camera.z_far = lens.zfar;
+      if (!(camera.ymag > 0.0) || !std::isfinite(camera.ymag)) return bad("has a height of zero");
+    } else {
+      const auto& lens = from.perspective;
+      camera.yfov_degrees = lens.yfov * kDegreesPerRadian;
+      if (lens.aspectRatio != 0.0) camera.aspect = lens.aspectRatio;
+      camera.z_near = lens.znear;
+      if (lens.zfar != 0.0) camera.z_far = lens.zfar;
+      if (!(camera.yfov_degrees > 0.0) || !(camera.yfov_degrees < 180.0)) {
+        return bad("has a vertical angle of " + std::to_string(camera.yfov_degrees) + "°, expected 0 … 180");
+      }
+    }
+    if (camera.aspect && (!(*camera.aspect > 0.0) || !std::isfinite(*camera.aspect))) return bad("has no proportions");
+    if (!(camera.z_near >= 0.0) || !(camera.z_far > camera.z_near)) return bad("has its far plane before its near one");
+    const std::optional<glm::dmat4> world = WithoutScale(visit.world);
+    if (!world) return bad("is scaled to nothing");
+    camera.world_from_camera = *world;
+    scene_.cameras.push_back(std::move(camera));
+    return Ok();
+  }
+
+  Status LoadLight(const Visit& visit, int index) {
+    const auto bad = [&](const std::string& what) {
+      return InputError(file_ + ": the light of " + NodeLabel(visit.node) + " " + what + ": export it again");
+    };
+    if (index < 0 || std::size_t(index) >= model_.lights.size()) return bad("does not exist");
+    const tinygltf::Light& from = model_.lights[std::size_t(index)];
+    Light light;
+    light.name = model_.nodes[std::size_t(visit.node)].name;
+    if (light.name.empty()) light.name = from.name.empty() ? "light_" + std::to_string(index) : from.name;
+    if (from.type == "directional") {
+      light.type = LightType::kSun;
+    } else if (from.type == "spot") {
+      light.type = LightType::kSpot;
+    } else if (from.type != "point") {
+      return bad("is of the unknown type '" + Excerpt(from.type, 40) + "'");
+    }
+    if (!from.color.empty()) {
+      if (from.color.size() != 3) return bad("has a colour that is not 3 numbers");
+      light.color = glm::vec3(from.color[0], from.color[1], from.color[2]);
+    }
+    light.intensity = from.intensity / kLumensPerWatt;
+    if (!IsFinite(light.color) || glm::any(glm::lessThan(light.color, glm::vec3(0.0f))))
+      return bad("has a wrong colour");
+    if (!std::isfinite(light.intensity) || light.intensity < 0.0) return bad("has a wrong intensity");
+    light.inner_cone_degrees = from.spot.innerConeAngle * kDegreesPerRadian;
+    light.outer_cone_degrees = from.spot.outerConeAngle * kDegreesPerRadian;
+    if (light.type == LightType::kSpot &&
+        !(light.inner_cone_degrees >= 0.0 && light.outer_cone_degrees <= 90.0 + 1e-6 &&
+          light.inner_cone_degrees <= light.outer_cone_degrees)) {
+      return bad("has wrong cone angles");
+    }
+    const std::optional<glm::dmat4> world = WithoutScale(visit.world);
+    if (!world) return bad("is scaled to nothing");
+    light.world_from_light = *world;
+    scene_.lights.push_back(std::move(light));
+    return Ok();
+  }
+
+  void WarnOfIgnoredParts() {
+    if (!model_.animations.empty()) {
+      warnings_.Add("animations are ignored, the scene is seen as its nodes stand",
+                    std::to_string(model_.animations.size()) + " in the file");
+    }
+  }
+
+  const std::string file_;
+  tinygltf::Model model_;
+  Scene scene_;
+  GeometryBudget budget_;
+  WarningCounter warnings_;
+  std::vector<Visit> visits_;
+  std::vector<std::string> names_;  // of the object at each visit; empty where there is no mesh
+  std::map<int, std::vector<int>> loaded_meshes_;
+  UniqueNames camera_names_;
+};
+
+}  // namespace
+
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path) { return GltfLoader(path.string()).Load(path); }
+
+}  // namespace scumble

@@ -1,0 +1,19 @@
+// glTF 2.0 scenes, binary (.glb) and text (.gltf), by tinygltf. Use LoadScene (guidegen/load_scene.h), which also sees
+// to what all formats have in common.
+//
+// Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
+// strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
+// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization. Ignored with a warning: skins, shape keys,
+// animations, points, lines. A file that *requires* another extension is refused by the extension's name.
+#pragma once
+
+#include <filesystem>
+
+#include "guidegen/scene.h"
+#include "image/status.h"
+
+namespace scumble {
+
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path);
+
+}  // namespace scumble

@@ -1,0 +1,344 @@
+#include "guidegen/load_obj.h"
+
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <tuple>
+#include <unordered_map>
+
+#include "guidegen/loader_util.h"
+#include "guidegen/mesh_normals.h"
+#include "image/color.h"
+#include "image/hash.h"
+#include "io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return scene.parent_path() / name;
+}
+
+// Reads material libraries from regular files only, and says which one is missing.
+class LibraryReader : public tinyobj::MaterialReader {
+ public:
+  LibraryReader(const std::filesystem::path& scene, WarningCounter& warnings) : scene_(scene), warnings_(warnings) {}
+
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                  std::map<std::string, int>* indices, std::string* warning, std::string* error) override {
+    const auto bytes = ReadRegularFile(BesideScene(scene_, name));
+    if (!bytes) {
+      warnings_.Add("a material library is missing, its objects are white", Excerpt(name));
+      return false;
+    }
+    std::istringstream stream(AsText(bytes.value()));
+    tinyobj::LoadMtl(indices, materials, &stream, warning, error);
+    return true;
+  }
+
+ private:
+  const std::filesystem::path& scene_;
+  WarningCounter& warnings_;
+};
+
+// `normal` is an index into the file's normals, or -1 - an index into the smooth ones.
+struct Corner {
+  int position = 0;
+  int uv = -1;
+  std::int64_t normal = 0;
+  bool operator==(const Corner&) const = default;
+};
+struct CornerHash {
+  std::size_t operator()(const Corner& c) const { return Hash(c.position, c.uv, c.normal); }
+};
+
+struct Triangle {
+  Corner corners[3];
+  std::size_t face = 0;  // counted through the whole file
+  unsigned smoothing_group = 0;
+  int shape = 0;
+  int material = -1;
+};
+
+class ObjLoader {
+ public:
+  explicit ObjLoader(const std::filesystem::path& path) : path_(path), file_(path.string()) {}
+
+  Expected<Scene> Load() {
+    SCUMBLE_RETURN_IF_ERROR(Parse());
+    SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
+    for (std::size_t s = 0; s < shapes_.size(); ++s) SCUMBLE_RETURN_IF_ERROR(AddShape(s));
+    if (lacks_normals_) ComputeNormals();
+    LoadMaterials();
+    BuildMeshes();
+    warnings_.MoveTo(scene_.warnings);
+    return std::move(scene_);
+  }
+
+ private:
+  Status Parse() {
+    SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path_));
+    if (bytes.empty()) return InputError(file_ + " is empty; expected a Wavefront OBJ scene");
+    std::istringstream stream(AsText(bytes));
+    LibraryReader library(path_, warnings_);
+    std::string warning, error;
+    bool ok = false;
+    try {
+      // Polygons are cut here and not by tinyobjloader, which reads the corners' positions before checking their
+      // indices.
+      ok = tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning, &error, &stream, &library,
+                            /*triangulate=*/false, /*default_vcols_fallback=*/false);
+    } catch (const std::bad_alloc&) {
+      return InputError(file_ + " asks for more memory than there is: simplify the scene");
+    } catch (const std::exception& e) {
+      error = e.what();
+    }
+    if (ok) return Ok();
+    return InputError(file_ + " is not a valid OBJ file: " + Excerpt(error.empty() ? "no reason given" : error, 300));
+  }
+
+  Status CheckAttributes() const {
+    for (std::size_t i = 0; i < attributes_.vertices.size(); ++i) {
+      if (!std::isfinite(attributes_.vertices[i])) {
+        return InputError(file_ + ": vertex " + std::to_string(i / 3 + 1) +
+                          " is NaN or infinite; expected finite numbers");
+      }
+    }
+    return Ok();
+  }
+
+  // An index of the file, counted from 0 and resolved; -1 stands for none where `optional`.
+  Status CheckIndex(int index, std::size_t count, bool optional, const char* what, const std::string& shape) const {
+    if (index >= 0 ? std::size_t(index) < count : optional && index == -1) return Ok();
+    return InputError(file_ + ": a face of '" + Excerpt(shape, 80) + "' uses " + what + " " +
+                      std::to_string(std::int64_t(index) + 1) + ", but there are " + std::to_string(count) +
+                      "; the file is corrupt or was cut short");
+  }
+
+  Status AddShape(std::size_t shape_index) {
+    const tinyobj::shape_t& shape = shapes_[shape_index];
+    const tinyobj::mesh_t& mesh = shape.mesh;
+    const std::size_t corners =
+        std::accumulate(mesh.num_face_vertices.begin(), mesh.num_face_vertices.end(), std::size_t(0));
+    if (corners != mesh.indices.size()) {
+      return InputError(file_ + ": '" + Excerpt(shape.name, 80) +
+                        "' has a face of more than 255 corners: " + "triangulate it before exporting");
+    }
+    if (!shape.lines.indices.empty() || !shape.points.indices.empty()) {
+      warnings_.Add("points and lines are left out, only faces are seen", "'" + Excerpt(shape.name, 80) + "'");
+    }
+    for (const tinyobj::index_t& index : mesh.indices) {
+      SCUMBLE_RETURN_IF_ERROR(
+          CheckIndex(index.vertex_index, attributes_.vertices.size() / 3, false, "vertex", shape.name));
+      SCUMBLE_RETURN_IF_ERROR(
+          CheckIndex(index.texcoord_index, attributes_.texcoords.size() / 2, true, "texture coordinate", shape.name));
+      SCUMBLE_RETURN_IF_ERROR(
+          CheckIndex(index.normal_index, attributes_.normals.size() / 3, true, "normal", shape.name));
+      lacks_normals_ |= index.normal_index < 0;
+    }
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < mesh.num_face_vertices.size(); ++f) {
+      const std::size_t count = mesh.num_face_vertices[f];
+      if (count >= 3) SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, count, count - 2));
+      AddFace(shape_index, f, first, count);
+      first += count;
+    }
+    return Ok();
+  }
+
+  void AddFace(std::size_t shape_index, std::size_t face, std::size_t first, std::size_t count) {
+    const tinyobj::mesh_t& mesh = shapes_[shape_index].mesh;
+    std::vector<glm::vec3> polygon;
+    for (std::size_t i = 0; i < count; ++i) polygon.push_back(Position(mesh.indices[first + i].vertex_index));
+    std::vector<glm::uvec3> cuts;
+    TriangulatePolygon(polygon, cuts);
+    for (const glm::uvec3& cut : cuts) {
+      Triangle triangle;
+      for (int i = 0; i < 3; ++i) {
+        const tinyobj::index_t& index = mesh.indices[first + cut[i]];
+        triangle.corners[i] = {index.vertex_index, index.texcoord_index, index.normal_index};
+      }
+      triangle.face = faces_;
+      triangle.smoothing_group = mesh.smoothing_group_ids[face];
+      triangle.shape = static_cast<int>(shape_index);
+      triangle.material = mesh.material_ids[face];
+      has_smoothing_groups_ |= triangle.smoothing_group != 0;
+      triangles_.push_back(triangle);
+    }
+    ++faces_;
+  }
+
+  glm::vec3 Position(int index) const {
+    const float* v = attributes_.vertices.data() + 3 * std::size_t(index);
+    return {v[0], v[1], v[2]};
+  }
+
+  // Smooth over the whole file, so that no seam shows between shapes or materials. In a file with smoothing groups a
+  // normal is shared inside a group only, and group 0 means flat faces; a file without any is smooth everywhere.
+  void ComputeNormals() {
+    std::vector<glm::vec3> all;
+    for (std::size_t i = 0; i < attributes_.vertices.size() / 3; ++i) all.push_back(Position(static_cast<int>(i)));
+    const std::vector<std::uint32_t> weld = WeldByPosition(all);
+    std::map<std::tuple<std::uint32_t, unsigned, std::size_t>, std::uint32_t> ids;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (Triangle& triangle : triangles_) {
+      const bool flat = has_smoothing_groups_ && triangle.smoothing_group == 0;
+      glm::uvec3 indices(0);
+      for (int i = 0; i < 3; ++i) {
+        Corner& corner = triangle.corners[i];
+        const std::uint32_t place = weld[std::size_t(corner.position)];
+        const auto key = std::make_tuple(place, triangle.smoothing_group, flat ? triangle.face + 1 : 0);
+        const auto [it, is_new] = ids.try_emplace(key, static_cast<std::uint32_t>(positions.size()));
+        if (is_new) positions.push_back(all[place]);
+        indices[i] = it->second;
+        if (corner.normal < 0) corner.normal = -1 - std::int64_t(it->second);
+      }
+      triangles.push_back(indices);
+    }
+    std::vector<std::uint32_t> own(positions.size());
+    std::iota(own.begin(), own.end(), 0u);
+    smooth_normals_ = SmoothNormals(positions, triangles, own);
+  }
+
+  void LoadMaterials() {
+    UniqueNames names;
+    for (std::size_t i = 0; i < materials_.size(); ++i) {
+      const tinyobj::material_t& from = materials_[i];
+      Material material;
+      material.name = names.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
+      material.base_color_texture = LoadTexture(from.diffuse_texname, from.diffuse_texopt);
+      material.normal_texture = LoadTexture(from.normal_texname, from.normal_texopt);
+      for (int c = 0; c < 3; ++c) {
+        const float kd = material.base_color_texture.texture >= 0 ? 1.0f : from.diffuse[c];
+        material.base_color[c] = std::isfinite(kd) ? std::max(kd, 0.0f) : 1.0f;
+      }
+      material.base_color.a = std::isfinite(from.dissolve) ? std::clamp(from.dissolve, 0.0f, 1.0f) : 1.0f;
+      if (material.base_color.a < 1.0f) material.alpha_mode = AlphaMode::kBlend;
+      scene_.materials.push_back(std::move(material));
+    }
+  }
+
+  TextureUse LoadTexture(const std::string& name, const tinyobj::texture_option_t& options) {
+    TextureUse use;
+    if (name.empty()) return use;
+    const auto [known, is_new] = textures_.try_emplace(name, -1);
+    if (is_new) {
+      Expected<Picture> picture = ReadPicture(BesideScene(path_, name));
+      if (picture) {
+        known->second = static_cast<int>(scene_.textures.size());
+        scene_.textures.push_back(std::move(*picture));
+      } else {
+        warnings_.Add("a texture cannot be read and is left out", Excerpt(picture.error().message));
+      }
+    }
+    use.texture = known->second;
+    if (options.clamp) use.wrap_u = use.wrap_v = TextureWrap::kClamp;
+    // MTL scales and shifts coordinates whose v points up; ours points down.
+    const float su = options.scale[0], sv = options.scale[1];
+    use.uv_transform[0][0] = su;
+    use.uv_transform[1][1] = sv;
+    use.uv_transform[2] = glm::vec3(options.origin_offset[0], 1.0f - sv - options.origin_offset[1], 1.0f);
+    return use;
+  }
+
+  void BuildMeshes() {
+    UniqueNames names;
+    std::vector<std::string> shape_names;
+    for (std::size_t s = 0; s < shapes_.size(); ++s) {
+      if (shapes_[s].mesh.indices.empty()) {
+        shape_names.emplace_back();
+      } else {
+        shape_names.push_back(names.Take(shapes_[s].name.empty() ? "shape_" + std::to_string(s) : shapes_[s].name));
+      }
+    }
+    // Triangles come shape by shape, but a shape may come back to a material.
+    for (std::size_t begin = 0; begin < triangles_.size();) {
+      std::size_t end = begin;
+      std::map<int, std::vector<std::size_t>> by_material;
+      for (; end < triangles_.size() && triangles_[end].shape == triangles_[begin].shape; ++end) {
+        by_material[triangles_[end].material].push_back(end);
+      }
+      for (const auto& [material, members] : by_material) {
+        AddMesh(shape_names[std::size_t(triangles_[begin].shape)], material, members);
+      }
+      begin = end;
+    }
+  }
+
+  void AddMesh(const std::string& object, int material, const std::vector<std::size_t>& members) {
+    Mesh mesh;
+    mesh.material = material >= 0 && std::size_t(material) < materials_.size() ? material : DefaultMaterial(scene_);
+    const bool has_colors = !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
+    bool has_uvs = false;
+    for (std::size_t t : members) {
+      for (const Corner& corner : triangles_[t].corners) has_uvs |= corner.uv >= 0;
+    }
+    std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
+    for (std::size_t t : members) {
+      glm::uvec3 indices(0);
+      for (int i = 0; i < 3; ++i) {
+        const Corner& corner = triangles_[t].corners[i];
+        const auto [it, is_new] = vertices.try_emplace(corner, static_cast<std::uint32_t>(mesh.positions.size()));
+        indices[i] = it->second;
+        if (!is_new) continue;
+        mesh.positions.push_back(Position(corner.position));
+        mesh.normals.push_back(NormalAt(corner));
+        if (has_uvs) mesh.uvs[0].push_back(UvAt(corner));
+        if (has_colors) mesh.colors.push_back(ColorAt(corner));
+      }
+      mesh.triangles.push_back(indices);
+    }
+    if (FillNormals(mesh) > 0) warnings_.Add("normals without a direction were computed anew", "'" + object + "'");
+    const TextureUse& normal_map = scene_.materials[std::size_t(mesh.material)].normal_texture;
+    if (normal_map.texture >= 0 && has_uvs) FillTangents(mesh, 0, normal_map.uv_transform);
+    scene_.meshes.push_back(std::move(mesh));
+    scene_.instances.push_back({object, static_cast<int>(scene_.meshes.size()) - 1, glm::dmat4(1.0)});
+  }
+
+  glm::vec3 NormalAt(const Corner& corner) const {
+    if (corner.normal < 0) return smooth_normals_[std::size_t(-1 - corner.normal)];
+    const float* n = attributes_.normals.data() + 3 * std::size_t(corner.normal);
+    return {n[0], n[1], n[2]};
+  }
+
+  glm::vec2 UvAt(const Corner& corner) const {
+    if (corner.uv < 0) return glm::vec2(0.0f);
+    const float* uv = attributes_.texcoords.data() + 2 * std::size_t(corner.uv);
+    const glm::vec2 turned(uv[0], 1.0f - uv[1]);
+    return IsFinite(turned) ? turned : glm::vec2(0.0f);
+  }
+
+  glm::vec4 ColorAt(const Corner& corner) const {
+    const float* c = attributes_.colors.data() + 3 * std::size_t(corner.position);
+    const glm::vec4 color(SrgbToLinear(c[0]), SrgbToLinear(c[1]), SrgbToLinear(c[2]), 1.0f);
+    return IsFinite(color) ? glm::max(color, glm::vec4(0.0f)) : glm::vec4(1.0f);
+  }
+
+  const std::filesystem::path& path_;
+  const std::string file_;
+  tinyobj::attrib_t attributes_;
+  std::vector<tinyobj::shape_t> shapes_;
+  std::vector<tinyobj::material_t> materials_;
+  Scene scene_;
+  GeometryBudget budget_;
+  WarningCounter warnings_;
+  std::map<std::string, int> textures_;  // index into the scene's, -1 where unreadable
+  std::vector<Triangle> triangles_;
+  std::vector<glm::vec3> smooth_normals_;
+  std::size_t faces_ = 0;
+  bool lacks_normals_ = false;
+  bool has_smoothing_groups_ = false;
+};
+
+}  // namespace
+
+Expected<Scene> LoadObjScene(const std::filesystem::path& path) { return ObjLoader(path).Load(); }
+
+}  // namespace scumble

@@ -1,0 +1,18 @@
+// PLY, ASCII and binary of either byte order: scans and exchange files of one mesh. Use LoadScene
+// (guidegen/load_scene.h), which also sees to what all formats have in common.
+//
+// Read: positions, normals, colours (sRGB-encoded, as scanners and MeshLab write them), texture coordinates (s t, u v
+// or texture_u texture_v; v turned over), faces of any number of corners. Other elements and properties are skipped. A
+// cloud of points without faces is a scene without geometry. The object is named after the file.
+#pragma once
+
+#include <filesystem>
+
+#include "guidegen/scene.h"
+#include "image/status.h"
+
+namespace scumble {
+
+Expected<Scene> LoadPlyScene(const std::filesystem::path& path);
+
+}  // namespace scumble

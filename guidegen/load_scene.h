@@ -1,0 +1,46 @@
+// Scenes from files: glTF 2.0 (.glb, .gltf), Wavefront OBJ with MTL, PLY.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "guidegen/scene.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// Loads by the file's ending. Missing normals are made smooth, weighted by angle. A scene without geometry is legal
+// (a warning says so). Errors name the file and what is wrong with it: unreadable, corrupt, an accessor that points
+// outside its buffer, an index that points outside its attributes, a texture that is missing. Never reads outside the file's data.
+Expected<Scene> LoadScene(const std::filesystem::path& path);
+
+// From where a scene without a camera is seen. Azimuth from +Z towards +X, elevation up from the horizon, degrees.
+struct ViewAngles {
+  double azimuth = 35.0;
+  double elevation = 20.0;
+  double distance = 0.0;  // m from the centre of the scene's bounding sphere; 0 frames it with a margin
+};
+
+// A perspective camera that looks at the scene's centre. `aspect` is width / height of the picture.
+Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect);
+
+// The light that the bundled exemplars are painted in: from the upper left, over the viewer's shoulder. Degrees in
+// *view* space, azimuth from +Z towards +X.
+inline constexpr double kKeyLightAzimuth = -40.0;
+inline constexpr double kKeyLightElevation = 40.0;
+
+// A sun of strength π (white Lambert facing it has radiance 1) at those angles of the given camera's view space.
+Light KeyLight(const Camera& camera, double azimuth = kKeyLightAzimuth, double elevation = kKeyLightElevation);
+
+// Makes the scene ready to be seen: picks the camera by name (empty: the first; none in the file or `view` given: a
+// framing one), and adds the key light to the scene where it has no light and `needs_light`. Each such decision is one
+// line of `notes`, for stderr. An unknown camera name is a usage error that lists the names there are.
+struct PreparedView {
+  Camera camera;
+  std::vector<std::string> notes;
+};
+Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name,
+                                   const std::optional<ViewAngles>& view, double aspect, bool needs_light);
+
+}  // namespace scumble

@@ -1,0 +1,83 @@
+// What the scene loaders share: reading files, unique names, counted warnings, limits, polygons.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "guidegen/scene.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// A file that a scene consists of, whole. Only regular files are read: a scene is other people's data, and may name a
+// pipe or a device that never ends.
+Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& path);
+
+std::span<const unsigned char> AsChars(std::span<const std::byte> bytes);
+std::string AsText(std::span<const std::byte> bytes);
+
+// Hands out names that differ from each other: the wanted one, or with "#2", "#3", … behind it.
+class UniqueNames {
+ public:
+  std::string Take(const std::string& wanted);
+
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> last_number_;
+};
+
+// Collects warnings of one kind into one line, so that a file with a thousand flaws does not drown its user.
+class WarningCounter {
+ public:
+  // `kind` is the sentence, `where` the place of this occurrence.
+  void Add(const std::string& kind, const std::string& where);
+  // One line a kind, in the order of their first occurrence.
+  void MoveTo(std::vector<std::string>& lines);
+
+ private:
+  struct Entry {
+    std::string kind;
+    std::string first;
+    std::size_t count = 0;
+  };
+  std::vector<Entry> entries_;
+};
+
+// A file of a few bytes can ask for any amount of geometry; this refuses before anything is allocated.
+class GeometryBudget {
+ public:
+  static constexpr std::uint64_t kMaxTriangles = 500'000'000;
+  static constexpr std::uint64_t kMaxVertices = 500'000'000;
+
+  Status Take(const std::string& file, std::uint64_t vertices, std::uint64_t triangles);
+  void GiveBackVertices(std::uint64_t vertices) { vertices_ -= vertices; }
+
+ private:
+  std::uint64_t vertices_ = 0;
+  std::uint64_t triangles_ = 0;
+};
+
+// Cuts a simple polygon into corners - 2 triangles of corner numbers, winding kept: ear clipping in the plane of its
+// Newell normal. Where there is no proper ear (self-intersecting, collinear or overly long polygons) the rest becomes a
+// fan. Fewer than three corners give nothing.
+void TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles);
+
+bool IsFinite(const glm::vec2& v);
+bool IsFinite(const glm::vec3& v);
+bool IsFinite(const glm::vec4& v);
+
+// At most `max_bytes` of a text that comes from a file, on one line, for use inside a message.
+std::string Excerpt(const std::string& text, std::size_t max_bytes = 200);
+
+// The index of an opaque white material named "default", made when there is none yet.
+int DefaultMaterial(Scene& scene);
+
+}  // namespace scumble

@@ -1,0 +1,87 @@
+#include <map>
+#include <string>
+#include <vector>
+
+#include "guidegen/cast_guides.h"
+#include "guidegen/guidegen.h"
+#include "image/check.h"
+
+namespace scumble {
+namespace {
+
+// Loaders promise these; a file's own mistakes never get here.
+void CheckMesh(const Mesh& mesh, const Scene& scene) {
+  const std::size_t count = mesh.positions.size();
+  const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
+  SCUMBLE_CHECK(fits(mesh.normals.size()) && fits(mesh.tangents.size()) && fits(mesh.colors.size()));
+  SCUMBLE_CHECK(fits(mesh.uvs[0].size()) && fits(mesh.uvs[1].size()));
+  SCUMBLE_CHECK(mesh.material >= 0 && std::size_t(mesh.material) < scene.materials.size());
+  bool inside = true;
+  for (const glm::uvec3& triangle : mesh.triangles) {
+    inside = inside && triangle.x < count && triangle.y < count && triangle.z < count;
+  }
+  SCUMBLE_CHECK(inside);
+}
+
+void CheckMaterial(const Material& material, const Scene& scene) {
+  for (const TextureUse* use : {&material.base_color_texture, &material.normal_texture}) {
+    SCUMBLE_CHECK(use->texture < 0 || std::size_t(use->texture) < scene.textures.size());
+    SCUMBLE_CHECK(use->uv_set == 0 || use->uv_set == 1);
+  }
+}
+
+std::vector<std::string> ObjectNames(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Instance& instance : scene.instances) names.push_back(instance.object);
+  return names;
+}
+
+std::vector<std::string> MaterialNames(const Scene& scene) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const std::string& name = scene.materials[i].name;
+    names.push_back(name.empty() ? "material_" + std::to_string(i) : name);
+  }
+  return names;
+}
+
+std::map<std::uint32_t, std::string> NamesById(const std::vector<std::uint32_t>& ids,
+                                               const std::vector<std::string>& names) {
+  std::map<std::uint32_t, std::string> result;
+  for (std::size_t i = 0; i < ids.size(); ++i) result[ids[i]] = names[i];
+  return result;
+}
+
+}  // namespace
+
+Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options) {
+  SCUMBLE_RETURN_IF_ERROR(CheckOptions(options));
+  for (const Material& material : scene.materials) CheckMaterial(material, scene);
+  for (const Mesh& mesh : scene.meshes) CheckMesh(mesh, scene);
+
+  View view;
+  SCUMBLE_ASSIGN(view.camera, CameraRays::Make(camera, options.width, options.height));
+  if (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow)) {
+    SCUMBLE_ASSIGN(view.lights, PlaceLights(scene.lights, view.camera));
+  }
+  const std::vector<std::string> object_names = ObjectNames(scene);
+  const std::vector<std::string> material_names = MaterialNames(scene);
+  const std::vector<std::uint32_t> object_ids = IdsForNames(object_names);
+  const std::vector<std::uint32_t> material_ids = IdsForNames(material_names);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    SCUMBLE_CHECK(instance.mesh >= 0 && std::size_t(instance.mesh) < scene.meshes.size());
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    PlacedObject object = Place(&mesh, &scene.materials[mesh.material], scene.textures,
+                                view.camera.ViewFromObject(instance.world_from_object));
+    object.object_id = object_ids[i];
+    object.material_id = material_ids[mesh.material];
+    view.objects.push_back(object);
+  }
+  SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(std::move(view), options));
+  result.guides.object_names = NamesById(object_ids, object_names);
+  result.guides.material_names = NamesById(material_ids, material_names);
+  return result;
+}
+
+}  // namespace scumble

@@ -1,0 +1,97 @@
+// A scene as the ray caster wants it: triangles, instances, materials, cameras, lights. Loaders fill it; nothing in
+// here knows a file format. World space is glTF's: metres, right-handed, +Y up.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/picture.h"
+
+namespace scumble {
+
+enum class TextureWrap { kRepeat, kMirror, kClamp };
+
+// A use of a texture: which picture, which UV set, how it repeats, and KHR_texture_transform.
+struct TextureUse {
+  int texture = -1;  // index into Scene::textures, -1 for none
+  int uv_set = 0;    // 0 or 1
+  TextureWrap wrap_u = TextureWrap::kRepeat;
+  TextureWrap wrap_v = TextureWrap::kRepeat;
+  bool nearest = false;  // no bilinear interpolation
+  glm::mat3 uv_transform{1.0f};
+};
+
+enum class AlphaMode { kOpaque, kMask, kBlend };
+
+// Textures are kept as their pictures are stored; colours are decoded from sRGB when sampled, normals are not.
+// UV (0, 0) is the picture's top left corner, as in glTF; loaders of other formats flip v.
+struct Material {
+  std::string name;
+  glm::vec4 base_color{1.0f};  // linear
+  TextureUse base_color_texture;
+  TextureUse normal_texture;
+  float normal_scale = 1.0f;
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = true;
+};
+
+// One glTF primitive: a triangle list with one material. Every non-empty attribute has one value per position.
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  // unit; loaders always fill them
+  std::array<std::vector<glm::vec2>, 2> uvs;
+  std::vector<glm::vec4> tangents;  // xyz and handedness; only where a normal map needs them
+  std::vector<glm::vec4> colors;    // linear; multiplied into the base colour
+  std::vector<glm::uvec3> triangles;
+  int material = 0;  // index into Scene::materials, always valid
+};
+
+struct Instance {
+  std::string object;  // full name: the node's; its hash is the object id
+  int mesh = 0;
+  glm::dmat4 world_from_object{1.0};
+};
+
+struct Camera {
+  std::string name;
+  glm::dmat4 world_from_camera{1.0};  // looks down its −Z, +Y up; rotation and translation only
+  bool orthographic = false;
+  double yfov_degrees = 40.0;  // perspective: full vertical angle, in (0, 180)
+  double ymag = 1.0;           // orthographic: half the height, m
+  // Both kinds keep the vertical extent and let the picture's own proportions decide the horizontal one, except where
+  // the file states an aspect (width / height) larger than the picture's: then the horizontal extent is kept.
+  std::optional<double> aspect;
+  double z_near = 0.0;
+  double z_far = std::numeric_limits<double>::infinity();
+};
+
+enum class LightType { kPoint, kSpot, kSun };
+
+// Radiometric units, so that they can be compared with Cycles: glTF's candela and lux are divided by 683 lm/W.
+struct Light {
+  std::string name;
+  LightType type = LightType::kPoint;
+  glm::vec3 color{1.0f};    // linear
+  double intensity = 1.0;   // point, spot: W/sr; sun: W/m² on a facing surface
+  double inner_cone_degrees = 0.0;   // spot: half angles, as KHR_lights_punctual has them
+  double outer_cone_degrees = 45.0;
+  glm::dmat4 world_from_light{1.0};  // shines down its −Z
+};
+
+struct Scene {
+  std::string name;  // the file's, for messages
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;  // never empty once loaded
+  std::vector<Picture> textures;
+  std::vector<Camera> cameras;
+  std::vector<Light> lights;
+  std::vector<std::string> warnings;  // what the file asks for and we do not do, in the user's words
+};
+
+}  // namespace scumble

@@ -1,0 +1,185 @@
+#include "guidegen/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scumble {
+namespace {
+
+// Interpolated unit normals shorter than this have cancelled out: what is left is rounding.
+constexpr double kShortestNormal = 1e-6;
+
+double LargestCoordinate(const glm::dvec3& v) {
+  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
+}
+
+// False, and nothing changed, where there is no direction. Vectors whose square would leave a double's range are scaled
+// first.
+bool MakeUnit(glm::dvec3& v) {
+  const double squared = glm::dot(v, v);
+  if (squared > 1e-200 && squared < 1e200) {
+    v *= 1.0 / std::sqrt(squared);
+    return true;
+  }
+  const double largest = LargestCoordinate(v);
+  if (!std::isfinite(v.x + v.y + v.z) || !(largest > 0.0)) return false;
+  v = glm::normalize(v / largest);
+  return true;
+}
+
+glm::dvec3 DirectionToEye(const ViewRay& ray) { return glm::normalize(-ray.direction); }
+
+template <class T>
+auto Interpolate(const std::vector<T>& values, const glm::uvec3& triangle, const glm::dvec2& barycentric) {
+  const T a = values[triangle.x];
+  const T b = values[triangle.y];
+  const T c = values[triangle.z];
+  const float v = float(barycentric.x);
+  const float w = float(barycentric.y);
+  return a * (1.0f - v - w) + b * v + c * w;
+}
+
+// Möller & Trumbore 1997, in double; `area` is the cross product of the triangle's edges. Rays that just miss the
+// triangle, because Embree sees it with its corners rounded to float, meet its nearest edge.
+glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray,
+                        const glm::dvec2& fallback) {
+  const glm::dvec3 moment = glm::cross(ray.origin - triangle.corner[0], ray.direction);
+  const double scale = -1.0 / glm::dot(area, ray.direction);
+  glm::dvec2 result(glm::dot(triangle.corner[2] - triangle.corner[0], moment) * scale,
+                    glm::dot(triangle.corner[0] - triangle.corner[1], moment) * scale);
+  if (!std::isfinite(result.x + result.y)) result = fallback;
+  result = glm::max(result, glm::dvec2(0.0));
+  const double sum = result.x + result.y;
+  return sum > 1.0 ? result / sum : result;
+}
+
+const Picture* FindTexture(const PlacedObject& object, const TextureUse& use) {
+  if (use.texture < 0 || std::size_t(use.texture) >= object.textures.size() || !object.mesh) return nullptr;
+  if (object.mesh->uvs[use.uv_set].empty()) return nullptr;
+  return &object.textures[use.texture];
+}
+
+// Object space, not normalised. Normal maps are applied here, before any scale bends them, as Cycles does.
+glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, const glm::dvec2& barycentric) {
+  const Mesh& mesh = *object.mesh;
+  if (mesh.normals.empty()) return glm::dvec3(0.0);
+  const glm::dvec3 normal = Interpolate(mesh.normals, triangle, barycentric);
+  const TextureUse& use = object.material->normal_texture;
+  const Picture* map = FindTexture(object, use);
+  if (!map || mesh.tangents.empty() || !(glm::dot(normal, normal) > kShortestNormal * kShortestNormal)) return normal;
+
+  const glm::vec4 texel = SampleRaw(*map, use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
+  const glm::dvec3 bend = glm::dvec3(texel) * 2.0 - 1.0;
+  const glm::dvec4 tangent4 = Interpolate(mesh.tangents, triangle, barycentric);
+  const glm::dvec3 unit = glm::normalize(normal);
+  glm::dvec3 tangent = glm::dvec3(tangent4) - unit * glm::dot(unit, glm::dvec3(tangent4));
+  if (!MakeUnit(tangent)) return normal;
+  const glm::dvec3 bitangent = glm::cross(unit, tangent) * (tangent4.w < 0.0 ? -1.0 : 1.0);
+  const double strength = object.material->normal_scale;
+  return tangent * (bend.x * strength) + bitangent * (bend.y * strength) + unit * bend.z;
+}
+
+SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric,
+                               const ViewRay& ray) {
+  const glm::uvec3& corners = object.mesh->triangles[primitive];
+  const Triangle triangle = ViewTriangle(object, primitive);
+  const glm::dvec3 area = glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
+  SurfacePoint point;
+  point.barycentric = MeetTriangle(triangle, area, ray, barycentric);
+  const double v = point.barycentric.x;
+  const double w = point.barycentric.y;
+  const auto mix = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return a + (b - a) * v + (c - a) * w;
+  };
+  point.position = mix(triangle.corner[0], triangle.corner[1], triangle.corner[2]);
+  const auto& positions = object.mesh->positions;
+  point.rest_position = mix(positions[corners.x], positions[corners.y], positions[corners.z]);
+  point.largest_coordinate = LargestCoordinate(point.position);
+  for (const glm::dvec3& corner : triangle.corner) {
+    point.largest_coordinate = std::max(point.largest_coordinate, LargestCoordinate(corner));
+  }
+
+  const double side = glm::dot(area, ray.direction) * object.winding > 0.0 ? -1.0 : 1.0;
+  point.facing = area * (object.winding * side);
+  if (!MakeUnit(point.facing)) point.facing = DirectionToEye(ray);
+  const glm::dvec3 normal = ObjectNormal(object, corners, point.barycentric);
+  const bool usable = glm::dot(normal, normal) > kShortestNormal * kShortestNormal;  // false for NaN
+  point.normal = object.view_from_normal * normal * side;
+  if (!usable || !MakeUnit(point.normal)) point.normal = point.facing;
+  return point;
+}
+
+// The object's matrix must be rigid. Where the exact ray passes the sphere that Embree's rounded one has met, the point
+// is the silhouette's nearest.
+SurfacePoint FindSpherePoint(const PlacedObject& object, const ViewRay& ray) {
+  const glm::dvec3 centre(object.view_from_object[3]);
+  const double length = glm::length(ray.direction);
+  const glm::dvec3 direction = ray.direction / length;
+  const glm::dvec3 to_origin = ray.origin - centre;
+  const double middle = -glm::dot(to_origin, direction);
+  const glm::dvec3 off_axis = to_origin + direction * middle;
+  const double half_chord = std::sqrt(std::max(0.0, 1.0 - glm::dot(off_axis, off_axis)));
+  const bool inside = middle < half_chord;
+  const glm::dvec3 outward = glm::normalize(off_axis + direction * (inside ? half_chord : -half_chord));
+  SurfacePoint point;
+  point.position = centre + outward;
+  point.rest_position = glm::transpose(glm::dmat3(object.view_from_object)) * outward;
+  point.facing = point.normal = inside ? -outward : outward;
+  point.largest_coordinate = LargestCoordinate(centre) + 1.0;
+  return point;
+}
+
+}  // namespace
+
+PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,
+                   const glm::dmat4& view_from_object) {
+  PlacedObject object;
+  object.mesh = mesh;
+  object.material = material;
+  object.textures = textures;
+  object.view_from_object = view_from_object;
+  const glm::dmat3 linear(view_from_object);
+  object.winding = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+  // The matrix of cofactors is the inverse transpose times the determinant, and needs no division.
+  object.view_from_normal =
+      object.winding *
+      glm::dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+  return object;
+}
+
+Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive) {
+  const glm::uvec3& corners = object.mesh->triangles[primitive];
+  const glm::dmat3 linear(object.view_from_object);
+  const glm::dvec3 origin(object.view_from_object[3]);
+  Triangle triangle;
+  for (int i = 0; i < 3; ++i) triangle.corner[i] = linear * glm::dvec3(object.mesh->positions[corners[i]]) + origin;
+  return triangle;
+}
+
+SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
+                              const ViewRay& ray) {
+  return object.mesh ? FindTrianglePoint(object, primitive, barycentric, ray) : FindSpherePoint(object, ray);
+}
+
+glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
+  glm::vec4 color = object.material->base_color;
+  if (!object.mesh) return color;
+  const Mesh& mesh = *object.mesh;
+  const glm::uvec3& corners = mesh.triangles[primitive];
+  if (!mesh.colors.empty()) color *= Interpolate(mesh.colors, corners, barycentric);
+  const TextureUse& use = object.material->base_color_texture;
+  if (const Picture* picture = FindTexture(object, use)) {
+    color *= SampleColor(*picture, use, Interpolate(mesh.uvs[use.uv_set], corners, barycentric));
+  }
+  return color;
+}
+
+bool MayHaveHoles(const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; }
+
+bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
+  if (!MayHaveHoles(*object.material)) return false;
+  const float cutoff = object.material->alpha_mode == AlphaMode::kMask ? object.material->alpha_cutoff : 0.5f;
+  return SurfaceColor(object, primitive, barycentric).a < cutoff;
+}
+
+}  // namespace scumble

@@ -1,0 +1,65 @@
+// From a hit to what the eye sees there: the exact point, normals, base colour.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+
+#include "guidegen/camera_rays.h"
+#include "guidegen/scene.h"
+#include "image/picture.h"
+
+namespace scumble {
+
+// An instance as it stands before the camera. Borrows the scene's data, which must outlive it.
+struct PlacedObject {
+  const Mesh* mesh = nullptr;  // null: the unit sphere about the object's origin
+  const Material* material = nullptr;
+  std::span<const Picture> textures;
+  glm::dmat4 view_from_object{1.0};
+  std::uint32_t object_id = 0;
+  std::uint32_t material_id = 0;
+
+  // Follow from view_from_object; see Place.
+  glm::dmat3 view_from_normal{1.0};  // the inverse transpose up to a positive factor, defined for flat objects too
+  double winding = 1.0;              // −1 where the matrix mirrors and triangles turn their back
+};
+
+PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,
+                   const glm::dmat4& view_from_object);
+
+// View-space corners of a triangle, in double.
+struct Triangle {
+  glm::dvec3 corner[3];
+};
+Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive);
+
+struct SurfacePoint {
+  glm::dvec3 position{0.0};         // view space
+  glm::dvec3 facing{0.0};           // unit geometric normal on the viewer's side
+  glm::dvec3 normal{0.0};           // unit shading normal, view space
+  glm::dvec3 rest_position{0.0};    // object space
+  glm::dvec2 barycentric{0.0};      // weights of the second and third corner
+  double largest_coordinate = 0.0;  // of the point and its triangle: what float rounding errors are relative to
+};
+
+// Embree's hit is a float's worth of the truth; this meets the same surface again in double. `barycentric` are
+// Embree's, used where the triangle is too thin to be met. The point always lies on the surface. A back face has both
+// normals flipped, as Cycles does. A shading normal that is zero or NaN gives way to the geometric one; a triangle
+// without area faces the eye.
+SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
+                              const ViewRay& ray);
+
+// Base colour × texture × vertex colour, linear, and alpha.
+glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
+
+// Whether rays pass here: alpha masks, and blending taken for a mask at one half.
+bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
+bool MayHaveHoles(const Material& material);
+
+// Linear colour and alpha, bilinear unless `use` says nearest. Coordinates that are not finite read as 0.
+glm::vec4 SampleColor(const Picture& picture, const TextureUse& use, glm::vec2 uv);
+// The stored values in [0, 1], not decoded: for normal maps.
+glm::vec4 SampleRaw(const Picture& picture, const TextureUse& use, glm::vec2 uv);
+
+}  // namespace scumble

@@ -1,0 +1,22 @@
+// sRGB encoding (IEC 61966-2-1) and Rec.709 luminance.
+#pragma once
+
+#include <cstdint>
+
+namespace scumble {
+
+// Encoded value in [0, 1] → linear. Values outside are continued by the same formula; NaN stays NaN.
+float SrgbToLinear(float encoded);
+// Linear → encoded, the inverse.
+float LinearToSrgb(float linear);
+
+// 16-bit encoded → linear in [0, 1], from a table of 65,536 floats.
+float Srgb16ToLinear(std::uint16_t encoded);
+// Linear → 16-bit encoded, clamped to [0, 1], rounded to nearest; NaN becomes 0.
+// Srgb16FromLinear(Srgb16ToLinear(v)) == v for every v.
+std::uint16_t Srgb16FromLinear(float linear);
+
+// Luminance of linear Rec.709 RGB.
+constexpr float Luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
+
+}  // namespace scumble

@@ -1,0 +1,89 @@
+// GuideSet: what a renderer tells the transfer about every pixel.
+//
+// Conventions, for the whole code base:
+//   - Row 0 is the top row; pixel (x, y) covers [x, x+1) × [y, y+1), its centre at +0.5.
+//   - View space is right-handed: +X right, +Y up, +Z towards the viewer. World space is glTF's: metres, +Y up.
+//   - `normal` is the unit shading normal in view space, in [-1, 1], never packed.
+//   - `depth` is the planar view depth in metres, positive; `position` is in world space, metres.
+//   - Radiance is linear Rec.709, scene-referred.
+//   - Data layers are point-sampled at pixel centres. A pixel whose centre misses but whose coverage is above 0 takes
+//     every data layer from its covered subsample nearest the centre.
+//   - Background: A = 0, normal = position = 0, depth = +infinity, ids = 0.
+//   - Ids are 24-bit hashes of the object's full name (ObjectId), exact in a float; 0 is the background.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/layers.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// How the guides were seen; written to the EXR header as worldToCamera and worldToNDC.
+struct GuideCamera {
+  std::string name;
+  glm::dmat4 view_from_world{1.0};
+  glm::dmat4 clip_from_view{1.0};  // OpenGL's clip space, y up
+};
+
+// Owns its pixels: every layer is `ChannelCount` planes of width × height floats, rows from the top.
+// Copyable and movable; concurrent reads are safe, writes to different pixels too.
+class GuideSet {
+ public:
+  GuideSet() = default;
+  GuideSet(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  std::size_t pixel_count() const { return std::size_t(width_) * height_; }
+
+  LayerSet layers() const { return layers_; }
+  bool Has(Layer layer) const { return layers_.Has(layer); }
+
+  // Adds the layer filled with its background value; does nothing where it exists.
+  void Add(Layer layer);
+  void Remove(Layer layer);
+
+  // One plane of width × height floats. The layer must exist.
+  std::span<float> Plane(Layer layer, int component = 0);
+  std::span<const float> Plane(Layer layer, int component = 0) const;
+
+  std::size_t Index(int x, int y) const { return std::size_t(y) * width_ + x; }
+  glm::vec3 Vec3(Layer layer, std::size_t index) const;
+
+  // Ok, or the first thing that makes the set unusable: impossible size, coverage outside [0, 1], and on covered
+  // pixels normals that are NaN or zero, depth that is NaN or negative, non-finite colours. The message counts the
+  // bad pixels and names the first. O(pixels). `name` stands for the set in the message.
+  Status Validate(const std::string& name) const;
+
+  // Free text that travels in the file's header: generator, isa, ….
+  std::map<std::string, std::string> attributes;
+  std::map<std::uint32_t, std::string> object_names;
+  std::map<std::uint32_t, std::string> material_names;
+  std::optional<GuideCamera> camera;
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  LayerSet layers_;
+  std::array<std::vector<float>, kLayerCount> planes_;
+};
+
+// The value that a layer has where there is nothing.
+float BackgroundValue(Layer layer);
+
+// Largest width or height of any picture or guide set that is read or made.
+inline constexpr int kMaxImageSide = 32768;
+
+// Ids for names, in the order given: 24-bit hashes in [1, 2^24), a collision moves the alphabetically later name to
+// the next free id. Adding a name does not change the others' ids, save in a collision. Equal names share an id.
+std::vector<std::uint32_t> IdsForNames(std::span<const std::string> names);
+
+}  // namespace scumble

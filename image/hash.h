@@ -1,0 +1,36 @@
+// Chance without state: every random number is a hash of what it is for, so the result does not depend on the order
+// of work, the number of threads or the way a sequence was cut.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace scumble {
+
+// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): a bijection of 64-bit integers with full avalanche.
+constexpr std::uint64_t Mix64(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15ull;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+  return x ^ (x >> 31);
+}
+
+// Hash of any number of integers; the order of the arguments matters.
+template <class... Integers>
+constexpr std::uint64_t Hash(Integers... values) {
+  std::uint64_t state = 0x6a09e667f3bcc908ull;
+  ((state = Mix64(state ^ static_cast<std::uint64_t>(values))), ...);
+  return state;
+}
+
+// The upper 24 bits as a float in [0, 1): exact, and never rounded up to 1.
+constexpr float UnitFloat(std::uint64_t hash) { return static_cast<float>(hash >> 40) * 0x1.0p-24f; }
+
+// FNV-1a of a text, finished with Mix64.
+constexpr std::uint64_t HashText(std::string_view text) {
+  std::uint64_t state = 0xcbf29ce484222325ull;
+  for (char c : text) state = (state ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return Mix64(state);
+}
+
+}  // namespace scumble

@@ -1,0 +1,61 @@
+// Style: what an exemplar and its style.toml say, as plain data. style/ reads it from files, transfer/ carries it out;
+// the two never see each other and meet here, as guidegen/ and transfer/ meet in GuideSet.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/picture.h"
+
+namespace scumble {
+
+enum class Method {
+  kLitSphere,   // every pixel takes its own nearest neighbour (Sloan et al. 2001): the fast floor
+  kStyleBlit,   // chunks from a hierarchy of seeds (Sýkora et al. 2019, parallel form)
+  kBruteForce,  // chunks grown from one anchor after the other (Sýkora et al. 2019, algorithm 1): the oracle, slow
+};
+
+enum class ThresholdMetric {
+  kL2,  // Euclidean distance of unit normals
+  kL1,  // sum of absolute differences, the authors' own
+};
+
+// Lengths are pixels at `reference_height` and follow the output's height.
+struct TransferSettings {
+  Method method = Method::kStyleBlit;
+  float threshold = 0.125f;  // largest guide distance inside a chunk, at least 0, infinity allowed; the test is strict
+  ThresholdMetric threshold_metric = ThresholdMetric::kL2;
+  int levels = 7;            // seed grids of 2^(levels-1) … 1 pixels, 1 … 16
+  float jitter = 1.0f;       // 0 … 1, how far seeds leave their grid
+  double jitter_fps = 0.0;   // renewals a second; 0 frozen, -1 every frame
+  int blend_radius = 1;      // voting window of (2r + 1)² pixels, 0 … 64
+  bool edge_aware = true;    // votes do not cross object borders, depth steps and creases
+  double scale = 1.0;        // exemplar size, above 0
+  double rim = 2.0;          // exemplar pixels at the painted edge that are never used
+  int reference_height = 1080;  // 0: lengths are plain pixels
+};
+
+// A painted sphere: a square picture that the sphere fills exactly.
+struct Exemplar {
+  std::string name;  // for messages
+  Picture picture;
+};
+
+// What is behind the stylised objects.
+struct Paper {
+  std::optional<std::array<std::uint16_t, 3>> color;  // 16-bit sRGB
+  std::optional<Picture> picture;                     // tiled
+};
+
+struct Style {
+  std::string name;
+  std::string licence;
+  TransferSettings transfer;
+  std::vector<Exemplar> exemplars;  // exactly one
+  Paper paper;                      // neither set: transparent
+};
+
+}  // namespace scumble

@@ -1,0 +1,24 @@
+// Files that appear whole under their name or not at all.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "image/status.h"
+
+namespace scumble {
+
+// Writes to a temporary name in the same folder, flushes it to disk, then renames: an interrupted run leaves the old
+// file or none. Links are followed, and a target that is no regular file (a device, a pipe) is written to directly.
+// Missing parent folders are made. Every failure is an error with the file's name and the system's reason.
+Status WriteFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
+Status WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
+
+// The whole file; `limit` bytes at most.
+Expected<std::vector<std::byte>> ReadWholeFile(const std::filesystem::path& path,
+                                               std::size_t limit = std::size_t(8) << 30);
+
+}  // namespace scumble

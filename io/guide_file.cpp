@@ -1,0 +1,298 @@
+#include "io/guide_file.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "io/guide_header.h"
+#include "io/oiio.h"
+
+namespace scumble {
+namespace {
+
+constexpr const char* kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
+
+bool IsLossless(const std::string& compression) {
+  return std::find(std::begin(kCompressions), std::end(kCompressions), compression) != std::end(kCompressions);
+}
+
+// OpenImageIO's matrices are for row vectors, ours for column vectors: the same 16 numbers in memory.
+void SetMatrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix) {
+  std::array<float, 16> values;
+  for (int i = 0; i < 16; ++i) values[i] = static_cast<float>(matrix[i / 4][i % 4]);
+  spec.attribute(name, OIIO::TypeMatrix, values.data());
+}
+
+OIIO::ImageSpec SpecFor(const GuideSet& guides, const GuideWriteOptions& options) {
+  OIIO::ImageSpec spec(guides.width(), guides.height(), 0, OIIO::TypeDesc::FLOAT);
+  for (const LayerInfo& info : AllLayers()) {
+    if (!guides.Has(info.layer)) continue;
+    for (const char* channel : info.channels) {
+      spec.channelnames.emplace_back(channel);
+      spec.channelformats.push_back(options.half && info.is_color ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+    }
+  }
+  spec.nchannels = static_cast<int>(spec.channelnames.size());
+  spec.alpha_channel = guides.Has(Layer::kCoverage) ? 0 : -1;
+  spec.attribute("compression", options.compression);
+  spec.attribute("oiio:ColorSpace", "Linear");
+  for (const auto& [name, value] : guides.attributes) spec.attribute(name, value);
+  if (!guides.object_names.empty()) spec.attribute("scumble:objects", internal::NamesToText(guides.object_names));
+  if (!guides.material_names.empty()) spec.attribute("scumble:materials", internal::NamesToText(guides.material_names));
+  if (guides.camera) {
+    spec.attribute("scumble:camera", guides.camera->name);
+    spec.attribute("scumble:viewFromWorld", internal::MatrixToText(guides.camera->view_from_world));
+    spec.attribute("scumble:clipFromView", internal::MatrixToText(guides.camera->clip_from_view));
+    SetMatrix(spec, "worldtocamera", guides.camera->view_from_world);
+    SetMatrix(spec, "worldtoscreen", guides.camera->clip_from_view * guides.camera->view_from_world);
+  }
+  return spec;
+}
+
+// Pixels interleaved as the file wants them: each channel in its own format, side by side.
+std::vector<std::byte> Interleave(const GuideSet& guides, const OIIO::ImageSpec& spec) {
+  const std::size_t pixel_bytes = spec.pixel_bytes(true);
+  std::vector<std::byte> bytes(pixel_bytes * guides.pixel_count());
+  std::size_t offset = 0, channel = 0;
+  for (const LayerInfo& info : AllLayers()) {
+    if (!guides.Has(info.layer)) continue;
+    for (int c = 0; c < ChannelCount(info.layer); ++c, ++channel) {
+      const auto plane = guides.Plane(info.layer, c);
+      const bool half = spec.channelformats[channel] == OIIO::TypeDesc::HALF;
+      std::byte* out = bytes.data() + offset;
+      for (std::size_t i = 0; i < plane.size(); ++i, out += pixel_bytes) {
+        if (half) {
+          const Imath::half value(plane[i]);
+          std::memcpy(out, &value, sizeof value);
+        } else {
+          std::memcpy(out, &plane[i], sizeof(float));
+        }
+      }
+      offset += half ? sizeof(Imath::half) : sizeof(float);
+    }
+  }
+  return bytes;
+}
+
+// A channel of a file that means something to us.
+struct FoundChannel {
+  int subimage;
+  int channel;
+  ChannelMeaning meaning;
+};
+
+struct FileContents {
+  OIIO::ImageSpec spec;  // of the first part
+  std::vector<FoundChannel> channels;
+  std::string all_names;  // for messages
+  bool from_blender = false;
+};
+
+Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
+  FileContents contents;
+  contents.spec = input.spec(0);
+  int named = 0;
+  for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
+    const OIIO::ImageSpec spec = input.spec(subimage);
+    SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
+    if (spec.full_width != contents.spec.full_width || spec.full_height != contents.spec.full_height) {
+      return InputError(name + ": its parts differ in size; write all guides at one size");
+    }
+    for (int c = 0; c < spec.nchannels; ++c) {
+      const std::string& channel = spec.channelnames[c];
+      if (++named <= 40) contents.all_names += (contents.all_names.empty() ? "" : ", ") + channel;
+      if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
+      if (auto meaning = ParseChannelName(channel)) contents.channels.push_back({subimage, c, *meaning});
+    }
+  }
+  if (named > 40) contents.all_names += ", …";
+  if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
+  if (!contents.spec.get_string_attribute("scumble:generator").empty()) contents.from_blender = false;
+  OIIO::ImageSpec window = contents.spec;
+  window.width = window.full_width, window.height = window.full_height;
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(window, name));
+  return contents;
+}
+
+// Which view layer's channels to read: the one that is asked for, or the only one that has normals.
+Expected<std::string> ChoosePrefix(const FileContents& contents, const std::string& wanted, const std::string& name) {
+  std::set<std::string> prefixes;
+  for (const FoundChannel& found : contents.channels) {
+    if (found.meaning.layer == Layer::kNormal && found.meaning.component == 0) prefixes.insert(found.meaning.prefix);
+  }
+  std::string list;
+  for (const std::string& prefix : prefixes) list += (list.empty() ? "'" : ", '") + prefix + "'";
+  if (!wanted.empty()) {
+    if (prefixes.count(wanted)) return wanted;
+    return InputError(name + " has no view layer '" + wanted + "' with normals; there are " +
+                      (list.empty() ? "none" : list));
+  }
+  if (prefixes.size() > 1) return InputError(name + " holds several view layers, " + list + ": choose with --view-layer");
+  return prefixes.empty() ? std::string() : *prefixes.begin();
+}
+
+// The channels that fill the wanted layers: of the chosen view layer, else of none.
+std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix, const LayerSet& wanted) {
+  std::vector<FoundChannel> selected;
+  const auto take = [&](const std::string& from) {
+    for (const FoundChannel& found : contents.channels) {
+      if (!wanted.Has(found.meaning.layer) || found.meaning.prefix != from) continue;
+      const bool taken = std::any_of(selected.begin(), selected.end(), [&](const FoundChannel& other) {
+        return other.meaning.layer == found.meaning.layer && other.meaning.component == found.meaning.component;
+      });
+      if (!taken) selected.push_back(found);
+    }
+  };
+  take(prefix);
+  if (!prefix.empty()) take("");
+  return selected;
+}
+
+LayerSet CompleteLayers(const std::vector<FoundChannel>& channels) {
+  std::array<int, kLayerCount> counts{};
+  for (const FoundChannel& found : channels) ++counts[static_cast<int>(found.meaning.layer)];
+  LayerSet complete;
+  for (const LayerInfo& info : AllLayers()) {
+    if (counts[static_cast<int>(info.layer)] == ChannelCount(info.layer)) complete.Add(info.layer);
+  }
+  return complete;
+}
+
+// Reads the selected channels of one part into the set; what the data window does not cover stays background.
+Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundChannel>& channels, const std::string& name,
+                GuideSet& guides) {
+  int first = std::numeric_limits<int>::max(), last = -1;
+  for (const FoundChannel& found : channels) {
+    if (found.subimage != subimage) continue;
+    first = std::min(first, found.channel), last = std::max(last, found.channel);
+  }
+  if (last < 0) return Ok();
+  const OIIO::ImageSpec spec = input.spec(subimage);
+  const std::size_t stride = static_cast<std::size_t>(last - first + 1);
+  std::vector<float> pixels(stride * spec.width * spec.height);
+  if (!input.read_image(subimage, 0, first, last + 1, OIIO::TypeDesc::FLOAT, pixels.data())) {
+    return InputError("cannot read " + name + ": " + input.geterror());
+  }
+  const int offset_x = spec.x - spec.full_x, offset_y = spec.y - spec.full_y;
+  const int begin_x = std::max(0, -offset_x), end_x = std::min(spec.width, guides.width() - offset_x);
+  for (const FoundChannel& found : channels) {
+    if (found.subimage != subimage || !guides.Has(found.meaning.layer)) continue;
+    const auto plane = guides.Plane(found.meaning.layer, found.meaning.component);
+    for (int y = 0; y < spec.height; ++y) {
+      if (y + offset_y < 0 || y + offset_y >= guides.height()) continue;
+      const float* row = pixels.data() + std::size_t(y) * spec.width * stride + (found.channel - first);
+      float* out = plane.data() + guides.Index(0, y + offset_y);
+      for (int x = begin_x; x < end_x; ++x) out[x + offset_x] = row[x * stride];
+    }
+  }
+  return Ok();
+}
+
+// Half floats and filtered passes shorten normals; a direction is what the transfer needs. Lengths that no rounding
+// or filter explains are left for Validate to refuse.
+void NormalizeNormals(GuideSet& guides) {
+  const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1), z = guides.Plane(Layer::kNormal, 2);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+    if (std::fabs(squared - 1.0f) <= 4e-3f || !(squared > 0.01f && squared < 100.0f)) continue;
+    const float length = std::sqrt(squared);
+    x[i] /= length, y[i] /= length, z[i] /= length;
+  }
+}
+
+void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    if (value.type() == OIIO::TypeString && value.name().substr(0, 8) == "scumble:") {
+      guides.attributes[std::string(value.name())] = std::string(value.get_string());
+    }
+  }
+  const auto take = [&](const char* name) {
+    const auto found = guides.attributes.extract(name);
+    return found.empty() ? std::string() : found.mapped();
+  };
+  guides.object_names = internal::NamesFromText(take("scumble:objects"));
+  guides.material_names = internal::NamesFromText(take("scumble:materials"));
+  const std::string camera = take("scumble:camera");
+  const auto view = internal::MatrixFromText(take("scumble:viewFromWorld"));
+  const auto clip = internal::MatrixFromText(take("scumble:clipFromView"));
+  if (view && clip) guides.camera = GuideCamera{camera, *view, *clip};
+}
+
+}  // namespace
+
+Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
+  if (path.extension() != ".exr") {
+    return UsageError("cannot write guides to " + path.string() + ": guides are EXR files, name it .exr");
+  }
+  if (!IsLossless(options.compression)) {
+    return UsageError("compression '" + options.compression +
+                      "' is not one of none, rle, zips, zip, piz: guides are data and lossy compression is refused");
+  }
+  const OIIO::ImageSpec spec = SpecFor(guides, options);
+  const std::vector<std::byte> pixels = Interleave(guides, spec);
+  return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::UNKNOWN, pixels.data());  // UNKNOWN: already in the file's own formats
+  });
+}
+
+Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
+  const std::string name = path.string();
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
+  SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, options.view_layer, name));
+  LayerSet wanted = options.required;
+  wanted.Add(options.optional);
+  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, wanted);
+  const LayerSet complete = CompleteLayers(channels);
+  LayerSet missing = options.required;
+  for (const LayerInfo& info : AllLayers()) {
+    if (complete.Has(info.layer)) missing.Remove(info.layer);
+  }
+  if (contents.from_blender) {
+    return InputError(name + " is a Blender render: its normals are in world space and its header holds no camera; "
+                      "make the guides with `scumble guidegen` from the scene exported as .glb");
+  }
+  if (!missing.empty()) {
+    return InputError(name + " has no layer " + missing.ToString() + "; its channels are " + contents.all_names);
+  }
+  GuideSet guides(contents.spec.full_width, contents.spec.full_height);
+  for (const LayerInfo& info : AllLayers()) {
+    if (complete.Has(info.layer)) guides.Add(info.layer);
+  }
+  const int parts = channels.empty() ? 0 : std::max_element(channels.begin(), channels.end(), [](auto& a, auto& b) {
+    return a.subimage < b.subimage;
+  })->subimage + 1;
+  for (int part = 0; part < parts; ++part) SCUMBLE_RETURN_IF_ERROR(ReadPart(*input, part, channels, name, guides));
+  ReadHeader(contents.spec, guides);
+  if (guides.Has(Layer::kNormal)) NormalizeNormals(guides);
+  SCUMBLE_RETURN_IF_ERROR(guides.Validate(name));
+  return guides;
+}
+
+Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path, const std::string& view_layer) {
+  const std::string name = path.string();
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
+  SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, view_layer, name));
+  LayerSet all;
+  for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
+  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height,
+                     CompleteLayers(SelectChannels(contents, prefix, all)), contents.all_names, GuideSet()};
+  ReadHeader(contents.spec, info.header);
+  return info;
+}
+
+void RoundColorLayersToHalf(GuideSet& guides) {
+  for (const LayerInfo& info : AllLayers()) {
+    if (!guides.Has(info.layer) || !info.is_color) continue;
+    for (int c = 0; c < ChannelCount(info.layer); ++c) {
+      for (float& value : guides.Plane(info.layer, c)) value = static_cast<float>(Imath::half(value));
+    }
+  }
+}
+
+}  // namespace scumble

@@ -1,0 +1,67 @@
+#include "io/guide_header.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+namespace scumble::internal {
+
+std::string NamesToText(const std::map<std::uint32_t, std::string>& names) {
+  std::string text;
+  for (const auto& [id, name] : names) {
+    text += std::to_string(id) + ' ';
+    for (char c : name) {
+      if (c == '\\') text += "\\\\";
+      else if (c == '\n') text += "\\n";
+      else text += c;
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::map<std::uint32_t, std::string> NamesFromText(const std::string& text) {
+  std::map<std::uint32_t, std::string> names;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t space = line.find(' ');
+    if (space == std::string::npos) continue;
+    const auto id = static_cast<std::uint32_t>(std::strtoul(line.c_str(), nullptr, 10));
+    std::string name;
+    for (std::size_t i = space + 1; i < line.size(); ++i) {
+      if (line[i] == '\\' && i + 1 < line.size()) {
+        ++i;
+        name += line[i] == 'n' ? '\n' : line[i];
+      } else {
+        name += line[i];
+      }
+    }
+    names[id] = std::move(name);
+  }
+  return names;
+}
+
+std::string MatrixToText(const glm::dmat4& matrix) {
+  std::string text;
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      char number[40];
+      std::snprintf(number, sizeof number, "%s%.17g", text.empty() ? "" : " ", matrix[column][row]);
+      text += number;
+    }
+  }
+  return text;
+}
+
+std::optional<glm::dmat4> MatrixFromText(const std::string& text) {
+  std::istringstream numbers(text);
+  glm::dmat4 matrix;
+  for (int column = 0; column < 4; ++column) {
+    for (int row = 0; row < 4; ++row) {
+      if (!(numbers >> matrix[column][row])) return std::nullopt;
+    }
+  }
+  return matrix;
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,9 @@
+// Settings of the picture library that hold for the whole process.
+#pragma once
+
+namespace scumble {
+
+// Threads that reading and writing may use; 0 for all. Call once, before anything is read.
+void SetIoThreads(int threads);
+
+}  // namespace scumble

@@ -1,0 +1,33 @@
+// What the files of io/ share about OpenImageIO. Not for other folders: OpenImageIO's headers stay in here.
+#pragma once
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/status.h"
+
+namespace scumble::internal {
+
+// Opens a picture file with straight alpha left as it is stored. The message carries the library's reason.
+Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path);
+
+// The same from memory; `proxy` must outlive the input.
+Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name);
+
+// Encodes with `write_pixels` into memory, then writes the file atomically: the library's and the disk's failures both
+// become errors that name the file.
+Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
+                      const std::function<bool(OIIO::ImageOutput&)>& write_pixels);
+
+// Refuses sizes that no real picture has, before anything of that size is allocated.
+Status CheckSize(const OIIO::ImageSpec& spec, const std::string& name);
+
+}  // namespace scumble::internal

@@ -1,0 +1,183 @@
+#include "io/picture_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+
+#include "image/color.h"
+#include "io/oiio.h"
+
+namespace scumble {
+namespace {
+
+// Which channel of a file is which colour; -1 where there is none.
+struct ColorChannels {
+  int r = -1, g = -1, b = -1, a = -1;
+};
+
+std::string Upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// By name first (OpenImageIO sorts EXR channels), by position where the names say nothing.
+ColorChannels FindColorChannels(const OIIO::ImageSpec& spec) {
+  const auto find = [&](std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      for (int c = 0; c < spec.nchannels; ++c) {
+        if (Upper(spec.channelnames[c]) == name) return c;
+      }
+    }
+    return -1;
+  };
+  ColorChannels found{find({"R", "RED", "COMPOSITE.COMBINED.R", "VIEWLAYER.COMBINED.R"}),
+                      find({"G", "GREEN", "COMPOSITE.COMBINED.G", "VIEWLAYER.COMBINED.G"}),
+                      find({"B", "BLUE", "COMPOSITE.COMBINED.B", "VIEWLAYER.COMBINED.B"}),
+                      find({"A", "ALPHA", "COMPOSITE.COMBINED.A", "VIEWLAYER.COMBINED.A"})};
+  if (found.r >= 0 && found.g >= 0 && found.b >= 0) return found;
+  if (const int grey = find({"Y", "I", "L"}); grey >= 0) return {grey, grey, grey, found.a};
+  if (spec.nchannels >= 3) return {0, 1, 2, spec.nchannels >= 4 ? 3 : -1};
+  return {0, 0, 0, spec.nchannels == 2 ? 1 : -1};
+}
+
+bool IsLinear(const OIIO::ImageSpec& spec) {
+  const std::string space = Upper(std::string(spec.get_string_attribute("oiio:ColorSpace")));
+  if (space == "LINEAR" || space == "SCENE_LINEAR") return true;
+  return spec.format.is_floating_point() && space != "SRGB";
+}
+
+std::uint16_t RoundDivide(std::uint32_t value, std::uint32_t divisor) {
+  return static_cast<std::uint16_t>(std::min<std::uint32_t>(65535, (value + divisor / 2) / divisor));
+}
+
+Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
+  const OIIO::ImageSpec spec = input.spec();
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
+  const ColorChannels channels = FindColorChannels(spec);
+  const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0;
+  const std::size_t stride = static_cast<std::size_t>(spec.nchannels);
+  Picture picture(spec.width, spec.height);
+  const std::size_t count = std::size_t(spec.width) * spec.height;
+  const auto failure = [&] {
+    const std::string reason = input.geterror();
+    return InputError("cannot read " + name + ": " + (reason.empty() ? "the pixel data is damaged" : reason));
+  };
+
+  if (IsLinear(spec)) {
+    std::vector<float> pixels(count * stride);
+    if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) return failure();
+    for (std::size_t i = 0; i < count; ++i) {
+      const float* pixel = pixels.data() + i * stride;
+      const float alpha = channels.a < 0 ? 1.0f : std::clamp(pixel[channels.a], 0.0f, 1.0f);
+      const float scale = straight || !(alpha > 0.0f) ? 1.0f : 1.0f / alpha;
+      std::uint16_t* out = picture.rgba.data() + 4 * i;
+      out[0] = Srgb16FromLinear(pixel[channels.r] * scale);
+      out[1] = Srgb16FromLinear(pixel[channels.g] * scale);
+      out[2] = Srgb16FromLinear(pixel[channels.b] * scale);
+      out[3] = static_cast<std::uint16_t>(alpha * 65535.0f + 0.5f);
+    }
+    return picture;
+  }
+
+  std::vector<std::uint16_t> pixels(count * stride);
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT16, pixels.data())) return failure();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t* pixel = pixels.data() + i * stride;
+    const std::uint32_t alpha = channels.a < 0 ? 65535u : pixel[channels.a];
+    const std::array<std::uint32_t, 3> color = {pixel[channels.r], pixel[channels.g], pixel[channels.b]};
+    std::uint16_t* out = picture.rgba.data() + 4 * i;
+    for (int c = 0; c < 3; ++c) {
+      out[c] = straight || alpha == 0 || alpha == 65535u ? static_cast<std::uint16_t>(color[c])
+                                                         : RoundDivide(color[c] * 65535u, alpha);
+    }
+    out[3] = static_cast<std::uint16_t>(alpha);
+  }
+  return picture;
+}
+
+OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureWriteOptions& options) {
+  const auto type = options.bits == 8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
+  OIIO::ImageSpec spec(picture.width, picture.height, channels, type);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.attribute("png:compressionLevel", options.png_level);
+  spec.attribute("CompressionQuality", options.jpeg_quality);
+  return spec;
+}
+
+Status WriteEncoded(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+  const OIIO::ImageSpec spec = EncodedSpec(picture, 4, options);
+  if (options.bits == 8) {
+    std::vector<std::uint8_t> bytes(picture.rgba.size());
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>((picture.rgba[i] + 128u) / 257u);
+    return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
+      return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
+    });
+  }
+  return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::UINT16, picture.rgba.data());
+  });
+}
+
+// JPEG has no alpha: what is transparent becomes white paper, blended in linear light.
+Status WriteOnWhite(const std::filesystem::path& path, const Picture& picture, PictureWriteOptions options) {
+  options.bits = 8;
+  std::vector<std::uint8_t> bytes(std::size_t(3) * picture.width * picture.height);
+  for (std::size_t i = 0; i < bytes.size() / 3; ++i) {
+    const std::uint16_t* pixel = picture.rgba.data() + 4 * i;
+    const float alpha = static_cast<float>(pixel[3]) / 65535.0f;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint16_t value =
+          pixel[3] == 65535 ? pixel[c] : Srgb16FromLinear(Srgb16ToLinear(pixel[c]) * alpha + (1.0f - alpha));
+      bytes[3 * i + c] = static_cast<std::uint8_t>((value + 128u) / 257u);
+    }
+  }
+  return internal::EncodeAndWrite(path, EncodedSpec(picture, 3, options), [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
+  });
+}
+
+Status WriteLinear(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+  OIIO::ImageSpec spec(picture.width, picture.height, 4, options.bits == 32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
+  spec.attribute("oiio:ColorSpace", "Linear");
+  spec.attribute("compression", "zip");
+  std::vector<float> pixels(picture.rgba.size());
+  for (std::size_t i = 0; i < pixels.size(); i += 4) {
+    const float alpha = static_cast<float>(picture.rgba[i + 3]) / 65535.0f;
+    for (int c = 0; c < 3; ++c) pixels[i + c] = Srgb16ToLinear(picture.rgba[i + c]) * alpha;
+    pixels[i + 3] = alpha;
+  }
+  return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data());
+  });
+}
+
+}  // namespace
+
+Expected<Picture> ReadPicture(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  return ReadFrom(*input, path.string());
+}
+
+Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
+  if (bytes.empty()) return InputError("cannot read " + name + ": it is empty");
+  OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
+  return ReadFrom(*input, name);
+}
+
+Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+  const std::string ending = Upper(path.extension().string());
+  if (ending == ".EXR") return WriteLinear(path, picture, options);
+  if (options.bits != 8 && options.bits != 16) {
+    return UsageError(path.string() + ": " + std::to_string(options.bits) + " bits asked for; " + ending +
+                      " takes 8 or 16, and only .exr takes 32");
+  }
+  if (ending == ".JPG" || ending == ".JPEG") return WriteOnWhite(path, picture, options);
+  if (ending == ".PNG" || ending == ".TIF" || ending == ".TIFF") return WriteEncoded(path, picture, options);
+  return UsageError("cannot write " + path.string() + ": the ending '" + path.extension().string() +
+                    "' is not one of .png, .tif, .jpg, .exr");
+}
+
+}  // namespace scumble

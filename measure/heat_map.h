@@ -1,0 +1,28 @@
+// A picture of where two files differ.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/channel_image.h"
+#include "image/picture.h"
+#include "image/status.h"
+
+namespace scumble {
+
+struct HeatMapOptions {
+  double full_scale = 0.0;          // the difference that is shown as full yellow; 0: the largest there is
+  std::vector<std::string> layers;  // as in CompareOptions
+};
+
+struct HeatMap {
+  Picture picture;
+  double full_scale = 0.0;  // the one that was used; 0 where nothing differs
+};
+
+// Per pixel the largest |a − b| of the channels that both files have: dark blue where equal, over grey, to yellow at
+// full scale and above; magenta where a NaN or a lone infinity makes the pixel incomparable. The ramp is straight in
+// Oklab with rising lightness, so it reads alike in grey and with colour-blind eyes. Errors as those of Compare.
+Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b, const HeatMapOptions& options = {});
+
+}  // namespace scumble

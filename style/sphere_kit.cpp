@@ -1,0 +1,157 @@
+#include "style/sphere_kit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "image/check.h"
+#include "image/color.h"
+#include "io/atomic_file.h"
+#include "io/guide_file.h"
+#include "io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMarginAttribute = "scumble:sphereMargin";
+
+void FillRectangle(Picture& picture, int x0, int y0, int x1, int y1, std::uint16_t grey) {
+  for (int y = std::max(0, y0); y < std::min(picture.height, y1); ++y) {
+    for (int x = std::max(0, x0); x < std::min(picture.width, x1); ++x) {
+      std::uint16_t* pixel = picture.At(x, y);
+      pixel[0] = pixel[1] = pixel[2] = grey, pixel[3] = 65535;
+    }
+  }
+}
+
+// Crosses in the corners of the margin, and short ticks where the square's sides begin.
+void DrawRegistrationMarks(Picture& picture, int size, int margin) {
+  const int stroke = std::max(1, size / 256), arm = std::max(1, margin / 3);
+  const int far = margin + size;
+  for (const int cy : {margin / 2, far + margin - margin / 2}) {
+    for (const int cx : {margin / 2, far + margin - margin / 2}) {
+      FillRectangle(picture, cx - arm, cy - stroke / 2, cx + arm, cy - stroke / 2 + stroke, 0);
+      FillRectangle(picture, cx - stroke / 2, cy - arm, cx - stroke / 2 + stroke, cy + arm, 0);
+    }
+  }
+  const int tick = margin / 4;
+  constexpr std::uint16_t kGrey = 40000;
+  for (const int side : {margin, far - stroke}) {
+    FillRectangle(picture, side, 0, side + stroke, tick, kGrey);
+    FillRectangle(picture, side, far + margin - tick, side + stroke, far + margin, kGrey);
+    FillRectangle(picture, 0, side, tick, side + stroke, kGrey);
+    FillRectangle(picture, far + margin - tick, side, far + margin, side + stroke, kGrey);
+  }
+}
+
+std::string Numbered(const std::string& stem, const std::string& ending, std::size_t index) {
+  return index == 0 ? stem + ending : stem + "-" + std::to_string(index + 1) + ending;
+}
+
+std::string LightInWords(const KitLight& light) {
+  char text[120];
+  std::snprintf(text, sizeof text, "azimuth %g, elevation %g degrees", light.azimuth, light.elevation);
+  return text;
+}
+
+std::string StarterStyle(const std::vector<KitLight>& lights) {
+  std::string text =
+      "# A style: paint over template.png, save as lit.png beside this file.\n"
+      "# All keys and their defaults: scumble styles --keys\n"
+      "name = \"my style\"\n"
+      "licence = \"\"\n\n"
+      "[transfer]\n"
+      "threshold = 0.125     # smaller: shape is followed closer; larger: bigger patches of your paint\n"
+      "blend_radius = 1      # how softly patches melt into each other, pixels\n"
+      "scale = 1.0           # smaller: finer strokes in the picture\n"
+      "paper = \"\"            # a colour like \"#f4efe6\" or a picture behind; empty: transparent\n\n"
+      "[[exemplar]]\n"
+      "image = \"lit.png\"     # light from " +
+      LightInWords(lights.front()) +
+      "\n"
+      "guides = \"guides.exr\" # knows the template's margin\n";
+  return text;
+}
+
+std::string Howto(const std::vector<KitLight>& lights) {
+  std::string text =
+      "PAINT YOUR OWN STYLE\n\n"
+      "1. Open template.png in any painting program. Paint over the sphere: its light comes from " +
+      LightInWords(lights.front()) +
+      "\n   (azimuth to the right of the viewer, elevation above the horizon).\n"
+      "2. Let strokes run over the sphere's edge; what lies outside it is never shown. Keep the crosses in the\n"
+      "   corners if you print the template and scan your painting.\n"
+      "3. Do not move, scale or crop the picture. Export it at the same size as lit.png into this folder.\n"
+      "4. Stylise a scene:   scumble stylize scene.glb --style THIS_FOLDER -o picture.png\n"
+      "5. Tune style.toml: threshold, scale, blend_radius, paper.\n\n"
+      "What helps: the whole range from highlight to reflected light; strokes with a direction; irregular, lively\n"
+      "texture. What hurts: a regular pattern (it tears where patches meet), bare template showing through.\n";
+  for (std::size_t i = 1; i < lights.size(); ++i) {
+    text += "\n" + Numbered("template", ".png", i) + " and " + Numbered("guides", ".exr", i) +
+            " are the same sphere in another light: " + LightInWords(lights[i]) +
+            ".\nTo use that painting, name it and its guides in style.toml.\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+int TemplateMargin(int size) { return (size + 7) / 8; }
+
+std::optional<int> SphereMargin(const GuideSet& guides) {
+  const auto found = guides.attributes.find(kMarginAttribute);
+  if (found == guides.attributes.end() || guides.width() != guides.height()) return std::nullopt;
+  const int margin = std::atoi(found->second.c_str());
+  if (margin < 0 || margin > guides.width()) return std::nullopt;
+  return margin;
+}
+
+Picture DrawTemplate(const GuideSet& guides) {
+  SCUMBLE_CHECK_EQ(guides.width(), guides.height());
+  const int size = guides.width(), margin = TemplateMargin(size);
+  Picture picture(size + 2 * margin, size + 2 * margin);
+  FillRectangle(picture, 0, 0, picture.width, picture.height, 65535);
+  const auto coverage = guides.Plane(Layer::kCoverage), luminance = guides.Plane(Layer::kLuminance);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const std::size_t i = guides.Index(x, y);
+      if (!(coverage[i] > 0.0f)) continue;
+      // A little light from the sky and from below keeps form readable in the shade, as a model in a studio has it.
+      const float sky = 0.03f + 0.03f * guides.Plane(Layer::kNormal, 1)[i];
+      const float lit = 0.05f + sky + 0.80f * luminance[i];
+      const float blended = lit * coverage[i] + (1.0f - coverage[i]);
+      const std::uint16_t grey = Srgb16FromLinear(blended);
+      std::uint16_t* pixel = picture.At(x + margin, y + margin);
+      pixel[0] = pixel[1] = pixel[2] = grey;
+    }
+  }
+  DrawRegistrationMarks(picture, size, margin);
+  return picture;
+}
+
+Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vector<KitLight> lights) {
+  SCUMBLE_CHECK(!lights.empty());
+  std::vector<fs::path> written;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    GuideSet& guides = lights[i].guides;
+    guides.attributes[kMarginAttribute] = std::to_string(TemplateMargin(guides.width()));
+    const fs::path picture = folder / Numbered("template", ".png", i);
+    const fs::path guide_file = folder / Numbered("guides", ".exr", i);
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(picture, DrawTemplate(guides)));
+    SCUMBLE_RETURN_IF_ERROR(WriteGuides(guide_file, guides));
+    written.insert(written.end(), {picture, guide_file});
+  }
+  const fs::path style = folder / "style.toml", howto = folder / "HOWTO.txt";
+  if (!fs::exists(style)) {
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(style, StarterStyle(lights)));
+    written.push_back(style);
+  }
+  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(howto, Howto(lights)));
+  written.push_back(howto);
+  return written;
+}
+
+}  // namespace scumble

@@ -1,0 +1,37 @@
+// The artist's kit: a lit sphere to paint over, and what turns the painting into a style.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/picture.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// One lighting condition: the sphere's guides with the luminance layer of that light.
+struct KitLight {
+  double azimuth = 0;    // degrees, from +Z towards +X
+  double elevation = 0;  // degrees
+  GuideSet guides;       // N × N, the sphere fills it; needs luminance
+};
+
+// Pixels of margin around the sphere's square in the template of an N × N kit.
+int TemplateMargin(int size);
+
+// The margin that is recorded in a sphere's guides; nothing if the guides are not a sphere's from WriteSphereKit.
+std::optional<int> SphereMargin(const GuideSet& guides);
+
+// The picture to paint over: white paper, the lit sphere filling the inner square, and registration marks in the
+// corners of the margin, outside that square.
+Picture DrawTemplate(const GuideSet& guides);
+
+// Writes template.png, guides.exr, style.toml and HOWTO.txt into `folder`; further lights give template-2.png,
+// guides-2.exr and so on. An existing style.toml is kept: it may be the artist's. Returns the files written.
+Expected<std::vector<std::filesystem::path>> WriteSphereKit(const std::filesystem::path& folder,
+                                                            std::vector<KitLight> lights);
+
+}  // namespace scumble

@@ -1,0 +1,220 @@
+#include "style/style_file.h"
+
+#include <algorithm>
+#include <optional>
+#include <toml++/toml.h>
+
+#include "io/atomic_file.h"
+#include "io/guide_file.h"
+#include "io/picture_file.h"
+#include "style/sphere_kit.h"
+#include "style/style_keys.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxStyleBytes = 1 << 20;
+
+// Debian's toml++ throws; nothing else here does.
+Expected<toml::table> ParseToml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    return InputError(file + ":" + std::to_string(error.source().begin.line) + ": not valid TOML: " +
+                      std::string(error.description()));
+  }
+}
+
+std::optional<KeyValue> ValueOf(const toml::node& node) {
+  if (const auto* flag = node.as_boolean()) return KeyValue(flag->get());
+  if (const auto* whole = node.as_integer()) return KeyValue(whole->get());
+  if (const auto* number = node.as_floating_point()) return KeyValue(number->get());
+  if (const auto* text = node.as_string()) return KeyValue(text->get());
+  return std::nullopt;
+}
+
+std::string Where(const std::string& file, const toml::node& node) {
+  const auto line = node.source().begin.line;
+  return line > 0 ? file + ":" + std::to_string(line) : file;
+}
+
+Error Explain(Error error, const std::string& where, const std::string& key, const KeyValue& value) {
+  error.message = where + ": " + key + " = " + ToText(value) + ": " + error.message;
+  return error;
+}
+
+std::string KnownKeys(const std::string& section) {
+  std::string names;
+  for (const StyleKey& key : StyleKeys()) {
+    if (section.empty() ? key.name.find('.') != std::string::npos : key.name.rfind(section, 0) != 0) continue;
+    names += (names.empty() ? "" : ", ") + key.name.substr(section.size());
+  }
+  return names;
+}
+
+Status SetKey(Style& style, const std::string& name, const toml::node& node, const std::string& file,
+              const fs::path& folder) {
+  const std::string where = Where(file, node);
+  const StyleKey* key = FindStyleKey(name);
+  if (!key) {
+    const std::string section = name.rfind("transfer.", 0) == 0 ? "transfer." : "";
+    return InputError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
+                      (section.empty() ? ", [transfer] and [[exemplar]]" : ""));
+  }
+  const auto value = ValueOf(node);
+  if (!value) return InputError(where + ": " + name + " must be a plain value");
+  if (auto status = key->set(style, *value, folder); !status) return Explain(status.error(), where, name, *value);
+  return Ok();
+}
+
+// Cuts the template's margin off a picture painted over it.
+Expected<Picture> FitToGuides(Picture picture, const std::string& picture_name, const fs::path& guides_path) {
+  GuideReadOptions options;
+  options.required = {Layer::kCoverage, Layer::kNormal};
+  SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(guides_path, options));
+  const auto margin = SphereMargin(guides);
+  if (!margin) {
+    return UnavailableError(guides_path.string() + " was not written by `scumble sphere`: guides of other exemplar "
+                            "scenes are not built into this version");
+  }
+  const int size = guides.width(), with_margin = size + 2 * *margin;
+  if (picture.width == size && picture.height == size) return picture;
+  if (picture.width != with_margin || picture.height != with_margin) {
+    const auto square = [](int side) { return std::to_string(side) + "×" + std::to_string(side); };
+    return InputError(picture_name + " is " + std::to_string(picture.width) + "×" + std::to_string(picture.height) +
+                      ", its guides " + guides_path.string() + " are " + square(size) + ": paint at " +
+                      square(with_margin) + " (the whole template) or " + square(size) + " (the sphere alone)");
+  }
+  Picture cut(size, size);
+  for (int y = 0; y < size; ++y) std::copy_n(picture.At(*margin, y + *margin), 4 * size, cut.At(0, y));
+  return cut;
+}
+
+Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder) {
+  std::string image, guides;
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    const std::string where = Where(file, node);
+    if (name == "luminance") {
+      return UnavailableError(where + ": exemplar.luminance: illuminated styles are not built into this version");
+    }
+    if (name != "image" && name != "guides") {
+      return InputError(where + ": unknown key exemplar." + name + "; there are image, guides, luminance");
+    }
+    const auto* text = node.as_string();
+    if (!text) return InputError(where + ": exemplar." + name + " must be a file's name in quotes");
+    (name == "image" ? image : guides) = text->get();
+  }
+  if (image.empty()) return InputError(Where(file, table) + ": [[exemplar]] has no image; add image = \"lit.png\"");
+  const fs::path image_path = folder / image;
+  SCUMBLE_ASSIGN(Picture picture, ReadPicture(image_path));
+  if (!guides.empty()) {
+    SCUMBLE_ASSIGN(picture, FitToGuides(std::move(picture), image_path.string(), folder / guides));
+  }
+  return Exemplar{image_path.string(), std::move(picture)};
+}
+
+Status ReadExemplars(const toml::node& node, const std::string& file, const fs::path& folder, Style& style) {
+  const auto* array = node.as_array();
+  if (!array) return InputError(Where(file, node) + ": write [[exemplar]] with two brackets");
+  if (array->size() > 1) {
+    return UnavailableError(Where(file, node) + ": " + std::to_string(array->size()) +
+                            " exemplars: illuminated styles are not built into this version; keep one [[exemplar]]");
+  }
+  for (const auto& item : *array) {
+    const auto* table = item.as_table();
+    if (!table) return InputError(Where(file, item) + ": write [[exemplar]] with two brackets");
+    SCUMBLE_ASSIGN(Exemplar exemplar, ReadExemplar(*table, file, folder));
+    style.exemplars.push_back(std::move(exemplar));
+  }
+  return Ok();
+}
+
+Expected<Style> ReadStyleFile(const fs::path& path) {
+  SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxStyleBytes));
+  const std::string file = path.string();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  SCUMBLE_ASSIGN(const toml::table root, ParseToml(text, file));
+  Style style;
+  const fs::path folder = path.parent_path();
+  for (const auto& [key, node] : root) {
+    const std::string name(key.str());
+    if (name == "exemplar") {
+      SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, file, folder, style));
+    } else if (const auto* table = node.as_table(); table && name == "transfer") {
+      for (const auto& [inner, value] : *table) {
+        SCUMBLE_RETURN_IF_ERROR(SetKey(style, name + "." + std::string(inner.str()), value, file, folder));
+      }
+    } else {
+      SCUMBLE_RETURN_IF_ERROR(SetKey(style, name, node, file, folder));
+    }
+  }
+  if (style.exemplars.empty()) {
+    return InputError(file + " has no [[exemplar]]; add [[exemplar]] and image = \"lit.png\" under it");
+  }
+  return style;
+}
+
+// "key=value" with TOML's values; a bare word is taken as text.
+Status ApplyOverride(Style& style, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    return UsageError("--set " + text + ": expected KEY=VALUE, as in transfer.blend_radius=0");
+  }
+  const std::string name = text.substr(0, equals), value_text = text.substr(equals + 1);
+  auto parsed = ParseToml("value = " + value_text, "--set");
+  toml::table table = parsed ? std::move(*parsed) : toml::table();
+  if (table.size() != 1 || !ValueOf(*table.get("value"))) {
+    table.clear();
+    table.insert("value", value_text);
+  }
+  auto done = SetKey(style, name, *table.get("value"), "--set", fs::path());
+  if (done) return Ok();
+  Error error = done.error();
+  if (error.kind == ErrorKind::kInput) error.kind = ErrorKind::kUsage;
+  return error;
+}
+
+}  // namespace
+
+Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& overrides) {
+  std::error_code failed;
+  const fs::file_status kind = fs::status(path, failed);
+  if (!fs::exists(kind)) return InputError("cannot read style " + path.string() + ": there is no such file or folder");
+  Style style;
+  if (fs::is_directory(kind)) {
+    if (!fs::exists(path / "style.toml")) return InputError("style folder " + path.string() + " holds no style.toml");
+    SCUMBLE_ASSIGN(style, ReadStyleFile(path / "style.toml"));
+  } else if (path.extension() == ".toml") {
+    SCUMBLE_ASSIGN(style, ReadStyleFile(path));
+  } else {
+    SCUMBLE_ASSIGN(Picture picture, ReadPicture(path));
+    style.exemplars.push_back({path.string(), std::move(picture)});
+  }
+  if (style.name.empty()) {
+    const fs::path named = path.filename() == "style.toml" ? path.parent_path() : path;
+    style.name = named.stem().string();
+  }
+  for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+  const Picture& picture = style.exemplars.front().picture;
+  if (picture.width != picture.height) {
+    return InputError(style.exemplars.front().name + " is " + std::to_string(picture.width) + "×" +
+                      std::to_string(picture.height) +
+                      ": an exemplar is a square that its sphere fills; crop it to the sphere");
+  }
+  return style;
+}
+
+std::vector<fs::path> FindStyles(const fs::path& root) {
+  std::vector<fs::path> styles;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(root, failed)) {
+    if (fs::exists(entry.path() / "style.toml")) styles.push_back(entry.path());
+  }
+  std::sort(styles.begin(), styles.end());
+  return styles;
+}
+
+}  // namespace scumble

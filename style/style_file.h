@@ -1,0 +1,24 @@
+// Styles from files: a folder with a style.toml, the style.toml itself, or just a picture of a painted sphere.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "image/status.h"
+#include "image/style.h"
+
+namespace scumble {
+
+// Reads a style and its pictures. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
+// writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Every key is honoured, or
+// refused by name: unknown ones with the list of what there is, features still to come as kUnavailable.
+//
+// An [[exemplar]] picture is a square that the sphere fills. With `guides` naming the guides.exr that `scumble sphere`
+// wrote, the picture may also be the whole painted template: its margin is cut off.
+Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+
+// The folders under `root` that hold a style.toml, sorted by name.
+std::vector<std::filesystem::path> FindStyles(const std::filesystem::path& root);
+
+}  // namespace scumble

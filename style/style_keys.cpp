@@ -1,0 +1,176 @@
+#include "style/style_keys.h"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+using Setter = decltype(StyleKey::set);
+
+std::optional<double> AsNumber(const KeyValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  return std::nullopt;
+}
+
+std::string Range(double low, double high) {
+  char text[80];
+  if (std::isinf(high)) std::snprintf(text, sizeof text, "%g or more", low);
+  else std::snprintf(text, sizeof text, "%g to %g", low, high);
+  return text;
+}
+
+template <class T>
+Setter Number(T TransferSettings::*field, double low, double high) {
+  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+    const auto number = AsNumber(value);
+    if (!number || !(*number >= low && *number <= high)) return InputError("expected a number, " + Range(low, high));
+    style.transfer.*field = static_cast<T>(*number);
+    return Ok();
+  };
+}
+
+Setter Whole(int TransferSettings::*field, int low, int high) {
+  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+    const auto* number = std::get_if<std::int64_t>(&value);
+    if (!number || *number < low || *number > high) return InputError("expected a whole number, " + Range(low, high));
+    style.transfer.*field = static_cast<int>(*number);
+    return Ok();
+  };
+}
+
+Setter Flag(bool TransferSettings::*field) {
+  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+    const auto* flag = std::get_if<bool>(&value);
+    if (!flag) return InputError("expected true or false");
+    style.transfer.*field = *flag;
+    return Ok();
+  };
+}
+
+Setter Text(std::string Style::*field) {
+  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+    const auto* text = std::get_if<std::string>(&value);
+    if (!text) return InputError("expected a text in quotes");
+    style.*field = *text;
+    return Ok();
+  };
+}
+
+Status SetMethod(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "litsphere") return style.transfer.method = Method::kLitSphere, Ok();
+  if (text && *text == "styleblit") return style.transfer.method = Method::kStyleBlit, Ok();
+  if (text && *text == "bruteforce") return style.transfer.method = Method::kBruteForce, Ok();
+  if (text && *text == "stylit") return UnavailableError("method stylit is not built into this version");
+  return InputError("expected \"litsphere\", \"styleblit\" or \"bruteforce\"");
+}
+
+Status SetMetric(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "l2") return style.transfer.threshold_metric = ThresholdMetric::kL2, Ok();
+  if (text && *text == "l1") return style.transfer.threshold_metric = ThresholdMetric::kL1, Ok();
+  return InputError("expected \"l2\" or \"l1\"");
+}
+
+Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto number = AsNumber(value);
+  if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= 1000.0))) {
+    return InputError("expected -1 (every frame), 0 (frozen) or up to 1000 renewals a second");
+  }
+  style.transfer.jitter_fps = *number;
+  return Ok();
+}
+
+Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path& folder) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (!text) return InputError("expected a picture's name, a colour \"#rrggbb\", or \"\" for transparent");
+  style.paper = {};
+  if (text->empty()) return Ok();
+  unsigned rgb = 0;
+  int used = 0;
+  if (text->front() == '#') {
+    if (text->size() != 7 || std::sscanf(text->c_str() + 1, "%6x%n", &rgb, &used) != 1 || used != 6) {
+      return InputError("'" + *text + "' is not a colour like \"#f4efe6\"");
+    }
+    const auto channel = [&](int shift) { return static_cast<std::uint16_t>(((rgb >> shift) & 255u) * 257u); };
+    style.paper.color = {channel(16), channel(8), channel(0)};
+    return Ok();
+  }
+  SCUMBLE_ASSIGN(style.paper.picture, ReadPicture(folder / *text));
+  return Ok();
+}
+
+// A key whose feature is still to come: the default is harmless, anything else is refused by name.
+StyleKey ToCome(const std::string& name, KeyValue neutral, const std::string& help) {
+  const std::string default_value = ToText(neutral);
+  return {"transfer." + name, default_value, help, false,
+          [=](Style&, const KeyValue& value, const auto&) -> Status {
+            if (value == neutral) return Ok();
+            if (const auto a = AsNumber(value), b = AsNumber(neutral); a && b && *a == *b) return Ok();
+            return UnavailableError("not built into this version, only " + default_value + " is");
+          }};
+}
+
+std::vector<StyleKey> MakeKeys() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  using T = TransferSettings;
+  return {
+      {"name", "\"\"", "what the style is called", true, Text(&Style::name)},
+      {"licence", "\"\"", "SPDX name of the licence", true, Text(&Style::licence)},
+      {"transfer.method", "\"styleblit\"", "litsphere, styleblit or bruteforce", true, SetMethod},
+      {"transfer.threshold", "0.125", "largest guide distance inside a chunk, between unit normals", true,
+       Number(&T::threshold, 0.0, kInfinity)},
+      {"transfer.threshold_metric", "\"l2\"", "l2, or l1: the authors' own test", true, SetMetric},
+      {"transfer.levels", "7", "seed grids of 2^(levels-1) to 1 pixels, 1 to 16", true, Whole(&T::levels, 1, 16)},
+      {"transfer.jitter", "1.0", "how far seeds leave their grid, 0 to 1", true, Number(&T::jitter, 0.0, 1.0)},
+      {"transfer.jitter_fps", "0", "renewals of the jitter a second; 0 frozen, -1 every frame", true, SetJitterFps},
+      ToCome("coherent", false, "seeds live on the surface instead of the screen"),
+      {"transfer.blend_radius", "1", "voting window, pixels, 0 to 64", true, Whole(&T::blend_radius, 0, 64)},
+      {"transfer.edge_aware", "true", "votes do not cross object borders, depth steps and creases", true,
+       Flag(&T::edge_aware)},
+      ToCome("luminance_weight", 0.3, "alpha of the illuminated extension"),
+      ToCome("luminance_error", std::string("excess"), "error of the illuminated extension"),
+      ToCome("colorize", 0.0, "0 exemplar colours to 1 fully tinted"),
+      ToCome("colorize_mode", std::string("multiply"), "how colorize tints"),
+      ToCome("variety", 0.0, "freedom of choice on flat surfaces, degrees"),
+      {"transfer.scale", "1.0", "exemplar size, above 0 to 64", true, Number(&T::scale, 1e-3, 64.0)},
+      {"transfer.rim", "2", "exemplar pixels at the painted edge that are never used", true,
+       Number(&T::rim, 0.0, 16384.0)},
+      {"transfer.reference_height", "1080", "lengths are pixels at this output height; 0: plain pixels", true,
+       Whole(&T::reference_height, 0, 32768)},
+      ToCome("edge", std::string("exact"), "silhouette: exact coverage"),
+      {"transfer.paper", "\"\"", "picture or colour behind; empty: transparent", true, SetPaper},
+  };
+}
+
+}  // namespace
+
+std::span<const StyleKey> StyleKeys() {
+  static const std::vector<StyleKey> keys = MakeKeys();
+  return keys;
+}
+
+const StyleKey* FindStyleKey(const std::string& name) {
+  for (const StyleKey& key : StyleKeys()) {
+    if (key.name == name) return &key;
+  }
+  return nullptr;
+}
+
+std::string ToText(const KeyValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+  if (const auto* text = std::get_if<std::string>(&value)) return '"' + *text + '"';
+  char number[40];
+  std::snprintf(number, sizeof number, "%g", std::get<double>(value));
+  return number;
+}
+
+}  // namespace scumble

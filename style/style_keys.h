@@ -1,0 +1,37 @@
+// The keys of style.toml: one table for the reader, for --set and for `scumble styles --keys`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <variant>
+
+#include "image/status.h"
+#include "image/style.h"
+
+namespace scumble {
+
+// A value as TOML has it.
+using KeyValue = std::variant<bool, std::int64_t, double, std::string>;
+
+struct StyleKey {
+  std::string name;           // "transfer.threshold"
+  std::string default_value;  // as TOML text
+  std::string help;           // one line: meaning, unit, range
+  bool built_in = true;       // false: the feature is still to come, and only the default is accepted
+  // Puts the value into the style; relative paths are under `folder`. The message of a failure says what was expected.
+  std::function<Status(Style&, const KeyValue&, const std::filesystem::path& folder)> set;
+};
+
+// All keys but those of [[exemplar]], in the order of the documentation.
+std::span<const StyleKey> StyleKeys();
+
+// The key of that name, or null.
+const StyleKey* FindStyleKey(const std::string& name);
+
+// How a value looks in TOML.
+std::string ToText(const KeyValue& value);
+
+}  // namespace scumble

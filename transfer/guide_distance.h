@@ -1,0 +1,34 @@
+// The one place that decides whether two guides are alike.
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+
+#include "image/style.h"
+
+namespace scumble {
+
+// ‖a - b‖ < threshold, strictly, in float without contraction: ties fall the same way on every machine.
+class GuideTest {
+ public:
+  GuideTest(float threshold, ThresholdMetric metric) : metric_(metric) {
+    // The Euclidean test compares squares. `bound_` is the smallest float not below threshold², so that a float d²
+    // satisfies d² < bound_ exactly when d² < threshold² holds without rounding, denormal thresholds included.
+    const double exact = metric == ThresholdMetric::kL2 ? double(threshold) * threshold : double(threshold);
+    bound_ = static_cast<float>(exact);
+    if (static_cast<double>(bound_) < exact) bound_ = std::nextafter(bound_, std::numeric_limits<float>::infinity());
+  }
+
+  bool Alike(glm::vec3 a, glm::vec3 b) const {
+    const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    if (metric_ == ThresholdMetric::kL2) return dx * dx + dy * dy + dz * dz < bound_;
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < bound_;
+  }
+
+ private:
+  ThresholdMetric metric_;
+  float bound_;
+};
+
+}  // namespace scumble

@@ -1,0 +1,43 @@
+// Jittered seeds: the centres that the parallel StyleBlit grows its chunks from (Sýkora et al. 2019, section 3.2).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace scumble {
+
+struct SeedRules {
+  std::uint64_t seed = 0;
+  std::int64_t time_step = 0;
+  float jitter = 1.0f;
+};
+
+struct PixelPosition {
+  int x = 0;
+  int y = 0;
+};
+
+// The seed of cell (cell_x, cell_y) on the grid of 2^level pixels: floor(h · (cell + j)), j in [0, 1)² hashed from
+// (seed, time step, level, cell) and scaled by the jitter. Cells outside the picture have seeds too.
+PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y);
+
+// All seeds that pixels of a width × height picture can be near to, on one level.
+class SeedGrid {
+ public:
+  SeedGrid(const SeedRules& rules, int level, int width, int height);
+
+  int level() const { return level_; }
+  std::size_t size() const { return seeds_.size(); }
+  PixelPosition Position(std::size_t index) const { return seeds_[index]; }
+
+  // Index of the nearest seed among the 3 × 3 cells around the pixel's own, by squared integer distance; ties to the
+  // first in row order.
+  std::size_t Nearest(int x, int y) const;
+
+ private:
+  int level_;
+  int columns_;  // cells a row, one more on each side than the picture needs
+  std::vector<PixelPosition> seeds_;
+};
+
+}  // namespace scumble

@@ -1,0 +1,29 @@
+// The middle product of every method: where each pixel takes its paint from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace scumble {
+
+// Per pixel the source position in the resized exemplar, and the level that settled it (0: the pixel's own nearest
+// neighbour). Rows from the top. Uncovered pixels have level kNoSource and position 0.
+struct SourceField {
+  static constexpr std::int8_t kNoSource = -1;
+
+  int width = 0;
+  int height = 0;
+  std::vector<std::int16_t> x;
+  std::vector<std::int16_t> y;
+  std::vector<std::int8_t> level;
+
+  void Reset(int new_width, int new_height) {
+    width = new_width, height = new_height;
+    const std::size_t count = std::size_t(width) * height;
+    x.assign(count, 0), y.assign(count, 0), level.assign(count, kNoSource);
+  }
+  std::size_t Index(int px, int py) const { return std::size_t(py) * width + px; }
+};
+
+}  // namespace scumble

@@ -1,0 +1,73 @@
+// The transfer of a painted sphere's style to guides: the manual of this library.
+//
+//   Prepare(style)                  resize exemplars, once for a sequence
+//   Transfer(prepared, guides, …)   match → SourceField → vote → compose → picture, once a frame
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "image/guides.h"
+#include "image/picture.h"
+#include "image/progress.h"
+#include "image/status.h"
+#include "image/style.h"
+#include "transfer/prepared_exemplar.h"
+#include "transfer/region.h"
+#include "transfer/source_field.h"
+
+namespace scumble {
+
+// A style made ready for outputs of one height. Immutable; any number of threads may use it at once.
+struct PreparedStyle {
+  TransferSettings settings;
+  std::shared_ptr<const PreparedExemplar> exemplar;
+  Paper paper;
+  int output_height = 0;
+  int levels = 1;        // settings.levels at the output's height
+  int blend_radius = 0;  // settings.blend_radius at the output's height
+};
+
+// Resizes exemplar and paper for outputs of `output_height` pixels. Fails where the exemplar is empty or not square,
+// or where a setting is outside the range that image/style.h states.
+Expected<PreparedStyle> Prepare(const Style& style, int output_height);
+
+// Layers that Transfer reads for these settings.
+LayerSet RequiredLayers(const TransferSettings& settings);
+
+struct TransferOptions {
+  std::uint64_t seed = 0;
+  std::int64_t time_step = 0;       // which jitter; see JitterStep
+  int threads = 0;                  // 0: all
+  const Picture* over = nullptr;    // composited underneath instead of the paper; the guides' size
+  std::optional<Region> region;     // only these pixels of the result are made; empty: all
+  Progress progress;
+};
+
+// Milliseconds of wall-clock time.
+struct StageTimes {
+  double match_ms = 0;
+  double vote_ms = 0;
+  double compose_ms = 0;
+};
+
+// Memory that a sequence keeps from frame to frame, and what there is to look at after a transfer.
+struct TransferScratch {
+  SourceField field;
+  StageTimes times;
+};
+
+// Stylises one frame into `out` (resized to the guides; straight alpha = coverage × paint). The guides must hold
+// RequiredLayers and pass GuideSet::Validate; their height must be the prepared one. The bytes depend on guides, style,
+// seed and time step only: not on threads, tiles, region or machine. O(covered pixels), except for kBruteForce, which
+// is refused above a megapixel.
+Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
+                TransferScratch& scratch, Picture& out);
+
+// floor(frame · jitter_fps / fps) in integers, fps = numerator / denominator: the same for a frame however a range is
+// cut. 0 for jitter_fps 0 (frozen), the frame itself for -1. jitter_fps is rounded to thousandths.
+std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,
+                        std::int64_t fps_denominator);
+
+}  // namespace scumble

@@ -1,0 +1,20 @@
+// From sources to colours: neighbouring chunks vote (Sýkora et al. 2019, section 3.3).
+#pragma once
+
+#include "image/guides.h"
+#include "image/picture.h"
+#include "transfer/edges.h"
+#include "transfer/parallel.h"
+#include "transfer/prepared_exemplar.h"
+#include "transfer/source_field.h"
+
+namespace scumble::internal {
+
+// Every covered pixel p of the region becomes the mean of what the chunks around it would put there: for each pixel q
+// of the (2·radius + 1)² window the texel S(q) + (p - q), where it is usable and, with `edges`, where q shows the same
+// surface. Inside a chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha.
+// Writes straight alpha into `out` (the picture's size); other pixels are left alone.
+bool Vote(const SourceField& field, const PreparedExemplar& exemplar, int radius, const EdgeTest* edges,
+          const Region& region, Picture& out, RowProgress& progress);
+
+}  // namespace scumble::internal
