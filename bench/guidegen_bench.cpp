@@ -145,7 +145,8 @@ void BM_SphereGuides(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(RenderSphereGuides(options).ok());
 }
 
-#define SCUMBLE_REPEATED Unit(benchmark::kMillisecond)->UseRealTime()->Repetitions(5)->ReportAggregatesOnly(true)
+#define SCUMBLE_REPEATED \
+  Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime()->Repetitions(5)->ReportAggregatesOnly(true)
 BENCHMARK(BM_BareEmbree)->SCUMBLE_REPEATED->Arg(1)->Arg(2);
 BENCHMARK(BM_GuidesAlwaysWritten)->SCUMBLE_REPEATED->Args({1, 1})->Args({2, 1})->Args({2, 4});
 BENCHMARK(BM_GuidesWithShadowRays)->SCUMBLE_REPEATED->Args({2, 1});

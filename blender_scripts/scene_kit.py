@@ -78,7 +78,7 @@ def spline(points, count):
 
 
 def round_cap(count, length):
-    """Radii for `length` points that start at 0, swell like a quarter circle over `count` points, and end at 0 alike."""
+    """Factors for `length` points that rise from 0 like a quarter circle over `count` points, and fall alike."""
     i = np.arange(length)
     near = np.minimum(np.minimum(i, length - 1 - i) / count, 1.0)
     return np.sqrt(1 - (1 - near) ** 2)

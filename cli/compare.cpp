@@ -1,6 +1,8 @@
 // scumble compare.
 #include "measure/compare.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "cli/command.h"
@@ -26,35 +28,47 @@ Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& global
   if (!verb.heat_map.empty()) {
     SCUMBLE_ASSIGN(const HeatMap map, DifferenceHeatMap(a, b, {0.0, verb.options.layers}));
     SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map.picture));
-    Say(globals, verb.heat_map + ": yellow is a difference of " + std::to_string(map.full_scale));
+    Say(globals, map.full_scale > 0.0
+                     ? fmt::format("{}: yellow is a difference of {:.3g}", verb.heat_map, map.full_scale)
+                     : verb.heat_map + ": nothing differs");
   }
   Print(globals.json ? CompareToJson(report) : CompareToText(report));
   return report.verdict == Verdict::kFail ? ExitCode::kDiffers : ExitCode::kOk;
 }
 
-void AddThresholds(CLI::App& sub, const std::string& name, const std::string& hard, DifferenceThresholds& thresholds) {
-  sub.add_option("--" + name, thresholds.absolute, "a value differs beyond this absolute difference")
-      ->capture_default_str();
-  sub.add_option("--" + name + "relative", thresholds.relative, "… and beyond this relative difference")
-      ->capture_default_str();
-  sub.add_option("--" + name + "percent", thresholds.percent, "share of the pixels that may differ, percent")
-      ->capture_default_str();
-  sub.add_option("--" + hard, thresholds.hard, "no value may differ by more than this")->capture_default_str();
+void AddThresholds(CLI::App& sub, const std::string& name, DifferenceThresholds& thresholds) {
+  const auto add = [&](const std::string& option, double& value, const std::string& help) {
+    sub.add_option("--" + option, value, help)->type_name("N")->capture_default_str();
+  };
+  const std::string fails = name == "fail" ? "fails" : "is warned of";
+  add(name, thresholds.absolute, "a pixel " + fails + " where a value differs by more than this …");
+  add(name + "relative", thresholds.relative, "… and by more than this share of the values' mean, 0.01 being 1 %");
+  add(name + "percent", thresholds.percent, "percentage of the pixels that may do so");
+  add("hard" + name, thresholds.hard, "no value may differ by more than this, whatever the percentage");
 }
 
 }  // namespace
 
 void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<CompareVerb>();
-  CLI::App* sub = app.add_subcommand("compare", "how two pictures or guide files differ, by layer name");
-  sub->add_option("a", verb->a, "first file")->required();
-  sub->add_option("b", verb->b, "second file")->required();
-  AddThresholds(*sub, "fail", "hardfail", verb->options.fail);
-  AddThresholds(*sub, "warn", "hardwarn", verb->options.warn);
-  sub->add_option("--allowfailures", verb->options.allow_failures, "so many pixels may differ by any amount")
+  CLI::App* sub =
+      app.add_subcommand("compare", "how two pictures or guide files differ, by layer name; exit code 1 if they do");
+  sub->add_option("a", verb->a, "first file")->type_name("FILE")->required();
+  sub->add_option("b", verb->b, "second file")->type_name("FILE")->required();
+  AddThresholds(*sub, "fail", verb->options.fail);
+  AddThresholds(*sub, "warn", verb->options.warn);
+  sub->add_option("--allowfailures", verb->options.allow_failures, "number of pixels that may fail by any amount")
+      ->type_name("N")
+      ->check(RefuseNegative)
       ->capture_default_str();
-  sub->add_option("--layer", verb->options.layers, "compare this layer alone; repeatable")->allow_extra_args(false);
-  sub->add_option("-o,--heat-map", verb->heat_map, "picture of the differences to write");
+  sub->add_option("--layer", verb->options.layers, "compare this layer alone, as normal; repeatable")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  sub->add_option("-o,--heat-map", verb->heat_map,
+                  "picture of the differences to write: dark where equal, yellow where most")
+      ->type_name("FILE");
+  sub->footer("Thresholds are idiff's, which may be written with one dash: -fail 0.01 -failpercent 1.\n\n" +
+              app.get_footer());
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunCompareVerb(*verb, globals); }; });
 }

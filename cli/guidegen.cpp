@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/json_text.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "io/guide_file.h"
@@ -26,15 +26,15 @@ struct GuidegenVerb {
 void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Globals& globals) {
   if (globals.json) {
     nlohmann::ordered_json json;
-    json["output"] = verb.output;
-    json["width"] = made.guides.width();
-    json["height"] = made.guides.height();
-    json["layers"] = made.guides.layers().ToString();
-    for (const PlanItem& item : made.plan) {
-      json["plan"].push_back({{"layer", item.layer}, {"reason", item.reason}, {"cost", item.cost}});
+    if (!verb.output.empty()) {
+      json["output"] = verb.output;
+      json["width"] = made.guides.width();
+      json["height"] = made.guides.height();
+      json["layers"] = made.guides.layers().ToString();
     }
+    json["plan"] = PlanToJson(made.plan);
     for (const auto& [name, ms] : made.times) json["ms"][name] = ms;
-    Print(json.dump(2) + "\n");
+    Print(JsonText(json));
     return;
   }
   if (verb.scene.explain) Print(PlanToText(made.plan));
@@ -51,7 +51,8 @@ Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& glob
     layers.Add(RequiredLayers(style.transfer));
   }
   const bool plan_only = verb.output.empty();
-  if (plan_only && !verb.scene.explain) return UsageError("--output is required; --explain alone prints the plan");
+  if (plan_only && !verb.scene.explain)
+    return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
   ProgressBar bar("guidegen", globals.quiet);
   SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(verb.scene, layers, globals, bar.Part(0.0, 1.0), plan_only));
   if (!plan_only) {
@@ -67,14 +68,20 @@ Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& glob
 
 void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<GuidegenVerb>();
-  CLI::App* sub = app.add_subcommand("guidegen", "scene -> guides");
+  CLI::App* sub =
+      app.add_subcommand("guidegen", "scene -> guides: what a renderer tells the transfer about every pixel");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, false);
-  sub->add_option("--layers", verb->layers,
-                  "layers on top of A, normal, depth, object, material: position, pref, albedo, luminance, shadow");
+  sub->add_option(
+         "--layers", verb->layers,
+         "layers on top of A, normal, depth, object and material, with commas between: position, pref, albedo, "
+         "luminance, shadow")
+      ->type_name("LIST");
   sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless")
+      ->type_name("NAME")
       ->capture_default_str();
-  sub->add_option("-o,--output", verb->output, "guide file to write: .exr");
+  sub->add_option("-o,--output", verb->output, "guide file to write, .exr; required unless --explain is given")
+      ->type_name("FILE");
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunGuidegenVerb(*verb, globals); }; });
 }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/json_text.h"
 #include "cli/options.h"
 #include "guidegen/load_scene.h"
 #include "io/guide_file.h"
@@ -18,7 +18,10 @@ using Json = nlohmann::ordered_json;
 
 Expected<Json> DescribeGuides(const std::string& path) {
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
-  Json json{{"kind", "guides"}, {"width", info.width}, {"height", info.height}, {"layers", info.layers.ToString()},
+  Json json{{"kind", "guides"},
+            {"width", info.width},
+            {"height", info.height},
+            {"layers", info.layers.ToString()},
             {"channels", info.channels}};
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
@@ -66,6 +69,8 @@ Expected<Json> DescribeStyle(const std::string& path) {
 }
 
 std::string ToText(const Json& json) {
+  std::size_t widest = 0;
+  for (const auto& [key, value] : json.items()) widest = std::max(widest, key.size());
   std::string text;
   for (const auto& [key, value] : json.items()) {
     std::string shown;
@@ -75,7 +80,7 @@ std::string ToText(const Json& json) {
     } else {
       shown = value.is_string() ? value.get<std::string>() : value.dump();
     }
-    text += fmt::format("{:<12} {}\n", key, shown);
+    text += fmt::format("{:<{}}  {}\n", key, widest, shown);
   }
   return text;
 }
@@ -93,12 +98,15 @@ Expected<Json> Describe(const std::string& path) {
 void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("info", "what is in a guide file, a scene or a style");
   auto path = std::make_shared<std::string>();
-  sub->add_option("file", *path, "guide file, scene, or style")->required();
+  sub->add_option("file", *path,
+                  "guide file (.exr), scene (.glb, .gltf, .obj, .ply), style, or picture of a painted sphere")
+      ->type_name("FILE")
+      ->required();
   AddGlobalOptions(*sub, globals);
   sub->callback([=, &globals, &chosen] {
     chosen = [=, &globals]() -> Expected<ExitCode> {
       SCUMBLE_ASSIGN(const Json json, Describe(*path));
-      Print(globals.json ? json.dump(2) + "\n" : ToText(json));
+      Print(globals.json ? JsonText(json) : ToText(json));
       return ExitCode::kOk;
     };
   });

@@ -1,13 +1,19 @@
 // scumble: paint a sphere, stylise a scene. One binary, one verb a task; `scumble help` prints verbs and exit codes.
+#include <fcntl.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <iterator>
+#include <memory>
 #include <new>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/help_format.h"
 #include "image/check.h"
 #include "io/library.h"
 
@@ -15,11 +21,16 @@ namespace scumble {
 
 ExitCode ExitCodeFor(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::kUsage: return ExitCode::kUsage;
-    case ErrorKind::kInput: return ExitCode::kInput;
-    case ErrorKind::kOutput: return ExitCode::kOutput;
-    case ErrorKind::kUnavailable: return ExitCode::kNotBuiltIn;
-    case ErrorKind::kCancelled: return ExitCode::kInternal;
+    case ErrorKind::kUsage:
+      return ExitCode::kUsage;
+    case ErrorKind::kInput:
+      return ExitCode::kInput;
+    case ErrorKind::kOutput:
+      return ExitCode::kOutput;
+    case ErrorKind::kUnavailable:
+      return ExitCode::kNotBuiltIn;
+    case ErrorKind::kCancelled:
+      return ExitCode::kInternal;
   }
   return ExitCode::kInternal;
 }
@@ -40,11 +51,13 @@ constexpr const char* kExitCodes =
 
 // idiff writes its long options with one dash; people paste them.
 std::vector<std::string> ReadArguments(int argc, char** argv) {
-  constexpr std::string_view kIdiffOptions[] = {"-fail",     "-failrelative", "-failpercent", "-hardfail", "-warn",
-                                                "-warnrelative", "-warnpercent", "-hardwarn", "-allowfailures"};
+  constexpr std::string_view kIdiffOptions[] = {"-fail",        "-failrelative", "-failpercent",
+                                                "-hardfail",    "-warn",         "-warnrelative",
+                                                "-warnpercent", "-hardwarn",     "-allowfailures"};
   std::vector<std::string> arguments;
   for (int i = argc - 1; i >= 1; --i) {  // CLI11 takes them last first
-    const bool idiff = std::find(std::begin(kIdiffOptions), std::end(kIdiffOptions), argv[i]) != std::end(kIdiffOptions);
+    const bool idiff =
+        std::find(std::begin(kIdiffOptions), std::end(kIdiffOptions), argv[i]) != std::end(kIdiffOptions);
     arguments.push_back(idiff ? std::string("-") + argv[i] : argv[i]);
   }
   return arguments;
@@ -55,13 +68,25 @@ int Fail(const Error& error) {
   return Code(ExitCodeFor(error.kind));
 }
 
-int Run(int argc, char** argv) {
-  CLI::App app("Scumble: paint a sphere, stylise a scene.", "scumble");
-  app.footer(kExitCodes);
-  app.set_version_flag("--version", std::string("scumble ") + SCUMBLE_VERSION);
-  app.require_subcommand(1);
-  Globals globals;
-  Action chosen;
+// A file opened while standard output is closed would take its number, and receive what is printed. These stand-ins
+// refuse every read and write, so a result that nobody gets stays an error.
+void OccupyStandardStreams() {
+  for (const int descriptor : {0, 1, 2}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    if (::open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+// Prints the help of the verb of that name, or of the whole program.
+Expected<ExitCode> RunHelpVerb(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (verb->get_name() == name) return Print(verb->help(app.get_name())), ExitCode::kOk;
+  }
+  if (!name.empty()) return UsageError("there is no verb '" + name + "'; scumble help lists them");
+  return Print(app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal)), ExitCode::kOk;
+}
+
+void AddVerbs(CLI::App& app, Globals& globals, Action& chosen) {
   AddSphereVerb(app, globals, chosen);
   AddGuidegenVerb(app, globals, chosen);
   AddTransferVerb(app, globals, chosen);
@@ -69,20 +94,31 @@ int Run(int argc, char** argv) {
   AddCompareVerb(app, globals, chosen);
   AddInfoVerb(app, globals, chosen);
   AddStylesVerb(app, globals, chosen);
-  app.add_subcommand("help", "this text")->callback([&] {
-    chosen = [&app]() -> Expected<ExitCode> {
-      Print(app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
-      return ExitCode::kOk;
-    };
-  });
+  auto topic = std::make_shared<std::string>();
+  CLI::App* help = app.add_subcommand("help", "this text, or a verb's: scumble help stylize");
+  help->add_option("verb", *topic, "the verb to explain")->type_name("VERB");
+  help->callback([&app, &chosen, topic] { chosen = [&app, topic] { return RunHelpVerb(app, *topic); }; });
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app("Scumble: paint a sphere, stylise a scene.", "scumble");
+  app.formatter(std::make_shared<HelpFormat>());
+  app.footer(kExitCodes);
+  app.set_help_flag("-h,--help", "print this help");
+  app.set_version_flag("--version", std::string("scumble ") + SCUMBLE_VERSION, "print the version");
+  app.require_subcommand(1);
+  Globals globals;
+  Action chosen;
+  AddVerbs(app, globals, chosen);
   try {
     app.parse(ReadArguments(argc, argv));
   } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked);
-    return Code(ExitCode::kOk);
+    std::ostringstream text;
+    app.exit(asked, text, text);
+    chosen = [asked = text.str()]() -> Expected<ExitCode> { return Print(asked), ExitCode::kOk; };
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "scumble: error: %s\nscumble VERB --help lists its options.\n", error.what());
-    return Code(ExitCode::kUsage);
+    return Fail(UsageError(ExplainUsage(app, error)));
   }
   SetIoThreads(globals.threads);
   const Expected<ExitCode> result = chosen();
@@ -96,11 +132,13 @@ int Run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    scumble::OccupyStandardStreams();
     return scumble::Run(argc, argv);
   } catch (const std::bad_alloc&) {
     std::fputs("scumble: error: out of memory; ask for a smaller picture\n", stderr);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "scumble: internal error: %s; please report it with the command that led here\n", error.what());
+    std::fprintf(stderr, "scumble: internal error: %s; please report it with the command that led here\n",
+                 error.what());
   }
   return static_cast<int>(scumble::ExitCode::kInternal);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <system_error>
 
 #include "io/guide_file.h"
 #include "style/style_file.h"
@@ -13,10 +14,24 @@ namespace scumble {
 namespace fs = std::filesystem;
 
 void AddGlobalOptions(CLI::App& verb, Globals& globals) {
-  verb.add_flag("-q,--quiet", globals.quiet, "say nothing but errors and warnings");
-  verb.add_flag("--json", globals.json, "results as one JSON object on stdout");
-  verb.add_option("--threads", globals.threads, "threads to use; 0: all")->check(CLI::Range(0, 1024));
+  verb.add_flag("-q,--quiet", globals.quiet, "say nothing on stderr but errors and warnings");
+  verb.add_flag("--json", globals.json, "print the result as JSON");
+  verb.add_option("--threads", globals.threads, "threads to use; 0: all")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
 }
+
+std::string RefuseNegative(const std::string& text) {
+  return text.rfind('-', 0) == 0 ? text + " is negative: expected a whole number, 0 or more" : "";
+}
+
+namespace {
+
+// Larger pictures cannot be read back.
+constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;
+
+}  // namespace
 
 Expected<Size> ParseSize(const std::string& text) {
   const std::size_t cross = text.find_first_of("xX");
@@ -31,6 +46,10 @@ Expected<Size> ParseSize(const std::string& text) {
   if (size.width < 1 || size.height < 1 || size.width > kMaxImageSide || size.height > kMaxImageSide) {
     return UsageError("--size " + text + ": expected WIDTHxHEIGHT, as in 1920x1080, each 1 to " +
                       std::to_string(kMaxImageSide));
+  }
+  if (std::int64_t(size.width) * size.height > kMaxPixels) {
+    return UsageError("--size " + text + ": expected at most " + std::to_string(kMaxPixels) +
+                      " pixels in all, as in 16384x16384");
   }
   return size;
 }
@@ -56,20 +75,30 @@ Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t 
 }
 
 void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("scene", options.scene, "scene file: .glb, .gltf, .obj, .ply")->required();
-  verb.add_option("--size", options.size, "WIDTHxHEIGHT in pixels, or one number for a square")->capture_default_str();
-  verb.add_option("--camera", options.camera, "camera by name; default: the scene's first");
-  verb.add_option("--view", options.view,
-                  "AZIMUTH,ELEVATION[,DISTANCE] instead of a camera: degrees from +Z towards +X, degrees above the "
-                  "horizon, metres (left out: the scene is framed)");
-  verb.add_option("--aa", options.aa, "N x N subsamples of the silhouette's coverage")
+  verb.add_option("scene", options.scene, "scene file: .glb, .gltf, .obj or .ply")->type_name("FILE")->required();
+  verb.add_option("--size", options.size, "pixels of the picture; one number makes a square")
+      ->type_name("WIDTHxHEIGHT")
+      ->capture_default_str();
+  verb.add_option("--camera", options.camera, "camera by name; left out: the scene's first")->type_name("NAME");
+  verb.add_option(
+          "--view", options.view,
+          "look at the scene's centre instead of through a camera: AZIMUTH,ELEVATION[,DISTANCE] in degrees from "
+          "+Z towards +X, degrees above the horizon, metres; without DISTANCE the scene is framed")
+      ->type_name("AZ,EL[,DIST]");
+  verb.add_option("--aa", options.aa, "N x N subsamples of the silhouette's coverage, 1 to 16")
+      ->type_name("N")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  verb.add_option("--normal-frame", options.normal_frame, "camera, or eye: normals relative to each pixel's own view")
+  verb.add_option("--normal-frame", options.normal_frame,
+                  "camera: normals in view space; eye: relative to each pixel's own view, for wide cameras")
+      ->type_name("camera|eye")
       ->check(CLI::IsMember({"camera", "eye"}))
       ->capture_default_str();
-  verb.add_option("--isa", options.isa, "Embree's instruction set: sse2, sse4.2, avx, avx2, avx512; default: the best");
-  verb.add_flag("--half", options.half, "round colour layers to 16-bit half floats");
+  verb.add_option("--isa", options.isa,
+                  "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine. "
+                  "Name one where several machines must give the same bytes")
+      ->type_name("NAME");
+  verb.add_flag("--half", options.half, "16-bit half floats for colour layers; data layers stay 32-bit");
   verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
 }
 
@@ -105,7 +134,7 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
   Stopwatch watch;
   SceneGuides result;
   SCUMBLE_ASSIGN(Scene scene, LoadScene(options.scene));
-  for (const std::string& warning : scene.warnings) Warn(warning);
+  for (const std::string& warning : scene.warnings) Warn(options.scene + ": " + warning);
   const double aspect = static_cast<double>(size.width) / size.height;
   const bool needs_light = layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow);
   SCUMBLE_ASSIGN(const PreparedView prepared, PrepareView(scene, options.camera, view, aspect, needs_light));
@@ -128,7 +157,7 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
   result.times.emplace_back("rays", rendered.render_ms);
   result.guides = std::move(rendered.guides);
   if (options.half) RoundColorLayersToHalf(result.guides);
-  WarnIfNothingShows(result.guides, options.scene);
+  if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene);
   return result;
 }
 
@@ -145,11 +174,23 @@ std::string PlanToText(const std::vector<PlanItem>& plan) {
   return text;
 }
 
+nlohmann::ordered_json PlanToJson(const std::vector<PlanItem>& plan) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const PlanItem& item : plan) {
+    json.push_back({{"layer", item.layer}, {"reason", item.reason}, {"cost", item.cost}});
+  }
+  return json;
+}
+
 void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
-  auto* style = verb.add_option("--style", options.style,
-                                "style folder, style.toml, picture of a painted sphere, or a bundled style's name");
+  const std::string what = "style folder, style.toml, picture of a painted sphere, or a bundled style's name";
+  auto* style = verb.add_option("--style", options.style, required ? what : what + "; adds the layers that it needs");
+  style->type_name("STYLE");
   if (required) style->required();
-  verb.add_option("--set", options.sets, "KEY=VALUE overrides a key of style.toml, as transfer.blend_radius=0")
+  verb.add_option(
+          "--set", options.sets,
+          "overrides a key of style.toml, as transfer.blend_radius=0; repeatable. scumble styles --keys lists them")
+      ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }
 
@@ -166,7 +207,8 @@ std::vector<fs::path> StyleRoots() {
 }
 
 Expected<Style> OpenStyle(const StyleOptions& options) {
-  if (fs::exists(options.style)) return LoadStyle(options.style, options.sets);
+  std::error_code failed;
+  if (fs::exists(options.style, failed)) return LoadStyle(options.style, options.sets);
   std::string bundled;
   for (const fs::path& root : StyleRoots()) {
     for (const fs::path& style : FindStyles(root)) {
@@ -174,8 +216,9 @@ Expected<Style> OpenStyle(const StyleOptions& options) {
       bundled += (bundled.empty() ? "" : ", ") + style.filename().string();
     }
   }
-  return InputError("there is no style " + options.style + ": neither a file or folder, nor one of the bundled ones (" +
-                    (bundled.empty() ? "none found" : bundled) + ")");
+  return InputError("there is no style '" + options.style + "': expected a file, a folder, or " +
+                    (bundled.empty() ? "a bundled style, of which none are found beside this program"
+                                     : "one of the bundled styles " + bundled));
 }
 
 }  // namespace scumble

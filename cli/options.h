@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +21,9 @@
 namespace scumble {
 
 void AddGlobalOptions(CLI::App& verb, Globals& globals);
+
+// For counts: the parser would take -1 for the largest number there is. Returns what is wrong, or nothing.
+std::string RefuseNegative(const std::string& text);
 
 // "1280x720" or "512": width and height in pixels.
 struct Size {
@@ -60,6 +65,7 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
                                  const Progress& progress, bool plan_only);
 
 std::string PlanToText(const std::vector<PlanItem>& plan);
+nlohmann::ordered_json PlanToJson(const std::vector<PlanItem>& plan);
 
 struct StyleOptions {
   std::string style;

@@ -1,12 +1,11 @@
 // scumble sphere: the artist's kit.
-#include "style/sphere_kit.h"
-
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/json_text.h"
 #include "cli/options.h"
 #include "guidegen/guidegen.h"
+#include "style/sphere_kit.h"
 
 namespace scumble {
 namespace {
@@ -45,7 +44,7 @@ Expected<ExitCode> RunSphereVerb(const SphereVerb& verb, const Globals& globals)
   if (globals.json) {
     nlohmann::ordered_json json;
     for (const auto& file : files) json["files"].push_back(file.string());
-    Print(json.dump(2) + "\n");
+    Print(JsonText(json));
   } else {
     for (const auto& file : files) Print(file.string() + "\n");
     Say(globals, "paint over template.png, save it as lit.png in the same folder; HOWTO.txt says how");
@@ -58,16 +57,27 @@ Expected<ExitCode> RunSphereVerb(const SphereVerb& verb, const Globals& globals)
 void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<SphereVerb>();
   CLI::App* sub = app.add_subcommand("sphere", "a lit sphere to paint over: template, guides, starter style");
-  sub->add_option("--size", verb->size, "pixels of the sphere's square; the template has a margin around it")
+  sub->add_option("--size", verb->size,
+                  "pixels of the sphere's square, 16 to 8192; the template has a margin around it")
+      ->type_name("N")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
-  sub->add_option("--light", verb->lights,
-                  "AZIMUTH,ELEVATION of the light in degrees, azimuth to the right of the viewer; repeatable; "
-                  "default -40,40: upper left, over the shoulder")
+  sub->add_option(
+         "--light", verb->lights,
+         "where the light comes from: azimuth in degrees to the right of the viewer, elevation in degrees above "
+         "the horizon; left out: -40,40, upper left over the shoulder. Repeat it for one template per light")
+      ->type_name("AZ,EL")
       ->allow_extra_args(false);
-  sub->add_option("--aa", verb->aa, "N x N subsamples of the silhouette")->check(CLI::Range(1, 16))->capture_default_str();
-  sub->add_option("--isa", verb->isa, "Embree's instruction set");
-  sub->add_option("-o,--output", verb->output, "folder to write to")->required();
+  sub->add_option("--aa", verb->aa, "N x N subsamples of the silhouette's coverage, 1 to 16")
+      ->type_name("N")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  sub->add_option("--isa", verb->isa,
+                  "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine")
+      ->type_name("NAME");
+  sub->add_option("-o,--output", verb->output, "folder to write to; a style.toml that is there already is kept")
+      ->type_name("FOLDER")
+      ->required();
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunSphereVerb(*verb, globals); }; });
 }

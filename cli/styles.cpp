@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/json_text.h"
 #include "cli/options.h"
 #include "style/style_file.h"
 #include "style/style_keys.h"
@@ -16,16 +16,26 @@ namespace {
 Expected<ExitCode> ListStyles(const Globals& globals) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::string text;
+  ExitCode code = ExitCode::kOk;
   for (const auto& root : StyleRoots()) {
     for (const auto& folder : FindStyles(root)) {
-      SCUMBLE_ASSIGN(const Style style, LoadStyle(folder));
-      const int size = style.exemplars.front().picture.width;
-      json.push_back({{"name", folder.filename().string()}, {"folder", folder.string()}, {"size", size}});
-      text += fmt::format("{:<16} {:>5}²  {:<10} {}\n", folder.filename().string(), size, style.licence, folder.string());
+      const Expected<Style> style = LoadStyle(folder);
+      if (!style) {  // one broken style does not hide the others
+        Warn("style " + folder.filename().string() + " is left out: " + style.error().message);
+        code = ExitCodeFor(style.error().kind);
+        continue;
+      }
+      const int size = style->exemplars.front().picture.width;
+      json.push_back({{"name", folder.filename().string()},
+                      {"folder", folder.string()},
+                      {"size", size},
+                      {"licence", style->licence}});
+      text +=
+          fmt::format("{:<16} {:>5}²  {:<10} {}\n", folder.filename().string(), size, style->licence, folder.string());
     }
   }
-  Print(globals.json ? json.dump(2) + "\n" : text.empty() ? "no bundled styles found\n" : text);
-  return ExitCode::kOk;
+  Print(globals.json ? JsonText(json) : text.empty() ? "no bundled styles found\n" : text);
+  return code;
 }
 
 Expected<ExitCode> ListKeys(const Globals& globals) {
@@ -37,8 +47,9 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
     text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, help);
   }
   text += fmt::format("{:<26} {:<12} {}\n", "exemplar.image", "", "picture of the painted sphere, required");
-  text += fmt::format("{:<26} {:<12} {}\n", "exemplar.guides", "\"\"", "the sphere's guides; empty: it fills the square");
-  Print(globals.json ? json.dump(2) + "\n" : text);
+  text +=
+      fmt::format("{:<26} {:<12} {}\n", "exemplar.guides", "\"\"", "the sphere's guides; empty: it fills the square");
+  Print(globals.json ? JsonText(json) : text);
   return ExitCode::kOk;
 }
 
@@ -61,19 +72,20 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
   const double hole_percent = 100.0 * static_cast<double>(transparent) / static_cast<double>(usable);
   const double range_percent = 100.0 * (brightest - darkest) / 65535.0;
   if (transparent > 0) {
-    Warn(fmt::format("{}: {:.2f}% of the sphere is transparent and will be so in pictures; fill the holes if that is not wanted",
-                     path, hole_percent));
+    Warn(fmt::format(
+        "{}: {:.2f}% of the sphere is transparent and will be so in pictures; fill the holes if that is not wanted",
+        path, hole_percent));
   }
   if (range_percent < 25.0) {
-    Warn(fmt::format("{}: light and dark differ by {:.0f}% only, shapes will look flat; paint lights lighter and shades darker",
-                     path, range_percent));
+    Warn(fmt::format(
+        "{}: light and dark differ by {:.0f}% only, shapes will look flat; paint lights lighter and shades darker",
+        path, range_percent));
   }
   if (globals.json) {
-    Print(nlohmann::ordered_json{{"name", style.name},
-                                 {"size", style.exemplars.front().picture.width},
-                                 {"transparent_percent", hole_percent},
-                                 {"range_percent", range_percent}}
-              .dump(2) + "\n");
+    Print(JsonText(nlohmann::ordered_json{{"name", style.name},
+                                          {"size", style.exemplars.front().picture.width},
+                                          {"transparent_percent", hole_percent},
+                                          {"range_percent", range_percent}}));
   } else {
     Print(fmt::format("{}: {}² pixels, tonal range {:.0f}%, transparent {:.2f}%: usable\n", style.name,
                       style.exemplars.front().picture.width, range_percent, hole_percent));
@@ -89,7 +101,11 @@ void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto checked = std::make_shared<std::string>();
   sub->add_flag("--keys", *keys, "list every key of style.toml with its default");
   CLI::App* check = sub->add_subcommand("check", "read a style as a transfer would and say what is wrong with it");
-  check->add_option("style", *checked, "style folder, style.toml, picture, or a bundled style's name")->required();
+  check
+      ->add_option("style", *checked,
+                   "style folder, style.toml, picture of a painted sphere, or a bundled style's name")
+      ->type_name("STYLE")
+      ->required();
   AddGlobalOptions(*sub, globals);
   AddGlobalOptions(*check, globals);
   sub->callback([=, &globals, &chosen] {

@@ -1,5 +1,6 @@
 // scumble transfer, scumble stylize.
 #include <memory>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/options.h"
@@ -26,7 +27,8 @@ Expected<ExitCode> RunTransferVerb(const TransferVerb& verb, const Globals& glob
   read.view_layer = verb.view_layer;
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   ProgressBar bar("transfer", globals.quiet);
-  return RunTransfer(style, guides, verb.picture, globals, bar.Part(0.0, 1.0), {{"read", watch.Lap()}});
+  const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
+  return RunTransfer(style, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
 }
 
 struct StylizeVerb {
@@ -42,19 +44,20 @@ Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& global
   ProgressBar bar("stylize", globals.quiet);
   SCUMBLE_ASSIGN(SceneGuides made,
                  MakeGuides(verb.scene, RequiredLayers(style.transfer), globals, bar.Part(0.0, 0.5), false));
-  if (verb.scene.explain) Say(globals, PlanToText(made.plan));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
-  return RunTransfer(style, made.guides, verb.picture, globals, bar.Part(0.5, 1.0), made.times);
+  if (!verb.scene.explain) made.plan.clear();
+  const GuideSource source{verb.scene.scene, std::move(made.times), std::move(made.plan)};
+  return RunTransfer(style, made.guides, source, verb.picture, globals, bar.Part(0.5, 1.0));
 }
 
 }  // namespace
 
 void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<TransferVerb>();
-  CLI::App* sub = app.add_subcommand("transfer", "guides + style -> picture");
-  sub->add_option("guides", verb->guides, "guide file: .exr")->required();
-  sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file");
+  CLI::App* sub = app.add_subcommand("transfer", "guides + style -> picture, from a guide file that guidegen wrote");
+  sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
+  sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file")->type_name("NAME");
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture);
   AddGlobalOptions(*sub, globals);
@@ -63,7 +66,7 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
 
 void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<StylizeVerb>();
-  CLI::App* sub = app.add_subcommand("stylize", "scene + style -> picture");
+  CLI::App* sub = app.add_subcommand("stylize", "scene + style -> picture: guidegen and transfer in one go");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture);

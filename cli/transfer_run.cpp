@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/json_text.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
 #include "transfer/transfer.h"
@@ -69,7 +69,7 @@ std::string StepsToText(const Steps& steps, int repeat) {
 }
 
 std::string ToJson(const Style& style, const PreparedStyle& prepared, const SourceField& field,
-                   const PictureOptions& options, const Steps& steps) {
+                   const PictureOptions& options, const std::vector<PlanItem>& plan, const Steps& steps) {
   nlohmann::ordered_json json;
   json["output"] = options.output;
   json["style"] = style.name;
@@ -84,40 +84,64 @@ std::string ToJson(const Style& style, const PreparedStyle& prepared, const Sour
   json["chunks"] = coherence.chunks;
   json["mean_chunk_area"] = coherence.mean_chunk_area;
   json["repeat"] = options.repeat;
+  if (!plan.empty()) json["plan"] = PlanToJson(plan);
   for (const auto& [name, spread] : steps) {
     json["ms"][name] = {{"median", spread.median}, {"min", spread.least}, {"max", spread.most}};
   }
-  return json.dump(2) + "\n";
+  return JsonText(json);
+}
+
+// The picture underneath, if one is asked for.
+Expected<std::optional<Picture>> ReadOver(const PictureOptions& options, const GuideSet& guides,
+                                          const std::string& guides_name) {
+  if (options.over.empty()) return std::optional<Picture>();
+  SCUMBLE_ASSIGN(Picture over, ReadPicture(options.over));
+  if (over.width != guides.width() || over.height != guides.height()) {
+    return InputError(fmt::format("--over {} is {}×{}, {} is {}×{}: render both at one size", options.over, over.width,
+                                  over.height, guides_name, guides.width(), guides.height()));
+  }
+  return std::optional(std::move(over));
 }
 
 }  // namespace
 
 void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
-  verb.add_option("-o,--output", options.output, "picture to write: .png, .tif, .exr or .jpg")->required();
-  verb.add_option("--over", options.over, "picture to composite over, of the same size");
-  verb.add_option("--bits", options.bits, "bits a channel: 8 or 16; .exr: 8 and 16 mean half, 32 float")
+  verb.add_option("-o,--output", options.output, "picture to write: .png, .tif, .exr or .jpg")
+      ->type_name("FILE")
+      ->required();
+  verb.add_option("--over", options.over, "picture to composite over, of the same size")->type_name("FILE");
+  verb.add_option("--bits", options.bits,
+                  "bits a channel: 8 or 16 for .png and .tif; .exr takes 16, half floats, or 32, floats")
+      ->type_name("N")
       ->check(CLI::IsMember({8, 16, 32}))
       ->capture_default_str();
   verb.add_option("--png-level", options.png_level, "PNG compression, 0 fast to 9 small")
+      ->type_name("N")
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
-  verb.add_option("--frame", options.frame, "frame number, for transfer.jitter_fps")->capture_default_str();
-  verb.add_option("--fps", options.fps, "frames a second, as 24 or 24000/1001")->capture_default_str();
-  verb.add_option("--seed", options.seed, "another seed, another pattern of chunks")->capture_default_str();
-  verb.add_option("--repeat", options.repeat, "run the transfer so often, report median and spread")
+  verb.add_option("--frame", options.frame, "frame number, for transfer.jitter_fps")
+      ->type_name("N")
+      ->capture_default_str();
+  verb.add_option("--fps", options.fps, "frames a second, for transfer.jitter_fps, as 24 or 24000/1001")
+      ->type_name("RATE")
+      ->capture_default_str();
+  verb.add_option("--seed", options.seed, "another seed, another pattern of chunks; the same seed, the same bytes")
+      ->type_name("N")
+      ->check(RefuseNegative)
+      ->capture_default_str();
+  verb.add_option("--repeat", options.repeat, "times to run the transfer, to report the median time and its spread")
+      ->type_name("N")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
 }
 
-Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const PictureOptions& options,
-                               const Globals& globals, const Progress& progress, StepTimes times) {
+Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const GuideSource& source,
+                               const PictureOptions& options, const Globals& globals, const Progress& progress) {
   SCUMBLE_ASSIGN(const FrameRate fps, ParseFps(options.fps));
+  StepTimes times = source.times;
   Stopwatch watch;
-  std::optional<Picture> over;
-  if (!options.over.empty()) {
-    SCUMBLE_ASSIGN(over, ReadPicture(options.over));
-    times.emplace_back("over", watch.Lap());
-  }
+  SCUMBLE_ASSIGN(const std::optional<Picture> over, ReadOver(options, guides, source.name));
+  if (over) times.emplace_back("over", watch.Lap());
   SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, guides.height()));
   times.emplace_back("prepare", watch.Lap());
 
@@ -149,8 +173,9 @@ Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const
   const double write_ms = watch.Lap();
   steps.emplace_back("write", Spread{write_ms, write_ms, write_ms});
   if (globals.json) {
-    Print(ToJson(style, prepared, scratch.field, options, steps));
+    Print(ToJson(style, prepared, scratch.field, options, source.plan, steps));
   } else {
+    if (!source.plan.empty()) Print(PlanToText(source.plan));
     Print(fmt::format("{}  {}\n", options.output, StepsToText(steps, options.repeat)));
   }
   return ExitCode::kOk;

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "cli/options.h"
 #include "image/guides.h"
@@ -23,9 +24,16 @@ struct PictureOptions {
 };
 void AddPictureOptions(CLI::App& verb, PictureOptions& options);
 
-// Prepares, transfers `repeat` times, writes the picture and prints its path with the time of each step: `times` holds
-// the steps before. Under --json the steps, coherence and sizes as an object.
-Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const PictureOptions& options,
-                               const Globals& globals, const Progress& progress, StepTimes times);
+// Where the guides come from.
+struct GuideSource {
+  std::string name;            // the file, for messages
+  StepTimes times;             // of the steps that led to them
+  std::vector<PlanItem> plan;  // printed as part of the result, unless it is empty
+};
+
+// Prepares, transfers `repeat` times, writes the picture and prints its path with the time of each step. Under --json
+// the steps, coherence and sizes as an object.
+Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const GuideSource& source,
+                               const PictureOptions& options, const Globals& globals, const Progress& progress);
 
 }  // namespace scumble

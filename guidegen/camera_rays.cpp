@@ -73,12 +73,13 @@ Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int heigh
   const bool keep_horizontal = camera.aspect && *camera.aspect > picture_aspect;
   const double half_width = half_height * (keep_horizontal ? *camera.aspect : picture_aspect);
   rays.half_extent_ = {half_width, keep_horizontal ? half_width / picture_aspect : half_height};
+  rays.step_ = rays.half_extent_ / glm::dvec2(width, height);
   return rays;
 }
 
 ViewRay CameraRays::Through(double x, double y) const {
-  const double across = (2.0 * x - width_) / width_ * half_extent_.x;
-  const double up = (height_ - 2.0 * y) / height_ * half_extent_.y;
+  const double across = (2.0 * x - width_) * step_.x;
+  const double up = (height_ - 2.0 * y) * step_.y;
   ViewRay ray;
   (orthographic_ ? ray.origin : ray.direction) += glm::dvec3(across, up, 0.0);
   return ray;

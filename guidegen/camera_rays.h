@@ -49,6 +49,7 @@ class CameraRays {
   int width_ = 1;
   int height_ = 1;
   glm::dvec2 half_extent_{1.0};  // at depth 1 in perspective, in metres otherwise
+  glm::dvec2 step_{1.0};         // half a pixel, in the same unit
   double near_depth_ = 0.0;
   double far_depth_ = 0.0;
 };

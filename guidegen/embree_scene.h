@@ -1,4 +1,4 @@
-// Embree's device and committed scene, relative to the camera. The only place besides cast_guides.cpp that sees Embree.
+// Embree's device and committed scene, relative to the camera. Only tile_caster.cpp casts into it.
 #pragma once
 
 #include <embree3/rtcore.h>

@@ -117,15 +117,17 @@ bool ReadForTinygltf(std::vector<unsigned char>* out, std::string* error, const 
 
 bool NeverWrite(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
-// tinygltf keeps going after some errors and drops what it could not read; one such note is harmless.
-std::string SeriousComplaints(std::string complaints) {
-  const std::string harmless = "JSON Chunk end does not aligned to a 4-byte boundary.";
-  if (const std::size_t at = complaints.find(harmless); at != std::string::npos) complaints.erase(at, harmless.size());
-  return complaints;
+// What tinygltf says about a file that it accepts is worth a warning, save where it is stricter than glTF.
+void WarnOfComplaints(std::string complaints, WarningCounter& warnings) {
+  for (const std::string harmless : {"JSON Chunk end does not aligned to a 4-byte boundary.",
+                                     "'inverseBindMatrices' property is missing in Skin.\n"}) {
+    for (std::size_t at; (at = complaints.find(harmless)) != std::string::npos;) complaints.erase(at, harmless.size());
+  }
+  if (!complaints.empty()) warnings.Add("some of the file is not valid glTF and is left out", Excerpt(complaints));
 }
 
 Status RunTinygltf(const std::string& file, std::string folder, std::span<const unsigned char> bytes,
-                   tinygltf::Model& model) {
+                   tinygltf::Model& model, WarningCounter& counter) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(&KeepEncoded, nullptr);
   loader.SetFsCallbacks(
@@ -146,8 +148,10 @@ Status RunTinygltf(const std::string& file, std::string folder, std::span<const 
     ok = false;
     errors = e.what();
   }
-  errors = SeriousComplaints(errors);
-  if (ok && errors.empty()) return Ok();
+  if (ok) {
+    WarnOfComplaints(errors, counter);
+    return Ok();
+  }
   if (errors.empty()) errors = warnings.empty() ? "no reason given" : warnings;
   return InputError(file + " is not valid glTF 2.0: " + Excerpt(errors, 300) +
                     "; export it again, or check it with a glTF validator");
@@ -155,7 +159,7 @@ Status RunTinygltf(const std::string& file, std::string folder, std::span<const 
 
 }  // namespace
 
-Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model) {
+Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings) {
   const std::string file = path.string();
   SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path));
   std::span<const unsigned char> bytes = AsChars(whole);
@@ -174,7 +178,7 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model) {
                       " levels deep; no scene needs that");
   }
   const std::filesystem::path folder = path.parent_path();
-  return RunTinygltf(file, folder.empty() ? "." : folder.string(), bytes, model);
+  return RunTinygltf(file, folder.empty() ? "." : folder.string(), bytes, model, warnings);
 }
 
 }  // namespace scumble

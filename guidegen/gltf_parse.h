@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "guidegen/loader_util.h"
 #include "image/status.h"
 
 namespace tinygltf {
@@ -16,7 +17,8 @@ namespace scumble {
 // Fills `model` from a file. Pictures stay encoded in Image::image (those in buffer views stay in their buffer), and
 // one whose file is missing stays empty: only the materials know whether anybody wants it. Checks the container before
 // tinygltf sees it, refuses JSON nested too deeply for its recursion, and turns whatever it throws into an error that
-// names the file. Files beside the scene are read only if they are regular files.
-Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model);
+// names the file; what it only complains about becomes a warning. Files beside the scene are read only if they are
+// regular files.
+Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings);
 
 }  // namespace scumble

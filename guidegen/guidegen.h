@@ -20,7 +20,9 @@ struct GuidegenOptions {
   int width = 0;   // pixels, 1 … kMaxImageSide
   int height = 0;
   LayerSet layers;      // what is wanted on top of AlwaysWritten()
-  int aa = 1;           // N × N subsamples of the coverage, 1 … 16; data layers are never averaged
+  // N × N subsamples of the coverage, 1 … 16; data layers are never averaged. A pixel whose centre is hit counts as one
+  // subsample at least, however thin what it hit.
+  int aa = 1;
   NormalFrame normal_frame = NormalFrame::kCamera;
   int threads = 0;      // 0: all
   std::string isa;      // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"

@@ -64,7 +64,7 @@ class GltfLoader {
   explicit GltfLoader(std::string file) : file_(std::move(file)) {}
 
   Expected<Scene> Load(const std::filesystem::path& path) {
-    SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, model_));
+    SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, model_, warnings_));
     SCUMBLE_RETURN_IF_ERROR(CheckVersionAndExtensions());
     SCUMBLE_RETURN_IF_ERROR(LoadGltfMaterials(model_, file_, scene_, warnings_));
     SCUMBLE_ASSIGN(const std::vector<int> roots, ChooseRoots());

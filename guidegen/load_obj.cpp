@@ -8,7 +8,6 @@
 #include <map>
 #include <numeric>
 #include <sstream>
-#include <tuple>
 #include <unordered_map>
 
 #include "guidegen/loader_util.h"
@@ -56,6 +55,17 @@ struct Corner {
 };
 struct CornerHash {
   std::size_t operator()(const Corner& c) const { return Hash(c.position, c.uv, c.normal); }
+};
+
+// Corners with equal keys share a smooth normal.
+struct SmoothKey {
+  std::uint32_t place = 0;  // the same for positions that are equal
+  unsigned group = 0;
+  std::size_t flat_face = 0;  // 1 + the face where it is flat
+  bool operator==(const SmoothKey&) const = default;
+};
+struct SmoothKeyHash {
+  std::size_t operator()(const SmoothKey& k) const { return Hash(k.place, k.group, k.flat_face); }
 };
 
 struct Triangle {
@@ -185,7 +195,7 @@ class ObjLoader {
     std::vector<glm::vec3> all;
     for (std::size_t i = 0; i < attributes_.vertices.size() / 3; ++i) all.push_back(Position(static_cast<int>(i)));
     const std::vector<std::uint32_t> weld = WeldByPosition(all);
-    std::map<std::tuple<std::uint32_t, unsigned, std::size_t>, std::uint32_t> ids;
+    std::unordered_map<SmoothKey, std::uint32_t, SmoothKeyHash> ids;
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
     for (Triangle& triangle : triangles_) {
@@ -194,7 +204,7 @@ class ObjLoader {
       for (int i = 0; i < 3; ++i) {
         Corner& corner = triangle.corners[i];
         const std::uint32_t place = weld[std::size_t(corner.position)];
-        const auto key = std::make_tuple(place, triangle.smoothing_group, flat ? triangle.face + 1 : 0);
+        const SmoothKey key{place, triangle.smoothing_group, flat ? triangle.face + 1 : 0};
         const auto [it, is_new] = ids.try_emplace(key, static_cast<std::uint32_t>(positions.size()));
         if (is_new) positions.push_back(all[place]);
         indices[i] = it->second;

@@ -63,8 +63,11 @@ class TileCaster {
     std::array<float*, 3> albedo{};
   };
 
+  using Mask = std::bitset<kTilePixels>;
+
   void CastCentres(const Tile& tile, Hits& hits) const;
-  std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile) const;
+  Mask FindWhole(const Tile& tile, const Hits& hits) const;
+  std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
   std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, Hit& hit) const;
   void Cover(const Tile& tile, Hits& hits, RayCounts& counts) const;
   SurfacePoint Write(std::size_t index, const Hit& hit) const;

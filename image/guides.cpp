@@ -103,11 +103,10 @@ Status GuideSet::Validate(const std::string& name) const {
   for (const LayerInfo& info : AllLayers()) {
     if (!Has(info.layer) || !info.is_color) continue;
     Offenders bad(width_);
-    for (int c = 0; c < ChannelCount(info.layer); ++c) {
-      const auto plane = Plane(info.layer, c);
-      for (std::size_t i = 0; i < pixel_count(); ++i) {
-        if (coverage[i] > 0.0f && !std::isfinite(plane[i])) bad.Add(i);
-      }
+    for (std::size_t i = 0; i < pixel_count(); ++i) {
+      bool finite = true;
+      for (int c = 0; c < ChannelCount(info.layer); ++c) finite &= std::isfinite(Plane(info.layer, c)[i]);
+      if (coverage[i] > 0.0f && !finite) bad.Add(i);
     }
     if (bad.any()) return InputError(name + ": layer " + info.name + " is NaN or infinite on " + bad.Describe());
   }

@@ -34,12 +34,34 @@ int WriteAllAndClose(int descriptor, std::span<const std::byte> bytes, bool flus
   return failure;
 }
 
+// What the name stands for once all links are followed, also where the last of them points to nothing yet: renaming
+// onto a link would replace the link. A circle of links is a failure.
+Expected<fs::path> FollowLinks(const fs::path& path) {
+  constexpr int kMaxLinks = 40;  // the kernel's own limit
+  std::error_code failed;
+  fs::path target = path;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, failed)); ++links) {
+    if (links == kMaxLinks) return WriteFailure(path, ELOOP);
+    const fs::path next = fs::read_symlink(target, failed);
+    if (failed) return WriteFailure(path, failed.value());
+    target = target.parent_path() / next;
+  }
+  const fs::path canonical = fs::weakly_canonical(target, failed);
+  return failed || canonical.empty() ? target : canonical;
+}
+
+// Hidden, beside the file, and short enough where the file's own name is as long as a name may be.
+fs::path TemporaryName(const fs::path& target) {
+  constexpr std::size_t kMaxStem = 200;
+  const std::string stem = target.filename().string().substr(0, kMaxStem);
+  return target.parent_path() / ("." + stem + "." + std::to_string(::getpid()) + ".tmp");
+}
+
 }  // namespace
 
 Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> bytes) {
+  SCUMBLE_ASSIGN(const fs::path target, FollowLinks(path));
   std::error_code ignored;
-  fs::path target = fs::weakly_canonical(path, ignored);
-  if (ignored || target.empty()) target = path;
   const fs::file_status status = fs::status(target, ignored);
   if (fs::is_directory(status)) return OutputError("cannot write " + path.string() + ": it is a folder");
   if (fs::exists(status) && !fs::is_regular_file(status)) {
@@ -53,10 +75,13 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
     fs::create_directories(target.parent_path(), made);
     if (made) return OutputError("cannot make the folder " + target.parent_path().string() + ": " + made.message());
   }
-  const fs::path temporary = target.parent_path() / ("." + target.filename().string() + "." +
-                                                     std::to_string(::getpid()) + ".tmp");
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const fs::path temporary = TemporaryName(target);
+  ::unlink(temporary.c_str());  // of a killed run with the same process id; never written through, it may be a link
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return WriteFailure(path, errno);
+  // A file that is replaced keeps its permissions; where the file system has none, that is no failure to write.
+  if (fs::exists(status)) [[maybe_unused]]
+    const int kept = ::fchmod(descriptor, mode_t(status.permissions()));
   int failure = WriteAllAndClose(descriptor, bytes, true);
   if (failure == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) failure = errno;
   if (failure != 0) {

@@ -109,8 +109,12 @@ std::optional<int> SphereMargin(const GuideSet& guides) {
   return margin;
 }
 
-Picture DrawTemplate(const GuideSet& guides) {
+Picture DrawTemplate(const KitLight& light) {
+  const GuideSet& guides = light.guides;
   SCUMBLE_CHECK_EQ(guides.width(), guides.height());
+  const double azimuth = glm::radians(light.azimuth), elevation = glm::radians(light.elevation);
+  const glm::vec3 to_light(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                           std::cos(azimuth) * std::cos(elevation));
   const int size = guides.width(), margin = TemplateMargin(size);
   Picture picture(size + 2 * margin, size + 2 * margin);
   FillRectangle(picture, 0, 0, picture.width, picture.height, 65535);
@@ -119,9 +123,10 @@ Picture DrawTemplate(const GuideSet& guides) {
     for (int x = 0; x < size; ++x) {
       const std::size_t i = guides.Index(x, y);
       if (!(coverage[i] > 0.0f)) continue;
-      // A little light from the sky and from below keeps form readable in the shade, as a model in a studio has it.
-      const float sky = 0.03f + 0.03f * guides.Plane(Layer::kNormal, 1)[i];
-      const float lit = 0.05f + sky + 0.80f * luminance[i];
+      // A little reflected light from the far side keeps the form readable in the shade, as a model in a studio has it.
+      const glm::vec3 normal = guides.Vec3(Layer::kNormal, i);
+      const float away = std::max(0.0f, -glm::dot(normal, to_light));
+      const float lit = 0.03f + 0.12f * away + 0.05f * normal.z + 0.80f * luminance[i];
       const float blended = lit * coverage[i] + (1.0f - coverage[i]);
       const std::uint16_t grey = Srgb16FromLinear(blended);
       std::uint16_t* pixel = picture.At(x + margin, y + margin);
@@ -140,7 +145,7 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
     guides.attributes[kMarginAttribute] = std::to_string(TemplateMargin(guides.width()));
     const fs::path picture = folder / Numbered("template", ".png", i);
     const fs::path guide_file = folder / Numbered("guides", ".exr", i);
-    SCUMBLE_RETURN_IF_ERROR(WritePicture(picture, DrawTemplate(guides)));
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(picture, DrawTemplate(lights[i])));
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(guide_file, guides));
     written.insert(written.end(), {picture, guide_file});
   }

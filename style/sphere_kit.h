@@ -27,7 +27,7 @@ std::optional<int> SphereMargin(const GuideSet& guides);
 
 // The picture to paint over: white paper, the lit sphere filling the inner square, and registration marks in the
 // corners of the margin, outside that square.
-Picture DrawTemplate(const GuideSet& guides);
+Picture DrawTemplate(const KitLight& light);
 
 // Writes template.png, guides.exr, style.toml and HOWTO.txt into `folder`; further lights give template-2.png,
 // guides-2.exr and so on. An existing style.toml is kept: it may be the artist's. Returns the files written.

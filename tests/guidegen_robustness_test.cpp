@@ -62,14 +62,17 @@ TEST(Determinism, ThreadsDoNotChangeAByte) {
   const Camera camera = LookingAt({1, 1, 7}, {0, 0, 0}, 50.0);
   GuidegenOptions options = Sized(150, 101, Everything());
   options.aa = 3;
-  options.threads = 1;
-  const auto one = Render(scene, camera, options);
-  for (const int threads : {2, 16, 0}) {
-    options.threads = threads;
-    const auto many = Render(scene, camera, options);
-    EXPECT_TRUE(SameBytes(one.guides, many.guides)) << threads << " threads";
-    EXPECT_EQ(one.rays.shadow, many.rays.shadow);
-    EXPECT_EQ(one.rays.coverage, many.rays.coverage);
+  for (const char* isa : {"", "sse2"}) {
+    options.isa = isa;
+    options.threads = 1;
+    const auto one = Render(scene, camera, options);
+    for (const int threads : {2, 16, 0}) {
+      options.threads = threads;
+      const auto many = Render(scene, camera, options);
+      EXPECT_TRUE(SameBytes(one.guides, many.guides)) << threads << " threads, isa " << isa;
+      EXPECT_EQ(one.rays.shadow, many.rays.shadow);
+      EXPECT_EQ(one.rays.coverage, many.rays.coverage);
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-// The ray caster against closed formulas, and against scenes that go wrong.
+// The ray caster against closed formulas.
 #include "guidegen/guidegen.h"
 
 #include <gtest/gtest.h>
@@ -15,6 +15,7 @@ namespace scumble::testing {
 namespace {
 
 constexpr double kPi = glm::pi<double>();
+
 double CoveredArea(const GuideSet& guides) {
   double sum = 0.0;
   for (const float a : guides.Plane(Layer::kCoverage)) sum += a;
@@ -74,8 +75,7 @@ TEST(Guides, BallCoversItsDisc) {
   const auto result = Render(SceneOf(BallMesh(256)), FlatCamera(4.0, 1.25), Sized(200, 200));
   const double pixels_per_metre = 80.0;
   EXPECT_NEAR(CoveredArea(result.guides), kPi * pixels_per_metre * pixels_per_metre, 60.0);
-  const auto smooth = Sized(200, 200);
-  GuidegenOptions aa = smooth;
+  GuidegenOptions aa = Sized(200, 200);
   aa.aa = 4;
   EXPECT_NEAR(CoveredArea(Render(SceneOf(BallMesh(256)), FlatCamera(4.0, 1.25), aa).guides),
               kPi * pixels_per_metre * pixels_per_metre, 15.0);
@@ -191,6 +191,20 @@ TEST(Guides, EyeFrameSeesASphereTheSameEverywhere) {
   EXPECT_LT(plain.guides.Vec3(Layer::kNormal, plain.guides.Index(x, y)).z, 0.8f);
 }
 
+TEST(Guides, EyeFrameIsTheSmallestRotation) {
+  // The one that takes the eye's direction e to +Z takes +Z, this plane's normal, to e mirrored about +Z.
+  const Scene scene = SceneOf(QuadMesh(), glm::scale(glm::dmat4(1.0), glm::dvec3(100.0)));
+  GuidegenOptions options = Sized(20, 10, {Layer::kPosition});
+  options.normal_frame = NormalFrame::kEye;
+  const auto result = Render(scene, FrontCamera(4.0, 100.0), options);
+  for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
+    const glm::dvec3 position = result.guides.Vec3(Layer::kPosition, i);
+    const glm::dvec3 to_eye = glm::normalize(glm::dvec3(0, 0, 4) - position);
+    ExpectNear(result.guides.Vec3(Layer::kNormal, i), {-to_eye.x, -to_eye.y, to_eye.z}, 1e-6);
+  }
+  EXPECT_EQ(result.guides.attributes.at("scumble:normal_frame"), "eye");
+}
+
 TEST(Guides, AspectOfTheFileKeepsTheWiderExtent) {
   Camera camera = FlatCamera(3.0, 1.0);
   const Scene scene = SceneOf(QuadMesh());
@@ -300,6 +314,22 @@ TEST(Coverage, IsTheShareOfCoveredSubsamples) {
     EXPECT_EQ(result.guides.Plane(Layer::kCoverage)[3], 1.0f);
     EXPECT_EQ(result.guides.Plane(Layer::kCoverage)[5], 0.0f);
   }
+}
+
+TEST(Coverage, InnerPixelsCostNothingAndAreTheSame) {
+  // A mask without holes has the same coverage, but every subsample of it must be cast.
+  Scene scene = SceneOf(CubeMesh());
+  AddObject(scene, "ball", BallMesh(6), Moved(1.5, 0, 0.5));
+  const Camera camera = LookingAt({2, 3, 5}, {0, 0, 0});
+  GuidegenOptions options = Sized(150, 101);
+  options.aa = 5;
+  const auto opaque = Render(scene, camera, options);
+  scene.materials[0].alpha_mode = AlphaMode::kMask;
+  const auto masked = Render(scene, camera, options);
+  for (std::size_t i = 0; i < opaque.guides.pixel_count(); ++i) {
+    EXPECT_EQ(opaque.guides.Plane(Layer::kCoverage)[i], masked.guides.Plane(Layer::kCoverage)[i]);
+  }
+  EXPECT_LT(opaque.rays.coverage, masked.rays.coverage * 9 / 10);
 }
 
 TEST(Coverage, DataDoNotDependOnIt) {

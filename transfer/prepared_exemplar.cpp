@@ -1,6 +1,7 @@
 #include "transfer/prepared_exemplar.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "image/check.h"
 #include "transfer/resample.h"
@@ -65,26 +66,22 @@ Source PreparedExemplar::NearestNeighbour(glm::vec3 normal) const {
   const float half = 0.5f * static_cast<float>(size_);
   const int x = std::clamp(static_cast<int>(std::ceil(nx * half + half)) - 1, 0, size_ - 1);
   const int y = std::clamp(static_cast<int>(std::ceil(half - ny * half)) - 1, 0, size_ - 1);
-  if (Usable(x, y)) return {x, y};
-  return NearestUsable(normal, x, y);
+  return Usable(x, y) ? Source{x, y} : NearestUsable(nx, ny, x, y);
 }
 
-// At the rim the pixel under the position may lie just outside: the best of its neighbours towards the centre.
-Source PreparedExemplar::NearestUsable(glm::vec3 normal, int x, int y) const {
+Source PreparedExemplar::NearestUsable(float nx, float ny, int x, int y) const {
   for (int reach = 1; reach <= size_; ++reach) {
     Source best;
-    float best_distance = 0.0f;
-    bool found = false;
+    float best_distance = std::numeric_limits<float>::infinity();
     for (int v = y - reach; v <= y + reach; ++v) {
       for (int u = x - reach; u <= x + reach; ++u) {
         if (!Usable(u, v)) continue;
-        const glm::vec3 n = Normal(u, v);
-        const float dx = normal.x - n.x, dy = normal.y - n.y, dz = normal.z - n.z;
-        const float distance = dx * dx + dy * dy + dz * dz;
-        if (!found || distance < best_distance) best = {u, v}, best_distance = distance, found = true;
+        const float dx = nx - coordinate_[u], dy = ny + coordinate_[v];
+        const float distance = dx * dx + dy * dy;
+        if (distance < best_distance) best = {u, v}, best_distance = distance;
       }
     }
-    if (found) return best;
+    if (best_distance < std::numeric_limits<float>::infinity()) return best;
   }
   SCUMBLE_CHECK(!"every exemplar has a usable pixel");
   return {};

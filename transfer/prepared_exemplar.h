@@ -42,12 +42,14 @@ class PreparedExemplar {
   }
 
   // The analytic nearest neighbour u* = argmin ‖normal - Normal(u)‖ over usable pixels, within one pixel of the exact
-  // one; ties to the lowest (y, x). A normal beyond the rim, or with z < 0, looks its source up on the rim along
-  // (x, y), and (0, 0, -1) on the rim at +Y. Any finite or NaN input gives a usable pixel.
+  // one; ties to the lowest (y, x). A normal beyond the rim, or with z < 0, takes the usable pixel nearest to the point
+  // of the rim along its (x, y), and (0, 0, -1) that at +Y. (The exact argmin would jump along the rim's staircase of
+  // pixels there, by many at once, for no gain that anyone can see.) Any finite or NaN input gives a usable pixel.
   Source NearestNeighbour(glm::vec3 normal) const;
 
  private:
-  Source NearestUsable(glm::vec3 normal, int x, int y) const;
+  // The usable pixel nearest to (nx, ny) of the unit disc, near pixel (x, y).
+  Source NearestUsable(float nx, float ny, int x, int y) const;
 
   int size_;
   std::int64_t limit_;              // squared usable radius in half pixels

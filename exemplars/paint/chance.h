@@ -17,7 +17,8 @@ class Chance {
   float Uniform(float low = 0.0f, float high = 1.0f) { return low + (high - low) * UnitFloat(Hash(key_, count_++)); }
   // Bell-shaped with the given standard deviation, never beyond 3.5 of them: the sum of four uniform numbers.
   float Bell(float deviation = 1.0f) {
-    const float sum = Uniform() + Uniform() + Uniform() + Uniform();
+    float sum = Uniform();
+    for (int i = 0; i < 3; ++i) sum += Uniform();
     return (sum - 2.0f) * 1.7320508f * deviation;
   }
   glm::vec3 Bell3(float deviation) {

@@ -81,7 +81,7 @@ Status LayStrokes(Drawing& drawing, const Studio& studio) {
 
   Chance rim(studio.seed, kRim);
   const Touch contour = [](glm::vec2 at) { return 0.15f + 0.5f * Ramp(0.2f, 0.8f, DarknessAt(at)); };
-  point.Paint(drawing.canvas(), PlanRim(rim, contour, {.lines = 30, .inset = 9.0f, .deviation = 5.0f}));
+  point.Paint(drawing.canvas(), PlanRim(rim, contour, {.lines = 30, .inset = 8.0f, .deviation = 3.5f}));
   return Ok();
 }
 
@@ -108,7 +108,7 @@ Status LayChalk(Drawing& drawing, const Studio& studio) {
 
 Expected<Picture> PaintCharcoal(const Studio& studio) {
   const Field tooth = MakeTooth(studio.size, Tooth::kLaid, 5.0f, Hash(studio.seed, kTooth));
-  const Colors paper = MakePaper(tooth, kPaper, 0.09f, Hash(studio.seed, kMottle));
+  const Colors paper = MakePaper(tooth, kPaper, 0.055f, Hash(studio.seed, kMottle));
   Drawing dark(paper, tooth, {.bite = 0.8f, .softness = 0.34f, .density = 1.05f});
   SCUMBLE_RETURN_IF_ERROR(LayTone(dark, studio));
   SCUMBLE_RETURN_IF_ERROR(LayStrokes(dark, studio));

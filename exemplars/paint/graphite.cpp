@@ -57,16 +57,20 @@ Status DrawAccents(Drawing& drawing, const Studio& studio) {
   hatch.spacing = 6.0f;
   hatch.length_min = 40.0f;
   hatch.length_max = 90.0f;
+  // The soft pencil stays in the core of the shade; in half-tones its first touch would be a spot.
+  const Touch core = [](glm::vec2 at) { return Target(at) * Ramp(0.60f, 0.75f, DarknessAt(at)); };
   for (int round = 0; round < 4; ++round) {
     Chance chance(studio.seed, Hash(kSoftPass, round));
-    HatchRound(drawing, soft, chance, Target, {round == 1 ? kAcross : kAlongShade, 1.03f, 0.65f, hatch});
+    HatchRound(drawing, soft, chance, core, {round == 1 ? kAcross : kAlongShade, 1.03f, 0.65f, hatch});
   }
 
   SCUMBLE_ASSIGN(Brush pencil, Brush::Load(studio.brushes, "deevad/2B_pencil"));
   pencil.Radius(1.9f).Color(kSoft);
   Chance rim(studio.seed, kRim);
   const Touch contour = [](glm::vec2 at) { return 0.40f + 0.45f * Ramp(0.2f, 0.9f, DarknessAt(at)); };
-  pencil.Paint(drawing.canvas(), PlanRim(rim, contour, {.lines = 40, .inset = 9.0f, .deviation = 4.0f}));
+  pencil.Paint(
+      drawing.canvas(),
+      PlanRim(rim, contour, {.lines = 24, .inset = 6.5f, .deviation = 2.2f, .length_min = 0.8f, .length_max = 2.0f}));
   return Ok();
 }
 

@@ -1,4 +1,8 @@
 // Paints the exemplars: spheres for the styles that come with Scumble. Exit codes are those of `scumble`.
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <string>
@@ -42,6 +46,11 @@ Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, con
 }  // namespace
 
 int main(int argc, char** argv) {
+#ifdef M_PERTURB
+  // libmypaint reads a few fields of a new brush before it has set them. With this glibc clears what it hands out (the
+  // byte is inverted), and the same seed gives the same picture whatever lay in memory before.
+  mallopt(M_PERTURB, 0xff);
+#endif
   paint::Studio studio;
   studio.brushes = SCUMBLE_MYPAINT_BRUSHES;
   std::string chosen = "all";

@@ -54,7 +54,7 @@ glm::vec3 BreakColor(Chance& chance, glm::vec3 color, float light, float amount)
   const glm::vec3 warm = first ? kRose : kLemon;
   const glm::vec3 cool = first ? kTeal : kCrimson;
   const float weight = std::fabs(chance.Bell(amount));
-  const float brightness = 1.0f + chance.Bell(0.45f * amount);
+  const float brightness = 1.0f + chance.Bell(0.6f * amount);
   return glm::mix(color, glm::mix(cool, warm, Ramp(0.10f, 0.5f, light)), weight) * brightness;
 }
 
@@ -101,8 +101,8 @@ class OilPainter {
     const glm::vec3 halfway = glm::normalize(kKeyLight + glm::vec3(0, 0, 1));
     for (int i = 0; i < 40; ++i) {
       const glm::vec3 normal = glm::normalize(halfway + chance.Bell3(0.06f));
-      const Stroke path =
-          TraceStroke(AroundAxis(kKeyLight + chance.Bell3(0.2f)), PlaceOf(normal), chance.Uniform(22.0f, 44.0f));
+      const Flow flow = AroundAxis(kKeyLight + chance.Bell3(0.2f));
+      const Stroke path = TraceStroke(flow, PlaceOf(normal), chance.Uniform(22.0f, 44.0f));
       const glm::vec3 color = glm::vec3(1.0f, 0.955f, 0.84f) * (1.0f + chance.Bell(0.02f));
       DragBristles(chance, path, {chance.Uniform(10.0f, 16.0f), 2.2f, 1.0f}, color);
     }
@@ -116,7 +116,7 @@ class OilPainter {
     // Thin paint lets the weave of the canvas through.
     const Field weave = MakeTooth(colors.size, Tooth::kLaid, 6.0f, Hash(seed_, kCanvas));
     for (std::size_t i = 0; i < height.pixels.size(); ++i) height.pixels[i] += 0.05f * weave.pixels[i];
-    LightRelief(colors, height, {.shade = 0.50f, .sheen = 0.10f});
+    LightRelief(colors, height, {.shade = 0.72f, .sheen = 0.12f});
     return colors;
   }
 
@@ -139,12 +139,12 @@ class OilPainter {
       const float offset = across * tuft.width + chance.Bell(0.5f);
       const Stroke line = OneBristle(chance, path, offset, outer, press);
       if (line.size() < 3) continue;
-      const float shift = chance.Bell(0.045f);
+      const float shift = chance.Bell(0.035f);
       paint_.Color(color * glm::vec3(1.0f + shift, 1.0f + 0.9f * shift, 1.0f + 0.7f * shift + chance.Bell(0.025f)));
       paint_.Paint(colors_, line);
-      const float ridge = 0.24f * Ramp(0.6f, 1.0f, outer);
+      const float ridge = 0.30f * Ramp(0.65f, 1.0f, outer);
       const float height =
-          0.34f + tuft.load * (0.12f + ridge) + (0.07f + 0.08f * tuft.load) * chance.Bell() + lean * across;
+          0.34f + tuft.load * (0.12f + ridge) + (0.05f + 0.06f * tuft.load) * chance.Bell() + lean * across;
       thickness_.Color(glm::vec3(glm::clamp(height, 0.0f, 1.0f)));
       thickness_.Paint(heights_, line);
     }

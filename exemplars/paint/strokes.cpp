@@ -102,7 +102,8 @@ std::vector<Stroke> PlanHatching(Chance& chance, Flow (*flow_of)(glm::vec3), glm
                                  const HatchOptions& options) {
   std::vector<Stroke> strokes;
   for (int patch = 0; patch < options.patches; ++patch) {
-    const glm::vec2 centre(chance.Uniform(-20.0f, kSide + 20.0f), chance.Uniform(-20.0f, kSide + 20.0f));
+    // Braces fix the order in which chance is asked.
+    const glm::vec2 centre{chance.Uniform(-20.0f, kSide + 20.0f), chance.Uniform(-20.0f, kSide + 20.0f)};
     const float weight = std::min(1.0f, 1.4f * touch(centre));
     if (RimDistance(centre) > 1.06f || !chance.Happens(weight)) continue;
     const Flow flow = flow_of(axis + chance.Bell3(options.sway));

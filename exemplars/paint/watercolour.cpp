@@ -55,7 +55,10 @@ std::vector<Stroke> PlanGlaze(const Glaze& glaze, Chance& chance, std::uint64_t 
   for (const glm::vec2 middle : SowEvenly(chance, std::sqrt(glaze.spacing * length))) {
     const Flow flow = AroundAxis(glm::vec3(-0.62f, 0.66f, 0.42f) + chance.Bell3(0.15f));
     const Stroke line = TraceStroke(flow, middle, chance.Uniform(0.8f, 1.8f) * length);
-    for (const Stroke& piece : Press(line, touch, chance.Uniform(0.42f, 0.62f), 0.2f)) strokes.push_back(piece);
+    for (const Stroke& piece : Press(line, touch, chance.Uniform(0.42f, 0.62f), 0.2f)) {
+      // Shorter than wide it would dry as a dot.
+      if (glm::distance(piece.front().at, piece.back().at) > 2.6f * glaze.radius) strokes.push_back(piece);
+    }
   }
   return strokes;
 }

@@ -1,0 +1,52 @@
+# A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
+.DEFAULT_GOAL := build
+.PHONY: help build demo test test-asan bench exemplars scenes format clean
+
+JOBS := $(shell nproc)
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## (.*)/  \1\t\2/' | expand -t 16
+
+build: ## install what is missing, configure, compile (Release) into build/
+	@.ci/install build
+	@cmake --preset release > build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }
+	@rm -f build.log
+	@cmake --build build --target scumble -j $(JOBS)
+
+demo: build ## stylise the bundled scenes with the bundled styles into out/demo/
+	@.ci/demo
+
+test: ## install what is missing (Blender too), build everything, run all tests
+	@.ci/install test
+	@cmake --preset release -DSCUMBLE_TESTS=ON
+	@cmake --build build -j $(JOBS)
+	@ctest --test-dir build --output-on-failure -j $(JOBS)
+
+test-asan: ## unit tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
+	@.ci/install test
+	@cmake --preset asan
+	@cmake --build build-asan -j $(JOBS)
+	@ctest --test-dir build-asan --output-on-failure -j $(JOBS) -L unit
+
+bench: ## measure speed, with spread; gates nothing
+	@.ci/install test
+	@cmake --preset release -DSCUMBLE_BENCH=ON
+	@cmake --build build -j $(JOBS)
+	@for program in build/bench/*_bench; do $$program --benchmark_repetitions=7 --benchmark_report_aggregates_only=true; done
+
+exemplars: ## repaint the bundled styles (libmypaint)
+	@.ci/install test
+	@cmake --preset release
+	@cmake --build build --target paint_exemplars -j $(JOBS)
+	@build/exemplars/paint/paint_exemplars --style all --size 1024 --seed 1 -o exemplars
+
+scenes: ## make the sample scenes again (Blender)
+	@.ci/install test
+	@blender -b -noaudio --factory-startup -P blender_scripts/make_scenes.py -- --output scenes
+
+format: ## clang-format every C++ file
+	@.ci/install format
+	@git ls-files '*.h' '*.cpp' | xargs clang-format -i
+
+clean: ## remove what was built and written
+	@rm -rf build build-asan out

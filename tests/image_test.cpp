@@ -1,0 +1,390 @@
+// The small foundations: colour, chance, layer names, ids and what a guide set must satisfy.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "image/check.h"
+#include "image/color.h"
+#include "image/guides.h"
+#include "image/hash.h"
+#include "image/layers.h"
+
+namespace scumble {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+// ---- colour ----------------------------------------------------------------------------------------------------
+
+TEST(Color, EverySrgbValueSurvivesTheRoundTrip) {
+  float previous = -1.0f;
+  for (int v = 0; v < 65536; ++v) {
+    const float linear = Srgb16ToLinear(static_cast<std::uint16_t>(v));
+    ASSERT_EQ(Srgb16FromLinear(linear), v);
+    ASSERT_GT(linear, previous) << "the table must rise, at " << v;
+    previous = linear;
+  }
+  EXPECT_EQ(Srgb16ToLinear(0), 0.0f);
+  EXPECT_EQ(Srgb16ToLinear(65535), 1.0f);
+}
+
+TEST(Color, KnownValues) {
+  EXPECT_EQ((Srgb16FromLinear(0.5f) + 128) / 257, 188);
+  EXPECT_NEAR(LinearToSrgb(0.18f), 0.461356f, 1e-5f);
+  EXPECT_NEAR(SrgbToLinear(0.5f), 0.214041f, 1e-6f);
+  EXPECT_NEAR(SrgbToLinear(0.04045f), 0.0031308f, 1e-6f);
+  EXPECT_NEAR(LinearToSrgb(4.0f), 1.055f * std::pow(4.0f, 1.0f / 2.4f) - 0.055f, 1e-5f);
+  EXPECT_LT(LinearToSrgb(-0.1f), 0.0f);
+  EXPECT_TRUE(std::isnan(SrgbToLinear(kNan)));
+  EXPECT_TRUE(std::isnan(LinearToSrgb(kNan)));
+  EXPECT_NEAR(Luminance(1.0f, 1.0f, 1.0f), 1.0f, 1e-6f);
+}
+
+TEST(Color, EncodingClampsWhatNoIntegerHolds) {
+  EXPECT_EQ(Srgb16FromLinear(-1.0f), 0);
+  EXPECT_EQ(Srgb16FromLinear(-kInf), 0);
+  EXPECT_EQ(Srgb16FromLinear(kNan), 0);
+  EXPECT_EQ(Srgb16FromLinear(1.0f), 65535);
+  EXPECT_EQ(Srgb16FromLinear(std::nextafter(1.0f, 0.0f)), 65535);
+  EXPECT_EQ(Srgb16FromLinear(65504.0f), 65535);
+  EXPECT_EQ(Srgb16FromLinear(kInf), 65535);
+  EXPECT_EQ(Srgb16FromLinear(std::numeric_limits<float>::denorm_min()), 0);
+}
+
+// ---- chance ----------------------------------------------------------------------------------------------------
+
+TEST(Chance, UnitFloatsFillTheUnitIntervalEvenly) {
+  constexpr int kBins = 64, kCount = 64 * 4096;
+  std::vector<int> bins(kBins, 0);
+  double sum = 0.0;
+  for (int i = 0; i < kCount; ++i) {
+    const float u = UnitFloat(Hash(7, i));
+    ASSERT_GE(u, 0.0f);
+    ASSERT_LT(u, 1.0f);
+    ++bins[static_cast<int>(u * kBins)];
+    sum += u;
+  }
+  EXPECT_NEAR(sum / kCount, 0.5, 0.005);
+  double chi_square = 0.0;
+  for (int count : bins) chi_square += (count - 4096.0) * (count - 4096.0) / 4096.0;
+  EXPECT_LT(chi_square, 63.0 + 6.0 * std::sqrt(2.0 * 63.0)) << "63 degrees of freedom, six standard deviations";
+}
+
+TEST(Chance, UnitFloatNeverRoundsUpToOne) {
+  EXPECT_LT(UnitFloat(~0ull), 1.0f);
+  EXPECT_EQ(UnitFloat(~0ull), 1.0f - 0x1.0p-24f);
+  EXPECT_EQ(UnitFloat(0), 0.0f);
+}
+
+TEST(Chance, OneFlippedBitFlipsHalfOfTheHash) {
+  double flipped = 0.0;
+  int pairs = 0;
+  for (int i = 0; i < 64; ++i) {
+    for (int bit = 0; bit < 64; ++bit, ++pairs) {
+      flipped += __builtin_popcountll(Mix64(Hash(i)) ^ Mix64(Hash(i) ^ (1ull << bit)));
+    }
+  }
+  EXPECT_NEAR(flipped / pairs, 32.0, 0.5);
+}
+
+TEST(Chance, OrderAndCountOfArgumentsMatter) {
+  EXPECT_NE(Hash(1, 2), Hash(2, 1));
+  EXPECT_NE(Hash(0), Hash(0, 0));
+  EXPECT_NE(Hash(), Hash(0));
+  EXPECT_EQ(Hash(-1), Hash(std::int64_t(-1))) << "a negative cell is the same cell in any integer type";
+  EXPECT_NE(HashText("ab"), HashText("ba"));
+  EXPECT_NE(HashText(""), HashText(std::string_view("\0", 1)));
+  // Other machines and compilers must find these very values, or the same guides give another picture.
+  static_assert(Mix64(0) == 0xe220a8397b1dcdafull, "the first number of SplitMix64 with seed 0");
+}
+
+// ---- layer names -----------------------------------------------------------------------------------------------
+
+struct NameCase {
+  const char* name;
+  Layer layer;
+  int component;
+  const char* prefix;
+};
+
+TEST(ChannelNames, KnownOnes) {
+  const NameCase cases[] = {
+      {"A", Layer::kCoverage, 0, ""},
+      {"a", Layer::kCoverage, 0, ""},
+      {"ViewLayer.Combined.A", Layer::kCoverage, 0, "ViewLayer"},
+      {"normal.X", Layer::kNormal, 0, ""},
+      {"ViewLayer.Normal.X", Layer::kNormal, 0, "ViewLayer"},
+      {"VIEWLAYER.NORMAL.y", Layer::kNormal, 1, "VIEWLAYER"},
+      {"N.Z", Layer::kNormal, 2, ""},
+      {"beauty.n.x", Layer::kNormal, 0, "beauty"},
+      {"Z", Layer::kDepth, 0, ""},
+      {"depth", Layer::kDepth, 0, ""},
+      {"depth.Z", Layer::kDepth, 0, ""},
+      {"View Layer.Depth.Z", Layer::kDepth, 0, "View Layer"},
+      {"Scene v1.2 (final).Normal.Z", Layer::kNormal, 2, "Scene v1.2 (final)"},
+      {"a.b.c.position.Y", Layer::kPosition, 1, "a.b.c"},
+      {"P.Z", Layer::kPosition, 2, ""},
+      {"ViewLayer.IndexOB.X", Layer::kObject, 0, "ViewLayer"},
+      {"ViewLayer.IndexMA.X", Layer::kMaterial, 0, "ViewLayer"},
+      {"ViewLayer.DiffCol.G", Layer::kAlbedo, 1, "ViewLayer"},
+      {"lpe.LDE.R", Layer::kLpeLDE, 0, ""},
+      {"LPE.lde.b", Layer::kLpeLDE, 2, ""},
+      {"View.lpe.LD12E.G", Layer::kLpeLD12E, 1, "View"},
+      {"lpe.full.B", Layer::kLpeFull, 2, ""},
+      {"luminance.Y", Layer::kLuminance, 0, ""},
+      {"motion.Y", Layer::kMotion, 1, ""},
+      {"object.ID", Layer::kObject, 0, ""},
+  };
+  for (const NameCase& expected : cases) {
+    const auto found = ParseChannelName(expected.name);
+    ASSERT_TRUE(found) << expected.name;
+    EXPECT_EQ(Info(found->layer).name, std::string(Info(expected.layer).name)) << expected.name;
+    EXPECT_EQ(found->component, expected.component) << expected.name;
+    EXPECT_EQ(found->prefix, expected.prefix) << expected.name;
+  }
+}
+
+TEST(ChannelNames, UnknownOnes) {
+  for (const char* name : {"", ".", "X", "R", "ViewLayer.Combined.R", "Denoising Normal.X",
+                           "ViewLayer.Denoising Normal.X", "abnormal.X", "normal", "normal.W", "normalX",
+                           "normal.X.left", "lpe.LDDDE.R", "Mist.V", "normal.X ", "Shadow Catcher.R", "beauty.lpe"}) {
+    EXPECT_FALSE(ParseChannelName(name)) << name;
+  }
+}
+
+TEST(ChannelNames, EveryChannelOfTheTableIsItself) {
+  int index = 0;
+  for (const LayerInfo& info : AllLayers()) {
+    EXPECT_EQ(static_cast<int>(info.layer), index++) << info.name << " is out of order";
+    EXPECT_EQ(ChannelCount(info.layer), static_cast<int>(info.channels.size()));
+    for (int c = 0; c < ChannelCount(info.layer); ++c) {
+      for (const std::string before : {"", "My.View Layer"}) {
+        const auto found =
+            ParseChannelName(before.empty() ? std::string(info.channels[c]) : before + "." + info.channels[c]);
+        ASSERT_TRUE(found) << info.channels[c];
+        EXPECT_EQ(found->layer, info.layer) << info.channels[c];
+        EXPECT_EQ(found->component, c);
+        EXPECT_EQ(found->prefix, before);
+      }
+    }
+  }
+  EXPECT_EQ(index, kLayerCount);
+}
+
+TEST(LayerSets, AddRemoveContain) {
+  LayerSet set{Layer::kNormal, Layer::kDepth};
+  EXPECT_TRUE(set.Has(Layer::kNormal));
+  EXPECT_FALSE(set.Has(Layer::kCoverage));
+  EXPECT_EQ(set.ToString(), "normal, depth");
+  EXPECT_TRUE(AlwaysWritten().Contains(set));
+  EXPECT_FALSE(set.Contains(AlwaysWritten()));
+  EXPECT_TRUE(set.Contains(LayerSet()));
+  EXPECT_EQ(set.Remove(Layer::kDepth).Remove(Layer::kDepth).ToString(), "normal");
+  EXPECT_TRUE(set.Remove(Layer::kNormal).empty());
+  EXPECT_EQ(set.ToString(), "none");
+  EXPECT_EQ(set.Add(AlwaysWritten()), AlwaysWritten());
+}
+
+TEST(LayerSets, FromText) {
+  auto set = ParseLayers("lpe.LDE,Normal,,A,");
+  ASSERT_TRUE(set) << set.error().message;
+  EXPECT_EQ(*set, (LayerSet{Layer::kLpeLDE, Layer::kNormal, Layer::kCoverage}));
+  auto empty = ParseLayers("");
+  ASSERT_TRUE(empty);
+  EXPECT_TRUE(empty->empty());
+  for (const LayerInfo& info : AllLayers()) {
+    auto one = ParseLayers(info.name);
+    ASSERT_TRUE(one) << info.name;
+    EXPECT_EQ(*one, LayerSet{info.layer});
+  }
+  auto wrong = ParseLayers("normal,wibble");
+  ASSERT_FALSE(wrong);
+  EXPECT_EQ(wrong.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(wrong.error().message.find("'wibble'"), std::string::npos);
+  for (const LayerInfo& info : AllLayers()) EXPECT_NE(wrong.error().message.find(info.name), std::string::npos);
+}
+
+// ---- ids -------------------------------------------------------------------------------------------------------
+
+TEST(Ids, AreExactInAFloatAndNeverTheBackground) {
+  std::vector<std::string> names;
+  for (int i = 0; i < 20000; ++i) names.push_back("Object." + std::to_string(i));
+  const auto ids = IdsForNames(names);
+  ASSERT_EQ(ids.size(), names.size());
+  EXPECT_EQ(std::set<std::uint32_t>(ids.begin(), ids.end()).size(), names.size())
+      << "20,000 names do collide in 24 bits";
+  for (std::uint32_t id : ids) {
+    ASSERT_GE(id, 1u);
+    ASSERT_LT(id, 1u << 24);
+    ASSERT_EQ(static_cast<std::uint32_t>(static_cast<float>(id)), id);
+  }
+}
+
+TEST(Ids, FollowTheNameAlone) {
+  const std::vector<std::string> few = {"Ball", "Cube", "Ball", ""};
+  const std::vector<std::string> more = {"Torus", "Cube", "", "Café", "Ball"};
+  const auto a = IdsForNames(few), b = IdsForNames(more);
+  EXPECT_EQ(a[0], a[2]) << "equal names share an id";
+  EXPECT_EQ(a[0], b[4]);
+  EXPECT_EQ(a[1], b[1]);
+  EXPECT_EQ(a[3], b[2]);
+  EXPECT_TRUE(IdsForNames({}).empty());
+}
+
+// Two names whose hashes fall on the same id, in alphabetical order.
+std::pair<std::string, std::string> CollidingNames() {
+  std::unordered_map<std::uint32_t, std::string> seen;
+  for (int i = 0;; ++i) {
+    const std::string name = "n" + std::to_string(i);
+    const auto slot = static_cast<std::uint32_t>(HashText(name) % ((1u << 24) - 1));
+    const auto [found, fresh] = seen.emplace(slot, name);
+    if (!fresh) return std::minmax(found->second, name);
+  }
+}
+
+TEST(Ids, ACollisionMovesTheLaterName) {
+  const auto [early, late] = CollidingNames();
+  const std::vector<std::string> alone_early = {early}, alone_late = {late}, both = {late, early};
+  const std::uint32_t id = IdsForNames(alone_early)[0];
+  ASSERT_EQ(IdsForNames(alone_late)[0], id) << "the pair must collide for this test to mean anything";
+  const auto ids = IdsForNames(both);
+  EXPECT_EQ(ids[1], id);
+  EXPECT_EQ(ids[0], id == (1u << 24) - 1 ? 1u : id + 1);
+}
+
+// ---- guide sets ------------------------------------------------------------------------------------------------
+
+GuideSet ValidGuides(int width = 4, int height = 3) {
+  GuideSet guides(width, height);
+  for (Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kAlbedo, Layer::kLuminance})
+    guides.Add(layer);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kCoverage)[i] = 1.0f;
+    guides.Plane(Layer::kNormal, 2)[i] = 1.0f;
+    guides.Plane(Layer::kDepth)[i] = 2.0f;
+  }
+  return guides;
+}
+
+TEST(GuideSets, AddFillsWithTheBackground) {
+  GuideSet guides(2, 2);
+  for (const LayerInfo& info : AllLayers()) {
+    EXPECT_FALSE(guides.Has(info.layer));
+    guides.Add(info.layer);
+    for (int c = 0; c < ChannelCount(info.layer); ++c) {
+      for (float value : guides.Plane(info.layer, c)) EXPECT_EQ(value, info.layer == Layer::kDepth ? kInf : 0.0f);
+    }
+  }
+  guides.Plane(Layer::kDepth)[3] = 5.0f;
+  guides.Add(Layer::kDepth);
+  EXPECT_EQ(guides.Plane(Layer::kDepth)[3], 5.0f) << "adding a layer again must not wipe it";
+  guides.Plane(Layer::kNormal, 1)[2] = 7.0f;
+  EXPECT_EQ(guides.Vec3(Layer::kNormal, guides.Index(0, 1)), glm::vec3(0, 7, 0));
+  guides.Remove(Layer::kDepth);
+  EXPECT_FALSE(guides.Has(Layer::kDepth));
+  EXPECT_THROW(guides.Plane(Layer::kDepth), InternalError);
+  EXPECT_THROW(guides.Plane(Layer::kCoverage, 1), InternalError);
+  EXPECT_THROW(GuideSet(-1, 2), InternalError);
+}
+
+TEST(GuideSets, AllBackgroundIsValid) {
+  GuideSet guides(3, 3);
+  for (const LayerInfo& info : AllLayers()) guides.Add(info.layer);
+  EXPECT_TRUE(guides.Validate("empty"));
+  EXPECT_TRUE(ValidGuides().Validate("full"));
+}
+
+struct Defect {
+  const char* what;
+  std::function<void(GuideSet&)> spoil;  // pixels (1, 1) and (3, 2)
+  std::vector<const char*> words;
+};
+
+TEST(GuideSets, EveryDefectIsNamedCountedAndLocated) {
+  const auto set = [](Layer layer, int component, float value) {
+    return [=](GuideSet& g) { g.Plane(layer, component)[5] = g.Plane(layer, component)[11] = value; };
+  };
+  const Defect defects[] = {
+      {"coverage above 1", set(Layer::kCoverage, 0, 2.0f), {"layer A", "0 to 1"}},
+      {"coverage below 0", set(Layer::kCoverage, 0, -0.5f), {"layer A"}},
+      {"coverage NaN", set(Layer::kCoverage, 0, kNan), {"layer A"}},
+      {"normal NaN", set(Layer::kNormal, 1, kNan), {"layer normal", "NaN"}},
+      {"normal infinite", set(Layer::kNormal, 0, kInf), {"layer normal"}},
+      {"normal zero", set(Layer::kNormal, 2, 0.0f), {"layer normal", "zero"}},
+      {"normal packed", set(Layer::kNormal, 2, 0.4f), {"layer normal", "[-1, 1]"}},
+      {"depth NaN", set(Layer::kDepth, 0, kNan), {"layer depth", "NaN"}},
+      {"depth negative", set(Layer::kDepth, 0, -1.0f), {"layer depth", "negative"}},
+      {"colour infinite", set(Layer::kAlbedo, 1, kInf), {"layer albedo", "infinite"}},
+      {"colour NaN", set(Layer::kLuminance, 0, kNan), {"layer luminance", "NaN"}},
+  };
+  for (const Defect& defect : defects) {
+    GuideSet guides = ValidGuides();
+    defect.spoil(guides);
+    const Status status = guides.Validate("ball.exr");
+    ASSERT_FALSE(status) << defect.what;
+    EXPECT_EQ(status.error().kind, ErrorKind::kInput);
+    const std::string& message = status.error().message;
+    EXPECT_EQ(message.rfind("ball.exr", 0), 0u) << message;
+    EXPECT_NE(message.find("2 pixels, first at (1, 1)"), std::string::npos) << defect.what << ": " << message;
+    for (const char* word : defect.words) EXPECT_NE(message.find(word), std::string::npos) << message;
+  }
+}
+
+TEST(GuideSets, ABadPixelCountsOnceWhateverItsChannels) {
+  GuideSet guides = ValidGuides();
+  guides.Plane(Layer::kAlbedo, 0)[7] = kNan;
+  guides.Plane(Layer::kAlbedo, 1)[7] = kNan;
+  const Status one = guides.Validate("g");
+  ASSERT_FALSE(one);
+  EXPECT_NE(one.error().message.find("1 pixel, first at (3, 1)"), std::string::npos) << one.error().message;
+  guides.Plane(Layer::kAlbedo, 2)[2] = kInf;
+  const Status two = guides.Validate("g");
+  ASSERT_FALSE(two);
+  EXPECT_NE(two.error().message.find("2 pixels, first at (2, 0)"), std::string::npos) << two.error().message;
+}
+
+TEST(GuideSets, TheBackgroundMayHoldAnything) {
+  GuideSet guides = ValidGuides();
+  guides.Plane(Layer::kCoverage)[6] = 0.0f;
+  guides.Plane(Layer::kNormal, 0)[6] = kNan;
+  guides.Plane(Layer::kDepth)[6] = -kInf;
+  guides.Plane(Layer::kAlbedo)[6] = kNan;
+  EXPECT_TRUE(guides.Validate("g"));
+}
+
+TEST(GuideSets, SizesAndLayersThatCannotBe) {
+  for (const auto& [width, height] :
+       {std::pair{0, 0}, {0, 5}, {5, 0}, {kMaxImageSide + 1, 1}, {1, kMaxImageSide + 1}}) {
+    const Status status = GuideSet(width, height).Validate("g");
+    ASSERT_FALSE(status);
+    const std::string size = std::to_string(width) + "×" + std::to_string(height);
+    EXPECT_NE(status.error().message.find(size), std::string::npos) << status.error().message;
+  }
+  GuideSet guides = ValidGuides();
+  guides.Remove(Layer::kNormal);
+  const Status status = guides.Validate("g");
+  ASSERT_FALSE(status);
+  EXPECT_NE(status.error().message.find("at least A and normal"), std::string::npos);
+}
+
+TEST(Checks, SayWhatFailedWithBothValues) {
+  try {
+    SCUMBLE_CHECK_EQ(2 + 2, 5);
+    FAIL() << "a failed check must throw";
+  } catch (const InternalError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("2 + 2 == 5 (4 against 5)"), std::string::npos) << message;
+    EXPECT_NE(message.find("image_test.cpp:"), std::string::npos) << message;
+  }
+  EXPECT_NO_THROW(SCUMBLE_CHECK(true));
+}
+
+}  // namespace
+}  // namespace scumble

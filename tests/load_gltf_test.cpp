@@ -1,0 +1,441 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "gltf_builder.h"
+#include "guidegen/load_scene.h"
+#include "io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr double kPi = 3.14159265358979323846;
+
+class LoadGltf : public LoaderTest {
+ protected:
+  Scene Load(const GltfBuilder& builder) { return Load(Write("scene.glb", builder.Glb())); }
+  Scene Load(const std::filesystem::path& path) {
+    Expected<Scene> scene = LoadScene(path);
+    EXPECT_TRUE(scene.ok()) << scene.error().message;
+    return scene ? std::move(*scene) : Scene{};
+  }
+  std::string ErrorOf(const GltfBuilder& builder) { return ErrorOf(Write("scene.glb", builder.Glb())); }
+  std::string ErrorOf(const std::filesystem::path& path) {
+    const Expected<Scene> scene = LoadScene(path);
+    EXPECT_FALSE(scene.ok());
+    if (scene) return "";
+    EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
+    EXPECT_THAT(scene.error().message, HasSubstr(path.filename().string()));
+    return scene.error().message;
+  }
+
+  // A 2 × 1 PNG, red and green.
+  std::vector<unsigned char> Png() {
+    Picture picture(2, 1);
+    picture.rgba = {65535, 0, 0, 65535, 0, 65535, 0, 65535};
+    EXPECT_TRUE(WritePicture(Path("made.png"), picture).ok());
+    std::ifstream stream(Path("made.png"), std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  // A unit square with UVs whose first material has a texture in each of the two slots.
+  GltfBuilder TexturedSquare() {
+    GltfBuilder b;
+    const int position = b.Floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 3);
+    const int uv = b.Floats({0, 1, 1, 1, 1, 0, 0, 0}, 2);
+    const int uv1 = b.Floats({0, 0, 2, 0, 2, 2, 0, 2}, 2);
+    const int index = b.Indices({0, 1, 2, 0, 2, 3});
+    b.Append("images", {{"bufferView", b.View(Png())}, {"mimeType", "image/png"}});
+    b.Append("samplers", {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}});
+    b.Append("textures", {{"source", 0}, {"sampler", 0}});
+    b.Append("materials", {{"name", "Paint"},
+                           {"pbrMetallicRoughness",
+                            {{"baseColorFactor", {0.25, 0.5, 0.75, 1.0}}, {"baseColorTexture", {{"index", 0}}}}},
+                           {"normalTexture", {{"index", 0}, {"scale", 0.5}}}});
+    const int mesh = b.Mesh({{{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}, {"TEXCOORD_1", uv1}}},
+                              {"indices", index},
+                              {"material", 0}}});
+    b.Root({{"name", "Square"}, {"mesh", mesh}});
+    return b;
+  }
+};
+
+void ExpectNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
+  EXPECT_NEAR(a.x, b.x, tolerance);
+  EXPECT_NEAR(a.y, b.y, tolerance);
+  EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+TEST_F(LoadGltf, TriangleWithoutNormalsOrMaterial) {
+  GltfBuilder b;
+  b.Triangle();
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].positions.size(), 3u);
+  ASSERT_EQ(scene.meshes[0].triangles.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].triangles[0], glm::uvec3(0, 1, 2));
+  for (const glm::vec3& normal : scene.meshes[0].normals) ExpectNear(normal, {0, 0, 1}, 0);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.instances[0].object, "Tri");
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].base_color, glm::vec4(1.0f));
+  EXPECT_TRUE(scene.warnings.empty());
+  EXPECT_TRUE(scene.meshes[0].tangents.empty());
+}
+
+TEST_F(LoadGltf, HierarchyComposesInDouble) {
+  GltfBuilder b;
+  const int child = b.Triangle("Child");
+  b.json["scenes"][0]["nodes"] = json::array();
+  b.json["nodes"][child]["matrix"] = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0.1, 0, 0, 1};
+  const double half = std::sqrt(0.5);
+  b.Root({{"translation", {1e8, 0, 0}}, {"rotation", {0, 0, half, half}}, {"scale", {1, 2, 3}}, {"children", {child}}});
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  // The child's (1, 0, 0) turns to +Y, gets 0.1 added in x, is scaled to (0.1, 2, 0), turns to (-2, 0.1, 0).
+  const glm::dvec4 p = scene.instances[0].world_from_object * glm::dvec4(1, 0, 0, 1);
+  EXPECT_NEAR(p.x, 1e8 - 2.0, 1e-6);
+  EXPECT_NEAR(p.y, 0.1, 1e-12);
+  const glm::dvec4 z = scene.instances[0].world_from_object * glm::dvec4(0, 0, 1, 0);
+  EXPECT_NEAR(z.z, 3.0, 1e-12);
+}
+
+TEST_F(LoadGltf, EveryIndexTypeAndNoneGiveTheSameMesh) {
+  const std::vector<float> square = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  for (int type : {kUbyte, kUshort, kUint}) {
+    GltfBuilder b;
+    const int position = b.Floats(square, 3);
+    const int view = type == kUbyte    ? b.View(std::vector<std::uint8_t>{0, 1, 2, 0, 2, 3})
+                     : type == kUshort ? b.View(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3})
+                                       : b.View(std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3});
+    const int index = b.Accessor(view, type, 6, "SCALAR");
+    b.Root({{"mesh", b.Mesh({{{"attributes", {{"POSITION", position}}}, {"indices", index}}})}});
+    const Scene scene = Load(b);
+    ASSERT_EQ(scene.meshes.size(), 1u) << type;
+    EXPECT_EQ(scene.meshes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}})) << type;
+    EXPECT_EQ(scene.instances[0].object, "node_0");
+  }
+  GltfBuilder b;
+  const int position = b.Floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0}, 3);
+  b.Root({{"mesh", b.Mesh({{{"attributes", {{"POSITION", position}}}}})}});
+  const Scene scene = Load(b);
+  EXPECT_EQ(scene.meshes[0].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}}));
+}
+
+TEST_F(LoadGltf, StripsAndFansKeepTheirWinding) {
+  for (int mode : {5, 6}) {
+    GltfBuilder b;
+    const int position = mode == 5 ? b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}, 3)
+                                   : b.Floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0}, 3);
+    b.Root({{"mesh", b.Mesh({{{"attributes", {{"POSITION", position}}}, {"mode", mode}}})}});
+    const Scene scene = Load(b);
+    ASSERT_EQ(scene.meshes[0].triangles.size(), 3u);
+    for (const glm::uvec3& t : scene.meshes[0].triangles) {
+      const auto& p = scene.meshes[0].positions;
+      EXPECT_GT(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]).z, 0.0f);
+    }
+  }
+}
+
+TEST_F(LoadGltf, InterleavedAndNormalizedAttributes) {
+  GltfBuilder b;
+  // Per vertex: three floats, normal as three signed bytes with a pad, UV as two unsigned shorts.
+  std::vector<unsigned char> bytes;
+  const auto put = [&](const auto& value) {
+    const auto* raw = reinterpret_cast<const unsigned char*>(&value);
+    bytes.insert(bytes.end(), raw, raw + sizeof value);
+  };
+  const float xs[3] = {0, 1, 0}, ys[3] = {0, 0, 1};
+  for (int i = 0; i < 3; ++i) {
+    put(xs[i]), put(ys[i]), put(0.0f);
+    put(std::int8_t(0)), put(std::int8_t(-127)), put(std::int8_t(-128)), put(std::int8_t(0));
+    put(std::uint16_t(65535)), put(std::uint16_t(13107));
+  }
+  const int view = b.View(bytes, 20);
+  const int position = b.Accessor(view, kFloat, 3, "VEC3", 0);
+  const int normal = b.Accessor(view, kByte, 3, "VEC3", 12);
+  const int uv = b.Accessor(view, kUshort, 3, "VEC2", 16);
+  b.json["accessors"][normal]["normalized"] = true;
+  b.json["accessors"][uv]["normalized"] = true;
+  b.Root({{"mesh", b.Mesh({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"TEXCOORD_0", uv}}}}})}});
+  const Scene scene = Load(b);
+  EXPECT_EQ(scene.meshes[0].positions[1], glm::vec3(1, 0, 0));
+  ExpectNear(scene.meshes[0].normals[2], glm::vec3(0, -std::sqrt(0.5f), -std::sqrt(0.5f)));
+  EXPECT_EQ(scene.meshes[0].uvs[0][0].x, 1.0f);
+  EXPECT_NEAR(scene.meshes[0].uvs[0][0].y, 0.2f, 1e-7f);
+}
+
+TEST_F(LoadGltf, SparseAccessors) {
+  GltfBuilder b;
+  b.Triangle();
+  const int places = b.View(std::vector<std::uint16_t>{1, 2});
+  const int values = b.View(std::vector<float>{5, 0, 0, 0, 7, 0});
+  const json sparse = {{"count", 2},
+                       {"indices", {{"bufferView", places}, {"componentType", kUshort}}},
+                       {"values", {{"bufferView", values}}}};
+  b.json["accessors"][0]["sparse"] = sparse;
+  EXPECT_EQ(Load(b).meshes[0].positions, (std::vector<glm::vec3>{{0, 0, 0}, {5, 0, 0}, {0, 7, 0}}));
+  // Without a buffer view everything else is zero.
+  b.json["accessors"][0].erase("bufferView");
+  b.json["accessors"][0].erase("byteOffset");
+  EXPECT_EQ(Load(b).meshes[0].positions, (std::vector<glm::vec3>{{0, 0, 0}, {5, 0, 0}, {0, 7, 0}}));
+}
+
+TEST_F(LoadGltf, PrimitivesShareAnObjectAndDropWhatTheyDoNotUse) {
+  GltfBuilder b;
+  std::vector<float> many(3 * 100, 0.0f);
+  for (int i = 0; i < 100; ++i) many[3 * i] = float(i * i), many[3 * i + 1] = float(i);
+  const int position = b.Floats(many, 3);
+  const json attributes = {{"POSITION", position}};
+  const int mesh = b.Mesh({{{"attributes", attributes}, {"indices", b.Indices({7, 50, 99})}},
+                           {{"attributes", attributes}, {"indices", b.Indices({0, 1, 2})}}});
+  b.Root({{"name", "Pair"}, {"mesh", mesh}});
+  b.Root({{"name", "Again"}, {"mesh", mesh}});
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  ASSERT_EQ(scene.instances.size(), 4u);
+  EXPECT_EQ(scene.instances[0].object, "Pair");
+  EXPECT_EQ(scene.instances[1].object, "Pair");
+  EXPECT_EQ(scene.instances[3].mesh, 1);
+  EXPECT_EQ(scene.meshes[0].positions, (std::vector<glm::vec3>{{49, 7, 0}, {2500, 50, 0}, {9801, 99, 0}}));
+}
+
+TEST_F(LoadGltf, MaterialsAndTextures) {
+  GltfBuilder b = TexturedSquare();
+  json& material = b.json["materials"][0];
+  material["alphaMode"] = "MASK";
+  material["alphaCutoff"] = 0.25;
+  material["doubleSided"] = true;
+  material["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 0;
+  material["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.5, 0.25}}, {"rotation", kPi / 2}, {"scale", {2, 3}}, {"texCoord", 1}};
+  b.Append("materials", {{"alphaMode", "BLEND"}});
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.materials.size(), 2u);
+  const Material& m = scene.materials[0];
+  EXPECT_EQ(m.name, "Paint");
+  EXPECT_EQ(m.base_color, glm::vec4(0.25f, 0.5f, 0.75f, 1.0f));
+  EXPECT_EQ(m.alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(m.alpha_cutoff, 0.25f);
+  EXPECT_TRUE(m.double_sided);
+  EXPECT_EQ(m.normal_scale, 0.5f);
+  EXPECT_EQ(m.base_color_texture.texture, 0);
+  EXPECT_EQ(m.normal_texture.texture, 0);
+  EXPECT_EQ(m.base_color_texture.uv_set, 1);
+  EXPECT_EQ(m.base_color_texture.wrap_u, TextureWrap::kClamp);
+  EXPECT_EQ(m.base_color_texture.wrap_v, TextureWrap::kMirror);
+  EXPECT_TRUE(m.base_color_texture.nearest);
+  // A quarter turn counter-clockwise in the picture takes (1, 0), right, to (0, -1), up.
+  ExpectNear(m.base_color_texture.uv_transform * glm::vec3(0, 0, 1), {0.5, 0.25, 1});
+  ExpectNear(m.base_color_texture.uv_transform * glm::vec3(1, 0, 1), {0.5, 0.25 - 2, 1});
+  ExpectNear(m.base_color_texture.uv_transform * glm::vec3(0, 1, 1), {0.5 + 3, 0.25, 1});
+  EXPECT_EQ(scene.materials[1].alpha_mode, AlphaMode::kBlend);
+  EXPECT_FALSE(scene.materials[1].double_sided);
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.textures[0].rgba, (std::vector<std::uint16_t>{65535, 0, 0, 65535, 0, 65535, 0, 65535}));
+  EXPECT_EQ(scene.meshes[0].uvs[1][2], glm::vec2(2, 2));
+}
+
+TEST_F(LoadGltf, TangentsAreKeptOrComputed) {
+  GltfBuilder b = TexturedSquare();
+  // The square's picture stands upright: u runs along +X, and up in the picture is +Y.
+  Scene scene = Load(b);
+  ASSERT_EQ(scene.meshes[0].tangents.size(), 4u);
+  for (const glm::vec4& tangent : scene.meshes[0].tangents) {
+    ExpectNear(glm::vec3(tangent), {1, 0, 0});
+    EXPECT_EQ(tangent.w, 1.0f);
+  }
+  // Mirrored by the texture transform.
+  b.json["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"] = {{"scale", {-1, 1}}};
+  scene = Load(b);
+  for (const glm::vec4& tangent : scene.meshes[0].tangents) {
+    ExpectNear(glm::vec3(tangent), {-1, 0, 0});
+    EXPECT_EQ(tangent.w, -1.0f);
+  }
+  const int given = b.Floats({0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1, 0, 2, 0, -1}, 4);
+  b.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = given;
+  EXPECT_EQ(Load(b).meshes[0].tangents[3], glm::vec4(0, 1, 0, -1));
+  b.json["materials"][0].erase("normalTexture");
+  EXPECT_TRUE(Load(b).meshes[0].tangents.empty());
+}
+
+TEST_F(LoadGltf, VertexColors) {
+  GltfBuilder b;
+  b.Triangle();
+  json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["COLOR_0"] = b.Floats({1, 0, 0, 0, 0.5, 0, 0, 0, 2}, 3);
+  EXPECT_EQ(Load(b).meshes[0].colors, (std::vector<glm::vec4>{{1, 0, 0, 1}, {0, 0.5, 0, 1}, {0, 0, 2, 1}}));
+  const int view = b.View(std::vector<std::uint8_t>{255, 0, 51, 255, 0, 0, 0, 0, 255, 255, 255, 102});
+  const int color = b.Accessor(view, kUbyte, 3, "VEC4");
+  b.json["accessors"][color]["normalized"] = true;
+  attributes["COLOR_0"] = color;
+  EXPECT_EQ(Load(b).meshes[0].colors[0], glm::vec4(1, 0, 51.0f / 255.0f, 1));
+  EXPECT_EQ(Load(b).meshes[0].colors[2].a, 102.0f / 255.0f);
+}
+
+TEST_F(LoadGltf, Cameras) {
+  GltfBuilder b;
+  b.Triangle();
+  b.Append("cameras",
+           {{"type", "perspective"}, {"perspective", {{"yfov", kPi / 3}, {"znear", 0.1}, {"aspectRatio", 1.5}}}});
+  b.Append("cameras",
+           {{"type", "orthographic"}, {"orthographic", {{"xmag", 4}, {"ymag", 2}, {"znear", 0.5}, {"zfar", 50}}}});
+  const int first = b.Append("nodes", {{"name", "Eye"}, {"camera", 0}, {"translation", {0, 0, 2}}});
+  b.Root({{"scale", {3, 3, 3}}, {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}}, {"children", {first}}});
+  b.Root({{"name", "Eye"}, {"camera", 1}});
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.cameras.size(), 2u);
+  const Camera& eye = scene.cameras[0];
+  EXPECT_EQ(eye.name, "Eye");
+  EXPECT_NEAR(eye.yfov_degrees, 60.0, 1e-12);
+  EXPECT_EQ(eye.z_near, 0.1);
+  EXPECT_TRUE(std::isinf(eye.z_far));
+  EXPECT_EQ(eye.aspect, 1.5);
+  // The scale moves the camera but does not stretch its axes: a quarter turn about +Y takes +Z to +X.
+  ExpectNear(glm::vec3(eye.world_from_camera[2]), {1, 0, 0});
+  ExpectNear(glm::vec3(eye.world_from_camera[3]), {6, 0, 0});
+  EXPECT_NEAR(glm::determinant(glm::dmat3(eye.world_from_camera)), 1.0, 1e-12);
+  EXPECT_EQ(scene.cameras[1].name, "Eye#2");
+  EXPECT_TRUE(scene.cameras[1].orthographic);
+  EXPECT_EQ(scene.cameras[1].ymag, 2.0);
+  EXPECT_EQ(scene.cameras[1].aspect, 2.0);
+  EXPECT_EQ(scene.cameras[1].z_far, 50.0);
+}
+
+TEST_F(LoadGltf, LightsBecomeRadiometric) {
+  GltfBuilder b;
+  b.Triangle();
+  b.json["extensionsRequired"] = {"KHR_lights_punctual"};
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "point"}, {"intensity", 683.0}, {"color", {1, 0.5, 0.25}}},
+      {{"type", "spot"}, {"intensity", 1366.0}, {"spot", {{"innerConeAngle", kPi / 12}, {"outerConeAngle", kPi / 6}}}},
+      {{"type", "directional"}}};
+  for (int i = 0; i < 3; ++i)
+    b.Root({{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}, {"translation", {i, 0, 0}}});
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.lights.size(), 3u);
+  EXPECT_EQ(scene.lights[0].type, LightType::kPoint);
+  EXPECT_DOUBLE_EQ(scene.lights[0].intensity, 1.0);
+  EXPECT_EQ(scene.lights[0].color, glm::vec3(1, 0.5, 0.25));
+  EXPECT_EQ(scene.lights[1].type, LightType::kSpot);
+  EXPECT_DOUBLE_EQ(scene.lights[1].intensity, 2.0);
+  EXPECT_NEAR(scene.lights[1].inner_cone_degrees, 15.0, 1e-12);
+  EXPECT_NEAR(scene.lights[1].outer_cone_degrees, 30.0, 1e-12);
+  EXPECT_EQ(scene.lights[1].world_from_light[3].x, 1.0);
+  EXPECT_EQ(scene.lights[2].type, LightType::kSun);
+  EXPECT_DOUBLE_EQ(scene.lights[2].intensity, 1.0 / 683.0);
+}
+
+TEST_F(LoadGltf, NamesOfObjectsDiffer) {
+  GltfBuilder b;
+  const int a = b.Triangle("Leaf"), c = b.Triangle("Leaf"), d = b.Triangle("Leaf");
+  const int lone = b.Triangle("Stone");
+  b.Append("nodes", {{"name", "Tree"}, {"children", {a, c}}});
+  b.Append("nodes", {{"name", "Bush"}, {"children", {d}}});
+  b.json["scenes"][0]["nodes"] = {4, 5, lone};
+  const Scene scene = Load(b);
+  std::vector<std::string> names;
+  for (const Instance& instance : scene.instances) names.push_back(instance.object);
+  EXPECT_EQ(names, (std::vector<std::string>{"Tree/Leaf", "Tree/Leaf#2", "Bush/Leaf", "Stone"}));
+}
+
+TEST_F(LoadGltf, TheDefaultSceneIsLoaded) {
+  GltfBuilder b;
+  b.Triangle("First");
+  b.Triangle("Second");
+  b.json["scenes"] = {{{"nodes", {0}}}, {{"name", "Stage"}, {"nodes", {1}}}};
+  b.json["scene"] = 1;
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.instances.size(), 1u);
+  EXPECT_EQ(scene.instances[0].object, "Second");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("'Stage'"));
+  // A file without scenes shows every node that has no parent.
+  b.json.erase("scenes");
+  b.json.erase("scene");
+  EXPECT_EQ(Load(b).instances.size(), 2u);
+}
+
+TEST_F(LoadGltf, TextFilesWithBuffersBesideThemAndInside) {
+  GltfBuilder b = TexturedSquare();
+  const std::vector<unsigned char> png = Png();
+  std::filesystem::create_directories(Path("my data"));
+  Write("my data/geo.bin", b.bin);
+  Write("my data/a b.png", png);
+  b.json["buffers"] = {{{"byteLength", b.bin.size()}, {"uri", "my%20data/geo.bin"}}};
+  b.json["images"][0] = {{"uri", "my%20data/a%20b.png"}};
+  Scene scene = Load(Write("side.gltf", b.json.dump()));
+  EXPECT_EQ(scene.meshes[0].triangles.size(), 2u);
+  EXPECT_EQ(scene.textures[0].width, 2);
+
+  GltfBuilder inside;
+  inside.Triangle();
+  inside.bin = std::vector<unsigned char>(42, 0);
+  inside.json["buffers"] = {
+      {{"byteLength", 42}, {"uri", "data:application/octet-stream;base64," + std::string(56, 'A')}}};
+  inside.json["bufferViews"][1]["byteLength"] = 6;
+  scene = Load(Write("inside.gltf", "\xEF\xBB\xBF" + inside.json.dump()));
+  EXPECT_EQ(scene.meshes[0].positions[1], glm::vec3(0.0f));
+
+  std::filesystem::remove(Path("my data/a b.png"));
+  EXPECT_THAT(ErrorOf(Path("side.gltf")), HasSubstr("a%20b.png"));
+  b.json["materials"][0] = {{"name", "Plain"}};  // nobody wants the picture now
+  EXPECT_EQ(Load(Write("side.gltf", b.json.dump())).textures.size(), 0u);
+  std::filesystem::remove(Path("my data/geo.bin"));
+  EXPECT_THAT(ErrorOf(Path("side.gltf")), HasSubstr("geo.bin"));
+}
+
+TEST_F(LoadGltf, RequiredExtensions) {
+  GltfBuilder b;
+  b.Triangle();
+  b.json["extensionsUsed"] = {"KHR_draco_mesh_compression"};
+  Load(b);
+  b.json["extensionsRequired"] = {"KHR_texture_transform", "KHR_draco_mesh_compression", "EXT_unheard_of"};
+  const std::string message = ErrorOf(b);
+  EXPECT_THAT(message, HasSubstr("KHR_draco_mesh_compression, EXT_unheard_of"));
+  EXPECT_THAT(message, testing::Not(HasSubstr("KHR_texture_transform")));
+}
+
+TEST_F(LoadGltf, WhatIsIgnoredIsSaid) {
+  GltfBuilder b;
+  b.Triangle();
+  json& primitives = b.json["meshes"][0]["primitives"];
+  primitives.push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 0}});
+  primitives.push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
+  primitives[0]["targets"] = {{{"POSITION", 0}}};
+  b.json["nodes"][0]["skin"] = 0;
+  b.Append("skins", {{"joints", {0}}});
+  b.Append("animations", {{"channels", json::array()}, {"samplers", json::array()}});
+  b.Root({{"mesh", 0}, {"scale", {1, 0, 1}}});
+  const Scene scene = Load(b);
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_THAT(scene.warnings,
+              testing::UnorderedElementsAre(HasSubstr("points and lines"), HasSubstr("shape keys"),
+                                            HasSubstr("bind pose"), HasSubstr("animations"), HasSubstr("flattens")));
+}
+
+TEST_F(LoadGltf, ASceneWithoutGeometryIsLegal) {
+  GltfBuilder b;
+  b.Root({{"name", "Nothing"}});
+  const Scene scene = Load(b);
+  EXPECT_TRUE(scene.instances.empty());
+  EXPECT_EQ(scene.materials.size(), 1u);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_THAT(scene.warnings[0], HasSubstr("no geometry"));
+}
+
+TEST_F(LoadGltf, UnusableNormalsAreComputed) {
+  GltfBuilder b;
+  b.Triangle();
+  const float nan = std::nanf("");
+  b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.Floats({0, 3, 0, 0, 0, 0, nan, 0, 1}, 3);
+  const Scene scene = Load(b);
+  EXPECT_EQ(scene.meshes[0].normals, (std::vector<glm::vec3>{{0, 1, 0}, {0, 0, 1}, {0, 0, 1}}));
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("computed anew")));
+}
+
+}  // namespace
+}  // namespace scumble

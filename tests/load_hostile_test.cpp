@@ -1,0 +1,297 @@
+// Scenes that are broken, by accident or on purpose: each loads or is refused with an error that names the file. Most
+// of these tests say little by themselves and much under AddressSanitizer.
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <set>
+
+#include "gltf_builder.h"
+#include "guidegen/load_scene.h"
+#include "image/hash.h"
+#include "io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Hostile : public LoaderTest {
+ protected:
+  // The error of a file that must be refused.
+  std::string Refusal(const std::filesystem::path& path) {
+    const Expected<Scene> scene = LoadScene(path);
+    EXPECT_FALSE(scene.ok());
+    if (scene) return "";
+    EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
+    EXPECT_THAT(scene.error().message, HasSubstr(path.filename().string()));
+    EXPECT_LT(scene.error().message.size(), 1000u);
+    return scene.error().message;
+  }
+  std::string Refusal(const GltfBuilder& builder) { return Refusal(Write("scene.glb", builder.Glb())); }
+
+  // Loads, whatever it is. True where it loaded; every index in it must then be right.
+  bool Survives(const std::filesystem::path& path) {
+    const Expected<Scene> scene = LoadScene(path);
+    if (!scene) {
+      EXPECT_EQ(scene.error().kind, ErrorKind::kInput) << scene.error().message;
+      EXPECT_THAT(scene.error().message, HasSubstr(path.filename().string()));
+      return false;
+    }
+    for (const Mesh& mesh : scene->meshes) {
+      EXPECT_EQ(mesh.normals.size(), mesh.positions.size());
+      EXPECT_TRUE(mesh.tangents.empty() || mesh.tangents.size() == mesh.positions.size());
+      for (const glm::uvec3& triangle : mesh.triangles) {
+        EXPECT_LT(std::max({triangle.x, triangle.y, triangle.z}), mesh.positions.size());
+      }
+      for (const glm::vec3& normal : mesh.normals) EXPECT_NEAR(glm::length(normal), 1.0f, 1e-4f);
+    }
+    return true;
+  }
+
+  // A file with one of everything.
+  GltfBuilder Everything() {
+    GltfBuilder b;
+    Picture picture(2, 2);
+    EXPECT_TRUE(WritePicture(Path("made.png"), picture).ok());
+    std::ifstream stream(Path("made.png"), std::ios::binary);
+    const std::vector<unsigned char> png{std::istreambuf_iterator<char>(stream), {}};
+    const int triangle = b.Triangle("Leaf");
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    json& attributes = b.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["NORMAL"] = b.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
+    attributes["TEXCOORD_0"] = b.Floats({0, 0, 1, 0, 0, 1}, 2);
+    attributes["COLOR_0"] = b.Floats({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}, 4);
+    b.json["accessors"][0]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", b.View(std::vector<std::uint16_t>{2})}, {"componentType", kUshort}}},
+        {"values", {{"bufferView", b.View(std::vector<float>{0, 2, 0})}}}};
+    b.Append("images", {{"bufferView", b.View(png)}, {"mimeType", "image/png"}});
+    b.Append("samplers", {{"wrapS", 33071}});
+    b.Append("textures", {{"source", 0}, {"sampler", 0}});
+    b.Append("materials",
+             {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"baseColorTexture", {{"index", 0}}}}},
+              {"normalTexture", {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 2}}}}}}}},
+              {"alphaMode", "MASK"}});
+    b.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}});
+    b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+        {{"type", "spot"}, {"color", {1, 1, 1}}, {"spot", {{"outerConeAngle", 0.5}}}}};
+    b.json["extensionsUsed"] = {"KHR_lights_punctual"};
+    b.Root({{"camera", 0}, {"rotation", {0, 0, 0, 1}}, {"scale", {1, 1, 1}}});
+    b.Root({{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
+            {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    b.json["nodes"][triangle]["extras"] = {{"a", {1, 2, {{"b", "c"}}}}};
+    return b;
+  }
+};
+
+TEST_F(Hostile, NotAFile) {
+  EXPECT_THAT(Refusal(Path("nowhere.glb")), HasSubstr("no such file"));
+  std::filesystem::create_directory(Path("folder.glb"));
+  Refusal(Path("folder.glb"));
+  for (const char* name : {"empty.glb", "empty.gltf", "empty.obj", "empty.ply"}) Refusal(Write(name, std::string()));
+  for (const char* name : {"text.glb", "text.gltf", "text.ply"}) Refusal(Write(name, std::string("hello, world\n")));
+  const std::string message = Refusal(Write("scene.fbx", std::string("x")));
+  EXPECT_THAT(message, HasSubstr(".glb, .gltf, .obj or .ply"));
+  const Expected<Scene> blend = LoadScene(Write("scene.BLEND", std::string("BLENDER")));
+  ASSERT_FALSE(blend.ok());
+  EXPECT_EQ(blend.error().kind, ErrorKind::kUnavailable);
+  EXPECT_THAT(blend.error().message, HasSubstr("export"));
+}
+
+TEST_F(Hostile, IndexBeyondTheVertices) {
+  GltfBuilder b;
+  b.Triangle();
+  b.json["meshes"][0]["name"] = "Cube";
+  b.json["meshes"][0]["primitives"][0]["indices"] = b.Indices({0, 1, 3});
+  const std::string message = Refusal(b);
+  EXPECT_THAT(message, HasSubstr("'Cube'"));
+  EXPECT_THAT(message, HasSubstr("accessor 2 has the index 3 at place 2, but there are only 3 vertices"));
+}
+
+TEST_F(Hostile, AccessorsBeyondTheirData) {
+  const std::uint64_t huge = std::numeric_limits<std::uint64_t>::max();
+  for (const std::uint64_t value :
+       {std::uint64_t(4), std::uint64_t(1) << 32, std::uint64_t(1) << 61, huge / 12 + 1, huge}) {
+    GltfBuilder b;
+    b.Triangle();
+    b.json["accessors"][0]["count"] = value;
+    Refusal(b);
+    b.json["accessors"][0]["count"] = 3;
+    b.json["accessors"][0]["byteOffset"] = value;
+    Refusal(b);
+    b.json["accessors"][0]["byteOffset"] = 0;
+    b.json["bufferViews"][0]["byteOffset"] = value == 4 ? 40 : value;
+    Refusal(b);
+    b.json["bufferViews"][0]["byteOffset"] = 0;
+    b.json["bufferViews"][0]["byteLength"] = value == 4 ? 400 : value;
+    Refusal(b);
+  }
+  GltfBuilder b;
+  b.Triangle();
+  b.json["accessors"][0].erase("bufferView");
+  b.json["accessors"][0]["count"] = 400'000'000;
+  Refusal(b);
+}
+
+TEST_F(Hostile, PositionsThatAreNoNumbers) {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    GltfBuilder b;
+    b.Triangle();
+    b.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = b.Floats({0, 0, 0, 1, bad, 0, 0, 1, 0}, 3);
+    const std::string message = Refusal(b);
+    EXPECT_THAT(message, HasSubstr("mesh 0, POSITION: accessor 2"));
+    EXPECT_THAT(message, HasSubstr("vertex 1"));
+  }
+  Refusal(Write("nan.ply", std::string("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                       "property float z\nend_header\nnan 0 0\n")));
+}
+
+TEST_F(Hostile, NodesThatAreNoTree) {
+  GltfBuilder b;
+  const int node = b.Triangle();
+  b.json["nodes"][node]["children"] = {node};
+  EXPECT_THAT(Refusal(b), HasSubstr("reached twice"));
+  b.Append("nodes", {{"children", {node}}});
+  b.json["nodes"][node]["children"] = {1};
+  EXPECT_THAT(Refusal(b), HasSubstr("reached twice"));
+  b.json["nodes"][node].erase("children");
+  b.json["scenes"][0]["nodes"] = {0, 0};
+  EXPECT_THAT(Refusal(b), HasSubstr("reached twice"));
+  b.json["scenes"][0]["nodes"] = {7};
+  EXPECT_THAT(Refusal(b), HasSubstr("does not exist"));
+}
+
+TEST_F(Hostile, DeepNesting) {
+  GltfBuilder b;
+  for (int i = 0; i < 100'000; ++i) b.json["nodes"].push_back({{"children", {i + 1}}});
+  b.json["nodes"].push_back(json::object());
+  b.json["scenes"][0]["nodes"] = {0};
+  EXPECT_THAT(Refusal(b), HasSubstr("levels deep"));
+  const std::string deep =
+      "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "}";
+  EXPECT_THAT(Refusal(Write("deep.gltf", deep)), HasSubstr("levels deep"));
+}
+
+TEST_F(Hostile, WrongReferences) {
+  const GltfBuilder whole = Everything();
+  ASSERT_TRUE(Survives(Write("whole.glb", whole.Glb())));
+  for (const char* pointer :
+       {"/meshes/0/primitives/0/attributes/POSITION", "/meshes/0/primitives/0/attributes/NORMAL",
+        "/meshes/0/primitives/0/indices", "/meshes/0/primitives/0/material", "/accessors/0/bufferView",
+        "/accessors/0/sparse/indices/bufferView", "/accessors/0/sparse/values/bufferView", "/bufferViews/0/buffer",
+        "/materials/0/normalTexture/index", "/textures/0/source", "/images/0/bufferView", "/nodes/0/mesh",
+        "/nodes/1/camera", "/nodes/2/extensions/KHR_lights_punctual/light", "/scene", "/scenes/0/nodes/0"}) {
+    GltfBuilder b = whole;
+    b.json[json::json_pointer(pointer)] = 99;
+    EXPECT_NE(Refusal(b), "") << pointer;
+  }
+}
+
+TEST_F(Hostile, WrongVersionsAndContainers) {
+  GltfBuilder b;
+  b.Triangle();
+  std::vector<unsigned char> glb = b.Glb();
+  b.json["asset"]["version"] = "1.0";
+  EXPECT_THAT(Refusal(b), HasSubstr("expected 2.0"));
+  glb[4] = 1;
+  EXPECT_THAT(Refusal(Write("one.glb", glb)), HasSubstr("version 1"));
+  // The BIN chunk says eight bytes more than the file has.
+  glb[4] = 2;
+  const std::size_t chunk = 20 + (glb[12] | glb[13] << 8);
+  glb[chunk] = static_cast<unsigned char>(glb[chunk] + 8);
+  EXPECT_THAT(Refusal(Write("long.glb", glb)), HasSubstr("does not fit"));
+}
+
+TEST_F(Hostile, GltfCutShortAnywhere) {
+  const std::vector<unsigned char> glb = Everything().Glb();
+  for (std::size_t length = 0; length < glb.size(); length += 7) {
+    EXPECT_FALSE(Survives(Write("cut.glb", std::span(glb).first(length)))) << length;
+  }
+}
+
+TEST_F(Hostile, GltfWithFlippedBytes) {
+  const std::vector<unsigned char> glb = Everything().Glb();
+  int loaded = 0;
+  for (int round = 0; round < 700; ++round) {
+    std::vector<unsigned char> bytes = glb;
+    const int flips = 1 + static_cast<int>(Hash(round, 0) % 4);
+    for (int i = 1; i <= flips; ++i) {
+      bytes[Hash(round, i, 0) % bytes.size()] ^= static_cast<unsigned char>(1 + Hash(round, i, 1) % 255);
+    }
+    loaded += Survives(Write("flip.glb", bytes));
+  }
+  EXPECT_GT(loaded, 0);
+}
+
+// Every value of the JSON in turn, and every list and object, becomes something that it should not be.
+TEST_F(Hostile, GltfWithEveryValueReplaced) {
+  const GltfBuilder whole = Everything();
+  const json junk = {nullptr, -1, 4294967296, 1e300, "x", json::array(), json::object()};
+  const json flat = whole.json.flatten();
+  std::set<std::string> pointers;
+  for (const auto& [pointer, value] : flat.items()) {
+    for (json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) pointers.insert(at.to_string());
+  }
+  for (const std::string& pointer : pointers) {
+    for (const json& replacement : junk) {
+      GltfBuilder b = whole;
+      b.json[json::json_pointer(pointer)] = replacement;
+      Survives(Write("junk.glb", b.Glb()));
+    }
+  }
+}
+
+TEST_F(Hostile, ObjAndPlyCutShortAndFlipped) {
+  std::string obj =
+      "mtllib none.mtl\no A\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nv 0 1 0 1 0 0\nv 0.5 2 0 1 0 0\n";
+  obj +=
+      "vt 0 0\nvt 1 0\nvn 0 0 1\ns 1\nusemtl m\nf 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -5 -4 -3\ng B\ns off\nf 1//1 2//1 "
+      "3//1\n";
+  std::string ascii = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
+  ascii +=
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int "
+      "vertex_indices\n";
+  ascii += "end_header\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n";
+  std::string binary = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n";
+  binary += "property float z\nelement face 1\nproperty list uint8 uint32 vertex_indices\nend_header\n";
+  const float xyz[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  binary.append(reinterpret_cast<const char*>(xyz), sizeof xyz);
+  binary += std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+  const std::pair<std::string, std::string> files[] = {{"a.obj", obj}, {"a.ply", ascii}, {"b.ply", binary}};
+  for (const auto& [name, whole] : files) {
+    EXPECT_TRUE(Survives(Write(name, whole))) << name;
+    for (std::size_t length = 0; length < whole.size(); length += 3) Survives(Write(name, whole.substr(0, length)));
+    for (int round = 0; round < 300; ++round) {
+      std::string bytes = whole;
+      for (int i = 0; i < 3; ++i) {
+        bytes[Hash(round, i, 2) % bytes.size()] = static_cast<char>(Hash(round, i, 3));
+      }
+      Survives(Write(name, bytes));
+    }
+  }
+}
+
+TEST_F(Hostile, ObjIndicesBeyondTheVertices) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\n";
+  for (const char* face : {"f 1 2 9", "f 1 2 3 4 9", "f 1 2 -9", "f 1/7 2 3", "f 1//2 2 3", "f 0 1 2",
+                           "f 1 2 3 4 5 99999999999999", "f 1 2 3 4 -99"}) {
+    EXPECT_NE(Refusal(Write("bad.obj", vertices + face + "\n")), "") << face;
+  }
+}
+
+TEST_F(Hostile, PlyPromisesMoreThanItHas) {
+  const std::string head = "ply\nformat binary_little_endian 1.0\n";
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  Refusal(Write("a.ply", head + "element vertex 4000000000\n" + xyz + "end_header\n" + std::string(100, '\0')));
+  Refusal(Write("b.ply", head + "element vertex 18446744073709551615\n" + xyz + "end_header\n"));
+  Refusal(Write("c.ply", head + "element vertex -1\n" + xyz + "end_header\n"));
+  Refusal(Write("d.ply", head + "element vertex 1\nproperty float x\nend_header\n0000"));
+  Refusal(Write("e.ply", head + "element face 1\nproperty list int int vertex_indices\nend_header\n" +
+                             std::string("\xff\xff\xff\x7f", 4)));
+  Refusal(Write("f.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n"));
+  Refusal(Write("g.ply", "ply\nelement vertex 0\nend_header\n"));
+}
+
+}  // namespace
+}  // namespace scumble
