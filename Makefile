@@ -1,6 +1,6 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo test test-asan bench exemplars scenes format clean
+.PHONY: help build demo test test-asan bench exemplars scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -43,6 +43,10 @@ exemplars: ## repaint the bundled styles (libmypaint)
 scenes: ## make the sample scenes again (Blender)
 	@.ci/install test
 	@blender -b -noaudio --factory-startup -P blender_scripts/make_scenes.py -- --output scenes
+
+gallery: build ## make the pictures of README and docs/ again
+	@.ci/install test
+	@.ci/gallery
 
 format: ## clang-format every C++ file
 	@.ci/install format

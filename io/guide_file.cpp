@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <set>
 
 #include "io/guide_header.h"
@@ -18,6 +19,12 @@ constexpr const char* kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
 
 bool IsLossless(const std::string& compression) {
   return std::find(std::begin(kCompressions), std::end(kCompressions), compression) != std::end(kCompressions);
+}
+
+// The nearest half float. Brighter values than half floats reach become the brightest one: infinity is no radiance.
+Imath::half ToHalf(float value) {
+  constexpr float kLargest = 65504.0f;
+  return std::isfinite(value) ? Imath::half(std::clamp(value, -kLargest, kLargest)) : Imath::half(value);
 }
 
 // OpenImageIO's matrices are for row vectors, ours for column vectors: the same 16 numbers in memory.
@@ -66,7 +73,7 @@ std::vector<std::byte> Interleave(const GuideSet& guides, const OIIO::ImageSpec&
       std::byte* out = bytes.data() + offset;
       for (std::size_t i = 0; i < plane.size(); ++i, out += pixel_bytes) {
         if (half) {
-          const Imath::half value(plane[i]);
+          const Imath::half value = ToHalf(plane[i]);
           std::memcpy(out, &value, sizeof value);
         } else {
           std::memcpy(out, &plane[i], sizeof(float));
@@ -131,16 +138,19 @@ Expected<std::string> ChoosePrefix(const FileContents& contents, const std::stri
     return InputError(name + " has no view layer '" + wanted + "' with normals; there are " +
                       (list.empty() ? "none" : list));
   }
-  if (prefixes.size() > 1) return InputError(name + " holds several view layers, " + list + ": choose with --view-layer");
+  if (prefixes.size() > 1)
+    return InputError(name + " holds several view layers, " + list + ": choose with --view-layer");
   return prefixes.empty() ? std::string() : *prefixes.begin();
 }
 
 // The channels that fill the wanted layers: of the chosen view layer, else of none.
-std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix, const LayerSet& wanted) {
+std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
+                                         const LayerSet& wanted) {
   std::vector<FoundChannel> selected;
+  LayerSet open = wanted;
   const auto take = [&](const std::string& from) {
     for (const FoundChannel& found : contents.channels) {
-      if (!wanted.Has(found.meaning.layer) || found.meaning.prefix != from) continue;
+      if (!open.Has(found.meaning.layer) || found.meaning.prefix != from) continue;
       const bool taken = std::any_of(selected.begin(), selected.end(), [&](const FoundChannel& other) {
         return other.meaning.layer == found.meaning.layer && other.meaning.component == found.meaning.component;
       });
@@ -148,6 +158,7 @@ std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std
     }
   };
   take(prefix);
+  for (const FoundChannel& found : selected) open.Remove(found.meaning.layer);  // no layer is mixed from two
   if (!prefix.empty()) take("");
   return selected;
 }
@@ -163,8 +174,8 @@ LayerSet CompleteLayers(const std::vector<FoundChannel>& channels) {
 }
 
 // Reads the selected channels of one part into the set; what the data window does not cover stays background.
-Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundChannel>& channels, const std::string& name,
-                GuideSet& guides) {
+Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundChannel>& channels,
+                const std::string& name, GuideSet& guides) {
   int first = std::numeric_limits<int>::max(), last = -1;
   for (const FoundChannel& found : channels) {
     if (found.subimage != subimage) continue;
@@ -175,7 +186,8 @@ Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundCh
   const std::size_t stride = static_cast<std::size_t>(last - first + 1);
   std::vector<float> pixels(stride * spec.width * spec.height);
   if (!input.read_image(subimage, 0, first, last + 1, OIIO::TypeDesc::FLOAT, pixels.data())) {
-    return InputError("cannot read " + name + ": " + input.geterror());
+    const std::string reason = input.geterror();
+    return InputError("cannot read " + name + ": " + (reason.empty() ? "the pixel data is damaged" : reason));
   }
   const int offset_x = spec.x - spec.full_x, offset_y = spec.y - spec.full_y;
   const int begin_x = std::max(0, -offset_x), end_x = std::min(spec.width, guides.width() - offset_x);
@@ -195,7 +207,8 @@ Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundCh
 // Half floats and filtered passes shorten normals; a direction is what the transfer needs. Lengths that no rounding
 // or filter explains are left for Validate to refuse.
 void NormalizeNormals(GuideSet& guides) {
-  const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1), z = guides.Plane(Layer::kNormal, 2);
+  const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1),
+             z = guides.Plane(Layer::kNormal, 2);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
     if (std::fabs(squared - 1.0f) <= 4e-3f || !(squared > 0.01f && squared < 100.0f)) continue;
@@ -253,7 +266,8 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (complete.Has(info.layer)) missing.Remove(info.layer);
   }
   if (contents.from_blender) {
-    return InputError(name + " is a Blender render: its normals are in world space and its header holds no camera; "
+    return InputError(name +
+                      " is a Blender render: its normals are in world space and its header holds no camera; "
                       "make the guides with `scumble guidegen` from the scene exported as .glb");
   }
   if (!missing.empty()) {
@@ -263,9 +277,13 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   for (const LayerInfo& info : AllLayers()) {
     if (complete.Has(info.layer)) guides.Add(info.layer);
   }
-  const int parts = channels.empty() ? 0 : std::max_element(channels.begin(), channels.end(), [](auto& a, auto& b) {
-    return a.subimage < b.subimage;
-  })->subimage + 1;
+  const int parts = channels.empty() ? 0
+                                     : std::max_element(
+                                           channels.begin(), channels.end(),
+                                           [](auto& a, auto& b) {
+                                             return a.subimage < b.subimage;
+                                           })->subimage +
+                                           1;
   for (int part = 0; part < parts; ++part) SCUMBLE_RETURN_IF_ERROR(ReadPart(*input, part, channels, name, guides));
   ReadHeader(contents.spec, guides);
   if (guides.Has(Layer::kNormal)) NormalizeNormals(guides);
@@ -290,7 +308,7 @@ void RoundColorLayersToHalf(GuideSet& guides) {
   for (const LayerInfo& info : AllLayers()) {
     if (!guides.Has(info.layer) || !info.is_color) continue;
     for (int c = 0; c < ChannelCount(info.layer); ++c) {
-      for (float& value : guides.Plane(info.layer, c)) value = static_cast<float>(Imath::half(value));
+      for (float& value : guides.Plane(info.layer, c)) value = static_cast<float>(ToHalf(value));
     }
   }
 }

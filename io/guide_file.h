@@ -10,8 +10,8 @@
 namespace scumble {
 
 struct GuideWriteOptions {
-  bool half = false;                 // colour layers as 16-bit half floats; data layers stay 32-bit float
-  std::string compression = "zip";   // none, rle, zips, zip or piz: lossless only
+  bool half = false;                // colour layers as 16-bit half floats; data layers stay 32-bit float
+  std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
 };
 
 // Writes all layers of the set, object and material names, camera matrices (worldToCamera, worldToNDC) and attributes.
@@ -41,6 +41,7 @@ struct GuideFileInfo {
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path, const std::string& view_layer = "");
 
 // Rounds the colour layers to half floats, as `half` does on disk: keeps the path in memory equal to the one by file.
+// Values beyond ±65504 become that.
 void RoundColorLayersToHalf(GuideSet& guides);
 
 }  // namespace scumble

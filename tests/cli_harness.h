@@ -53,9 +53,9 @@ struct CommandResult {
 
 // What differs from a plain run.
 struct CommandSettings {
-  std::string stdout_file;     // instead of being captured, standard output goes there
+  std::string stdout_file;  // instead of being captured, standard output goes there
   bool close_stdout = false;
-  long file_size_limit = 0;    // bytes that a file may grow to, as on a full disk; 0: no limit
+  long file_size_limit = 0;  // bytes that a file may grow to, as on a full disk; 0: no limit
   std::string program = SCUMBLE_BINARY;
 };
 

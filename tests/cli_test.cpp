@@ -195,13 +195,14 @@ TEST_F(CliVerbs, PlanOfAStyleOfNormalsKnowsNoLight) {
   const Arguments explain = {"guidegen", Scene("stilllife.glb"), "--style", "style", "--explain"};
   const CommandResult plan = RunOk(explain);
   for (const char* layer : {"A ", "normal ", "depth ", "primary ray"}) EXPECT_TRUE(Contains(plan.out, layer)) << layer;
-  for (const char* absent : {"light", "luminance", "albedo", "shadow"}) EXPECT_FALSE(Contains(plan.out, absent)) << absent;
+  for (const char* absent : {"light", "luminance", "albedo", "shadow"})
+    EXPECT_FALSE(Contains(plan.out, absent)) << absent;
   const nlohmann::json json = RunOk(With(explain, {"--json"})).Json();
   EXPECT_EQ(json["plan"].size(), 5u);
   EXPECT_FALSE(json.contains("output"));
   EXPECT_TRUE(Contains(RunOk(With(explain, {"--layers", "shadow"})).out, "shadow ray"));
-  const Arguments stylize = {"stylize", Scene("stilllife.glb"), "--size", "32x18", "--style", "style",
-                             "--explain", "-o", "p.png"};
+  const Arguments stylize = {
+      "stylize", Scene("stilllife.glb"), "--size", "32x18", "--style", "style", "--explain", "-o", "p.png"};
   EXPECT_EQ(RunOk(stylize).out.substr(0, plan.out.size()), plan.out);
   EXPECT_EQ(RunOk(With(stylize, {"--json"})).Json()["plan"], json["plan"]);
 }
@@ -258,7 +259,7 @@ TEST_F(CliVerbs, QuietSilencesTalkOnly) {
 
 // A copy of the program with styles beside it, as a build tree and as an installation have them.
 TEST_F(CliVerbs, BundledStylesByName) {
-  for (const std::string& styles : {"build/exemplars", "prefix/share/scumble/exemplars"}) {
+  for (const std::string styles : {"build/exemplars", "prefix/share/scumble/exemplars"}) {
     const std::string root = styles.substr(0, styles.find('/'));
     WriteStyle(styles + "/beta");
     WriteStyle(styles + "/alpha");
@@ -273,7 +274,8 @@ TEST_F(CliVerbs, BundledStylesByName) {
     EXPECT_EQ(Run({"info", "beta"}, installed).code, 0);
     const CommandResult unknown = Run({"info", "gamma"}, installed);
     EXPECT_EQ(unknown.code, 3);
-    EXPECT_EQ(unknown.Error(), "there is no style 'gamma': expected a file, a folder, or one of the bundled styles alpha, beta");
+    EXPECT_EQ(unknown.Error(),
+              "there is no style 'gamma': expected a file, a folder, or one of the bundled styles alpha, beta");
     // One style that is broken is named, and does not hide the others.
     fs::remove(At(styles + "/alpha/lit.png"));
     const CommandResult broken = Run({"styles"}, installed);
@@ -285,8 +287,9 @@ TEST_F(CliVerbs, BundledStylesByName) {
 
 TEST_F(CliVerbs, StyleKeysListEveryDefault) {
   const std::string keys = RunOk({"styles", "--keys"}).out;
-  for (const char* key : {"transfer.method", "transfer.threshold", "transfer.levels", "transfer.jitter_fps",
-                          "transfer.blend_radius", "transfer.scale", "transfer.rim", "transfer.paper", "exemplar.image"}) {
+  for (const char* key :
+       {"transfer.method", "transfer.threshold", "transfer.levels", "transfer.jitter_fps", "transfer.blend_radius",
+        "transfer.scale", "transfer.rim", "transfer.paper", "exemplar.image"}) {
     EXPECT_TRUE(Contains(keys, std::string("\n") + key)) << key;
   }
 }

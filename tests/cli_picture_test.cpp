@@ -1,0 +1,229 @@
+// The command line's pictures: one step or two, any number of threads, chance and its seed; and comparing what came
+// out.
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+using CliPictures = CliTest;
+using CliCompare = CliTest;
+
+bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// How a picture is asked for: what concerns the guides, and what concerns the picture.
+struct Variant {
+  std::vector<std::string> guides;
+  std::vector<std::string> picture;
+};
+
+class CliOneStepOrTwo : public CliTest {
+ protected:
+  // Stylises at once and through a guide file, with one thread and with all: four pictures of the same bytes.
+  std::string ExpectSameBytes(const std::string& style, const Variant& variant, const std::string& ending = ".png") {
+    const Arguments scene = With({Scene("stilllife.glb"), "--size", "96x54"}, variant.guides);
+    RunOk(With(With({"guidegen"}, scene), {"--style", style, "-o", "guides.exr"}));
+    std::string first;
+    for (const char* threads : {"1", "0"}) {
+      const Arguments rest = With({"--style", style, "--threads", threads}, variant.picture);
+      RunOk(With(With(With({"stylize"}, scene), rest), {"-o", "once" + ending}));
+      RunOk(With(With({"transfer", "guides.exr"}, rest), {"-o", "twice" + ending}));
+      if (first.empty()) first = Bytes("once" + ending);
+      EXPECT_EQ(Bytes("once" + ending), first) << style << ", " << threads << " threads";
+      EXPECT_EQ(Bytes("twice" + ending), first) << style << ", " << threads << " threads";
+    }
+    EXPECT_NE(first, "");
+    return first;
+  }
+};
+
+TEST_F(CliOneStepOrTwo, SameBytesHoweverItIsAsked) {
+  WriteStyle("style");
+  WritePainted("under.png", 96, 54);
+  const std::string plain = ExpectSameBytes("style", {});
+  EXPECT_NE(ExpectSameBytes("style", {{"--aa", "4"}, {}}), plain);
+  EXPECT_NE(ExpectSameBytes("style", {{}, {"--over", "under.png"}}), plain);
+  EXPECT_NE(ExpectSameBytes("style", {{"--aa", "4", "--view", "20,30"}, {"--over", "under.png"}}), plain);
+  EXPECT_NE(ExpectSameBytes("style", {{"--normal-frame", "eye"}, {}}), plain);
+  EXPECT_EQ(ExpectSameBytes("style", {{"--half"}, {}}), plain);  // a style of normals has no colour layer to round
+}
+
+TEST_F(CliOneStepOrTwo, SameBytesInEveryFormat) {
+  WriteStyle("style");
+  for (const char* ending : {".tif", ".jpg", ".exr"}) ExpectSameBytes("style", {}, ending);
+  ExpectSameBytes("style", {{}, {"--bits", "16"}});
+  ExpectSameBytes("style", {{}, {"--bits", "32"}}, ".exr");
+}
+
+TEST_F(CliOneStepOrTwo, SameBytesInEveryBundledStyle) {
+  int styles = 0;
+  for (const auto& entry : fs::directory_iterator(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars")) {
+    if (!fs::exists(entry.path() / "style.toml")) continue;
+    ++styles;
+    ExpectSameBytes(entry.path().string(), {});
+  }
+  EXPECT_GT(styles, 0);
+}
+
+TEST_F(CliPictures, SeedsDecideAndRepeat) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(64));
+  const auto picture = [&](const Arguments& more) {
+    RunOk(With({"transfer", "g.exr", "--style", "style", "-o", "p.png"}, more));
+    return Bytes("p.png");
+  };
+  const std::string zero = picture({}), five = picture({"--seed", "5"});
+  EXPECT_EQ(picture({"--seed", "0"}), zero);
+  EXPECT_EQ(picture({"--seed", "5"}), five);
+  EXPECT_NE(five, zero);
+  EXPECT_NE(picture({"--seed", "18446744073709551615"}), zero);
+  // Frames matter to a style that renews its jitter, and to no other.
+  EXPECT_EQ(picture({"--frame", "7"}), zero);
+  const std::string renewed = picture({"--frame", "7", "--set", "transfer.jitter_fps=12"});
+  EXPECT_NE(renewed, zero);
+  EXPECT_EQ(picture({"--frame", "6", "--set", "transfer.jitter_fps=12", "--fps", "24"}), renewed);
+  EXPECT_NE(picture({"--frame", "7", "--set", "transfer.jitter_fps=12", "--fps", "12"}), renewed);
+  for (const char* fps : {"0", "x", "24/", "-24", "24/0"}) {
+    ExpectError({"transfer", "g.exr", "--style", "style", "-o", "p.png", "--fps", fps}, 2, {"--fps", "24000/1001"});
+  }
+}
+
+TEST_F(CliPictures, RepeatReportsTheSpread) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(64));
+  const Arguments transfer = {"transfer", "g.exr", "--style", "style", "-o", "p.png"};
+  RunOk(transfer);
+  const std::string once = Bytes("p.png");
+  const nlohmann::json json = RunOk(With(transfer, {"--repeat", "3", "--json"})).Json();
+  EXPECT_EQ(Bytes("p.png"), once);
+  EXPECT_EQ(json["repeat"], 3);
+  for (const char* step : {"match", "vote", "compose"}) {
+    EXPECT_LE(json["ms"][step]["min"], json["ms"][step]["median"]);
+    EXPECT_LE(json["ms"][step]["median"], json["ms"][step]["max"]);
+  }
+  EXPECT_TRUE(Contains(RunOk(transfer).out, "p.png  read "));
+}
+
+TEST_F(CliPictures, SetWinsOverTheStyle) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(64));
+  const Arguments transfer = {"transfer", "g.exr", "--style", "style", "-o", "p.png"};
+  RunOk(transfer);
+  const std::string plain = Bytes("p.png");
+  for (const char* set : {"transfer.method=litsphere", "transfer.method=\"bruteforce\"", "transfer.scale=0.5",
+                          "transfer.paper=#ffeedd", "transfer.blend_radius=3", "transfer.threshold=inf"}) {
+    RunOk(With(transfer, {"--set", set}));
+    EXPECT_NE(Bytes("p.png"), plain) << set;
+  }
+  RunOk(With(transfer, {"--set", "transfer.scale=0.5", "--set", "transfer.scale=1"}));
+  EXPECT_EQ(Bytes("p.png"), plain);
+  ExpectError(With(transfer, {"--set", "transfer.bogus=1"}), 2,
+              {"--set", "unknown key transfer.bogus", "blend_radius"});
+  ExpectError(With(transfer, {"--set", "bogus=1"}), 2, {"--set", "unknown key bogus"});
+  ExpectError(With(transfer, {"--set", "transfer.blend_radius"}), 2, {"expected KEY=VALUE"});
+  ExpectError(With(transfer, {"--set", "=3"}), 2, {"expected KEY=VALUE"});
+  ExpectError(With(transfer, {"--set", "transfer.blend_radius=x"}), 2,
+              {"transfer.blend_radius", "whole number, 0 to 64"});
+  ExpectError(With(transfer, {"--set", "transfer.levels=17"}), 2, {"transfer.levels", "1 to 16"});
+  ExpectError(With(transfer, {"--set", "transfer.threshold=nan"}), 2, {"transfer.threshold", "0 or more"});
+  ExpectError(With(transfer, {"--set", "transfer.method=bogus"}), 2, {"litsphere", "styleblit", "bruteforce"});
+  ExpectError(With(transfer, {"--set", "transfer.method=stylit"}), 5, {"stylit", "not built"});
+  ExpectError(With(transfer, {"--set", "transfer.colorize=0.5"}), 5, {"transfer.colorize", "not built"});
+  ExpectError(With(transfer, {"--set", "transfer.paper=no.png"}), 2, {"transfer.paper", "no.png", "no such file"});
+}
+
+TEST_F(CliCompare, EqualAndDifferent) {
+  WritePainted("a.png", 24, 16);
+  fs::copy_file(At("a.png"), At("same.png"));
+  Picture changed = Painted(24, 16);
+  changed.At(5, 3)[1] ^= 0x4000;
+  ASSERT_TRUE(WritePicture(At("b.png"), changed));
+  EXPECT_TRUE(Contains(RunOk({"compare", "a.png", "same.png"}).out, "\nequal\n"));
+  const CommandResult differs = Run({"compare", "a.png", "b.png"});
+  EXPECT_EQ(differs.code, 1);
+  EXPECT_TRUE(Contains(differs.out, "fail")) << differs.out;
+  EXPECT_TRUE(Contains(differs.out, "(5, 3)")) << differs.out;
+  EXPECT_EQ(differs.err, "");
+}
+
+// idiff's long options have one dash; those commands are pasted from other people's scripts.
+TEST_F(CliCompare, ThresholdsInEitherSpelling) {
+  WritePainted("a.png", 24, 16);
+  Picture changed = Painted(24, 16);
+  changed.At(5, 3)[1] = static_cast<std::uint16_t>(changed.At(5, 3)[1] + 13107);  // a fifth of the range
+  ASSERT_TRUE(WritePicture(At("b.png"), changed));
+  const auto code = [&](const Arguments& more) { return Run(With({"compare", "a.png", "b.png"}, more)).code; };
+  for (const std::string dash : {"-", "--"}) {
+    EXPECT_EQ(code({dash + "fail", "0.1"}), 1);
+    EXPECT_EQ(code({dash + "fail", "0.3"}), 0);
+    EXPECT_EQ(code({dash + "failrelative", "0.9"}), 0);
+    EXPECT_EQ(code({dash + "failpercent", "1"}), 0);
+    EXPECT_EQ(code({dash + "failpercent", "1", dash + "hardfail", "0.1"}), 1);
+    EXPECT_EQ(code({dash + "allowfailures", "1"}), 0);
+    EXPECT_EQ(code({dash + "fail", "0.3", dash + "warn", "0.1"}), 0);
+  }
+  EXPECT_TRUE(Contains(Run({"compare", "a.png", "b.png", "-fail", "0.3", "-warn", "0.1"}).out, "\nwarn"));
+  ExpectError({"compare", "a.png", "b.png", "-fail", "x"}, 2, {"expected a number: --fail = x"});
+  ExpectError({"compare", "a.png", "b.png", "-fail", "-1"}, 2, {"expected 0 or more"});
+  ExpectError({"compare", "a.png", "b.png", "-failpercent", "101"}, 2, {"expected 0 to 100"});
+  ExpectError({"compare", "a.png", "b.png", "-allowfailures", "-1"}, 2, {"-1 is negative"});
+}
+
+TEST_F(CliCompare, WhatCannotBeCompared) {
+  WritePainted("a.png", 24, 16);
+  WritePainted("wide.png", 25, 16);
+  WriteGuideFile("g.exr", Ball(16));
+  ExpectError({"compare", "a.png", "wide.png"}, 3, {"a.png is 24×16", "wide.png is 25×16", "one size"});
+  ExpectError({"compare", "a.png", "missing.png"}, 3, {"missing.png", "no such file"});
+  ExpectError({"compare", "a.png", "."}, 3, {".", "folder"});
+  ExpectError({"compare", "a.png", "a.png", "--layer", "bogus"}, 3, {"'bogus'", "the first has color, A"});
+  WriteText("text.png", "no picture");
+  ExpectError({"compare", "a.png", "text.png"}, 3, {"text.png"});
+  EXPECT_EQ(Run({"compare", "g.exr", "g.exr", "--layer", "normal"}).code, 0);
+}
+
+TEST_F(CliCompare, HeatMapAndJson) {
+  WritePainted("a.png", 24, 16);
+  Picture changed = Painted(24, 16);
+  changed.At(5, 3)[1] ^= 0x4000;
+  ASSERT_TRUE(WritePicture(At("b.png"), changed));
+  const CommandResult result = Run({"compare", "a.png", "b.png", "-o", "heat.png", "--json"});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_EQ(result.err, "heat.png: yellow is a difference of 0.251\n");
+  EXPECT_EQ(result.Json()["verdict"], "fail");
+  EXPECT_EQ(result.Json()["stats"]["worst"]["channel"], "G");
+  EXPECT_EQ(result.Json()["stats"]["worst"]["x"], 5);
+  const Expected<Picture> heat = ReadPicture(At("heat.png"));
+  ASSERT_TRUE(heat);
+  EXPECT_EQ(heat->width, 24);
+  EXPECT_EQ(heat->height, 16);
+  EXPECT_GT(heat->At(5, 3)[0], heat->At(4, 3)[0]);
+  EXPECT_EQ(RunOk({"compare", "a.png", "a.png", "-o", "heat.png"}).err, "heat.png: nothing differs\n");
+  ExpectError({"compare", "a.png", "b.png", "-o", "heat.gif"}, 2, {"heat.gif", ".png, .tif, .jpg, .exr"});
+}
+
+TEST_F(CliCompare, NanIsADifference) {
+  GuideSet whole = Ball(16), holed = Ball(16);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  holed.Plane(Layer::kNormal, 1)[holed.Index(8, 8)] = nan;
+  WriteGuideFile("whole.exr", whole);
+  WriteGuideFile("holed.exr", holed);
+  const CommandResult result = Run({"compare", "whole.exr", "holed.exr", "--json", "-o", "heat.png"});
+  EXPECT_EQ(result.code, 1);
+  ASSERT_TRUE(result.Json().is_object()) << result.out;
+  EXPECT_EQ(result.Json()["stats"]["incomparable"], 1);
+  EXPECT_EQ(result.Json()["stats"]["worst"]["b"], "nan");
+  EXPECT_EQ(Run({"compare", "whole.exr", "holed.exr", "-fail", "1e30"}).code, 1);
+  EXPECT_EQ(Run({"compare", "holed.exr", "holed.exr"}).code, 1);
+  // Both backgrounds are infinitely deep; that is equal.
+  EXPECT_EQ(Run({"compare", "whole.exr", "whole.exr", "--layer", "depth"}).code, 0);
+}
+
+}  // namespace
+}  // namespace scumble
