@@ -10,7 +10,6 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "io/guide_file.h"
-#include "transfer/transfer.h"
 
 namespace scumble {
 namespace {
@@ -53,11 +52,14 @@ Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& glob
   const bool plan_only = verb.output.empty();
   if (plan_only && !verb.scene.explain)
     return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
+  const GuideWriteOptions write{verb.scene.half, verb.compression};
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(verb.output, write));
+  if (verb.style.style.empty() && !verb.style.sets.empty()) return UsageError("--set changes a style: give --style too");
   ProgressBar bar("guidegen", globals.quiet);
   SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(verb.scene, layers, globals, bar.Part(0.0, 1.0), plan_only));
   if (!plan_only) {
     Stopwatch watch;
-    SCUMBLE_RETURN_IF_ERROR(WriteGuides(verb.output, made.guides, {verb.scene.half, verb.compression}));
+    SCUMBLE_RETURN_IF_ERROR(WriteGuides(verb.output, made.guides, write));
     made.times.emplace_back("write", watch.Lap());
   }
   PrintResult(verb, made, globals);

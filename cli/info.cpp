@@ -21,8 +21,11 @@ Expected<Json> DescribeGuides(const std::string& path) {
   Json json{{"kind", "guides"},
             {"width", info.width},
             {"height", info.height},
-            {"layers", info.layers.ToString()},
             {"channels", info.channels}};
+  for (const auto& [view_layer, layers] : info.layers) {
+    json[view_layer.empty() ? "layers" : "layers of " + view_layer] = layers.ToString();
+  }
+  if (info.from_blender) json["note"] = "rendered by Blender: transfer cannot read it, use guidegen on the scene";
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
   if (info.header.camera) json["camera"] = info.header.camera->name;

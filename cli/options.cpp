@@ -102,13 +102,6 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
   verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
 }
 
-double Stopwatch::Lap() {
-  const auto now = std::chrono::steady_clock::now();
-  const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-  last_ = now;
-  return ms;
-}
-
 namespace {
 
 Expected<std::optional<ViewAngles>> ParseView(const std::string& text) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "cli/command.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
+#include "image/stopwatch.h"
 #include "image/style.h"
 #include "io/picture_file.h"
 
@@ -78,13 +78,5 @@ Expected<Style> OpenStyle(const StyleOptions& options);
 
 // Folders that may hold bundled styles: beside the build, or where `install` put them.
 std::vector<std::filesystem::path> StyleRoots();
-
-class Stopwatch {
- public:
-  double Lap();
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace scumble

@@ -1,10 +1,13 @@
 // scumble sphere: the artist's kit.
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "cli/command.h"
 #include "cli/json_text.h"
 #include "cli/options.h"
 #include "guidegen/guidegen.h"
+#include "image/direction.h"
 #include "style/sphere_kit.h"
 
 namespace scumble {
@@ -17,6 +20,9 @@ struct SphereVerb {
   std::string isa;
   std::string output;
 };
+
+// As --light takes it.
+std::string KeyLightText() { return fmt::format("{:g},{:g}", kKeyLightAzimuth, kKeyLightElevation); }
 
 Expected<KitLight> RenderLight(const SphereVerb& verb, const std::string& text, const Globals& globals) {
   SCUMBLE_ASSIGN(const auto angles, ParseNumbers(text, 2, 2, "--light"));
@@ -34,7 +40,7 @@ Expected<KitLight> RenderLight(const SphereVerb& verb, const std::string& text, 
 
 Expected<ExitCode> RunSphereVerb(const SphereVerb& verb, const Globals& globals) {
   std::vector<std::string> texts = verb.lights;
-  if (texts.empty()) texts = {"-40,40"};
+  if (texts.empty()) texts = {KeyLightText()};
   std::vector<KitLight> lights;
   for (const std::string& text : texts) {
     SCUMBLE_ASSIGN(KitLight light, RenderLight(verb, text, globals));
@@ -65,7 +71,8 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option(
          "--light", verb->lights,
          "where the light comes from: azimuth in degrees to the right of the viewer, elevation in degrees above "
-         "the horizon; left out: -40,40, upper left over the shoulder. Repeat it for one template per light")
+         "the horizon; left out: " +
+             KeyLightText() + ", upper left over the shoulder. Repeat it for one template per light")
       ->type_name("AZ,EL")
       ->allow_extra_args(false);
   sub->add_option("--aa", verb->aa, "N x N subsamples of the silhouette's coverage, 1 to 16")

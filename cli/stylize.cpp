@@ -7,7 +7,7 @@
 #include "cli/progress_bar.h"
 #include "cli/transfer_run.h"
 #include "io/guide_file.h"
-#include "transfer/transfer.h"
+#include "io/picture_file.h"
 
 namespace scumble {
 namespace {
@@ -20,11 +20,13 @@ struct TransferVerb {
 };
 
 Expected<ExitCode> RunTransferVerb(const TransferVerb& verb, const Globals& globals) {
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
   Stopwatch watch;
   GuideReadOptions read;
   read.required = RequiredLayers(style.transfer);
   read.view_layer = verb.view_layer;
+  if (style.transfer.edge_aware) read.mend = "; --set transfer.edge_aware=false does without depth and object";
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
@@ -38,6 +40,7 @@ struct StylizeVerb {
 };
 
 Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& globals) {
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   Stopwatch watch;
   SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
   const double style_ms = watch.Lap();

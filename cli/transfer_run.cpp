@@ -83,6 +83,8 @@ std::string ToJson(const Style& style, const PreparedStyle& prepared, const Sour
   json["coherence"] = coherence.share;
   json["chunks"] = coherence.chunks;
   json["mean_chunk_area"] = coherence.mean_chunk_area;
+  json["seed"] = options.seed;
+  json["version"] = SCUMBLE_VERSION;
   json["repeat"] = options.repeat;
   if (!plan.empty()) json["plan"] = PlanToJson(plan);
   for (const auto& [name, spread] : steps) {

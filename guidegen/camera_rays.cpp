@@ -4,33 +4,10 @@
 #include <cmath>
 #include <string>
 
+#include "guidegen/matrix_util.h"
+
 namespace scumble {
 namespace {
-
-bool IsFinite(const glm::dmat4& matrix) {
-  for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) {
-      if (!std::isfinite(matrix[column][row])) return false;
-    }
-  }
-  return true;
-}
-
-// Right-handed unit axes that keep the viewing direction; false where the matrix has none.
-bool StraightenAxes(const glm::dmat4& matrix, glm::dmat3& axes) {
-  const glm::dvec3 up(matrix[1]);
-  const glm::dvec3 backward(matrix[2]);
-  const double backward_length = glm::length(backward);
-  const double up_length = glm::length(up);
-  if (!IsFinite(matrix) || !(backward_length > 0.0) || !(up_length > 0.0)) return false;
-  axes[2] = backward / backward_length;
-  const glm::dvec3 right = glm::cross(up / up_length, axes[2]);
-  const double right_length = glm::length(right);
-  if (!(right_length > 1e-9)) return false;
-  axes[0] = right / right_length;
-  axes[1] = glm::cross(axes[2], axes[0]);
-  return true;
-}
 
 // Empty when the camera can be used.
 std::string FindFault(const Camera& camera) {
@@ -57,9 +34,11 @@ Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int heigh
   const std::string who = "camera \"" + camera.name + "\" ";
   if (const std::string fault = FindFault(camera); !fault.empty()) return InputError(who + fault);
   CameraRays rays;
-  if (!StraightenAxes(camera.world_from_camera, rays.axes_)) {
+  const std::optional<glm::dmat3> axes = StraightenAxes(camera.world_from_camera);
+  if (!axes) {
     return InputError(who + "has a matrix without a direction: its axes must be finite, not zero and not parallel");
   }
+  rays.axes_ = *axes;
   rays.name_ = camera.name;
   rays.eye_ = glm::dvec3(camera.world_from_camera[3]);
   rays.orthographic_ = camera.orthographic;

@@ -6,25 +6,19 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "guidegen/embree_scene.h"
 #include "guidegen/tile_caster.h"
+#include "image/stopwatch.h"
 
 namespace scumble {
 namespace {
 
 constexpr Layer kUnavailableLayers[] = {Layer::kMotion, Layer::kLpeFull, Layer::kLpeLDE,
                                         Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E};
-
-using Clock = std::chrono::steady_clock;
-
-double MillisecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // Counts tiles and passes the share on, one caller at a time; a thread that finds the line busy works on instead.
 class ProgressGate {
@@ -91,15 +85,14 @@ GuideSet EmptyGuides(const GuidegenOptions& options) {
 Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) {
   if (!Continue(options.progress, 0.0)) return CancelledError();
   GuidegenResult result;
-  const Clock::time_point build_start = Clock::now();
+  Stopwatch watch;
   SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa));
-  result.build_ms = MillisecondsSince(build_start);
+  result.build_ms = watch.Lap();
 
-  const Clock::time_point render_start = Clock::now();
   result.guides = EmptyGuides(options);
   const TileCaster caster(scene, view, options, result.guides);
   if (!CastTiles(caster, options, result.rays)) return CancelledError();
-  result.render_ms = MillisecondsSince(render_start);
+  result.render_ms = watch.Lap();
   if (!Continue(options.progress, 1.0)) return CancelledError();
 
   result.guides.camera = view.camera.ToGuideCamera();

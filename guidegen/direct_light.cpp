@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 #include <string>
 
 #include "image/color.h"
@@ -12,6 +13,9 @@ namespace {
 
 // Corners are rounded to 2⁻²⁴ of their largest coordinate, and the intersection loses a few more bits.
 constexpr double kOffsetPerCoordinate = 0x1.0p-20;
+
+// Layers hold floats: brighter than this cannot be told.
+constexpr double kMaxIrradiance = std::numeric_limits<float>::max() * glm::pi<double>();
 
 Expected<PlacedLight> PlaceLight(const Light& light, const CameraRays& camera) {
   const std::string who = "light \"" + light.name + "\" ";
@@ -67,13 +71,16 @@ LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
   const double cosine = glm::dot(point.normal, direction);
   if (!(cosine > 0.0) || !(glm::dot(point.facing, direction) > 0.0)) return sample;
   double irradiance = light.intensity * cosine;
+  if (!(irradiance > 0.0)) return sample;
+  // The square of a distance may underflow to 0. What is infinite is clamped before a cone's 0 can make it NaN.
   if (!sample.endless) irradiance /= distance * distance;
+  irradiance = std::min(irradiance, kMaxIrradiance);
   if (light.type == LightType::kSpot) {
     const double along = glm::dot(light.axis, -direction);
     const double attenuation = std::clamp(along * light.cone_scale + light.cone_offset, 0.0, 1.0);
     irradiance *= attenuation * attenuation;
   }
-  if (std::isfinite(irradiance)) sample.luminance = irradiance * glm::one_over_pi<double>();
+  sample.luminance = irradiance * glm::one_over_pi<double>();
   return sample;
 }
 

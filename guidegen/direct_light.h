@@ -32,7 +32,7 @@ struct LightSample {
 };
 
 // Point: I cosθ/(π d²). Spot: the same within KHR_lights_punctual's cone. Sun: E cosθ/π. Light must come from the
-// viewer's side of the geometric surface as well as of the shading normal.
+// viewer's side of the geometric surface as well as of the shading normal. Finite as a float, too.
 LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point);
 
 // Where a shadow ray starts: off the surface, on the viewer's side, by more than Embree's floats can be wrong.

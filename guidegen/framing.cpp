@@ -46,9 +46,9 @@ Sphere BoundingSphere(const Scene& scene) {
 // Rotation whose +Z points at (azimuth, elevation), +X level. Built from the angles and not from a world "up", so that
 // straight up and straight down are views like any other.
 glm::dmat4 Facing(double azimuth_degrees, double elevation_degrees) {
-  const double azimuth = azimuth_degrees * kRadiansPerDegree, elevation = elevation_degrees * kRadiansPerDegree;
-  const double sa = std::sin(azimuth), ca = std::cos(azimuth), se = std::sin(elevation), ce = std::cos(elevation);
-  const glm::dvec3 right(ca, 0.0, -sa), up(-sa * se, ce, -ca * se), back(sa * ce, se, ca * ce);
+  const glm::dvec3 level = DirectionFromAngles(azimuth_degrees, 0.0);
+  const glm::dvec3 right(level.z, 0.0, -level.x), back = DirectionFromAngles(azimuth_degrees, elevation_degrees);
+  const glm::dvec3 up = glm::cross(back, right);
   return glm::dmat4(glm::dvec4(right, 0.0), glm::dvec4(up, 0.0), glm::dvec4(back, 0.0), glm::dvec4(0.0, 0.0, 0.0, 1.0));
 }
 

@@ -119,7 +119,11 @@ class Reader {
       }
       return Ok();
     }
-    SCUMBLE_ASSIGN(main_, Slice(accessor_->bufferView, accessor_->byteOffset, accessor_->count, element_bytes(), true));
+    SCUMBLE_ASSIGN(main_, Slice({.view = accessor_->bufferView,
+                                 .offset = accessor_->byteOffset,
+                                 .count = accessor_->count,
+                                 .element_bytes = element_bytes(),
+                                 .strided = true}));
     return Ok();
   }
 
@@ -129,24 +133,34 @@ class Reader {
   int component_bytes() const { return component_bytes_; }
   const Block& main() const { return main_; }
 
-  // `count` elements inside a buffer view inside its buffer; sums and products are arranged so as not to overflow.
-  Expected<Block> Slice(int view_index, std::size_t offset, std::size_t count, std::size_t bytes, bool strided) const {
-    if (view_index < 0 || std::size_t(view_index) >= model_.bufferViews.size()) {
-      return Bad("uses buffer view " + std::to_string(view_index) + ", the file has " +
+  // Elements inside a buffer view.
+  struct Extent {
+    int view = -1;
+    std::size_t offset = 0;
+    std::size_t count = 0;
+    std::size_t element_bytes = 0;
+    bool strided = false;  // by the view's own stride, if it has one
+  };
+
+  // Where they are inside the view's buffer; sums and products are arranged so as not to overflow.
+  Expected<Block> Slice(const Extent& want) const {
+    const std::size_t bytes = want.element_bytes;
+    if (want.view < 0 || std::size_t(want.view) >= model_.bufferViews.size()) {
+      return Bad("uses buffer view " + std::to_string(want.view) + ", the file has " +
                  std::to_string(model_.bufferViews.size()));
     }
-    SCUMBLE_ASSIGN(const std::span<const unsigned char> view, ReadBufferView(model_, file_, view_index, what_));
-    const std::size_t view_stride = model_.bufferViews[std::size_t(view_index)].byteStride;
-    const std::size_t stride = strided && view_stride > 0 ? view_stride : bytes;
+    SCUMBLE_ASSIGN(const std::span<const unsigned char> view, ReadBufferView(model_, file_, want.view, what_));
+    const std::size_t view_stride = model_.bufferViews[std::size_t(want.view)].byteStride;
+    const std::size_t stride = want.strided && view_stride > 0 ? view_stride : bytes;
     if (stride < bytes) return Bad("has elements longer than the stride of its buffer view");
-    if (count == 0) return Block{view.data(), stride, 0};
-    const std::size_t room = offset <= view.size() ? view.size() - offset : 0;
-    if (bytes > room || count - 1 > (room - bytes) / stride) {
-      return Bad("needs " + std::to_string(count) + " elements of " + std::to_string(bytes) + " bytes from byte " +
-                 std::to_string(offset) + " of buffer view " + std::to_string(view_index) + ", which has " +
+    if (want.count == 0) return Block{view.data(), stride, 0};
+    const std::size_t room = want.offset <= view.size() ? view.size() - want.offset : 0;
+    if (bytes > room || want.count - 1 > (room - bytes) / stride) {
+      return Bad("needs " + std::to_string(want.count) + " elements of " + std::to_string(bytes) + " bytes from byte " +
+                 std::to_string(want.offset) + " of buffer view " + std::to_string(want.view) + ", which has " +
                  std::to_string(view.size()) + " bytes");
     }
-    return Block{view.data() + offset, stride, count};
+    return Block{view.data() + want.offset, stride, want.count};
   }
 
   // Calls patch(element, bytes of its value) for every element that a sparse accessor replaces.
@@ -158,10 +172,15 @@ class Reader {
     if (!IsIndexType(sparse.indices.componentType)) return Bad("has sparse indices of a wrong type");
     if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) return Bad("has a negative sparse offset");
     const std::size_t count = std::size_t(sparse.count);
-    SCUMBLE_ASSIGN(const Block indices, Slice(sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), count,
-                                              std::size_t(ComponentBytes(sparse.indices.componentType)), false));
-    SCUMBLE_ASSIGN(const Block values, Slice(sparse.values.bufferView, std::size_t(sparse.values.byteOffset), count,
-                                             element_bytes(), false));
+    const std::size_t index_bytes = std::size_t(ComponentBytes(sparse.indices.componentType));
+    SCUMBLE_ASSIGN(const Block indices, Slice({.view = sparse.indices.bufferView,
+                                               .offset = std::size_t(sparse.indices.byteOffset),
+                                               .count = count,
+                                               .element_bytes = index_bytes}));
+    SCUMBLE_ASSIGN(const Block values, Slice({.view = sparse.values.bufferView,
+                                              .offset = std::size_t(sparse.values.byteOffset),
+                                              .count = count,
+                                              .element_bytes = element_bytes()}));
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t element = LoadIndex(indices.data + i * indices.stride, sparse.indices.componentType);
       if (element >= accessor_->count)

@@ -56,12 +56,17 @@ void DropUnusedVertices(Mesh& mesh) {
 // Loads one primitive; the members only save passing them on.
 class PrimitiveLoader {
  public:
-  PrimitiveLoader(const tinygltf::Model& model, const std::string& file, const tinygltf::Primitive& primitive,
-                  std::string name, WarningCounter& warnings)
-      : model_(model), file_(file), primitive_(primitive), name_(std::move(name)), warnings_(warnings) {}
+  PrimitiveLoader(const GltfLoad& load, const tinygltf::Primitive& primitive, std::string name)
+      : model_(load.model),
+        file_(load.file),
+        scene_(load.scene),
+        budget_(load.budget),
+        warnings_(load.warnings),
+        primitive_(primitive),
+        name_(std::move(name)) {}
 
   // Nothing for primitives that are left out.
-  Expected<std::optional<Mesh>> Load(Scene& scene, GeometryBudget& budget) {
+  Expected<std::optional<Mesh>> Load() {
     if (primitive_.mode < TINYGLTF_MODE_TRIANGLES || primitive_.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
       warnings_.Add("points and lines are left out, only triangles are seen", name_);
       return std::optional<Mesh>();
@@ -76,22 +81,22 @@ class PrimitiveLoader {
     if (primitive_.indices >= 0) {
       SCUMBLE_ASSIGN(corners, AccessorCount(model_, file_, primitive_.indices, name_ + ", indices"));
     }
-    SCUMBLE_RETURN_IF_ERROR(budget.Take(file_, vertices, TriangleCount(primitive_.mode, corners)));
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, vertices, TriangleCount(primitive_.mode, corners)));
     SCUMBLE_RETURN_IF_ERROR(ReadPositions(position));
     SCUMBLE_RETURN_IF_ERROR(ReadTriangles());
     SCUMBLE_RETURN_IF_ERROR(ReadAttributes());
-    SCUMBLE_RETURN_IF_ERROR(ChooseMaterial(scene));
+    SCUMBLE_RETURN_IF_ERROR(ChooseMaterial());
     if (mesh_.triangles.size() < mesh_.positions.size() / 4) {
       const std::size_t before = mesh_.positions.size();
       DropUnusedVertices(mesh_);
-      budget.GiveBackVertices(before - mesh_.positions.size());
+      budget_.GiveBackVertices(before - mesh_.positions.size());
     }
     if (mesh_.triangles.empty()) {
       warnings_.Add("primitives without a triangle are left out", name_);
       return std::optional<Mesh>();
     }
     if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", name_);
-    PrepareTangents(scene.materials[std::size_t(mesh_.material)]);
+    PrepareTangents(scene_.materials[std::size_t(mesh_.material)]);
     return std::optional<Mesh>(std::move(mesh_));
   }
 
@@ -187,9 +192,9 @@ class PrimitiveLoader {
     });
   }
 
-  Status ChooseMaterial(Scene& scene) {
+  Status ChooseMaterial() {
     if (primitive_.material < 0) {
-      mesh_.material = DefaultMaterial(scene);
+      mesh_.material = DefaultMaterial(scene_);
       return Ok();
     }
     if (std::size_t(primitive_.material) >= model_.materials.size()) {
@@ -232,28 +237,30 @@ class PrimitiveLoader {
 
   const tinygltf::Model& model_;
   const std::string& file_;
+  Scene& scene_;
+  GeometryBudget& budget_;
+  WarningCounter& warnings_;
   const tinygltf::Primitive& primitive_;
   const std::string name_;
-  WarningCounter& warnings_;
   Mesh mesh_;
 };
 
 }  // namespace
 
-Expected<std::vector<int>> LoadGltfMesh(const tinygltf::Model& model, const std::string& file, int mesh_index,
-                                        Scene& scene, GeometryBudget& budget, WarningCounter& warnings) {
-  const tinygltf::Mesh& mesh = model.meshes[std::size_t(mesh_index)];
+Expected<std::vector<int>> LoadGltfMesh(const GltfLoad& load, int mesh_index) {
+  const tinygltf::Mesh& mesh = load.model.meshes[std::size_t(mesh_index)];
   std::vector<int> loaded;
   for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
     std::string name = "mesh " + std::to_string(mesh_index);
     if (!mesh.name.empty()) name += " '" + Excerpt(mesh.name, 80) + "'";
     if (mesh.primitives.size() > 1) name += ", primitive " + std::to_string(i);
-    if (!mesh.primitives[i].targets.empty()) warnings.Add("shape keys are ignored, meshes keep their rest shape", name);
-    PrimitiveLoader loader(model, file, mesh.primitives[i], name, warnings);
-    SCUMBLE_ASSIGN(std::optional<Mesh> primitive, loader.Load(scene, budget));
+    if (!mesh.primitives[i].targets.empty())
+      load.warnings.Add("shape keys are ignored, meshes keep their rest shape", name);
+    PrimitiveLoader loader(load, mesh.primitives[i], name);
+    SCUMBLE_ASSIGN(std::optional<Mesh> primitive, loader.Load());
     if (!primitive) continue;
-    scene.meshes.push_back(std::move(*primitive));
-    loaded.push_back(static_cast<int>(scene.meshes.size()) - 1);
+    load.scene.meshes.push_back(std::move(*primitive));
+    loaded.push_back(static_cast<int>(load.scene.meshes.size()) - 1);
   }
   return loaded;
 }

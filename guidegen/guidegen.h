@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "guidegen/scene.h"
+#include "image/direction.h"
 #include "image/guides.h"
 #include "image/progress.h"
 #include "image/status.h"
@@ -63,8 +64,8 @@ struct SphereOptions {
   int size = 512;  // N × N pixels
   LayerSet layers;
   int aa = 1;
-  double light_azimuth = -40.0;    // degrees, the key light of the painted exemplars
-  double light_elevation = 40.0;
+  double light_azimuth = kKeyLightAzimuth;  // degrees, as in image/direction.h
+  double light_elevation = kKeyLightElevation;
   int threads = 0;
   std::string isa;
 };

@@ -2,17 +2,20 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "guidegen/gltf_materials.h"
 #include "guidegen/gltf_meshes.h"
 #include "guidegen/gltf_parse.h"
 #include "guidegen/loader_util.h"
+#include "guidegen/matrix_util.h"
 
 namespace scumble {
 namespace {
@@ -31,24 +34,13 @@ bool IsKnownExtension(std::string_view name) {
   return name.rfind("KHR_materials_", 0) == 0 && name != "KHR_materials_pbrSpecularGlossiness";
 }
 
-bool AllFinite(const glm::dmat4& matrix) {
-  for (int c = 0; c < 4; ++c) {
-    for (int r = 0; r < 4; ++r) {
-      if (!std::isfinite(matrix[c][r])) return false;
-    }
-  }
-  return true;
-}
-
-// Rotation and translation only; the view direction is kept exactly, up as far as it goes.
+// Rotation and translation only.
 std::optional<glm::dmat4> WithoutScale(const glm::dmat4& world) {
-  const glm::dvec3 back(world[2]), up(world[1]);
-  if (!(glm::length(back) > 0.0)) return std::nullopt;
-  const glm::dvec3 z = glm::normalize(back);
-  const glm::dvec3 y_raw = up - z * glm::dot(z, up);
-  if (!(glm::length(y_raw) > 0.0)) return std::nullopt;
-  const glm::dvec3 y = glm::normalize(y_raw);
-  return glm::dmat4(glm::dvec4(glm::cross(y, z), 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), world[3]);
+  const std::optional<glm::dmat3> axes = StraightenAxes(world);
+  if (!axes) return std::nullopt;
+  glm::dmat4 rigid(*axes);
+  rigid[3] = world[3];
+  return rigid;
 }
 
 // A node of the hierarchy as reached from the scene's roots.
@@ -150,7 +142,7 @@ class GltfLoader {
       seen[std::size_t(visit.node)] = true;
       SCUMBLE_ASSIGN(const glm::dmat4 local, LocalTransform(visit.node));
       visit.world = visit.world * local;
-      if (!AllFinite(visit.world))
+      if (!IsFinite(visit.world))
         return InputError(file_ + ": " + NodeLabel(visit.node) + " has an infinite transform");
       const int index = static_cast<int>(visits_.size());
       visits_.push_back(visit);
@@ -195,24 +187,33 @@ class GltfLoader {
     return local;
   }
 
-  // Ids are hashes of names, so objects of one name would be one object: those take their whole path instead.
+  // Ids are hashes of names, so objects of one name would be one object. The first node of a name, by its place in the
+  // file's list, keeps it whatever comes later; the others take their whole path.
   void NameObjects() {
-    std::map<std::string, int> uses;
-    for (const Visit& visit : visits_) {
-      if (model_.nodes[std::size_t(visit.node)].mesh >= 0) ++uses[NodeName(visit.node)];
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < visits_.size(); ++i) {
+      if (model_.nodes[std::size_t(visits_[i].node)].mesh >= 0) order.push_back(i);
     }
-    UniqueNames unique;
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return visits_[a].node < visits_[b].node; });
     names_.resize(visits_.size());
-    for (bool duplicates : {false, true}) {
-      for (std::size_t i = 0; i < visits_.size(); ++i) {
-        if (model_.nodes[std::size_t(visits_[i].node)].mesh < 0) continue;
-        std::string name = NodeName(visits_[i].node);
-        if ((uses[name] > 1) != duplicates) continue;
-        for (int at = visits_[i].parent; duplicates && at >= 0; at = visits_[std::size_t(at)].parent) {
-          name = NodeName(visits_[std::size_t(at)].node) + "/" + name;
-        }
+    UniqueNames unique;
+    std::set<std::string> plain;
+    std::vector<std::size_t> later;
+    for (std::size_t i : order) {
+      const std::string name = NodeName(visits_[i].node);
+      if (plain.insert(name).second) {
         names_[i] = unique.Take(name);
+      } else {
+        later.push_back(i);
       }
+    }
+    for (std::size_t i : later) {
+      std::string path = NodeName(visits_[i].node);
+      for (int at = visits_[i].parent; at >= 0; at = visits_[std::size_t(at)].parent) {
+        path = NodeName(visits_[std::size_t(at)].node) + "/" + path;
+      }
+      names_[i] = unique.Take(path);
     }
   }
 
@@ -246,11 +247,14 @@ class GltfLoader {
       warnings_.Add("objects that their transform flattens are left out", NodeLabel(visit.node));
       return Ok();
     }
-    const auto known = loaded_meshes_.find(node.mesh);
-    if (known == loaded_meshes_.end()) {
-      SCUMBLE_ASSIGN(loaded_meshes_[node.mesh], LoadGltfMesh(model_, file_, node.mesh, scene_, budget_, warnings_));
+    const auto [loaded, is_new] = loaded_meshes_.try_emplace(node.mesh);
+    if (is_new) {
+      SCUMBLE_ASSIGN(loaded->second, LoadGltfMesh({model_, file_, scene_, budget_, warnings_}, node.mesh));
     }
-    for (int mesh : loaded_meshes_[node.mesh]) scene_.instances.push_back({names_[index], mesh, visit.world});
+    for (int mesh : loaded->second) {
+      SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_new));
+      scene_.instances.push_back({names_[index], mesh, visit.world});
+    }
     return Ok();
   }
 
@@ -286,7 +290,7 @@ class GltfLoader {
     if (camera.aspect && (!(*camera.aspect > 0.0) || !std::isfinite(*camera.aspect))) return bad("has no proportions");
     if (!(camera.z_near >= 0.0) || !(camera.z_far > camera.z_near)) return bad("has its far plane before its near one");
     const std::optional<glm::dmat4> world = WithoutScale(visit.world);
-    if (!world) return bad("is scaled to nothing");
+    if (!world) return bad("is scaled or sheared until it has no direction");
     camera.world_from_camera = *world;
     scene_.cameras.push_back(std::move(camera));
     return Ok();
@@ -313,6 +317,9 @@ class GltfLoader {
       light.color = glm::vec3(from.color[0], from.color[1], from.color[2]);
     }
     light.intensity = from.intensity / kLumensPerWatt;
+    if (light.type != LightType::kSun && from.range > 0.0) {
+      warnings_.Add("the range of lights is ignored, they reach as far as physics has it", NodeLabel(visit.node));
+    }
     if (!IsFinite(light.color) || glm::any(glm::lessThan(light.color, glm::vec3(0.0f))))
       return bad("has a wrong colour");
     if (!std::isfinite(light.intensity) || light.intensity < 0.0) return bad("has a wrong intensity");
@@ -324,7 +331,7 @@ class GltfLoader {
       return bad("has wrong cone angles");
     }
     const std::optional<glm::dmat4> world = WithoutScale(visit.world);
-    if (!world) return bad("is scaled to nothing");
+    if (!world) return bad("is scaled or sheared until it has no direction");
     light.world_from_light = *world;
     scene_.lights.push_back(std::move(light));
     return Ok();

@@ -123,11 +123,18 @@ class ObjLoader {
     return Ok();
   }
 
-  // An index of the file, counted from 0 and resolved; -1 stands for none where `optional`.
-  Status CheckIndex(int index, std::size_t count, bool optional, const char* what, const std::string& shape) const {
-    if (index >= 0 ? std::size_t(index) < count : optional && index == -1) return Ok();
-    return InputError(file_ + ": a face of '" + Excerpt(shape, 80) + "' uses " + what + " " +
-                      std::to_string(std::int64_t(index) + 1) + ", but there are " + std::to_string(count) +
+  // One of the file's lists that faces point into.
+  struct IndexedList {
+    const char* what;
+    std::size_t count;
+    bool optional;
+  };
+
+  // An index of the file, counted from 0 and resolved; -1 stands for none where the list is optional.
+  Status CheckIndex(int index, const IndexedList& list, const std::string& shape) const {
+    if (index >= 0 ? std::size_t(index) < list.count : list.optional && index == -1) return Ok();
+    return InputError(file_ + ": a face of '" + Excerpt(shape, 80) + "' uses " + list.what + " " +
+                      std::to_string(std::int64_t(index) + 1) + ", but there are " + std::to_string(list.count) +
                       "; the file is corrupt or was cut short");
   }
 
@@ -143,13 +150,13 @@ class ObjLoader {
     if (!shape.lines.indices.empty() || !shape.points.indices.empty()) {
       warnings_.Add("points and lines are left out, only faces are seen", "'" + Excerpt(shape.name, 80) + "'");
     }
+    const IndexedList positions{"vertex", attributes_.vertices.size() / 3, false};
+    const IndexedList uvs{"texture coordinate", attributes_.texcoords.size() / 2, true};
+    const IndexedList normals{"normal", attributes_.normals.size() / 3, true};
     for (const tinyobj::index_t& index : mesh.indices) {
-      SCUMBLE_RETURN_IF_ERROR(
-          CheckIndex(index.vertex_index, attributes_.vertices.size() / 3, false, "vertex", shape.name));
-      SCUMBLE_RETURN_IF_ERROR(
-          CheckIndex(index.texcoord_index, attributes_.texcoords.size() / 2, true, "texture coordinate", shape.name));
-      SCUMBLE_RETURN_IF_ERROR(
-          CheckIndex(index.normal_index, attributes_.normals.size() / 3, true, "normal", shape.name));
+      SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.vertex_index, positions, shape.name));
+      SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.texcoord_index, uvs, shape.name));
+      SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.normal_index, normals, shape.name));
       lacks_normals_ |= index.normal_index < 0;
     }
     std::size_t first = 0;

@@ -238,6 +238,11 @@ class PlyLoader {
     } else if (keyword == "element") {
       Element element;
       if (!(words >> element.name >> element.count)) return Bad("the header line '" + Excerpt(line, 80) + "'");
+      // A second list of vertices might have other properties, and faces could not say which of the two they mean.
+      const auto is_twin = [&](const Element& other) { return other.name == element.name; };
+      if (element.name == "vertex" && std::any_of(header_.elements.begin(), header_.elements.end(), is_twin)) {
+        return Bad("its header has a second 'element vertex'; expected one, join them into it");
+      }
       header_.elements.push_back(element);
     } else if (keyword == "property") {
       Property property;

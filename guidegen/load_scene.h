@@ -6,6 +6,7 @@
 #include <string>
 
 #include "guidegen/scene.h"
+#include "image/direction.h"
 #include "image/status.h"
 
 namespace scumble {
@@ -25,12 +26,8 @@ struct ViewAngles {
 // A perspective camera that looks at the scene's centre. `aspect` is width / height of the picture.
 Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect);
 
-// The light that the bundled exemplars are painted in: from the upper left, over the viewer's shoulder. Degrees in
-// *view* space, azimuth from +Z towards +X.
-inline constexpr double kKeyLightAzimuth = -40.0;
-inline constexpr double kKeyLightElevation = 40.0;
-
-// A sun of strength π (white Lambert facing it has radiance 1) at those angles of the given camera's view space.
+// A sun of strength π (white Lambert facing it has radiance 1) at these angles (image/direction.h) of the given
+// camera's view space.
 Light KeyLight(const Camera& camera, double azimuth = kKeyLightAzimuth, double elevation = kKeyLightElevation);
 
 // Makes the scene ready to be seen: picks the camera by name (empty: the first; none in the file or `view` given: a

@@ -53,6 +53,17 @@ bool IsEar(const std::vector<glm::dvec2>& points, const std::vector<unsigned>& r
   return true;
 }
 
+Status TakeFrom(const std::string& file, const char* what, std::uint64_t limit, std::uint64_t& taken,
+                std::uint64_t more) {
+  if (more <= limit - taken) {
+    taken += more;
+    return Ok();
+  }
+  const std::uint64_t found = more > ~taken ? ~std::uint64_t(0) : taken + more;
+  return InputError(file + " has at least " + std::to_string(found) + " " + what +
+                    ", each instance counted; expected at most " + std::to_string(limit) + ": simplify the scene");
+}
+
 }  // namespace
 
 Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& path) {
@@ -103,17 +114,13 @@ void WarningCounter::MoveTo(std::vector<std::string>& lines) {
 }
 
 Status GeometryBudget::Take(const std::string& file, std::uint64_t vertices, std::uint64_t triangles) {
-  if (triangles > kMaxTriangles - triangles_) {
-    return InputError(file + " has more than " + std::to_string(kMaxTriangles) +
-                      " triangles, the most that are accepted: simplify the scene");
-  }
-  if (vertices > kMaxVertices - vertices_) {
-    return InputError(file + " has more than " + std::to_string(kMaxVertices) +
-                      " vertices, the most that are accepted: simplify the scene");
-  }
-  triangles_ += triangles;
-  vertices_ += vertices;
-  return Ok();
+  SCUMBLE_RETURN_IF_ERROR(TakeFrom(file, "triangles", kMaxTriangles, triangles_, triangles));
+  return TakeFrom(file, "vertices", kMaxVertices, vertices_, vertices);
+}
+
+Status GeometryBudget::TakeInstance(const std::string& file, const Mesh& mesh, bool is_first) {
+  SCUMBLE_RETURN_IF_ERROR(TakeFrom(file, "instances", kMaxInstances, instances_, 1));
+  return is_first ? Ok() : Take(file, mesh.positions.size(), mesh.triangles.size());
 }
 
 void TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles) {

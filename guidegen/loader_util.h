@@ -51,18 +51,23 @@ class WarningCounter {
   std::vector<Entry> entries_;
 };
 
-// A file of a few bytes can ask for any amount of geometry; this refuses before anything is allocated.
+// A file of a few bytes can ask for any amount of geometry; this refuses before anything is allocated. What is shown
+// more than once counts each time, because the ray caster holds each instance's triangles.
 class GeometryBudget {
  public:
   static constexpr std::uint64_t kMaxTriangles = 500'000'000;
   static constexpr std::uint64_t kMaxVertices = 500'000'000;
+  static constexpr std::uint64_t kMaxInstances = 1'000'000;
 
   Status Take(const std::string& file, std::uint64_t vertices, std::uint64_t triangles);
+  // One more instance of a mesh. The first one's triangles were taken when the mesh was loaded.
+  Status TakeInstance(const std::string& file, const Mesh& mesh, bool is_first);
   void GiveBackVertices(std::uint64_t vertices) { vertices_ -= vertices; }
 
  private:
   std::uint64_t vertices_ = 0;
   std::uint64_t triangles_ = 0;
+  std::uint64_t instances_ = 0;
 };
 
 // Cuts a simple polygon into corners - 2 triangles of corner numbers, winding kept: ear clipping in the plane of its

@@ -1,10 +1,10 @@
-#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <string>
 #include <vector>
 
 #include "guidegen/cast_guides.h"
 #include "guidegen/guidegen.h"
+#include "image/direction.h"
 
 namespace scumble {
 namespace {
@@ -23,15 +23,11 @@ Camera SphereCamera() {
 
 // Shines down its −Z, so its +Z points to where the light comes from.
 Light SphereSun(const SphereOptions& options) {
-  const double azimuth = glm::radians(options.light_azimuth);
-  const double elevation = glm::radians(options.light_elevation);
-  const glm::dvec3 from(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-                        std::cos(elevation) * std::cos(azimuth));
   Light sun;
   sun.name = "key";
   sun.type = LightType::kSun;
   sun.intensity = glm::pi<double>();
-  sun.world_from_light[2] = glm::dvec4(from, 0.0);
+  sun.world_from_light[2] = glm::dvec4(DirectionFromAngles(options.light_azimuth, options.light_elevation), 0.0);
   return sun;
 }
 

@@ -17,16 +17,28 @@ constexpr int kPacketHeight = 2;
 // Shadow rays towards a lamp stop this share of the way before it, where only the lamp itself would be.
 constexpr double kShadowReach = 1.0 - 1e-5;
 
+// A ray and the stretch of it, in lengths of its direction, on which surfaces count.
+struct Segment {
+  glm::dvec3 origin;
+  glm::dvec3 direction;
+  double near;
+  double far;
+};
+
+Segment SeenBy(const CameraRays& camera, const ViewRay& ray) {
+  return {ray.origin, ray.direction, camera.near_depth(), camera.far_depth()};
+}
+
 template <class Packet>
-void SetLane(Packet& packet, int lane, const glm::dvec3& origin, const glm::dvec3& direction, double near, double far) {
-  packet.org_x[lane] = float(origin.x);
-  packet.org_y[lane] = float(origin.y);
-  packet.org_z[lane] = float(origin.z);
-  packet.dir_x[lane] = float(direction.x);
-  packet.dir_y[lane] = float(direction.y);
-  packet.dir_z[lane] = float(direction.z);
-  packet.tnear[lane] = float(near);
-  packet.tfar[lane] = float(far);
+void SetLane(Packet& packet, int lane, const Segment& segment) {
+  packet.org_x[lane] = float(segment.origin.x);
+  packet.org_y[lane] = float(segment.origin.y);
+  packet.org_z[lane] = float(segment.origin.z);
+  packet.dir_x[lane] = float(segment.direction.x);
+  packet.dir_y[lane] = float(segment.direction.y);
+  packet.dir_z[lane] = float(segment.direction.z);
+  packet.tnear[lane] = float(segment.near);
+  packet.tfar[lane] = float(segment.far);
   packet.time[lane] = 0.0f;
   packet.mask[lane] = ~0u;
   packet.id[lane] = 0;
@@ -40,9 +52,8 @@ class OcclusionBatch {
   OcclusionBatch(RTCScene scene, bool camera_rays) : scene_(scene), context_(camera_rays) {}
 
   template <class Report>
-  void Add(const glm::dvec3& origin, const glm::dvec3& direction, double near, double far, const Tag& tag,
-           const Report& report) {
-    SetLane(packet_, count_, origin, direction, near, far);
+  void Add(const Segment& segment, const Tag& tag, const Report& report) {
+    SetLane(packet_, count_, segment);
     tags_[count_++] = tag;
     if (count_ == kPacket) Flush(report);
   }
@@ -128,8 +139,7 @@ void TileCaster::CastCentres(const Tile& tile, Hits& hits) const {
         Hit& hit = hits[row * kTileSide + column];
         hit.x = tile.x0 + column + 0.5;
         hit.y = tile.y0 + row + 0.5;
-        const ViewRay ray = camera.Through(hit.x, hit.y);
-        SetLane(packet.ray, lane, ray.origin, ray.direction, camera.near_depth(), camera.far_depth());
+        SetLane(packet.ray, lane, SeenBy(camera, camera.Through(hit.x, hit.y)));
         packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
       }
       rtcIntersect8(valid, scene_.handle(), &context.embree, &packet);
@@ -177,8 +187,7 @@ std::array<TileCaster::Samples, kTilePixels> TileCaster::CastSubsamples(const Ti
       if (whole[row * kTileSide + column]) continue;
       for (int rank = 0; rank < int(offsets_.size()); ++rank) {
         const ViewRay ray = camera.Through(tile.x0 + column + offsets_[rank].x, tile.y0 + row + offsets_[rank].y);
-        batch.Add(ray.origin, ray.direction, camera.near_depth(), camera.far_depth(), {row * kTileSide + column, rank},
-                  report);
+        batch.Add(SeenBy(camera, ray), {row * kTileSide + column, rank}, report);
       }
     }
   }
@@ -196,9 +205,8 @@ std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel,
     ++cast;
     const double x = tile.x0 + pixel % kTileSide + offsets_[rank].x;
     const double y = tile.y0 + pixel / kTileSide + offsets_[rank].y;
-    const ViewRay ray = camera.Through(x, y);
     RTCRayHit8 packet = {};
-    SetLane(packet.ray, 0, ray.origin, ray.direction, camera.near_depth(), camera.far_depth());
+    SetLane(packet.ray, 0, SeenBy(camera, camera.Through(x, y)));
     packet.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
     alignas(32) const int valid[kPacket] = {-1};
     CastContext context(true);
@@ -276,14 +284,16 @@ void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<Sur
       const glm::dvec3 origin = ShadowRayOrigin(points[pixel]);
       const glm::dvec3 way = sample.endless ? sample.to_light : light.position - origin;
       const double reach = sample.endless ? std::numeric_limits<double>::infinity() : kShadowReach;
-      batch.Add(origin, way, 0.0, reach, {pixel, sample.luminance}, report);
+      batch.Add({origin, way, 0.0, reach}, {pixel, sample.luminance}, report);
     }
     batch.Flush(report);
   }
   for (int pixel = 0; pixel < kTilePixels; ++pixel) {
     if (hits[pixel].object == kNothing) continue;
     const std::size_t index = Index(tile, pixel);
-    if (planes_.luminance) planes_.luminance[index] = float(reached[pixel]);
+    // Each light is within float's range; their sum need not be.
+    constexpr double kMaxFloat = std::numeric_limits<float>::max();
+    if (planes_.luminance) planes_.luminance[index] = float(std::min(reached[pixel], kMaxFloat));
     if (planes_.shadow && unoccluded[pixel] > 0.0) {
       planes_.shadow[index] = float(1.0 - reached[pixel] / unoccluded[pixel]);
     }

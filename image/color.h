@@ -5,12 +5,11 @@
 
 namespace scumble {
 
-// Encoded value in [0, 1] → linear. Values outside are continued by the same formula; NaN stays NaN.
+// Encoded → linear; 1 is white, values outside [0, 1] are continued by the same formula, NaN stays NaN.
 float SrgbToLinear(float encoded);
-// Linear → encoded, the inverse.
-float LinearToSrgb(float linear);
 
-// 16-bit encoded → linear in [0, 1], from a table of 65,536 floats.
+// 16-bit encoded → linear in [0, 1], from a table of 65,536 floats that is the same on
+// every machine.
 float Srgb16ToLinear(std::uint16_t encoded);
 // Linear → 16-bit encoded, clamped to [0, 1], rounded to nearest; NaN becomes 0.
 // Srgb16FromLinear(Srgb16ToLinear(v)) == v for every v.

@@ -10,13 +10,9 @@
 
 namespace scumble {
 
-GuideSet::GuideSet(int width, int height) : width_(width), height_(height) {
-  SCUMBLE_CHECK(width >= 0 && height >= 0);
-}
+GuideSet::GuideSet(int width, int height) : width_(width), height_(height) { SCUMBLE_CHECK(width >= 0 && height >= 0); }
 
-float BackgroundValue(Layer layer) {
-  return layer == Layer::kDepth ? std::numeric_limits<float>::infinity() : 0.0f;
-}
+float BackgroundValue(Layer layer) { return layer == Layer::kDepth ? std::numeric_limits<float>::infinity() : 0.0f; }
 
 void GuideSet::Add(Layer layer) {
   if (Has(layer)) return;
@@ -93,7 +89,8 @@ Status GuideSet::Validate(const std::string& name) const {
   }
   if (bad_normal.any()) {
     return InputError(name + ": layer normal is not a unit vector (NaN, zero or of another length) on " +
-                      bad_normal.Describe() + " of the covered ones: write normals in [-1, 1], unfiltered, "
+                      bad_normal.Describe() +
+                      " of the covered ones: write normals in [-1, 1], unfiltered, "
                       "or set A to 0 there");
   }
   if (bad_depth.any()) {

@@ -99,7 +99,9 @@ Expected<LayerSet> ParseLayers(std::string_view comma_separated) {
   LayerSet set;
   while (!comma_separated.empty()) {
     const std::size_t comma = comma_separated.find(',');
-    const std::string_view word = comma_separated.substr(0, comma);
+    std::string_view word = comma_separated.substr(0, comma);
+    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
+    while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
     comma_separated = comma == std::string_view::npos ? std::string_view{} : comma_separated.substr(comma + 1);
     if (word.empty()) continue;
     bool known = false;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "image/layers.h"
 #include "image/picture.h"
 
 namespace scumble {
@@ -57,5 +58,8 @@ struct Style {
   std::vector<Exemplar> exemplars;  // exactly one
   Paper paper;                      // neither set: transparent
 };
+
+// The layers that a transfer with these settings reads: what `guidegen` is asked for, and no more.
+LayerSet RequiredLayers(const TransferSettings& settings);
 
 }  // namespace scumble

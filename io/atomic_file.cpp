@@ -50,11 +50,22 @@ Expected<fs::path> FollowLinks(const fs::path& path) {
   return failed || canonical.empty() ? target : canonical;
 }
 
-// Hidden, beside the file, and short enough where the file's own name is as long as a name may be.
-fs::path TemporaryName(const fs::path& target) {
+// A new file beside the target that nobody else has: hidden, with a random name, short enough where the target's own
+// name is as long as a name may be. The descriptor, or -1 and errno.
+int OpenTemporary(const fs::path& target, std::string& name) {
   constexpr std::size_t kMaxStem = 200;
   const std::string stem = target.filename().string().substr(0, kMaxStem);
-  return target.parent_path() / ("." + stem + "." + std::to_string(::getpid()) + ".tmp");
+  name = (target.parent_path() / ("." + stem + ".XXXXXX.tmp")).string();
+  constexpr int kSuffixLength = 4;
+  return ::mkostemps(name.data(), kSuffixLength, O_CLOEXEC);
+}
+
+// mkostemp makes private files; a new file gets what the user's umask allows, a replaced one keeps what it had.
+mode_t ModeFor(const fs::file_status& replaced) {
+  if (fs::exists(replaced)) return static_cast<mode_t>(replaced.permissions());
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  return 0666 & ~mask;
 }
 
 }  // namespace
@@ -70,18 +81,15 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
     const int failure = WriteAllAndClose(descriptor, bytes, false);
     return failure == 0 ? Ok() : Status(WriteFailure(path, failure));
   }
-  if (target.has_parent_path()) {
-    std::error_code made;
-    fs::create_directories(target.parent_path(), made);
-    if (made) return OutputError("cannot make the folder " + target.parent_path().string() + ": " + made.message());
+  const fs::path folder = target.parent_path();
+  if (!folder.empty() && !fs::exists(folder, ignored)) {
+    return OutputError("cannot write " + path.string() + ": there is no folder " + folder.string() + "; make it first");
   }
-  const fs::path temporary = TemporaryName(target);
-  ::unlink(temporary.c_str());  // of a killed run with the same process id; never written through, it may be a link
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  std::string temporary;
+  const int descriptor = OpenTemporary(target, temporary);
   if (descriptor < 0) return WriteFailure(path, errno);
-  // A file that is replaced keeps its permissions; where the file system has none, that is no failure to write.
-  if (fs::exists(status)) [[maybe_unused]]
-    const int kept = ::fchmod(descriptor, mode_t(status.permissions()));
+  // Where the file system has no permissions, that is no failure to write.
+  [[maybe_unused]] const int kept = ::fchmod(descriptor, ModeFor(status));
   int failure = WriteAllAndClose(descriptor, bytes, true);
   if (failure == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) failure = errno;
   if (failure != 0) {

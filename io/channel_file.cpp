@@ -71,10 +71,9 @@ Expected<ChannelImage> ReadChannels(const std::filesystem::path& path) {
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const std::size_t channels = static_cast<std::size_t>(parts[p].nchannels);
     std::vector<float> pixels(image.pixel_count() * channels);
-    if (!input->read_image(static_cast<int>(p), 0, 0, parts[p].nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) {
-      const std::string reason = input->geterror();
-      return InputError("cannot read " + path.string() + ": " +
-                        (reason.empty() ? "the pixel data is damaged" : reason));
+    if (!input->read_image(static_cast<int>(p), 0, 0, parts[p].nchannels, OIIO::TypeDesc::FLOAT, pixels.data()) ||
+        input->has_error()) {
+      return internal::ReadFailure(*input, path.string());
     }
     for (std::size_t c = 0; c < channels; ++c) {
       auto& plane = image.planes.emplace_back(image.pixel_count());

@@ -34,6 +34,11 @@ void SetMatrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix
   spec.attribute(name, OIIO::TypeMatrix, values.data());
 }
 
+// OpenEXR's camera space looks down +Z and is left-handed; its NDC runs from (0, 0) in the upper left corner to (1, 1)
+// in the lower right (ImfStandardAttributes.h). Column by column.
+const glm::dmat4 kExrFromView{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+const glm::dmat4 kNdcFromClip{0.5, 0, 0, 0, 0, -0.5, 0, 0, 0, 0, 1, 0, 0.5, 0.5, 0, 1};
+
 OIIO::ImageSpec SpecFor(const GuideSet& guides, const GuideWriteOptions& options) {
   OIIO::ImageSpec spec(guides.width(), guides.height(), 0, OIIO::TypeDesc::FLOAT);
   for (const LayerInfo& info : AllLayers()) {
@@ -54,8 +59,8 @@ OIIO::ImageSpec SpecFor(const GuideSet& guides, const GuideWriteOptions& options
     spec.attribute("scumble:camera", guides.camera->name);
     spec.attribute("scumble:viewFromWorld", internal::MatrixToText(guides.camera->view_from_world));
     spec.attribute("scumble:clipFromView", internal::MatrixToText(guides.camera->clip_from_view));
-    SetMatrix(spec, "worldtocamera", guides.camera->view_from_world);
-    SetMatrix(spec, "worldtoscreen", guides.camera->clip_from_view * guides.camera->view_from_world);
+    SetMatrix(spec, "worldtocamera", kExrFromView * guides.camera->view_from_world);
+    SetMatrix(spec, "worldtoNDC", kNdcFromClip * guides.camera->clip_from_view * guides.camera->view_from_world);
   }
   return spec;
 }
@@ -125,21 +130,30 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
   return contents;
 }
 
-// Which view layer's channels to read: the one that is asked for, or the only one that has normals.
-Expected<std::string> ChoosePrefix(const FileContents& contents, const std::string& wanted, const std::string& name) {
+// The view layers of a file: what stands before the names of normals.
+std::set<std::string> ViewLayers(const FileContents& contents) {
   std::set<std::string> prefixes;
   for (const FoundChannel& found : contents.channels) {
     if (found.meaning.layer == Layer::kNormal && found.meaning.component == 0) prefixes.insert(found.meaning.prefix);
   }
+  return prefixes;
+}
+
+// Which view layer's channels to read: the one that is asked for, or the only one that has normals.
+Expected<std::string> ChoosePrefix(const FileContents& contents, const std::string& wanted, const std::string& name) {
+  const std::set<std::string> prefixes = ViewLayers(contents);
   std::string list;
-  for (const std::string& prefix : prefixes) list += (list.empty() ? "'" : ", '") + prefix + "'";
+  for (const std::string& prefix : prefixes) {
+    if (!prefix.empty()) list += (list.empty() ? "'" : ", '") + prefix + "'";
+  }
   if (!wanted.empty()) {
     if (prefixes.count(wanted)) return wanted;
-    return InputError(name + " has no view layer '" + wanted + "' with normals; there are " +
-                      (list.empty() ? "none" : list));
+    return InputError(name + " has no view layer '" + wanted + "' with normals; " +
+                      (list.empty() ? "it has no view layers, leave --view-layer out" : "there are " + list));
   }
-  if (prefixes.size() > 1)
+  if (prefixes.size() > 1) {
     return InputError(name + " holds several view layers, " + list + ": choose with --view-layer");
+  }
   return prefixes.empty() ? std::string() : *prefixes.begin();
 }
 
@@ -173,35 +187,74 @@ LayerSet CompleteLayers(const std::vector<FoundChannel>& channels) {
   return complete;
 }
 
-// Reads the selected channels of one part into the set; what the data window does not cover stays background.
-Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundChannel>& channels,
-                const std::string& name, GuideSet& guides) {
-  int first = std::numeric_limits<int>::max(), last = -1;
+// A run of channels that one call reads.
+struct ChannelRun {
+  int first;
+  int end;
+};
+
+// The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which nobody
+// asked for are cheaper to read along than to leave out.
+std::vector<ChannelRun> RunsOf(const std::vector<FoundChannel>& channels, int subimage) {
+  constexpr int kCheapGap = 4;
+  std::set<int> indices;
   for (const FoundChannel& found : channels) {
-    if (found.subimage != subimage) continue;
-    first = std::min(first, found.channel), last = std::max(last, found.channel);
+    if (found.subimage == subimage) indices.insert(found.channel);
   }
-  if (last < 0) return Ok();
-  const OIIO::ImageSpec spec = input.spec(subimage);
-  const std::size_t stride = static_cast<std::size_t>(last - first + 1);
-  std::vector<float> pixels(stride * spec.width * spec.height);
-  if (!input.read_image(subimage, 0, first, last + 1, OIIO::TypeDesc::FLOAT, pixels.data())) {
-    const std::string reason = input.geterror();
-    return InputError("cannot read " + name + ": " + (reason.empty() ? "the pixel data is damaged" : reason));
+  std::vector<ChannelRun> runs;
+  for (const int index : indices) {
+    if (!runs.empty() && index <= runs.back().end + kCheapGap) runs.back().end = index + 1;
+    else runs.push_back({index, index + 1});
   }
+  return runs;
+}
+
+// Copies one channel out of interleaved rows into its plane; what the data window does not cover stays background.
+void Deinterleave(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const ChannelRun& run,
+                  const FoundChannel& found, GuideSet& guides) {
+  const std::size_t stride = static_cast<std::size_t>(run.end - run.first);
   const int offset_x = spec.x - spec.full_x, offset_y = spec.y - spec.full_y;
   const int begin_x = std::max(0, -offset_x), end_x = std::min(spec.width, guides.width() - offset_x);
-  for (const FoundChannel& found : channels) {
-    if (found.subimage != subimage || !guides.Has(found.meaning.layer)) continue;
-    const auto plane = guides.Plane(found.meaning.layer, found.meaning.component);
-    for (int y = 0; y < spec.height; ++y) {
-      if (y + offset_y < 0 || y + offset_y >= guides.height()) continue;
-      const float* row = pixels.data() + std::size_t(y) * spec.width * stride + (found.channel - first);
-      float* out = plane.data() + guides.Index(0, y + offset_y);
-      for (int x = begin_x; x < end_x; ++x) out[x + offset_x] = row[x * stride];
+  const auto plane = guides.Plane(found.meaning.layer, found.meaning.component);
+  for (int y = 0; y < spec.height; ++y) {
+    if (y + offset_y < 0 || y + offset_y >= guides.height()) continue;
+    const float* row = pixels.data() + std::size_t(y) * spec.width * stride + (found.channel - run.first);
+    float* out = plane.data() + guides.Index(0, y + offset_y);
+    for (int x = begin_x; x < end_x; ++x) out[x + offset_x] = row[x * stride];
+  }
+}
+
+// Reads the selected channels of one part into the set.
+Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundChannel>& channels,
+                const std::string& name, GuideSet& guides) {
+  const OIIO::ImageSpec spec = input.spec(subimage);
+  for (const ChannelRun& run : RunsOf(channels, subimage)) {
+    std::vector<float> pixels(std::size_t(run.end - run.first) * spec.width * spec.height);
+    if (!input.read_image(subimage, 0, run.first, run.end, OIIO::TypeDesc::FLOAT, pixels.data()) || input.has_error()) {
+      return internal::ReadFailure(input, name);
+    }
+    for (const FoundChannel& found : channels) {
+      const bool in_run = found.subimage == subimage && found.channel >= run.first && found.channel < run.end;
+      if (in_run && guides.Has(found.meaning.layer)) Deinterleave(spec, pixels, run, found, guides);
     }
   }
   return Ok();
+}
+
+// Normals squeezed into [0, 1] for an 8-bit picture have no negative component anywhere and are rarely of length 1. A few
+// pixels prove nothing.
+bool LookPacked(const GuideSet& guides) {
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  std::size_t covered = 0, not_unit = 0;
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
+    if (!(coverage[i] > 0.0f)) continue;
+    const glm::vec3 n = guides.Vec3(Layer::kNormal, i);
+    if (n.x < 0.0f || n.y < 0.0f || n.z < 0.0f) return false;
+    ++covered;
+    not_unit += std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1.0f) > 0.02f;
+  }
+  constexpr std::size_t kEnoughPixels = 16;
+  return covered >= kEnoughPixels && 2 * not_unit > covered;
 }
 
 // Half floats and filtered passes shorten normals; a direction is what the transfer needs. Lengths that no rounding
@@ -237,14 +290,19 @@ void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
 
 }  // namespace
 
-Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
-  if (path.extension() != ".exr") {
+Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options) {
+  if (path.extension() != ".exr" && path.extension() != ".EXR") {
     return UsageError("cannot write guides to " + path.string() + ": guides are EXR files, name it .exr");
   }
   if (!IsLossless(options.compression)) {
     return UsageError("compression '" + options.compression +
                       "' is not one of none, rle, zips, zip, piz: guides are data and lossy compression is refused");
   }
+  return Ok();
+}
+
+Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
+  SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(path, options));
   const OIIO::ImageSpec spec = SpecFor(guides, options);
   const std::vector<std::byte> pixels = Interleave(guides, spec);
   return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
@@ -256,6 +314,11 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   const std::string name = path.string();
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
+  if (contents.from_blender) {
+    return InputError(name +
+                      " is a Blender render: its normals are in world space and its header holds no camera; "
+                      "make the guides with `scumble guidegen` from the scene exported as .glb");
+  }
   SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, options.view_layer, name));
   LayerSet wanted = options.required;
   wanted.Add(options.optional);
@@ -265,13 +328,9 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   for (const LayerInfo& info : AllLayers()) {
     if (complete.Has(info.layer)) missing.Remove(info.layer);
   }
-  if (contents.from_blender) {
-    return InputError(name +
-                      " is a Blender render: its normals are in world space and its header holds no camera; "
-                      "make the guides with `scumble guidegen` from the scene exported as .glb");
-  }
   if (!missing.empty()) {
-    return InputError(name + " has no layer " + missing.ToString() + "; its channels are " + contents.all_names);
+    return InputError(name + " has no layer " + missing.ToString() + "; its channels are " + contents.all_names +
+                      ". Make guides with `scumble guidegen`, or render that pass too" + options.mend);
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {
@@ -286,20 +345,27 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
                                            1;
   for (int part = 0; part < parts; ++part) SCUMBLE_RETURN_IF_ERROR(ReadPart(*input, part, channels, name, guides));
   ReadHeader(contents.spec, guides);
-  if (guides.Has(Layer::kNormal)) NormalizeNormals(guides);
+  if (guides.Has(Layer::kNormal)) {
+    if (guides.Has(Layer::kCoverage) && LookPacked(guides)) {
+      return InputError(name + ": its normals look packed into 0 to 1; write them as they are, in -1 to 1");
+    }
+    NormalizeNormals(guides);
+  }
   SCUMBLE_RETURN_IF_ERROR(guides.Validate(name));
   return guides;
 }
 
-Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path, const std::string& view_layer) {
+Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   const std::string name = path.string();
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
-  SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, view_layer, name));
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
-  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height,
-                     CompleteLayers(SelectChannels(contents, prefix, all)), contents.all_names, GuideSet()};
+  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.from_blender, {}, contents.all_names, {}};
+  for (const std::string& prefix : ViewLayers(contents)) {
+    info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
+  }
+  if (info.layers.empty()) info.layers[""] = CompleteLayers(SelectChannels(contents, "", all));
   ReadHeader(contents.spec, info.header);
   return info;
 }

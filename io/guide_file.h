@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "image/guides.h"
@@ -14,14 +15,19 @@ struct GuideWriteOptions {
   std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
 };
 
-// Writes all layers of the set, object and material names, camera matrices (worldToCamera, worldToNDC) and attributes.
+// Writes all layers of the set, object and material names, camera matrices (worldToCamera and worldToNDC in
+// OpenEXR's own conventions) and attributes.
 // Refuses a lossy compression. The file appears whole or not at all.
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options = {});
+
+// Whether WriteGuides knows the ending and the compression: to be asked before the work.
+Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options = {});
 
 struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
+  std::string mend;                     // how the caller can do without, for the message about missing layers
 };
 
 // Reads only the channels that are asked for; matches them by name (ParseChannelName). The result is validated:
@@ -29,16 +35,16 @@ struct GuideReadOptions {
 // refuses is an error. A file that Blender wrote has world-space normals and no camera: it is refused with what to do.
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
 
-// What a guide file holds, without reading its pixels: size, recognised layers, names, camera and attributes of the
-// set (its planes stay empty), and all channel names as they stand in the file.
+// What a guide file holds, without reading its pixels.
 struct GuideFileInfo {
   int width = 0;
   int height = 0;
-  LayerSet layers;
-  std::string channels;
-  GuideSet header;  // 0 × 0 pixels
+  bool from_blender = false;                // rendered by Blender itself: ReadGuides refuses it
+  std::map<std::string, LayerSet> layers;   // complete layers by view layer; "" where names have nothing before them
+  std::string channels;                     // all names as they stand in the file
+  GuideSet header;                          // names, camera and attributes; 0 × 0 pixels
 };
-Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path, const std::string& view_layer = "");
+Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
 
 // Rounds the colour layers to half floats, as `half` does on disk: keeps the path in memory equal to the one by file.
 // Values beyond ±65504 become that.

@@ -20,7 +20,9 @@ OIIO::ImageSpec StraightAlpha() {
   return config;
 }
 
+// The first line: what follows repeats it from layer to layer.
 std::string LibraryReason(std::string reason) {
+  reason = reason.substr(0, reason.find('\n'));
   while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' ')) reason.pop_back();
   return reason.empty() ? "the picture library gives no reason" : reason;
 }
@@ -30,9 +32,14 @@ std::string LibraryReason(std::string reason) {
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path) {
   std::error_code failed;
   const auto status = std::filesystem::status(path, failed);
+  if (status.type() == std::filesystem::file_type::none) {
+    return InputError("cannot read " + path.string() + ": " + failed.message());
+  }
   if (!std::filesystem::exists(status)) return InputError("cannot read " + path.string() + ": there is no such file");
   if (std::filesystem::is_directory(status)) return InputError("cannot read " + path.string() + ": it is a folder");
-  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, failed) == 0) {
+  // A pipe would be waited for without end, and the readers seek.
+  if (!std::filesystem::is_regular_file(status)) return InputError("cannot read " + path.string() + ": it is no regular file");
+  if (std::filesystem::file_size(path, failed) == 0) {
     return InputError("cannot read " + path.string() + ": the file is empty");
   }
   const OIIO::ImageSpec config = StraightAlpha();
@@ -51,8 +58,15 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemRea
   return input;
 }
 
+Error ReadFailure(OIIO::ImageInput& input, const std::string& name) {
+  const std::string reason = input.geterror();
+  return InputError("cannot read " + name + ": " + (reason.empty() ? "the pixel data is damaged" : LibraryReason(reason)));
+}
+
 Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
                       const std::function<bool(OIIO::ImageOutput&)>& write_pixels) {
+  // The JPEG writer ends the whole process when it is asked to open an empty picture.
+  if (spec.width < 1 || spec.height < 1) return OutputError("cannot write " + path.string() + ": the picture is empty");
   auto output = OIIO::ImageOutput::create(path.string());
   if (!output) {
     return OutputError("cannot write " + path.string() + ": " + LibraryReason(OIIO::geterror()) +
@@ -64,7 +78,9 @@ Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& 
     return OutputError("cannot write " + path.string() + ": the format " + output->format_name() +
                        " cannot be written safely; name it .png, .exr, .tif or .jpg");
   }
-  if (!output->open(path.string(), spec) || !write_pixels(*output) || !output->close()) {
+  OIIO::ImageSpec timeless = spec;
+  timeless.attribute("DateTime", "");  // the library would write the hour, and the same picture would differ by it
+  if (!output->open(path.string(), timeless) || !write_pixels(*output) || !output->close()) {
     return OutputError("cannot write " + path.string() + ": " + LibraryReason(output->geterror()));
   }
   return WriteFileAtomically(path, std::as_bytes(std::span(encoded)));

@@ -22,6 +22,10 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
 // The same from memory; `proxy` must outlive the input.
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name);
 
+// The library's reason why pixels could not be read. Some readers report success and leave an error behind, as for a
+// TIFF that ends too soon: ask has_error() as well.
+Error ReadFailure(OIIO::ImageInput& input, const std::string& name);
+
 // Encodes with `write_pixels` into memory, then writes the file atomically: the library's and the disk's failures both
 // become errors that name the file.
 Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& spec,

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <optional>
+#include <iterator>
 
 #include "image/color.h"
+#include "io/atomic_file.h"
 #include "io/oiio.h"
 
 namespace scumble {
@@ -51,47 +52,68 @@ std::uint16_t RoundDivide(std::uint32_t value, std::uint32_t divisor) {
   return static_cast<std::uint16_t>(std::min<std::uint32_t>(65535, (value + divisor / 2) / divisor));
 }
 
-Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
-  const OIIO::ImageSpec spec = input.spec();
-  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
-  const ColorChannels channels = FindColorChannels(spec);
-  const bool straight = spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0;
-  const std::size_t stride = static_cast<std::size_t>(spec.nchannels);
-  Picture picture(spec.width, spec.height);
-  const std::size_t count = std::size_t(spec.width) * spec.height;
-  const auto failure = [&] {
-    const std::string reason = input.geterror();
-    return InputError("cannot read " + name + ": " + (reason.empty() ? "the pixel data is damaged" : reason));
-  };
+// Alpha as a file may hold it, NaN and all, as one that means something.
+float ClampAlpha(float alpha) { return alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f; }
 
-  if (IsLinear(spec)) {
-    std::vector<float> pixels(count * stride);
-    if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) return failure();
-    for (std::size_t i = 0; i < count; ++i) {
-      const float* pixel = pixels.data() + i * stride;
-      const float alpha = channels.a < 0 ? 1.0f : std::clamp(pixel[channels.a], 0.0f, 1.0f);
-      const float scale = straight || !(alpha > 0.0f) ? 1.0f : 1.0f / alpha;
-      std::uint16_t* out = picture.rgba.data() + 4 * i;
-      out[0] = Srgb16FromLinear(pixel[channels.r] * scale);
-      out[1] = Srgb16FromLinear(pixel[channels.g] * scale);
-      out[2] = Srgb16FromLinear(pixel[channels.b] * scale);
-      out[3] = static_cast<std::uint16_t>(alpha * 65535.0f + 0.5f);
-    }
-    return picture;
+// What a pixel of a file becomes.
+struct Decoder {
+  ColorChannels channels;
+  bool straight = true;
+
+  void Linear(const float* pixel, std::uint16_t* out) const {
+    const float alpha = channels.a < 0 ? 1.0f : ClampAlpha(pixel[channels.a]);
+    const float scale = straight || !(alpha > 0.0f) ? 1.0f : 1.0f / alpha;
+    out[0] = Srgb16FromLinear(pixel[channels.r] * scale);
+    out[1] = Srgb16FromLinear(pixel[channels.g] * scale);
+    out[2] = Srgb16FromLinear(pixel[channels.b] * scale);
+    out[3] = static_cast<std::uint16_t>(alpha * 65535.0f + 0.5f);
   }
-
-  std::vector<std::uint16_t> pixels(count * stride);
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT16, pixels.data())) return failure();
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t* pixel = pixels.data() + i * stride;
+  void Encoded(const std::uint16_t* pixel, std::uint16_t* out) const {
     const std::uint32_t alpha = channels.a < 0 ? 65535u : pixel[channels.a];
     const std::array<std::uint32_t, 3> color = {pixel[channels.r], pixel[channels.g], pixel[channels.b]};
-    std::uint16_t* out = picture.rgba.data() + 4 * i;
     for (int c = 0; c < 3; ++c) {
       out[c] = straight || alpha == 0 || alpha == 65535u ? static_cast<std::uint16_t>(color[c])
                                                          : RoundDivide(color[c] * 65535u, alpha);
     }
     out[3] = static_cast<std::uint16_t>(alpha);
+  }
+};
+
+// Reads in the file's own numbers, `T`, and hands each pixel and its place in `picture` to `decode`.
+template <class T, class Decode>
+Status ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, Picture& picture, Decode decode) {
+  const OIIO::ImageSpec spec = input.spec();
+  std::vector<T> pixels(std::size_t(spec.nchannels) * spec.width * spec.height);
+  if (!input.read_image(0, 0, 0, spec.nchannels, type, pixels.data()) || input.has_error()) {
+    return internal::ReadFailure(input, name);
+  }
+  const T* pixel = pixels.data();
+  for (int y = 0; y < spec.height; ++y) {
+    for (int x = 0; x < spec.width; ++x, pixel += spec.nchannels) {
+      const int px = x + spec.x - spec.full_x, py = y + spec.y - spec.full_y;
+      if (px >= 0 && py >= 0 && px < picture.width && py < picture.height) decode(pixel, picture.At(px, py));
+    }
+  }
+  return Ok();
+}
+
+// What the data window of an EXR leaves out of the display window is transparent; what lies beyond it is cut off.
+Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
+  const OIIO::ImageSpec spec = input.spec();
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
+  OIIO::ImageSpec display = spec;
+  display.width = spec.full_width, display.height = spec.full_height;
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
+  const ColorChannels channels = FindColorChannels(spec);
+  const Decoder decoder{channels, spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};
+  Picture picture(display.width, display.height);
+  if (IsLinear(spec)) {
+    SCUMBLE_RETURN_IF_ERROR(ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, picture,
+                                              [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); }));
+  } else {
+    SCUMBLE_RETURN_IF_ERROR(
+        ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, picture,
+                                  [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); }));
   }
   return picture;
 }
@@ -107,13 +129,15 @@ OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureW
 }
 
 Status WriteEncoded(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
-  const OIIO::ImageSpec spec = EncodedSpec(picture, 4, options);
+  OIIO::ImageSpec spec = EncodedSpec(picture, 4, options);
+  // A TIFF would say sRGB in a second directory, which OpenImageIO 2.4 spoils in memory; integers are sRGB without it.
+  if (Upper(path.extension().string()) != ".PNG") spec.erase_attribute("oiio:ColorSpace");
   if (options.bits == 8) {
     std::vector<std::uint8_t> bytes(picture.rgba.size());
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>((picture.rgba[i] + 128u) / 257u);
-    return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
-      return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
-    });
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+      bytes[i] = static_cast<std::uint8_t>((picture.rgba[i] + 128u) / 257u);
+    return internal::EncodeAndWrite(
+        path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT8, bytes.data()); });
   }
   return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
     return output.write_image(OIIO::TypeDesc::UINT16, picture.rgba.data());
@@ -139,7 +163,8 @@ Status WriteOnWhite(const std::filesystem::path& path, const Picture& picture, P
 }
 
 Status WriteLinear(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
-  OIIO::ImageSpec spec(picture.width, picture.height, 4, options.bits == 32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
+  OIIO::ImageSpec spec(picture.width, picture.height, 4,
+                       options.bits == 32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("compression", "zip");
   std::vector<float> pixels(picture.rgba.size());
@@ -148,15 +173,41 @@ Status WriteLinear(const std::filesystem::path& path, const Picture& picture, co
     for (int c = 0; c < 3; ++c) pixels[i + c] = Srgb16ToLinear(picture.rgba[i + c]) * alpha;
     pixels[i + 3] = alpha;
   }
-  return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
-    return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data());
-  });
+  return internal::EncodeAndWrite(
+      path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data()); });
+}
+
+// The JPEG reader fills what is missing at the end with grey and says nothing. So the markers are followed here, from
+// segment to segment and through the coded data, until the one that ends the picture (ITU-T T.81, annex B).
+Status CheckJpegIsWhole(std::span<const std::byte> bytes, const std::string& name) {
+  constexpr unsigned kFill = 0xff, kStuffed = 0x00, kFirstAlone = 0xd0, kEndOfImage = 0xd9, kStartOfScan = 0xda;
+  const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
+  std::size_t i = 2;  // after the start marker
+  while (i + 1 < bytes.size()) {
+    const unsigned marker = at(i + 1);
+    const bool in_scan = at(i) != kFill || marker == kStuffed || marker == kFill;
+    if (!in_scan && marker == kEndOfImage) return Ok();
+    if (in_scan) {
+      ++i;
+    } else if (marker >= kFirstAlone && marker < kStartOfScan) {
+      i += 2;  // restart markers have no length
+    } else if (i + 3 < bytes.size()) {
+      i += 2 + at(i + 2) * 256 + at(i + 3);
+    } else {
+      break;
+    }
+  }
+  return InputError("cannot read " + name + ": the JPEG file ends before its picture does; copy or save it again");
 }
 
 }  // namespace
 
 Expected<Picture> ReadPicture(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  if (input->format_name() == std::string("jpeg")) {
+    SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
+    SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, path.string()));
+  }
   return ReadFrom(*input, path.string());
 }
 
@@ -164,20 +215,30 @@ Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::str
   if (bytes.empty()) return InputError("cannot read " + name + ": it is empty");
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
+  if (input->format_name() == std::string("jpeg")) SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, name));
   return ReadFrom(*input, name);
 }
 
+Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteOptions& options) {
+  const std::string ending = Upper(path.extension().string());
+  constexpr const char* kEndings[] = {".EXR", ".JPG", ".JPEG", ".PNG", ".TIF", ".TIFF"};
+  if (std::find(std::begin(kEndings), std::end(kEndings), ending) == std::end(kEndings)) {
+    return UsageError("cannot write " + path.string() + ": the ending '" + path.extension().string() +
+                      "' is not one of .png, .tif, .jpg, .exr");
+  }
+  if (ending != ".EXR" && options.bits != 8 && options.bits != 16) {
+    return UsageError(path.string() + ": " + std::to_string(options.bits) + " bits asked for; " +
+                      path.extension().string() + " takes 8 or 16, and only .exr takes 32");
+  }
+  return Ok();
+}
+
 Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(path, options));
   const std::string ending = Upper(path.extension().string());
   if (ending == ".EXR") return WriteLinear(path, picture, options);
-  if (options.bits != 8 && options.bits != 16) {
-    return UsageError(path.string() + ": " + std::to_string(options.bits) + " bits asked for; " + ending +
-                      " takes 8 or 16, and only .exr takes 32");
-  }
   if (ending == ".JPG" || ending == ".JPEG") return WriteOnWhite(path, picture, options);
-  if (ending == ".PNG" || ending == ".TIF" || ending == ".TIFF") return WriteEncoded(path, picture, options);
-  return UsageError("cannot write " + path.string() + ": the ending '" + path.extension().string() +
-                    "' is not one of .png, .tif, .jpg, .exr");
+  return WriteEncoded(path, picture, options);
 }
 
 }  // namespace scumble

@@ -13,17 +13,21 @@ namespace scumble {
 
 // Reads any picture as 16-bit sRGB-encoded RGBA with straight alpha. 8-bit values v become v · 257, 16-bit values are
 // kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
-// Grey is spread over the three colours; a missing alpha is opaque. Thread-safe.
+// Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A file that ends early is
+// an error, JPEG included. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
 // The same from memory, for pictures inside .glb files. `name` stands for the picture in messages.
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 
 struct PictureWriteOptions {
-  int bits = 8;        // 8 or 16 per channel; JPEG is always 8; EXR is half floats, or floats at 32
-  int png_level = 6;   // 0 … 9, zlib's compression level
+  int bits = 8;       // 8 or 16 per channel; JPEG is always 8; EXR is half floats, or floats at 32
+  int png_level = 6;  // 0 … 9, zlib's compression level
   int jpeg_quality = 92;
 };
+
+// Whether WritePicture knows the ending and can store so many bits: to be asked before hours of work.
+Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteOptions& options = {});
 
 // Format by the file's ending. PNG and TIFF get straight alpha (not associated), JPEG is composited on white, EXR is
 // linear with associated alpha. The file appears whole under its name or not at all.

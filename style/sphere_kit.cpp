@@ -1,12 +1,14 @@
 #include "style/sphere_kit.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <system_error>
 
 #include "image/check.h"
 #include "image/color.h"
+#include "image/direction.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
@@ -79,11 +81,10 @@ std::string StarterStyle(const std::vector<KitLight>& lights) {
 std::string Howto(const std::vector<KitLight>& lights) {
   std::string text =
       "PAINT YOUR OWN STYLE\n\n"
-      "1. Open template.png in any painting program. Paint over the sphere: its light comes from " +
+      "1. Open template.png in any painting program. Paint over the sphere: its light comes from\n   " +
       LightInWords(lights.front()) +
       "\n   (azimuth to the right of the viewer, elevation above the horizon).\n"
-      "2. Let strokes run over the sphere's edge; what lies outside it is never shown. Keep the crosses in the\n"
-      "   corners if you print the template and scan your painting.\n"
+      "2. Let strokes run over the sphere's edge; what lies outside it is never shown.\n"
       "3. Do not move, scale or crop the picture. Export it at the same size as lit.png into this folder.\n"
       "4. Stylise a scene:   scumble stylize scene.glb --style THIS_FOLDER -o picture.png\n"
       "5. Tune style.toml: threshold, scale, blend_radius, paper.\n\n"
@@ -92,7 +93,7 @@ std::string Howto(const std::vector<KitLight>& lights) {
   for (std::size_t i = 1; i < lights.size(); ++i) {
     text += "\n" + Numbered("template", ".png", i) + " and " + Numbered("guides", ".exr", i) +
             " are the same sphere in another light: " + LightInWords(lights[i]) +
-            ".\nTo use that painting, name it and its guides in style.toml.\n";
+            ".\nA style takes one painting: to use that one, name it and its guides in style.toml instead of lit.png's.\n";
   }
   return text;
 }
@@ -104,17 +105,37 @@ int TemplateMargin(int size) { return (size + 7) / 8; }
 std::optional<int> SphereMargin(const GuideSet& guides) {
   const auto found = guides.attributes.find(kMarginAttribute);
   if (found == guides.attributes.end() || guides.width() != guides.height()) return std::nullopt;
-  const int margin = std::atoi(found->second.c_str());
-  if (margin < 0 || margin > guides.width()) return std::nullopt;
+  const std::string& text = found->second;
+  int margin = 0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), margin);
+  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
+  const int limit = guides.width() > 0 ? guides.width() : kMaxImageSide;  // a header alone has no size
+  if (margin < 0 || margin > limit) return std::nullopt;
   return margin;
+}
+
+bool LooksLikeTemplate(const Picture& picture) {
+  if (picture.width != picture.height) return false;
+  // The sphere's side from the whole template's: size + 2 · margin(size) grows with the size, so at most one fits.
+  int size = picture.width * 4 / 5 - 8;
+  while (size + 2 * TemplateMargin(size) < picture.width) ++size;
+  const int margin = TemplateMargin(size), arm = margin / 3;
+  if (size < 16 || size + 2 * margin != picture.width) return false;
+  const auto brightness = [&](int x, int y) { return picture.At(x, y)[1]; };
+  for (const int cy : {margin / 2, picture.height - margin / 2}) {
+    for (const int cx : {margin / 2, picture.width - margin / 2}) {
+      const bool cross = brightness(cx, cy) < 20000 && brightness(cx - arm / 2, cy) < 20000 &&
+                         brightness(cx, cy - arm / 2) < 20000 && brightness(cx - arm / 2, cy - arm / 2) > 40000;
+      if (!cross) return false;
+    }
+  }
+  return true;
 }
 
 Picture DrawTemplate(const KitLight& light) {
   const GuideSet& guides = light.guides;
   SCUMBLE_CHECK_EQ(guides.width(), guides.height());
-  const double azimuth = glm::radians(light.azimuth), elevation = glm::radians(light.elevation);
-  const glm::vec3 to_light(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
-                           std::cos(azimuth) * std::cos(elevation));
+  const glm::vec3 to_light(DirectionFromAngles(light.azimuth, light.elevation));
   const int size = guides.width(), margin = TemplateMargin(size);
   Picture picture(size + 2 * margin, size + 2 * margin);
   FillRectangle(picture, 0, 0, picture.width, picture.height, 65535);
@@ -137,20 +158,49 @@ Picture DrawTemplate(const KitLight& light) {
   return picture;
 }
 
+namespace {
+
+bool SameIn8Bits(const Picture& file, const Picture& drawn) {
+  return file.rgba.size() == drawn.rgba.size() &&
+         std::equal(file.rgba.begin(), file.rgba.end(), drawn.rgba.begin(),
+                    [](std::uint16_t a, std::uint16_t b) { return a / 257u == (b + 128u) / 257u; });
+}
+
+// A template that somebody painted over must not be lost; one that is as we would draw it may go.
+Status RefusePaintedTemplate(const fs::path& path, const Picture& drawn) {
+  std::error_code failed;
+  if (!fs::exists(path, failed)) return Ok();
+  const auto old = ReadPicture(path);
+  if (old && SameIn8Bits(*old, drawn)) return Ok();
+  return OutputError(path.string() + " is there already and differs from the template of this size and light: it may be "
+                     "a painting. Move it away, or write to another folder");
+}
+
+}  // namespace
+
 Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vector<KitLight> lights) {
   SCUMBLE_CHECK(!lights.empty());
+  std::error_code made;
+  fs::create_directories(folder, made);
+  if (made) return OutputError("cannot make the folder " + folder.string() + ": " + made.message());
+  std::vector<Picture> templates;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    templates.push_back(DrawTemplate(lights[i]));
+    SCUMBLE_RETURN_IF_ERROR(RefusePaintedTemplate(folder / Numbered("template", ".png", i), templates.back()));
+  }
   std::vector<fs::path> written;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     GuideSet& guides = lights[i].guides;
     guides.attributes[kMarginAttribute] = std::to_string(TemplateMargin(guides.width()));
     const fs::path picture = folder / Numbered("template", ".png", i);
     const fs::path guide_file = folder / Numbered("guides", ".exr", i);
-    SCUMBLE_RETURN_IF_ERROR(WritePicture(picture, DrawTemplate(lights[i])));
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(picture, templates[i]));
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(guide_file, guides));
     written.insert(written.end(), {picture, guide_file});
   }
   const fs::path style = folder / "style.toml", howto = folder / "HOWTO.txt";
-  if (!fs::exists(style)) {
+  std::error_code failed;
+  if (!fs::exists(style, failed)) {
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(style, StarterStyle(lights)));
     written.push_back(style);
   }

@@ -22,15 +22,19 @@ struct KitLight {
 // Pixels of margin around the sphere's square in the template of an N × N kit.
 int TemplateMargin(int size);
 
-// The margin that is recorded in a sphere's guides; nothing if the guides are not a sphere's from WriteSphereKit.
+// The margin that is recorded in the attributes of a sphere's guides; nothing if they are not from WriteSphereKit.
 std::optional<int> SphereMargin(const GuideSet& guides);
 
 // The picture to paint over: white paper, the lit sphere filling the inner square, and registration marks in the
 // corners of the margin, outside that square.
 Picture DrawTemplate(const KitLight& light);
 
+// Whether a picture still shows the template's four crosses on light paper, margin included.
+bool LooksLikeTemplate(const Picture& picture);
+
 // Writes template.png, guides.exr, style.toml and HOWTO.txt into `folder`; further lights give template-2.png,
-// guides-2.exr and so on. An existing style.toml is kept: it may be the artist's. Returns the files written.
+// guides-2.exr and so on. An existing style.toml is kept: it may be the artist's. A
+// template.png that is not as it was drawn may be a painting: it is an error, and nothing is written. Returns the files written.
 Expected<std::vector<std::filesystem::path>> WriteSphereKit(const std::filesystem::path& folder,
                                                             std::vector<KitLight> lights);
 

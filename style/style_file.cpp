@@ -1,8 +1,9 @@
 #include "style/style_file.h"
 
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <optional>
-#include <toml++/toml.h>
 
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
@@ -17,13 +18,28 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxStyleBytes = 1 << 20;
 
+// Like std::filesystem::exists, but a link to itself or a locked folder is no exception.
+bool Exists(const fs::path& path) {
+  std::error_code failed;
+  return fs::exists(path, failed);
+}
+
+// What a style without a name is called: its folder, or its file without the ending.
+std::string NameFor(const fs::path& path, bool is_folder) {
+  if (!is_folder && path.filename() != "style.toml") return path.stem().string();
+  std::error_code failed;
+  const fs::path whole = fs::absolute(path, failed).lexically_normal();
+  const fs::path folder = is_folder && whole.has_filename() ? whole : whole.parent_path();
+  return folder.filename().string();
+}
+
 // Debian's toml++ throws; nothing else here does.
 Expected<toml::table> ParseToml(std::string_view text, const std::string& file) {
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    return InputError(file + ":" + std::to_string(error.source().begin.line) + ": not valid TOML: " +
-                      std::string(error.description()));
+    return InputError(file + ":" + std::to_string(error.source().begin.line) +
+                      ": not valid TOML: " + std::string(error.description()));
   }
 }
 
@@ -54,32 +70,41 @@ std::string KnownKeys(const std::string& section) {
   return names;
 }
 
-Status SetKey(Style& style, const std::string& name, const toml::node& node, const std::string& file,
+// `where` is the file and line, or the option, that the value stands in. What is wrong about key or value is kUsage.
+Status SetKey(Style& style, const std::string& name, const toml::node& node, const std::string& where,
               const fs::path& folder) {
-  const std::string where = Where(file, node);
   const StyleKey* key = FindStyleKey(name);
+  if (!key && FindStyleKey("transfer." + name)) {
+    return UsageError(where + ": unknown key " + name + "; it belongs to [transfer]: transfer." + name);
+  }
   if (!key) {
     const std::string section = name.rfind("transfer.", 0) == 0 ? "transfer." : "";
-    return InputError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
+    return UsageError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
                       (section.empty() ? ", [transfer] and [[exemplar]]" : ""));
   }
   const auto value = ValueOf(node);
-  if (!value) return InputError(where + ": " + name + " must be a plain value");
-  if (auto status = key->set(style, *value, folder); !status) return Explain(status.error(), where, name, *value);
+  if (!value) return UsageError(where + ": " + name + " must be a plain value");
+  if (auto done = key->set(style, *value, folder); !done) return Explain(done.error(), where, name, *value);
   return Ok();
+}
+
+// The same in a file, where a mistake is the file's and not the caller's.
+Status SetKeyInFile(Style& style, const std::string& name, const toml::node& node, const fs::path& file) {
+  auto done = SetKey(style, name, node, Where(file.string(), node), file.parent_path());
+  if (done || done.error().kind != ErrorKind::kUsage) return done;
+  return InputError(done.error().message);
 }
 
 // Cuts the template's margin off a picture painted over it.
 Expected<Picture> FitToGuides(Picture picture, const std::string& picture_name, const fs::path& guides_path) {
-  GuideReadOptions options;
-  options.required = {Layer::kCoverage, Layer::kNormal};
-  SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(guides_path, options));
-  const auto margin = SphereMargin(guides);
+  SCUMBLE_ASSIGN(const GuideFileInfo guides, InspectGuides(guides_path));
+  const auto margin = guides.width == guides.height ? SphereMargin(guides.header) : std::nullopt;
   if (!margin) {
-    return UnavailableError(guides_path.string() + " was not written by `scumble sphere`: guides of other exemplar "
-                            "scenes are not built into this version");
+    return UnavailableError(guides_path.string() +
+                            " was not written by `scumble sphere`: guides of other exemplar scenes are not built "
+                            "into this version");
   }
-  const int size = guides.width(), with_margin = size + 2 * *margin;
+  const int size = guides.width, with_margin = size + 2 * *margin;
   if (picture.width == size && picture.height == size) return picture;
   if (picture.width != with_margin || picture.height != with_margin) {
     const auto square = [](int side) { return std::to_string(side) + "×" + std::to_string(side); };
@@ -109,6 +134,10 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& fil
   }
   if (image.empty()) return InputError(Where(file, table) + ": [[exemplar]] has no image; add image = \"lit.png\"");
   const fs::path image_path = folder / image;
+  if (!Exists(image_path) && Exists(folder / "template.png")) {
+    return InputError(image_path.string() + " is not there yet: paint over " + (folder / "template.png").string() +
+                      " and save it under that name");
+  }
   SCUMBLE_ASSIGN(Picture picture, ReadPicture(image_path));
   if (!guides.empty()) {
     SCUMBLE_ASSIGN(picture, FitToGuides(std::move(picture), image_path.string(), folder / guides));
@@ -145,10 +174,10 @@ Expected<Style> ReadStyleFile(const fs::path& path) {
       SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, file, folder, style));
     } else if (const auto* table = node.as_table(); table && name == "transfer") {
       for (const auto& [inner, value] : *table) {
-        SCUMBLE_RETURN_IF_ERROR(SetKey(style, name + "." + std::string(inner.str()), value, file, folder));
+        SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name + "." + std::string(inner.str()), value, path));
       }
     } else {
-      SCUMBLE_RETURN_IF_ERROR(SetKey(style, name, node, file, folder));
+      SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name, node, path));
     }
   }
   if (style.exemplars.empty()) {
@@ -170,11 +199,26 @@ Status ApplyOverride(Style& style, const std::string& text) {
     table.clear();
     table.insert("value", value_text);
   }
-  auto done = SetKey(style, name, *table.get("value"), "--set", fs::path());
-  if (done) return Ok();
-  Error error = done.error();
-  if (error.kind == ErrorKind::kInput) error.kind = ErrorKind::kUsage;
-  return error;
+  return SetKey(style, name, *table.get("value"), "--set", fs::path());
+}
+
+// A picture named as a style. One that belongs to a style is that style: taken by itself, a painted template would show
+// its margin.
+Expected<Style> ReadPictureStyle(const fs::path& path) {
+  const fs::path beside = path.parent_path() / "style.toml";
+  if (Exists(beside)) {
+    if (auto style = ReadStyleFile(beside); style && fs::path(style->exemplars.front().name).filename() == path.filename()) {
+      return style;
+    }
+  }
+  SCUMBLE_ASSIGN(Picture picture, ReadPicture(path));
+  if (LooksLikeTemplate(picture)) {
+    return InputError(path.string() + " is a whole template, margin and crosses included: name the folder that "
+                      "`scumble sphere` wrote as the style, or crop the picture to the sphere");
+  }
+  Style style;
+  style.exemplars.push_back({path.string(), std::move(picture)});
+  return style;
 }
 
 }  // namespace
@@ -185,18 +229,14 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
   if (!fs::exists(kind)) return InputError("cannot read style " + path.string() + ": there is no such file or folder");
   Style style;
   if (fs::is_directory(kind)) {
-    if (!fs::exists(path / "style.toml")) return InputError("style folder " + path.string() + " holds no style.toml");
+    if (!Exists(path / "style.toml")) return InputError("style folder " + path.string() + " holds no style.toml");
     SCUMBLE_ASSIGN(style, ReadStyleFile(path / "style.toml"));
   } else if (path.extension() == ".toml") {
     SCUMBLE_ASSIGN(style, ReadStyleFile(path));
   } else {
-    SCUMBLE_ASSIGN(Picture picture, ReadPicture(path));
-    style.exemplars.push_back({path.string(), std::move(picture)});
+    SCUMBLE_ASSIGN(style, ReadPictureStyle(path));
   }
-  if (style.name.empty()) {
-    const fs::path named = path.filename() == "style.toml" ? path.parent_path() : path;
-    style.name = named.stem().string();
-  }
+  if (style.name.empty()) style.name = NameFor(path, fs::is_directory(kind));
   for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
   const Picture& picture = style.exemplars.front().picture;
   if (picture.width != picture.height) {
@@ -211,7 +251,7 @@ std::vector<fs::path> FindStyles(const fs::path& root) {
   std::vector<fs::path> styles;
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(root, failed)) {
-    if (fs::exists(entry.path() / "style.toml")) styles.push_back(entry.path());
+    if (Exists(entry.path() / "style.toml")) styles.push_back(entry.path());
   }
   std::sort(styles.begin(), styles.end());
   return styles;

@@ -14,6 +14,8 @@ namespace scumble {
 // writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Every key is honoured, or
 // refused by name: unknown ones with the list of what there is, features still to come as kUnavailable.
 //
+// A picture beside a style.toml that names it stands for that style.
+//
 // An [[exemplar]] picture is a square that the sphere fills. With `guides` naming the guides.exr that `scumble sphere`
 // wrote, the picture may also be the whole painted template: its margin is cut off.
 Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});

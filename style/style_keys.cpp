@@ -1,9 +1,11 @@
 #include "style/style_keys.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "io/picture_file.h"
@@ -21,8 +23,10 @@ std::optional<double> AsNumber(const KeyValue& value) {
 
 std::string Range(double low, double high) {
   char text[80];
-  if (std::isinf(high)) std::snprintf(text, sizeof text, "%g or more", low);
-  else std::snprintf(text, sizeof text, "%g to %g", low, high);
+  if (std::isinf(high))
+    std::snprintf(text, sizeof text, "%g or more", low);
+  else
+    std::snprintf(text, sizeof text, "%g to %g", low, high);
   return text;
 }
 
@@ -30,7 +34,7 @@ template <class T>
 Setter Number(T TransferSettings::*field, double low, double high) {
   return [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto number = AsNumber(value);
-    if (!number || !(*number >= low && *number <= high)) return InputError("expected a number, " + Range(low, high));
+    if (!number || !(*number >= low && *number <= high)) return UsageError("expected a number, " + Range(low, high));
     style.transfer.*field = static_cast<T>(*number);
     return Ok();
   };
@@ -39,7 +43,7 @@ Setter Number(T TransferSettings::*field, double low, double high) {
 Setter Whole(int TransferSettings::*field, int low, int high) {
   return [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto* number = std::get_if<std::int64_t>(&value);
-    if (!number || *number < low || *number > high) return InputError("expected a whole number, " + Range(low, high));
+    if (!number || *number < low || *number > high) return UsageError("expected a whole number, " + Range(low, high));
     style.transfer.*field = static_cast<int>(*number);
     return Ok();
   };
@@ -48,7 +52,7 @@ Setter Whole(int TransferSettings::*field, int low, int high) {
 Setter Flag(bool TransferSettings::*field) {
   return [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto* flag = std::get_if<bool>(&value);
-    if (!flag) return InputError("expected true or false");
+    if (!flag) return UsageError("expected true or false");
     style.transfer.*field = *flag;
     return Ok();
   };
@@ -57,7 +61,7 @@ Setter Flag(bool TransferSettings::*field) {
 Setter Text(std::string Style::*field) {
   return [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto* text = std::get_if<std::string>(&value);
-    if (!text) return InputError("expected a text in quotes");
+    if (!text) return UsageError("expected a text in quotes");
     style.*field = *text;
     return Ok();
   };
@@ -69,20 +73,20 @@ Status SetMethod(Style& style, const KeyValue& value, const std::filesystem::pat
   if (text && *text == "styleblit") return style.transfer.method = Method::kStyleBlit, Ok();
   if (text && *text == "bruteforce") return style.transfer.method = Method::kBruteForce, Ok();
   if (text && *text == "stylit") return UnavailableError("method stylit is not built into this version");
-  return InputError("expected \"litsphere\", \"styleblit\" or \"bruteforce\"");
+  return UsageError("expected \"litsphere\", \"styleblit\" or \"bruteforce\"");
 }
 
 Status SetMetric(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto* text = std::get_if<std::string>(&value);
   if (text && *text == "l2") return style.transfer.threshold_metric = ThresholdMetric::kL2, Ok();
   if (text && *text == "l1") return style.transfer.threshold_metric = ThresholdMetric::kL1, Ok();
-  return InputError("expected \"l2\" or \"l1\"");
+  return UsageError("expected \"l2\" or \"l1\"");
 }
 
 Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto number = AsNumber(value);
   if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= 1000.0))) {
-    return InputError("expected -1 (every frame), 0 (frozen) or up to 1000 renewals a second");
+    return UsageError("expected -1 (every frame), 0 (frozen) or up to 1000 renewals a second");
   }
   style.transfer.jitter_fps = *number;
   return Ok();
@@ -90,14 +94,15 @@ Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::
 
 Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path& folder) {
   const auto* text = std::get_if<std::string>(&value);
-  if (!text) return InputError("expected a picture's name, a colour \"#rrggbb\", or \"\" for transparent");
+  if (!text) return UsageError("expected a picture's name, a colour \"#rrggbb\", or \"\" for transparent");
   style.paper = {};
   if (text->empty()) return Ok();
-  unsigned rgb = 0;
-  int used = 0;
   if (text->front() == '#') {
-    if (text->size() != 7 || std::sscanf(text->c_str() + 1, "%6x%n", &rgb, &used) != 1 || used != 6) {
-      return InputError("'" + *text + "' is not a colour like \"#f4efe6\"");
+    unsigned rgb = 0;
+    const char *begin = text->data() + 1, *end = text->data() + text->size();
+    const auto parsed = std::from_chars(begin, end, rgb, 16);
+    if (end - begin != 6 || parsed.ec != std::errc() || parsed.ptr != end) {
+      return UsageError("'" + *text + "' is not a colour like \"#f4efe6\"");
     }
     const auto channel = [&](int shift) { return static_cast<std::uint16_t>(((rgb >> shift) & 255u) * 257u); };
     style.paper.color = {channel(16), channel(8), channel(0)};
@@ -110,8 +115,7 @@ Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path
 // A key whose feature is still to come: the default is harmless, anything else is refused by name.
 StyleKey ToCome(const std::string& name, KeyValue neutral, const std::string& help) {
   const std::string default_value = ToText(neutral);
-  return {"transfer." + name, default_value, help, false,
-          [=](Style&, const KeyValue& value, const auto&) -> Status {
+  return {"transfer." + name, default_value, help, false, [=](Style&, const KeyValue& value, const auto&) -> Status {
             if (value == neutral) return Ok();
             if (const auto a = AsNumber(value), b = AsNumber(neutral); a && b && *a == *b) return Ok();
             return UnavailableError("not built into this version, only " + default_value + " is");

@@ -21,7 +21,8 @@ struct StyleKey {
   std::string default_value;  // as TOML text
   std::string help;           // one line: meaning, unit, range
   bool built_in = true;       // false: the feature is still to come, and only the default is accepted
-  // Puts the value into the style; relative paths are under `folder`. The message of a failure says what was expected.
+  // Puts the value into the style; relative paths are under `folder`. A value that does
+  // not fit is kUsage and says what was expected; a file that cannot be read is kInput.
   std::function<Status(Style&, const KeyValue&, const std::filesystem::path& folder)> set;
 };
 

@@ -222,28 +222,49 @@ TEST(GuideFile, NamesCameraAndAttributesSurvive) {
   ASSERT_TRUE(info) << info.error().message;
   EXPECT_EQ(info->width, 5);
   EXPECT_EQ(info->height, 4);
-  EXPECT_EQ(info->layers, EveryLayer());
+  EXPECT_EQ(info->layers.at(""), EveryLayer());
   EXPECT_EQ(info->header.object_names, guides.object_names);
   EXPECT_EQ(info->header.camera->name, camera.name);
   EXPECT_EQ(info->header.pixel_count(), 0u);
   EXPECT_NE(info->channels.find("normal.X"), std::string::npos);
 }
 
+// A point times a matrix as OpenEXR means it: row vectors, divided by w.
+glm::dvec3 Through(const OIIO::ParamValue& matrix, glm::dvec3 p) {
+  const float* m = static_cast<const float*>(matrix.data());
+  glm::dvec4 result(0.0);
+  for (int c = 0; c < 4; ++c) result[c] = p.x * m[c] + p.y * m[4 + c] + p.z * m[8 + c] + m[12 + c];
+  return glm::dvec3(result) / result.w;
+}
+
+// By ImfStandardAttributes.h the camera looks down +Z, and (0, 0) to (1, 1) is the picture from its upper left corner.
 TEST(GuideFile, OtherProgramsFindTheStandardMatrices) {
   const TemporaryFolder folder;
   GuideSet guides = RandomGuides(2, 2);
   guides.camera.emplace();
-  guides.camera->view_from_world[3] = glm::dvec4(1, 2, 3, 1);  // a translation: the last row of a row vector's matrix
-  guides.camera->clip_from_view[0][0] = 2.0;
+  guides.camera->view_from_world[3] = glm::dvec4(0, 0, -5, 1);  // the camera stands at (0, 0, 5)
+  guides.camera->clip_from_view = glm::dmat4(2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1, -1, 0, 0, -0.2, 0);  // 90° would be 1
   ASSERT_TRUE(WriteGuides(folder / "g.exr", guides));
   const auto file = OIIO::ImageInput::open((folder / "g.exr").string());
   ASSERT_TRUE(file);
   const auto* view = file->spec().find_attribute("worldtocamera", OIIO::TypeMatrix);
-  const auto* ndc = file->spec().find_attribute("worldtoscreen", OIIO::TypeMatrix);
+  const auto* ndc = file->spec().find_attribute("worldtoNDC", OIIO::TypeMatrix);
   ASSERT_TRUE(view && ndc);
-  const float* v = static_cast<const float*>(view->data());
-  EXPECT_EQ((std::vector<float>(v + 12, v + 16)), (std::vector<float>{1, 2, 3, 1}));
-  EXPECT_EQ(static_cast<const float*>(ndc->data())[12], 2.0f);
+  const glm::dvec3 point(1, 0.5, 0);  // five metres ahead, a metre to the right, half a metre up
+  EXPECT_EQ(Through(*view, point), glm::dvec3(1, 0.5, 5));
+  const glm::dvec3 seen = Through(*ndc, point);
+  EXPECT_NEAR(seen.x, 0.5 + 0.5 * 2 * 1 / 5, 1e-6);
+  EXPECT_NEAR(seen.y, 0.5 - 0.5 * 2 * 0.5 / 5, 1e-6);
+}
+
+TEST(GuideFile, PackedNormalsAreRefused) {
+  const TemporaryFolder folder;
+  WriteExr(folder / "packed.exr", OIIO::ImageSpec(4, 4, 1, OIIO::TypeDesc::FLOAT), kNormalAndA,
+           [](std::size_t c, std::size_t i) {
+             const glm::vec3 n = glm::normalize(glm::vec3(0.3f * (i % 4) - 0.5f, 0.3f * (i / 4) - 0.5f, 1.0f));
+             return c == 0 ? 1.0f : 0.5f + 0.5f * n[static_cast<int>(c) - 1];
+           });
+  ExpectRefusal(ReadGuides(folder / "packed.exr", OnlyNormals()), ErrorKind::kInput, {"packed.exr", "packed", "-1 to 1"});
 }
 
 TEST(GuideHeader, DamagedTextNeverDoesHarm) {
@@ -303,7 +324,10 @@ TEST(GuideFile, OneOfSeveralViewLayers) {
            [](std::size_t c, std::size_t) { return c == 0 || c == 1 || c == 6 ? 1.0f : 0.0f; });
   ExpectRefusal(ReadGuides(folder / "two.exr", OnlyNormals()), ErrorKind::kInput,
                 {"two.exr", "several view layers", "'Back'", "'View 1.2'", "--view-layer"});
-  ExpectRefusal(InspectGuides(folder / "two.exr"), ErrorKind::kInput, {"'Back'", "'View 1.2'"});
+  const auto info = InspectGuides(folder / "two.exr");
+  ASSERT_TRUE(info) << info.error().message;
+  EXPECT_EQ(info->layers.size(), 2u) << "looking at it needs no choice";
+  EXPECT_TRUE(info->layers.at("View 1.2").Has(Layer::kNormal));
   ExpectRefusal(ReadGuides(folder / "two.exr", OnlyNormals("Front")), ErrorKind::kInput,
                 {"'Front'", "'Back'", "'View 1.2'"});
   const auto back = ReadGuides(folder / "two.exr", OnlyNormals("Back"));

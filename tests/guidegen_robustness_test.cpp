@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "guidegen/direct_light.h"
 #include "guidegen/guidegen.h"
 #include "image/check.h"
 #include "image/hash.h"
@@ -299,6 +300,45 @@ TEST(Refusal, CamerasThatSeeNothingByTheirNumbers) {
   refuse(camera);
   camera.world_from_camera = glm::dmat4(kNaN);
   refuse(camera);
+}
+
+TEST(Robustness, LightTooBrightForFloatsIsTheLargestFloat) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  const auto brightest = [](const std::vector<Light>& lights) {
+    Scene scene = SceneOf(QuadMesh());
+    scene.lights = lights;
+    const auto result = Render(scene, FlatCamera(3.0, 0.5), Sized(4, 4, {Layer::kLuminance, Layer::kShadow}));
+    for (const float shadow : result.guides.Plane(Layer::kShadow)) EXPECT_EQ(shadow, 0.0f);
+    const auto plane = result.guides.Plane(Layer::kLuminance);
+    for (const float luminance : plane) EXPECT_TRUE(std::isfinite(luminance) && luminance >= 0.0f) << luminance;
+    return *std::max_element(plane.begin(), plane.end());
+  };
+  EXPECT_EQ(brightest({PointLight({0, 0, 2}, 1e40)}), kLargest);
+  EXPECT_EQ(brightest({PointLight({0, 0, 2}, 1e308)}), kLargest);
+  EXPECT_EQ(brightest({PointLight({0, 0, 2}, 2.5e39), PointLight({0, 0, 2}, 2.5e39), PointLight({0, 0, 2}, 2.5e39)}),
+            kLargest);
+  EXPECT_EQ(brightest({PointLight({0.125, 0.125, 1e-160}, 1.0)}), 0.0f);
+  Light sun = PointLight({0, 0, 2}, 1e300);
+  sun.type = LightType::kSun;
+  EXPECT_EQ(brightest({sun, sun}), kLargest);
+  Light spot = PointLight({0, 0, 1e-3}, 1e308);
+  spot.type = LightType::kSpot;
+  EXPECT_EQ(brightest({spot}), 0.0f);  // its cone misses the centres of all pixels
+}
+
+TEST(DirectLight, NeverNaNAtTheLampItself) {
+  SurfacePoint point;
+  point.normal = point.facing = {0, 0, 1};
+  PlacedLight lamp;
+  lamp.position = {0, 0, 1e-170};
+  for (const double intensity : {0.0, 1e-320, 1.0, 1e308}) {
+    lamp.intensity = intensity;
+    for (const LightType type : {LightType::kPoint, LightType::kSpot}) {
+      lamp.type = type;
+      lamp.cone_offset = type == LightType::kSpot ? -1.0 : 1.0;
+      EXPECT_TRUE(std::isfinite(float(SampleLight(lamp, point).luminance))) << intensity;
+    }
+  }
 }
 
 TEST(Refusal, LightsThatAreNotNumbersMatterOnlyWhereLightIsAskedFor) {

@@ -63,6 +63,12 @@ class LoadGltf : public LoaderTest {
   }
 };
 
+std::vector<std::string> ObjectNames(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Instance& instance : scene.instances) names.push_back(instance.object);
+  return names;
+}
+
 void ExpectNear(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
@@ -329,17 +335,72 @@ TEST_F(LoadGltf, LightsBecomeRadiometric) {
   EXPECT_DOUBLE_EQ(scene.lights[2].intensity, 1.0 / 683.0);
 }
 
+TEST_F(LoadGltf, TheRangeOfLightsIsIgnoredAndSaid) {
+  GltfBuilder b;
+  b.Triangle();
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"range", 3.0}},
+                                                           {{"type", "spot"}, {"range", 4.0}, {"spot", json::object()}},
+                                                           {{"type", "directional"}, {"range", 5.0}}};
+  for (const int light : {2, 0, 1, 0}) b.Root({{"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}});
+  Scene scene = Load(b);
+  EXPECT_EQ(scene.lights.size(), 4u);
+  EXPECT_THAT(scene.warnings,
+              testing::ElementsAre(testing::AllOf(HasSubstr("range"), HasSubstr("node 2"), HasSubstr("3 in all"))));
+  for (json& light : b.json["extensions"]["KHR_lights_punctual"]["lights"]) light.erase("range");
+  EXPECT_THAT(Load(b).warnings, testing::IsEmpty());
+}
+
+TEST_F(LoadGltf, LampsAndCamerasWithoutADirectionAreRefused) {
+  GltfBuilder b;
+  b.Triangle();
+  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  b.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}});
+  const json parts[] = {{{"camera", 0}}, {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+  for (const json& part : parts) {
+    GltfBuilder with = b;
+    const int node = with.Root(part);
+    with.json["nodes"][node]["scale"] = {1, 1, 0};
+    EXPECT_THAT(ErrorOf(with), HasSubstr("no direction"));
+    // Scale and shear are dropped where a direction is left.
+    with.json["nodes"][node].erase("scale");
+    with.json["nodes"][node]["matrix"] = {5, 1, 0, 0, 0, 2, 1, 0, 0, 0, 3, 0, 7, 8, 9, 1};
+    const Scene scene = Load(with);
+    const glm::dmat4 rigid =
+        scene.cameras.empty() ? scene.lights.at(0).world_from_light : scene.cameras[0].world_from_camera;
+    ExpectNear(glm::vec3(rigid[0]), {1, 0, 0});
+    ExpectNear(glm::vec3(rigid[1]), {0, 1, 0});
+    ExpectNear(glm::vec3(rigid[2]), {0, 0, 1});
+    ExpectNear(glm::vec3(rigid[3]), {7, 8, 9});
+  }
+}
+
 TEST_F(LoadGltf, NamesOfObjectsDiffer) {
   GltfBuilder b;
   const int a = b.Triangle("Leaf"), c = b.Triangle("Leaf"), d = b.Triangle("Leaf");
   const int lone = b.Triangle("Stone");
-  b.Append("nodes", {{"name", "Tree"}, {"children", {a, c}}});
+  const int e = b.Triangle("Leaf");
+  b.Append("nodes", {{"name", "Tree"}, {"children", {a, c, e}}});
   b.Append("nodes", {{"name", "Bush"}, {"children", {d}}});
-  b.json["scenes"][0]["nodes"] = {4, 5, lone};
-  const Scene scene = Load(b);
-  std::vector<std::string> names;
-  for (const Instance& instance : scene.instances) names.push_back(instance.object);
-  EXPECT_EQ(names, (std::vector<std::string>{"Tree/Leaf", "Tree/Leaf#2", "Bush/Leaf", "Stone"}));
+  b.json["scenes"][0]["nodes"] = {6, 5, lone};
+  EXPECT_EQ(ObjectNames(Load(b)), (std::vector<std::string>{"Bush/Leaf", "Leaf", "Tree/Leaf", "Tree/Leaf#2", "Stone"}));
+}
+
+TEST_F(LoadGltf, AnAddedObjectRenamesNobody) {
+  GltfBuilder b;
+  b.Triangle("Leaf");
+  const int rock = b.Triangle("Rock");
+  EXPECT_EQ(ObjectNames(Load(b)), (std::vector<std::string>{"Leaf", "Rock"}));
+  b.Triangle("Leaf");
+  EXPECT_EQ(ObjectNames(Load(b)), (std::vector<std::string>{"Leaf", "Rock", "Leaf#2"}));
+  // Before the others in the hierarchy, behind them in the file.
+  const int child = b.Triangle("Rock");
+  b.json["scenes"][0]["nodes"] = {b.Append("nodes", {{"name", "Heap"}, {"children", {child}}}), 0, rock, 2};
+  EXPECT_EQ(ObjectNames(Load(b)), (std::vector<std::string>{"Heap/Rock", "Leaf", "Rock", "Leaf#2"}));
+  // A name that is somebody's own is not given away.
+  b.Triangle("Leaf#2");
+  b.Triangle("Heap/Rock");
+  EXPECT_EQ(ObjectNames(Load(b)),
+            (std::vector<std::string>{"Heap/Rock#2", "Leaf", "Rock", "Leaf#3", "Leaf#2", "Heap/Rock"}));
 }
 
 TEST_F(LoadGltf, TheDefaultSceneIsLoaded) {

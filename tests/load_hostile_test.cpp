@@ -1,6 +1,7 @@
 // Scenes that are broken, by accident or on purpose: each loads or is refused with an error that names the file. Most
 // of these tests say little by themselves and much under AddressSanitizer.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <limits>
 #include <set>
@@ -278,6 +279,53 @@ TEST_F(Hostile, ObjIndicesBeyondTheVertices) {
                            "f 1 2 3 4 5 99999999999999", "f 1 2 3 4 -99"}) {
     EXPECT_NE(Refusal(Write("bad.obj", vertices + face + "\n")), "") << face;
   }
+}
+
+TEST_F(Hostile, PlyWithVerticesTwice) {
+  const std::string element = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+  for (const std::string& second : {element + normals, element, std::string("element vertex 0\n")}) {
+    const std::string header = "ply\nformat ascii 1.0\n" + element + second + face + "end_header\n";
+    EXPECT_THAT(Refusal(Write("twice.ply", header + "0 0 0\n0 0 0 0 0 1\n3 0 1 1\n")),
+                HasSubstr("second 'element vertex'"));
+  }
+}
+
+// A pipe never ends, and nobody writes to it.
+TEST_F(Hostile, ObjTexturesThatAreNoFiles) {
+  ASSERT_EQ(mkfifo(Path("pipe.png").c_str(), 0600), 0);
+  std::filesystem::create_directory(Path("folder.png"));
+  for (const std::string name : {"pipe.png", "folder.png"}) {
+    Write("paint.mtl", "newmtl paint\nmap_Kd " + name + "\n");
+    const Expected<Scene> scene =
+        LoadScene(Write("a.obj", std::string("mtllib paint.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")));
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    EXPECT_THAT(scene->warnings, testing::ElementsAre(testing::AllOf(HasSubstr("texture"), HasSubstr(name))));
+    EXPECT_TRUE(scene->textures.empty());
+  }
+}
+
+// A thousand nodes show one mesh, a million triangles without data: a file of some kilobytes, a thousand million
+// triangles.
+TEST_F(Hostile, InstancesCountEachAgainstTheLimits) {
+  GltfBuilder b;
+  b.Triangle();
+  b.json["accessors"].push_back({{"componentType", kFloat}, {"count", 3'000'000}, {"type", "VEC3"}});
+  b.json["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", 2}}}};
+  for (int i = 1; i < 1000; ++i) b.Root({{"mesh", 0}});
+  EXPECT_THAT(Refusal(b), HasSubstr("at least 501000000 vertices, each instance counted; expected at most 500000000"));
+  b.json["meshes"][0]["primitives"][0]["mode"] = 5;
+  EXPECT_THAT(Refusal(b), HasSubstr("at least 500999666 triangles, each instance counted; expected at most 500000000"));
+}
+
+TEST_F(Hostile, InstancesOfNextToNothingCountToo) {
+  GltfBuilder b;
+  b.Triangle();
+  const json primitive = b.json["meshes"][0]["primitives"][0];
+  for (int i = 1; i < 1001; ++i) b.json["meshes"][0]["primitives"].push_back(primitive);
+  for (int i = 1; i < 1000; ++i) b.Root({{"mesh", 0}});
+  EXPECT_THAT(Refusal(b), HasSubstr("at least 1000001 instances"));
 }
 
 TEST_F(Hostile, PlyPromisesMoreThanItHas) {

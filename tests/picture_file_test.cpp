@@ -3,12 +3,16 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -211,7 +215,7 @@ TEST(PictureFile, WritingExrDecodesAndAssociates) {
   ASSERT_TRUE(input);
   EXPECT_EQ(input->spec().format, OIIO::TypeDesc::FLOAT);
   std::vector<float> pixels(8);
-  ASSERT_TRUE(input->read_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+  ASSERT_TRUE(input->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, pixels.data()));
   EXPECT_EQ(pixels[0], 1.0f);
   EXPECT_NEAR(pixels[1], 0.5f, 0.005f);
   EXPECT_NEAR(pixels[4], 32768.0f / 65535.0f, 1e-6f);
@@ -276,12 +280,14 @@ TEST(PictureFile, OptionsChangeTheSizeAndPngLevelNotThePixels) {
 TEST(PictureFile, TheSamePictureGivesTheSameBytes) {
   const TemporaryFolder folder;
   const Picture picture = RandomPicture(50, 40, 16);
-  for (const char* ending : {".png", ".tif", ".exr", ".jpg"}) {
-    ASSERT_TRUE(WritePicture(folder / ("a" + std::string(ending)), picture));
-    ASSERT_TRUE(WritePicture(folder / ("b" + std::string(ending)), picture));
-    EXPECT_EQ(*ReadWholeFile(folder / ("a" + std::string(ending))),
-              *ReadWholeFile(folder / ("b" + std::string(ending))))
-        << ending << " must not hold its name or the time";
+  for (const std::string ending : {".png", ".tif", ".exr", ".jpg"}) {
+    ASSERT_TRUE(WritePicture(folder / ("a" + ending), picture));
+    ASSERT_TRUE(WritePicture(folder / ("another" + ending), picture));
+    EXPECT_EQ(*ReadWholeFile(folder / ("a" + ending)), *ReadWholeFile(folder / ("another" + ending)))
+        << ending << " must not hold its own name";
+    const auto input = OIIO::ImageInput::open((folder / ("a" + ending)).string());
+    ASSERT_TRUE(input);
+    EXPECT_EQ(input->spec().get_string_attribute("DateTime"), "") << ending << " must not hold the hour";
   }
 }
 
@@ -352,7 +358,33 @@ TEST(PictureFile, AWrongEndingDoesNotMatter) {
   ExpectSame(Read(folder / "p.tif"), picture);
 }
 
-class DamagedPicture : public testing::TestWithParam<const char*> {};
+TEST(PictureFile, AJpegMayLackNothingButMayHoldMore) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(WritePicture(folder / "p.jpg", RandomPicture(37, 23, 8)));
+  auto bytes = *ReadWholeFile(folder / "p.jpg");
+  const auto last = bytes.back();
+  bytes.pop_back();
+  ExpectRefusal(DecodePicture(bytes, "cut.jpg"), {"cut.jpg", "ends before its picture"});
+  bytes.push_back(last);
+  for (int i = 0; i < 100; ++i) bytes.push_back(std::byte(i));  // as some cameras append previews
+  const auto decoded = DecodePicture(bytes, "long.jpg");
+  ASSERT_TRUE(decoded) << decoded.error().message;
+  ExpectSame(*decoded, Read(folder / "p.jpg"));
+}
+
+// OpenImageIO's PNG reader leaps out of libpng over a text it has allocated, so each damaged PNG leaks 31 bytes that
+// are not ours. Leaks of all other formats are looked for.
+class DamagedPicture : public testing::TestWithParam<const char*> {
+#ifdef __SANITIZE_ADDRESS__
+ protected:
+  void SetUp() override {
+    if (fs::path(GetParam()).extension() == ".png") not_looking_.emplace();
+  }
+
+ private:
+  std::optional<__lsan::ScopedDisabler> not_looking_;
+#endif
+};
 
 TEST_P(DamagedPicture, ATruncatedFileIsRefusedAtAnyLength) {
   const TemporaryFolder folder;
@@ -391,7 +423,7 @@ TEST_P(DamagedPicture, FlippedBytesNeverCrash) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedPicture, testing::Values("p.png", "p.jpg", "p.tif", "p.exr"),
-                         [](const auto& info) { return fs::path(info.param).extension().string().substr(1); });
+                         [](const auto& format) { return fs::path(format.param).extension().string().substr(1); });
 
 }  // namespace
 }  // namespace scumble

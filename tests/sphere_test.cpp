@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "guidegen/guidegen.h"
+#include "image/direction.h"
 #include "tests/guidegen_checks.h"
 
 namespace scumble::testing {
@@ -74,16 +75,24 @@ TEST(Sphere, IsLitByTheKeyLight) {
   options.size = 128;
   options.layers = {Layer::kLuminance, Layer::kShadow};
   const auto result = RenderSphere(options);
-  const double azimuth = glm::radians(-40.0);
-  const double elevation = glm::radians(40.0);
-  const glm::dvec3 sun(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-                       std::cos(elevation) * std::cos(azimuth));
+  const glm::dvec3 sun(-0.49240387650610407, 0.6427876096865394, 0.5868240888334652);
   for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
     if (result.guides.Plane(Layer::kCoverage)[i] == 0.0f) continue;
     const double cosine = glm::dot(glm::dvec3(result.guides.Vec3(Layer::kNormal, i)), sun);
     EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], std::max(0.0, cosine), 1e-5);
     EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 0.0f);
   }
+}
+
+TEST(Direction, TurnsFromTowardsTheViewerToTheRightAndUp) {
+  const auto expect_near = [](const glm::dvec3& a, const glm::dvec3& b) { EXPECT_LT(glm::length(a - b), 1e-15); };
+  expect_near(DirectionFromAngles(0, 0), {0, 0, 1});
+  expect_near(DirectionFromAngles(90, 0), {1, 0, 0});
+  expect_near(DirectionFromAngles(180, 0), {0, 0, -1});
+  expect_near(DirectionFromAngles(123, 90), {0, 1, 0});
+  expect_near(DirectionFromAngles(-90, -30), {-std::sqrt(0.75), -0.5, 0});
+  expect_near(DirectionFromAngles(kKeyLightAzimuth, kKeyLightElevation),
+              {-0.49240387650610407, 0.6427876096865394, 0.5868240888334652});
 }
 
 TEST(Sphere, HasItsNames) {

@@ -72,9 +72,9 @@ TEST(Oracle, BothFormsObeyTheSameAcceptanceRuleOnRandomGuides) {
   }
 }
 
-// The parallel form cannot know which anchors a sequential run would choose, so its chunks end at the borders of seed
-// cells as well. On smooth shapes it keeps at least 90% of the oracle's coherent pairs, and its chunks stay within a
-// factor of eight in area.
+// The parallel form cannot know which anchors a sequential run would choose: its chunks end at the borders of seed cells
+// as well, but it tries several seeds for a pixel where the oracle offers whatever anchor comes first. Measured ratios of
+// coherence are 0.99, 1.11 and 0.95, of chunk area 0.6, 2.6 and 0.8; the bounds leave a fifth.
 TEST(Oracle, ParallelChunksComeCloseToTheBruteForceOnes) {
   const GuideSet scenes[] = {HillGuides(256, 192), SphereGuides(200), SampleScene("suzanne.glb", 320, 180)};
   for (const GuideSet& guides : scenes) {
@@ -82,13 +82,11 @@ TEST(Oracle, ParallelChunksComeCloseToTheBruteForceOnes) {
     const CoherenceReport parallel = Coherence(MustTransfer(style, guides).field);
     style.transfer.method = Method::kBruteForce;
     const CoherenceReport brute = Coherence(MustTransfer(style, guides).field);
-    RecordProperty("parallel_coherence", std::to_string(parallel.share));
-    EXPECT_GT(parallel.share, 0.90 * brute.share) << parallel.share << " against " << brute.share;
-    EXPECT_LE(parallel.share, 1.0);
-    EXPECT_GT(parallel.mean_chunk_area, brute.mean_chunk_area / 8.0)
-        << parallel.mean_chunk_area << " against " << brute.mean_chunk_area;
-    EXPECT_LT(parallel.mean_chunk_area, brute.mean_chunk_area * 8.0)
-        << parallel.mean_chunk_area << " against " << brute.mean_chunk_area;
+    const double coherence = parallel.share / brute.share, area = parallel.mean_chunk_area / brute.mean_chunk_area;
+    EXPECT_GT(coherence, 0.80) << parallel.share << " against " << brute.share;
+    EXPECT_LT(coherence, 1.30) << parallel.share << " against " << brute.share;
+    EXPECT_GT(area, 0.50) << parallel.mean_chunk_area << " against " << brute.mean_chunk_area;
+    EXPECT_LT(area, 3.10) << parallel.mean_chunk_area << " against " << brute.mean_chunk_area;
   }
 }
 
@@ -218,6 +216,38 @@ TEST(Chunks, WithInfiniteThresholdAreTheCellsOfTheSeeds) {
       ASSERT_EQ(field.level[i], expected_level);
     }
     y += 2;  // rows are alike; a third of them is enough
+  }
+}
+
+// The exemplar's own sphere, as the ray caster renders it, with an exemplar that encodes its position: every pixel gets
+// its own column and row back. At another scale the offset has no preferred side beyond the rule for ties, which is half
+// a texel of the resized exemplar at most.
+TEST(Identity, TheRenderedSphereGivesThePositionBack) {
+  for (const int size : {64, 65, 501}) {
+    SphereOptions options;
+    options.size = size;
+    const auto sphere = RenderSphereGuides(options);
+    ASSERT_TRUE(sphere.ok());
+    for (const double scale : {1.0, 2.0}) {
+      Style style = PlainStyle(PositionPicture(size));
+      style.transfer.scale = scale;
+      style.transfer.method = scale == 1.0 ? Method::kStyleBlit : Method::kLitSphere;
+      const SourceField field = MustTransfer(style, sphere->guides).field;
+      double sum_x = 0, sum_y = 0, count = 0;
+      for (int y = 0; y < size; ++y) {
+        for (int x = 0; x < size; ++x) {
+          const std::size_t i = field.Index(x, y);
+          if (field.level[i] == SourceField::kNoSource) continue;
+          if (std::hypot(x + 0.5 - size / 2.0, y + 0.5 - size / 2.0) > size / 2.0 - 3.0) continue;  // the rim moves inward
+          const double dx = (field.x[i] + 0.5) / scale - (x + 0.5), dy = (field.y[i] + 0.5) / scale - (y + 0.5);
+          sum_x += dx, sum_y += dy, ++count;
+          ASSERT_LE(std::max(std::fabs(dx), std::fabs(dy)), 0.5 / scale + 0.5) << "size " << size << " scale " << scale;
+        }
+      }
+      ASSERT_GT(count, 0);
+      EXPECT_LE(std::fabs(sum_x / count), scale == 1.0 ? 0.01 : 0.26) << "size " << size;
+      EXPECT_LE(std::fabs(sum_y / count), scale == 1.0 ? 0.01 : 0.26) << "size " << size;
+    }
   }
 }
 

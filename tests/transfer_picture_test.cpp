@@ -62,6 +62,7 @@ TEST(Determinism, JitterStepsAreExactAndIndependentOfTheRange) {
   EXPECT_EQ(JitterStep(12.0, 2, 24, 1), 1);
   EXPECT_EQ(JitterStep(12.0, -1, 24, 1), -1) << "floor, before frame 0 too";
   EXPECT_EQ(JitterStep(12.0, 1000000007, 24000, 1001), 1000000007LL * 12 * 1001 / 24000);
+  EXPECT_EQ(JitterStep(1000.0, 2000000000, 24000000, 1001000), 83416666666) << "more than 64 bits on the way";
 }
 
 TEST(Compose, AlphaIsCoverageTimesPaint) {
@@ -124,6 +125,9 @@ TEST(ReferenceHeight, LengthsFollowTheOutput) {
   EXPECT_EQ(size_levels_radius(1080), (std::array<int, 3>{400, 7, 4}));
   EXPECT_EQ(size_levels_radius(540), (std::array<int, 3>{200, 6, 2}));
   EXPECT_EQ(size_levels_radius(2160), (std::array<int, 3>{800, 8, 8}));
+  EXPECT_EQ(size_levels_radius(135), (std::array<int, 3>{50, 4, 1})) << "what blends goes on blending";
+  EXPECT_EQ(size_levels_radius(764), (std::array<int, 3>{283, 7, 3})) << "nearer to 1080 than to 540";
+  EXPECT_EQ(size_levels_radius(763), (std::array<int, 3>{283, 6, 3})) << "nearer to 540";
   style.transfer.scale = 0.5;
   EXPECT_EQ(size_levels_radius(1080), (std::array<int, 3>{200, 7, 4}));
   style.transfer.reference_height = 0;
@@ -155,6 +159,36 @@ TEST(ReferenceHeight, APreviewLooksLikeTheFinal) {
   EXPECT_NEAR(preview_changes, final_changes, 0.1 * final_changes);
   EXPECT_NEAR(changes_along_the_middle(256, 0), 0.5 * final_changes, 0.15 * final_changes)
       << "without it the preview shows half as many";
+}
+
+// The share of a half-size picture's pixels that take their paint from where the full picture takes it.
+double SharedSources(const SourceField& full, const SourceField& half) {
+  std::size_t covered = 0, same = 0;
+  for (int y = 0; y < half.height; ++y) {
+    for (int x = 0; x < half.width; ++x) {
+      const std::size_t p = half.Index(x, y), q = full.Index(2 * x, 2 * y);
+      if (half.level[p] == SourceField::kNoSource || full.level[q] == SourceField::kNoSource) continue;
+      ++covered;
+      same += std::abs(2 * half.x[p] - full.x[q]) <= 3 && std::abs(2 * half.y[p] - full.y[q]) <= 3;
+    }
+  }
+  return static_cast<double>(same) / static_cast<double>(covered);
+}
+
+// The chunks of a preview are those of the final picture at half the size, jittered seeds and all. Near their borders
+// the coarser pixels decide otherwise; with other seeds only chance agreement is left.
+TEST(ReferenceHeight, APreviewHasTheFinalPicturesChunks) {
+  const auto field_at = [](int size, std::uint64_t seed) {
+    Style style = PlainStyle(NoisePicture(512));
+    style.transfer.reference_height = 512;
+    TransferOptions options;
+    options.seed = seed;
+    return MustTransfer(style, HillGuides(size, size), options).field;
+  };
+  const SourceField full = field_at(512, 0);
+  const double same_seeds = SharedSources(full, field_at(256, 0)), other_seeds = SharedSources(full, field_at(256, 1));
+  EXPECT_GT(same_seeds, 0.65);
+  EXPECT_LT(other_seeds, 0.5 * same_seeds);
 }
 
 TEST(Sizes, OnePixelOneRowOneColumnAndNothingCovered) {
@@ -191,6 +225,8 @@ TEST(Refusals, SettingsOutsideTheirRangesAndImpossibleExemplars) {
   EXPECT_TRUE(refuses([&](Style& s) { s.transfer.blend_radius = -1; }));
   EXPECT_TRUE(refuses([&](Style& s) { s.transfer.scale = 0.0; }));
   EXPECT_TRUE(refuses([&](Style& s) { s.transfer.rim = nan; }));
+  EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].picture = Picture(300, 300), s.transfer.scale = 64.0; }))
+      << "19200 pixels a side";
   EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].picture = Picture(8, 9); }));
   EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].picture = Picture(); }));
   EXPECT_TRUE(refuses([&](Style& s) { s.exemplars.push_back(s.exemplars[0]); }));

@@ -17,6 +17,7 @@ TEST(Vote, IsAPlainCopyInsideAChunk) {
   for (const int radius : {0, 1, 3, 8}) {
     style.transfer.blend_radius = radius;
     const Transferred result = MustTransfer(style, guides);
+    int copies = 0;
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 50; ++x) {
         bool uniform = true;
@@ -28,9 +29,11 @@ TEST(Vote, IsAPlainCopyInsideAChunk) {
           }
         }
         if (!uniform) continue;
+        ++copies;
         ASSERT_EQ(result.picture.At(x, y)[0], style.exemplars[0].picture.At(result.field.x[i], result.field.y[i])[0]);
       }
     }
+    EXPECT_GT(copies, 300) << "radius " << radius;
   }
 }
 
@@ -127,6 +130,32 @@ TEST(EdgeAware, VotesDoNotCrossCreasesButDoCrossSlopes) {
   GuideSet slope = TwoHalves();
   for (std::size_t i = 0; i < slope.pixel_count(); ++i) slope.Plane(Layer::kDepth)[i] = 10.0f + (i % 64);
   EXPECT_EQ(GreyPixels(MustTransfer(style, slope).picture), 2u * 2u * 32u);
+}
+
+// A part one pixel wide before a wall, and two such parts at different depths side by side: their own steps must not
+// pass for a slope.
+TEST(EdgeAware, VotesDoNotCrossPartsOnePixelWide) {
+  Style style = PlainStyle(BlackAndWhite(128));
+  style.transfer.blend_radius = 4;
+  for (const int width : {1, 2}) {
+    GuideSet guides = MakeGuides(64, 32, [&](int x, int) {
+      return x < 32 || x >= 32 + width ? glm::normalize(glm::vec3(-0.4f, 0, 1)) : glm::normalize(glm::vec3(0.4f, 0, 1));
+    });
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const int x = static_cast<int>(i % 64);
+      guides.Plane(Layer::kDepth)[i] = x < 32 || x >= 32 + width ? 9.0f : x == 32 ? 5.0f : 4.0f;
+    }
+    EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 0u) << width;
+  }
+  // Background of a foreign file may have any depth; it is no neighbour.
+  GuideSet alone = MakeGuides(64, 32, [](int x, int) {
+    return x == 31 ? glm::normalize(glm::vec3(-0.4f, 0, 1))
+           : x == 32 ? glm::normalize(glm::vec3(0.4f, 0, 1)) : glm::vec3(0.0f);
+  });
+  for (std::size_t i = 0; i < alone.pixel_count(); ++i) {
+    alone.Plane(Layer::kDepth)[i] = i % 64 == 31 ? 5.0f : i % 64 == 32 ? 9.0f : 1e10f;
+  }
+  EXPECT_EQ(GreyPixels(MustTransfer(style, alone).picture), 0u);
 }
 
 TEST(EdgeAware, ChangesNothingWithoutEdges) {

@@ -29,12 +29,13 @@ void BlendOver(std::uint16_t* front, const Texel& back) {
 
 }  // namespace
 
-bool Compose(const GuideSet& guides, const Paper& paper, const Picture* over, const Region& region, Picture& picture,
+bool Compose(const GuideSet& guides, const Background& background, const Region& region, Picture& picture,
              RowProgress& progress) {
   const auto coverage = guides.Plane(Layer::kCoverage);
+  const Paper& paper = background.paper;
   const auto behind = [&](int x, int y) -> Texel {
     const std::uint16_t* texel = nullptr;
-    if (over) texel = over->At(x, y);
+    if (background.over) texel = background.over->At(x, y);
     else if (paper.picture) texel = paper.picture->At(x % paper.picture->width, y % paper.picture->height);
     if (texel) return {texel[0], texel[1], texel[2], texel[3]};
     if (paper.color) return {(*paper.color)[0], (*paper.color)[1], (*paper.color)[2], 65535};

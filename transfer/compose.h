@@ -8,9 +8,15 @@
 
 namespace scumble::internal {
 
-// Multiplies the coverage into the alpha of `picture`, then blends it over `over` (the same size) or else over the
-// paper, in linear light. Where the result is opaque or nothing is behind, colours pass through untouched.
-bool Compose(const GuideSet& guides, const Paper& paper, const Picture* over, const Region& region, Picture& picture,
+// What stands behind the objects.
+struct Background {
+  const Paper& paper;
+  const Picture* over = nullptr;  // instead of the paper; the guides' size
+};
+
+// Multiplies the coverage into the alpha of `picture`, then blends it over the background in linear light. Where the
+// result is opaque or nothing is behind, colours pass through untouched. False: asked to stop.
+bool Compose(const GuideSet& guides, const Background& background, const Region& region, Picture& picture,
              RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -12,14 +12,15 @@ namespace scumble::internal {
 // Whether two pixels near each other show the same piece of surface:
 //   - the same object id;
 //   - normals less than 60° apart;
-//   - a depth difference that the surface's own slope explains: |Δz| ≤ 2·slope·|Δ| + 0.002·z, where the slope is depth
-//     per pixel, the smaller of both sides' differences (the larger side may be the edge itself) and the steeper of
-//     the two pixels'. It is relative to slope and distance, so one setting works near and far.
+//   - a depth difference that the surface's own slope explains: the mean of both pixels' slopes times their distance (the
+//     trapezoidal rule), give or take the gentler slope over that distance and 0.002 of the depth. A step shows on one side of a pixel only, or
+//     turns back on the other, and is no slope. All of it is relative, so one setting works near and far.
 class EdgeTest {
  public:
   // Keeps a reference to `guides`, which must hold depth and object. O(pixels).
   explicit EdgeTest(const GuideSet& guides);
 
+  // q stands (dx, dy) pixels from p.
   bool SameSurface(std::size_t p, std::size_t q, int dx, int dy) const;
 
  private:

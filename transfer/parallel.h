@@ -20,19 +20,19 @@ class RowProgress {
 
   bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
   void Finished(int rows) {
-    const int done = done_.fetch_add(rows) + rows;
     if (!progress_) return;
     const std::lock_guard lock(mutex_);
-    if (!progress_(from_ + (to_ - from_) * done / rows_)) cancelled_ = true;
+    done_ += rows;
+    if (!progress_(from_ + (to_ - from_) * done_ / rows_)) cancelled_ = true;
   }
 
  private:
   const Progress& progress_;
   double from_, to_;
   int rows_;
-  std::atomic<int> done_ = 0;
   std::atomic<bool> cancelled_ = false;
   std::mutex mutex_;
+  int done_ = 0;
 };
 
 // Calls row(y) for every row of the region, from several threads. Rows are independent of each other, so the result

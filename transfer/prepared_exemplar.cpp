@@ -89,7 +89,7 @@ Source PreparedExemplar::NearestUsable(float nx, float ny, int x, int y) const {
 
 int ScaledSize(int size, double scale, int reference_height, int output_height) {
   const double height_ratio = reference_height > 0 ? static_cast<double>(output_height) / reference_height : 1.0;
-  return static_cast<int>(std::clamp(std::floor(size * scale * height_ratio + 0.5), 1.0, 32767.0));
+  return static_cast<int>(std::clamp(std::floor(size * scale * height_ratio + 0.5), 1.0, 1e9));
 }
 
 }  // namespace scumble

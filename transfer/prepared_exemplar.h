@@ -59,7 +59,7 @@ class PreparedExemplar {
 };
 
 // N for a picture of `size` pixels at `scale`, for an output of `output_height` pixels; `reference_height` 0 means that
-// the height does not matter. Clamped to 1 … 32767.
+// the height does not matter. At least 1.
 int ScaledSize(int size, double scale, int reference_height, int output_height);
 
 }  // namespace scumble

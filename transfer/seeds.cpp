@@ -8,7 +8,7 @@
 namespace scumble {
 
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y) {
-  const std::uint64_t hash = Hash(rules.seed, rules.time_step, level, cell_x, cell_y);
+  const std::uint64_t hash = Hash(rules.seed, rules.time_step, level + rules.level_offset, cell_x, cell_y);
   const float h = static_cast<float>(1 << level);
   const float jitter_x = UnitFloat(hash) * rules.jitter;
   const float jitter_y = UnitFloat(Mix64(hash)) * rules.jitter;

@@ -10,6 +10,8 @@ struct SeedRules {
   std::uint64_t seed = 0;
   std::int64_t time_step = 0;
   float jitter = 1.0f;
+  int level_offset = 0;  // added to the level that is hashed: a preview of half the size, which has one level less,
+                         // then strews its seeds where the final picture does
 };
 
 struct PixelPosition {

@@ -2,10 +2,10 @@
 
 #include <tbb/task_arena.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "image/check.h"
+#include "image/stopwatch.h"
 #include "transfer/compose.h"
 #include "transfer/match.h"
 #include "transfer/resample.h"
@@ -15,31 +15,24 @@ namespace scumble {
 namespace {
 
 constexpr std::size_t kBruteForcePixels = 1 << 20;
+constexpr int kMaxExemplarSize = 16384;
 
-class Stopwatch {
- public:
-  double Lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-// Lengths follow the height; the seed grids are powers of two, so levels follow in whole steps.
+// Lengths follow the height; the seed grids are powers of two, so levels follow in whole steps, to the nearest octave.
+// In integers: height / reference ≥ √2 is one level more, ≥ 2√2 two, < 1/√2 one less.
 int ScaledLevels(int levels, int reference_height, int output_height) {
   if (reference_height == 0) return levels;
-  const double octaves = std::log2(static_cast<double>(output_height) / reference_height);
-  return std::clamp(levels + static_cast<int>(std::floor(octaves + 0.5)), 1, 16);
+  const std::int64_t reference = reference_height, output = output_height;
+  std::int64_t reference_squared = reference * reference, output_squared = output * output;
+  for (; output_squared >= 2 * reference_squared && levels < 16; reference_squared *= 4) ++levels;
+  for (; 2 * output_squared < reference_squared && levels > 1; output_squared *= 4) --levels;
+  return levels;
 }
 
 int ScaledRadius(int radius, int reference_height, int output_height) {
   if (reference_height == 0) return radius;
   const double scaled = static_cast<double>(radius) * output_height / reference_height;
-  return static_cast<int>(std::min(std::floor(scaled + 0.5), 1024.0));
+  // A style that blends goes on doing so in a small preview: without it patches would show hard edges there alone.
+  return static_cast<int>(std::clamp(std::floor(scaled + 0.5), radius > 0 ? 1.0 : 0.0, 1024.0));
 }
 
 Status CheckSettings(const TransferSettings& settings) {
@@ -56,8 +49,10 @@ Status CheckSettings(const TransferSettings& settings) {
 }
 
 Picture ScaledPaper(const Picture& paper, int reference_height, int output_height) {
-  return Resample(paper, ScaledSize(paper.width, 1.0, reference_height, output_height),
-                  ScaledSize(paper.height, 1.0, reference_height, output_height));
+  const auto scaled = [&](int side) {
+    return std::min(kMaxExemplarSize, ScaledSize(side, 1.0, reference_height, output_height));
+  };
+  return Resample(paper, scaled(paper.width), scaled(paper.height));
 }
 
 Status CheckInputs(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options) {
@@ -103,7 +98,8 @@ Status TransferInArena(const PreparedStyle& style, const GuideSet& guides, const
   const internal::MatchInput input{guides,
                                    *style.exemplar,
                                    GuideTest(style.settings.threshold, style.settings.threshold_metric),
-                                   SeedRules{options.seed, options.time_step, style.settings.jitter},
+                                   SeedRules{options.seed, options.time_step, style.settings.jitter,
+                                             style.settings.levels - style.levels},
                                    style.levels,
                                    matched};
   Stopwatch watch;
@@ -117,25 +113,18 @@ Status TransferInArena(const PreparedStyle& style, const GuideSet& guides, const
   if (style.settings.edge_aware && style.blend_radius > 0) edges.emplace(guides);
   const int rows = std::max(1, region.y1 - region.y0);
   internal::RowProgress vote_progress(options.progress, 0.6, 0.9, rows);
-  if (!internal::Vote(scratch.field, *style.exemplar, style.blend_radius, edges ? &*edges : nullptr, region, out,
-                      vote_progress)) {
-    return CancelledError();
-  }
+  const internal::VoteInput votes{scratch.field, *style.exemplar, style.blend_radius, edges ? &*edges : nullptr, region};
+  if (!internal::Vote(votes, out, vote_progress)) return CancelledError();
   scratch.times.vote_ms = watch.Lap();
 
   internal::RowProgress compose_progress(options.progress, 0.9, 1.0, rows);
-  if (!internal::Compose(guides, style.paper, options.over, region, out, compose_progress)) return CancelledError();
+  const internal::Background background{style.paper, options.over};
+  if (!internal::Compose(guides, background, region, out, compose_progress)) return CancelledError();
   scratch.times.compose_ms = watch.Lap();
   return Ok();
 }
 
 }  // namespace
-
-LayerSet RequiredLayers(const TransferSettings& settings) {
-  LayerSet layers{Layer::kCoverage, Layer::kNormal};
-  if (settings.edge_aware && settings.blend_radius > 0) layers.Add(Layer::kDepth).Add(Layer::kObject);
-  return layers;
-}
 
 Expected<PreparedStyle> Prepare(const Style& style, int output_height) {
   SCUMBLE_RETURN_IF_ERROR(CheckSettings(style.transfer));
@@ -149,14 +138,18 @@ Expected<PreparedStyle> Prepare(const Style& style, int output_height) {
                       std::to_string(exemplar.picture.height) + ": an exemplar is a square that its sphere fills");
   }
   const TransferSettings& settings = style.transfer;
+  const int size = ScaledSize(exemplar.picture.width, settings.scale, settings.reference_height, output_height);
+  if (size > kMaxExemplarSize) {
+    return UsageError(exemplar.name + " would be resized from " + std::to_string(exemplar.picture.width) + " to " +
+                      std::to_string(size) + " pixels by transfer.scale and the output's height: at most " +
+                      std::to_string(kMaxExemplarSize) + " are possible; lower transfer.scale");
+  }
   PreparedStyle prepared;
   prepared.settings = settings;
   prepared.output_height = output_height;
   prepared.levels = ScaledLevels(settings.levels, settings.reference_height, output_height);
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
-  prepared.exemplar = std::make_shared<PreparedExemplar>(
-      exemplar.picture, settings.rim,
-      ScaledSize(exemplar.picture.width, settings.scale, settings.reference_height, output_height));
+  prepared.exemplar = std::make_shared<PreparedExemplar>(exemplar.picture, settings.rim, size);
   prepared.paper = style.paper;
   if (style.paper.picture) {
     prepared.paper.picture = ScaledPaper(*style.paper.picture, settings.reference_height, output_height);
@@ -174,10 +167,12 @@ Status Transfer(const PreparedStyle& style, const GuideSet& guides, const Transf
 std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,
                         std::int64_t fps_denominator) {
   if (jitter_fps < 0.0) return frame;
-  const std::int64_t numerator = frame * std::llround(jitter_fps * 1000.0) * fps_denominator;
-  const std::int64_t denominator = fps_numerator * 1000;
-  const std::int64_t quotient = numerator / denominator;
-  return numerator % denominator < 0 ? quotient - 1 : quotient;
+  // 128 bits: frame numbers that carry a date, times a rate in thousandths, leave 64 behind.
+  __extension__ using Int128 = __int128;
+  const Int128 numerator = static_cast<Int128>(frame) * std::llround(jitter_fps * 1000.0) * fps_denominator;
+  const Int128 denominator = static_cast<Int128>(fps_numerator) * 1000;
+  const Int128 quotient = numerator / denominator;
+  return static_cast<std::int64_t>(numerator % denominator < 0 ? quotient - 1 : quotient);
 }
 
 }  // namespace scumble

@@ -33,9 +33,6 @@ struct PreparedStyle {
 // or where a setting is outside the range that image/style.h states.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height);
 
-// Layers that Transfer reads for these settings.
-LayerSet RequiredLayers(const TransferSettings& settings);
-
 struct TransferOptions {
   std::uint64_t seed = 0;
   std::int64_t time_step = 0;       // which jitter; see JitterStep
@@ -59,7 +56,7 @@ struct TransferScratch {
 };
 
 // Stylises one frame into `out` (resized to the guides; straight alpha = coverage × paint). The guides must hold
-// RequiredLayers and pass GuideSet::Validate; their height must be the prepared one. The bytes depend on guides, style,
+// RequiredLayers(style.settings) and pass GuideSet::Validate; their height must be the prepared one. The bytes depend on guides, style,
 // seed and time step only: not on threads, tiles, region or machine. O(covered pixels), except for kBruteForce, which
 // is refused above a megapixel.
 Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,

@@ -22,11 +22,12 @@ struct Ballot {
 
 }  // namespace
 
-bool Vote(const SourceField& field, const PreparedExemplar& exemplar, int radius, const EdgeTest* edges,
-          const Region& region, Picture& out, RowProgress& progress) {
-  return ForEachRow(region, progress, [&](int y) {
+bool Vote(const VoteInput& input, Picture& out, RowProgress& progress) {
+  const SourceField& field = input.field;
+  const int radius = input.radius;
+  return ForEachRow(input.region, progress, [&](int y) {
     const int y0 = std::max(0, y - radius), y1 = std::min(field.height - 1, y + radius);
-    for (int x = region.x0; x < region.x1; ++x) {
+    for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t p = field.Index(x, y);
       if (field.level[p] == SourceField::kNoSource) continue;
       const int x0 = std::max(0, x - radius), x1 = std::min(field.width - 1, x + radius);
@@ -36,9 +37,9 @@ bool Vote(const SourceField& field, const PreparedExemplar& exemplar, int radius
           const std::size_t q = field.Index(u, v);
           if (field.level[q] == SourceField::kNoSource) continue;
           const int sx = field.x[q] + (x - u), sy = field.y[q] + (y - v);
-          if (!exemplar.Usable(sx, sy)) continue;
-          if (edges && !edges->SameSurface(p, q, u - x, v - y)) continue;
-          ballot.Add(exemplar.picture().At(sx, sy));
+          if (!input.exemplar.Usable(sx, sy)) continue;
+          if (input.edges && !input.edges->SameSurface(p, q, u - x, v - y)) continue;
+          ballot.Add(input.exemplar.picture().At(sx, sy));
         }
       }
       ballot.Count(out.At(x, y));  // p's own vote always counts

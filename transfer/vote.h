@@ -10,11 +10,18 @@
 
 namespace scumble::internal {
 
+struct VoteInput {
+  const SourceField& field;
+  const PreparedExemplar& exemplar;
+  int radius = 0;
+  const EdgeTest* edges = nullptr;  // null: plain voting
+  Region region;
+};
+
 // Every covered pixel p of the region becomes the mean of what the chunks around it would put there: for each pixel q
 // of the (2·radius + 1)² window the texel S(q) + (p - q), where it is usable and, with `edges`, where q shows the same
 // surface. Inside a chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha.
-// Writes straight alpha into `out` (the picture's size); other pixels are left alone.
-bool Vote(const SourceField& field, const PreparedExemplar& exemplar, int radius, const EdgeTest* edges,
-          const Region& region, Picture& out, RowProgress& progress);
+// Writes straight alpha into `out` (the picture's size); other pixels are left alone. False: asked to stop.
+bool Vote(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

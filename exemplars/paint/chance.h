@@ -37,10 +37,23 @@ class Chance {
   std::uint64_t count_ = 0;
 };
 
+// A place in a field of noise, counted in features. On a tile the field repeats after a whole number of them.
+struct NoisePlace {
+  glm::vec2 at;
+  glm::vec2 repeat{0.0f};  // 0: never
+
+  // The same place where features are smaller by that factor, or nearly so on a tile.
+  NoisePlace Finer(glm::vec2 factor) const;
+};
+
 // Value noise in [0, 1] with features of about one unit.
-float SmoothNoise(glm::vec2 at, std::uint64_t stream);
+float SmoothNoise(const NoisePlace& place, std::uint64_t stream);
+inline float SmoothNoise(glm::vec2 at, std::uint64_t stream) { return SmoothNoise(NoisePlace{at}, stream); }
 // Octaves of it, each half as strong and twice as fine; in [0, 1].
-float CloudNoise(glm::vec2 at, int octaves, std::uint64_t stream);
+float CloudNoise(const NoisePlace& place, int octaves, std::uint64_t stream);
+inline float CloudNoise(glm::vec2 at, int octaves, std::uint64_t stream) {
+  return CloudNoise(NoisePlace{at}, octaves, stream);
+}
 
 // 0 below `from`, 1 above `to`, smooth between; falls instead when from > to.
 inline float Ramp(float from, float to, float x) {

@@ -10,7 +10,7 @@
 namespace scumble::paint {
 namespace {
 
-constexpr glm::vec3 kPaper{0.85f, 0.775f, 0.66f};
+constexpr Stock kPaper{Tooth::kLaid, 5.0f, {0.85f, 0.775f, 0.66f}, 0.055f};
 constexpr glm::vec3 kCharcoal{0.11f, 0.095f, 0.09f};
 constexpr glm::vec3 kChalk{0.985f, 0.97f, 0.93f};
 // Poles of the hatching stay in the light or beyond the rim, where no circle of it closes.
@@ -107,14 +107,19 @@ Status LayChalk(Drawing& drawing, const Studio& studio) {
 }  // namespace
 
 Expected<Picture> PaintCharcoal(const Studio& studio) {
-  const Field tooth = MakeTooth(studio.size, Tooth::kLaid, 5.0f, Hash(studio.seed, kTooth));
-  const Colors paper = MakePaper(tooth, kPaper, 0.055f, Hash(studio.seed, kMottle));
+  const Field tooth = MakeTooth({studio.size}, kPaper, Hash(studio.seed, kTooth));
+  const Colors paper = MakePaper(tooth, kPaper, Hash(studio.seed, kMottle));
   Drawing dark(paper, tooth, {.bite = 0.8f, .softness = 0.34f, .density = 1.05f});
   SCUMBLE_RETURN_IF_ERROR(LayTone(dark, studio));
   SCUMBLE_RETURN_IF_ERROR(LayStrokes(dark, studio));
   Drawing light(dark.Look(), tooth, {.bite = 0.85f, .softness = 0.25f, .density = 1.0f});
   SCUMBLE_RETURN_IF_ERROR(LayChalk(light, studio));
   return ToPicture(light.Look());
+}
+
+Expected<Picture> CharcoalPaper(const Studio& studio) {
+  const Field tooth = MakeTooth(TileFor(studio.size), kPaper, Hash(studio.seed, kTooth));
+  return ToPicture(MakePaper(tooth, kPaper, Hash(studio.seed, kMottle)));
 }
 
 }  // namespace scumble::paint

@@ -15,7 +15,7 @@ constexpr float kOverhang = 1.045f;  // strokes fade out at this many radii
 }  // namespace
 
 Drawing::Drawing(Colors ground, Field tooth, const DryMedia& media)
-    : ground_(std::move(ground)), tooth_(std::move(tooth)), media_(media), canvas_(ground_.size) {}
+    : ground_(std::move(ground)), tooth_(std::move(tooth)), media_(media), canvas_(ground_.sheet) {}
 
 Colors Drawing::Look() const {
   Colors picture = ground_;
@@ -25,7 +25,7 @@ Colors Drawing::Look() const {
 
 Touch Drawing::Missing(const Touch& target, float eagerness, float heaviest) const {
   const Colors picture = Look();
-  Field darkness(picture.size);
+  Field darkness(picture.sheet);
   for (std::size_t i = 0; i < darkness.pixels.size(); ++i) {
     const glm::vec3 color = picture.pixels[i];
     darkness.pixels[i] = 1.0f - Luminance(color.r, color.g, color.b);

@@ -10,7 +10,7 @@
 namespace scumble::paint {
 namespace {
 
-constexpr glm::vec3 kPaper{0.965f, 0.96f, 0.945f};
+constexpr Stock kPaper{Tooth::kFine, 4.0f, {0.965f, 0.96f, 0.945f}, 0.04f};
 constexpr glm::vec3 kHard{0.27f, 0.275f, 0.295f};
 constexpr glm::vec3 kSoft{0.12f, 0.122f, 0.138f};
 
@@ -77,12 +77,17 @@ Status DrawAccents(Drawing& drawing, const Studio& studio) {
 }  // namespace
 
 Expected<Picture> PaintGraphite(const Studio& studio) {
-  const Field tooth = MakeTooth(studio.size, Tooth::kFine, 4.0f, Hash(studio.seed, kTooth));
-  const Colors paper = MakePaper(tooth, kPaper, 0.04f, Hash(studio.seed, kMottle));
+  const Field tooth = MakeTooth({studio.size}, kPaper, Hash(studio.seed, kTooth));
+  const Colors paper = MakePaper(tooth, kPaper, Hash(studio.seed, kMottle));
   Drawing drawing(paper, tooth, {.bite = 0.55f, .softness = 0.40f, .density = 1.1f});
   SCUMBLE_RETURN_IF_ERROR(DrawHatching(drawing, studio));
   SCUMBLE_RETURN_IF_ERROR(DrawAccents(drawing, studio));
   return ToPicture(drawing.Look());
+}
+
+Expected<Picture> GraphitePaper(const Studio& studio) {
+  const Field tooth = MakeTooth(TileFor(studio.size), kPaper, Hash(studio.seed, kTooth));
+  return ToPicture(MakePaper(tooth, kPaper, Hash(studio.seed, kMottle)));
 }
 
 }  // namespace scumble::paint

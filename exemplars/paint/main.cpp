@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exemplars/paint/styles.h"
@@ -30,16 +31,21 @@ int Report(const Error& error) {
 }
 
 Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, const std::filesystem::path& folder) {
-  SCUMBLE_ASSIGN(const Picture picture, style.paint(studio));
   const std::filesystem::path style_folder = folder / style.name;
   std::error_code failure;
   std::filesystem::create_directories(style_folder, failure);
-  if (failure) return OutputError(style_folder.string() + " cannot be made: " + failure.message());
-  const std::filesystem::path file = style_folder / "lit.png";
+  if (failure)
+    return OutputError(style_folder.string() + " cannot be made: " + failure.message() +
+                       "; choose another folder with -o");
+  SCUMBLE_ASSIGN(const Picture paper, style.paper(studio));
+  SCUMBLE_ASSIGN(const Picture sphere, style.paint(studio));
   PictureWriteOptions options;
   options.png_level = 9;
-  SCUMBLE_RETURN_IF_ERROR(WritePicture(file, picture, options));
-  std::cout << file.string() << "\n";
+  for (const auto& [name, picture] : {std::pair("paper.png", &paper), std::pair("lit.png", &sphere)}) {
+    const std::filesystem::path file = style_folder / name;
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(file, *picture, options));
+    std::cout << file.string() << "\n";
+  }
   return Ok();
 }
 
@@ -58,7 +64,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> names{"all"};
   for (const paint::StyleEntry& style : paint::kStyles) names.emplace_back(style.name);
 
-  CLI::App app{"Paints spheres in the styles that come with Scumble: FOLDER/NAME/lit.png"};
+  CLI::App app{"Paints spheres and papers in the styles that come with Scumble: FOLDER/NAME/lit.png and paper.png"};
   app.add_option("--style", chosen, "Which one")->check(CLI::IsMember(names))->capture_default_str();
   app.add_option("--size", studio.size, "Pixels along a side")->check(CLI::Range(64, 8192))->capture_default_str();
   app.add_option("--seed", studio.seed, "The same number paints the same picture")->capture_default_str();

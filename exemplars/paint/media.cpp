@@ -58,7 +58,7 @@ Field Blur(const Field& field, float radius) {
   const int reach = std::max(1, static_cast<int>(std::lround(radius * static_cast<float>(field.size) / kSide)));
   const std::size_t size = static_cast<std::size_t>(field.size);
   Field a = field;
-  Field b(field.size);
+  Field b(field.sheet);
   for (int pass = 0; pass < 3; ++pass) {
     BoxBlur(a, b, reach, 1, size);
     BoxBlur(b, a, reach, size, 1);
@@ -67,7 +67,7 @@ Field Blur(const Field& field, float radius) {
 }
 
 Field Plane(const Layer& layer, int component) {
-  Field plane(layer.size);
+  Field plane(layer.sheet);
   for (std::size_t i = 0; i < plane.pixels.size(); ++i) plane.pixels[i] = layer.pixels[i][component];
   return plane;
 }

@@ -21,7 +21,8 @@ struct Relief {
 };
 void LightRelief(Colors& paint, const Field& height, const Relief& relief);
 
-// Three box blurs, close to a Gaussian of that radius in units of kSide; the edge pixels continue outwards.
+// Three box blurs, close to a Gaussian of that radius in units of kSide; the edge pixels continue outwards, on a tile
+// too.
 Field Blur(const Field& field, float radius);
 
 // One plane of a layer.

@@ -15,7 +15,9 @@
 namespace scumble::paint {
 namespace {
 
-enum Pass : std::uint64_t { kCanvas, kHighlight, kFirstLayer };
+enum Pass : std::uint64_t { kCanvas, kHighlight, kFirstLayer, kGround = 100 };
+
+constexpr const char* kBristle = "tanda/oil-01-paint";
 
 // One size of brush, worked over the whole picture.
 struct BrushLayer {
@@ -60,19 +62,16 @@ glm::vec3 BreakColor(Chance& chance, glm::vec3 color, float light, float amount)
 
 class OilPainter {
  public:
-  OilPainter(const Studio& studio, Brush paint, Brush thickness)
-      : seed_(studio.seed),
-        paint_(std::move(paint)),
-        thickness_(std::move(thickness)),
-        colors_(studio.size),
-        heights_(studio.size) {
+  // `undertone` is what shows where no stroke comes.
+  OilPainter(const Sheet& sheet, std::uint64_t seed, glm::vec3 undertone, Brush paint, Brush thickness)
+      : seed_(seed), paint_(std::move(paint)), thickness_(std::move(thickness)), colors_(sheet), heights_(sheet) {
     for (Brush* brush : {&paint_, &thickness_}) {
       brush->Set(MYPAINT_BRUSH_SETTING_DABS_PER_ACTUAL_RADIUS, 2.0f)
           .Set(MYPAINT_BRUSH_SETTING_DABS_PER_BASIC_RADIUS, 0.0f);
     }
     // Thickness is laid, not mixed.
     thickness_.Set(MYPAINT_BRUSH_SETTING_SMUDGE, 0.0f);
-    colors_.Fill({0.42f, 0.30f, 0.24f});
+    colors_.Fill(undertone);
     heights_.Fill(glm::vec3(0.3f));
   }
 
@@ -108,15 +107,39 @@ class OilPainter {
     }
   }
 
-  Colors Finish() const {
-    Colors colors(colors_.size());
+  // Loose strokes of one quiet colour, slanting now this way, now that. No stroke stands out: the eye would find it
+  // again in the next tile.
+  void BrushGround(glm::vec3 color) {
+    Chance chance(seed_, kGround);
+    for (const float spacing : {25.6f, 18.3f}) {
+      for (const glm::vec2 middle : SowEvenly(chance, spacing, colors_.sheet().units, 0.0f)) {
+        const float heading = chance.Happens(0.5f) ? 0.75f : -0.35f;
+        const float angle = heading + chance.Bell(0.4f);
+        const float curve = chance.Bell(0.003f);
+        const Flow flow = [=](glm::vec2 at) {
+          const float turned = angle + curve * (at.x - middle.x + at.y - middle.y);
+          return glm::vec2(std::cos(turned), std::sin(turned));
+        };
+        Stroke path = TraceStroke(flow, middle, chance.Uniform(45.0f, 80.0f));
+        if (chance.Happens(0.5f)) std::reverse(path.begin(), path.end());
+        const float brightness = 1.0f + chance.Bell(0.012f);
+        const float warmth = chance.Bell(0.004f);
+        const glm::vec3 broken = color * brightness * glm::vec3(1.0f + warmth, 1.0f, 1.0f - warmth);
+        DragBristles(chance, path, {chance.Uniform(14.0f, 26.0f), 2.4f, 0.1f, 0.6f}, broken);
+      }
+    }
+  }
+
+  // Light across the relief; `depth` weakens it for what is to recede.
+  Colors Finish(float depth = 1.0f) const {
+    Colors colors(colors_.sheet());
     const Layer layer = colors_.Read();
     for (std::size_t i = 0; i < colors.pixels.size(); ++i) colors.pixels[i] = glm::vec3(layer.pixels[i]);
     Field height = Plane(heights_.Read(), 0);
     // Thin paint lets the weave of the canvas through.
-    const Field weave = MakeTooth(colors.size, Tooth::kLaid, 6.0f, Hash(seed_, kCanvas));
+    const Field weave = MakeTooth(colors.sheet, {Tooth::kLaid, 6.0f}, Hash(seed_, kCanvas));
     for (std::size_t i = 0; i < height.pixels.size(); ++i) height.pixels[i] += 0.05f * weave.pixels[i];
-    LightRelief(colors, height, {.shade = 0.72f, .sheen = 0.12f});
+    LightRelief(colors, height, {.shade = 0.72f * depth, .sheen = 0.12f * depth});
     return colors;
   }
 
@@ -124,7 +147,8 @@ class OilPainter {
   struct Tuft {
     float width;
     float bristle;
-    float load;  // how thick the paint is, 0 … 1
+    float load;            // how thick the paint is, 0 … 1
+    float streaks = 1.0f;  // how far the colours of its bristles part
   };
 
   void DragBristles(Chance& chance, const Stroke& path, const Tuft& tuft, glm::vec3 color) {
@@ -139,8 +163,9 @@ class OilPainter {
       const float offset = across * tuft.width + chance.Bell(0.5f);
       const Stroke line = OneBristle(chance, path, offset, outer, press);
       if (line.size() < 3) continue;
-      const float shift = chance.Bell(0.035f);
-      paint_.Color(color * glm::vec3(1.0f + shift, 1.0f + 0.9f * shift, 1.0f + 0.7f * shift + chance.Bell(0.025f)));
+      const float shift = chance.Bell(0.035f * tuft.streaks);
+      paint_.Color(color * glm::vec3(1.0f + shift, 1.0f + 0.9f * shift,
+                                     1.0f + 0.7f * shift + chance.Bell(0.025f * tuft.streaks)));
       paint_.Paint(colors_, line);
       const float ridge = 0.30f * Ramp(0.65f, 1.0f, outer);
       const float height =
@@ -178,13 +203,23 @@ class OilPainter {
 }  // namespace
 
 Expected<Picture> PaintOil(const Studio& studio) {
-  SCUMBLE_ASSIGN(Brush paint, Brush::Load(studio.brushes, "tanda/oil-01-paint"));
-  SCUMBLE_ASSIGN(Brush thickness, Brush::Load(studio.brushes, "tanda/oil-01-paint"));
-  OilPainter painter(studio, std::move(paint), std::move(thickness));
+  SCUMBLE_ASSIGN(Brush paint, Brush::Load(studio.brushes, kBristle));
+  SCUMBLE_ASSIGN(Brush thickness, Brush::Load(studio.brushes, kBristle));
+  constexpr glm::vec3 kUndertone{0.42f, 0.30f, 0.24f};
+  OilPainter painter({studio.size}, studio.seed, kUndertone, std::move(paint), std::move(thickness));
   std::uint64_t stream = kFirstLayer;
   for (const BrushLayer& layer : kLayers) painter.WorkOver(layer, stream++);
   painter.PlaceHighlight();
   return ToPicture(painter.Finish());
+}
+
+Expected<Picture> OilGround(const Studio& studio) {
+  SCUMBLE_ASSIGN(Brush paint, Brush::Load(studio.brushes, kBristle));
+  SCUMBLE_ASSIGN(Brush thickness, Brush::Load(studio.brushes, kBristle));
+  constexpr glm::vec3 kGrey{0.561f, 0.639f, 0.651f};
+  OilPainter painter(TileFor(studio.size), studio.seed, 0.96f * kGrey, std::move(paint), std::move(thickness));
+  painter.BrushGround(kGrey);
+  return ToPicture(painter.Finish(0.5f));
 }
 
 }  // namespace scumble::paint

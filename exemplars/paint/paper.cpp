@@ -8,19 +8,30 @@
 namespace scumble::paint {
 namespace {
 
-float RawHeight(Tooth tooth, glm::vec2 at, std::uint64_t seed) {
+// Where a pixel lies in noise whose features are `period` units wide.
+template <class T>
+NoisePlace PlaceIn(const Raster<T>& raster, int x, int y, float period) {
+  const glm::vec2 at = raster.Place(x, y);
+  if (!raster.sheet.tile) return {at / period};
+  const float repeat = std::max(1.0f, std::round(raster.sheet.units / period));
+  return {at * (repeat / raster.sheet.units), glm::vec2(repeat)};
+}
+
+float RawHeight(Tooth tooth, const NoisePlace& place, std::uint64_t seed) {
   switch (tooth) {
     case Tooth::kLaid: {
-      const float fibres = 0.5f * SmoothNoise(at * glm::vec2(2.4f, 0.7f), Hash(seed, 1)) +
-                           0.5f * SmoothNoise(at * glm::vec2(0.7f, 2.4f), Hash(seed, 2));
-      return 0.55f * CloudNoise(at, 3, Hash(seed, 3)) + 0.45f * fibres;
+      const float fibres = 0.5f * SmoothNoise(place.Finer({2.4f, 0.7f}), Hash(seed, 1)) +
+                           0.5f * SmoothNoise(place.Finer({0.7f, 2.4f}), Hash(seed, 2));
+      return 0.55f * CloudNoise(place, 3, Hash(seed, 3)) + 0.45f * fibres;
     }
     case Tooth::kFine:
-      return CloudNoise(at, 3, Hash(seed, 1));
+      return CloudNoise(place, 3, Hash(seed, 1));
     case Tooth::kColdPress: {
-      const glm::vec2 bend(CloudNoise(at * 0.3f, 2, Hash(seed, 1)), CloudNoise(at * 0.3f, 2, Hash(seed, 2)));
-      const float hollows = std::fabs(2.0f * SmoothNoise(at + 2.0f * bend, Hash(seed, 3)) - 1.0f);
-      return 0.55f * hollows + 0.45f * CloudNoise(at * 1.9f, 2, Hash(seed, 4));
+      const NoisePlace wide = place.Finer(glm::vec2(0.3f));
+      const glm::vec2 bend(CloudNoise(wide, 2, Hash(seed, 1)), CloudNoise(wide, 2, Hash(seed, 2)));
+      const NoisePlace bent{place.at + 2.0f * bend, place.repeat};
+      const float hollows = std::fabs(2.0f * SmoothNoise(bent, Hash(seed, 3)) - 1.0f);
+      return 0.55f * hollows + 0.45f * CloudNoise(place.Finer(glm::vec2(1.9f)), 2, Hash(seed, 4));
     }
   }
   return 0.5f;
@@ -28,13 +39,13 @@ float RawHeight(Tooth tooth, glm::vec2 at, std::uint64_t seed) {
 
 }  // namespace
 
-Field MakeTooth(int size, Tooth tooth, float period, std::uint64_t seed) {
-  Field field(size);
+Field MakeTooth(const Sheet& sheet, const Stock& stock, std::uint64_t seed) {
+  Field field(sheet);
   double sum = 0.0;
   double squares = 0.0;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const float height = RawHeight(tooth, field.Place(x, y) / period, seed);
+  for (int y = 0; y < field.size; ++y) {
+    for (int x = 0; x < field.size; ++x) {
+      const float height = RawHeight(stock.tooth, PlaceIn(field, x, y, stock.period), seed);
       field.At(x, y) = height;
       sum += height;
       squares += static_cast<double>(height) * height;
@@ -49,14 +60,17 @@ Field MakeTooth(int size, Tooth tooth, float period, std::uint64_t seed) {
   return field;
 }
 
-Colors MakePaper(const Field& tooth, glm::vec3 color, float relief, std::uint64_t seed) {
-  Colors paper(tooth.size);
+Colors MakePaper(const Field& tooth, const Stock& stock, std::uint64_t seed) {
+  const float relief = stock.relief;
+  // The eye soon finds a cloud that comes again in every tile.
+  const float clouds = tooth.sheet.tile ? 0.008f : 0.03f;
+  Colors paper(tooth.sheet);
   for (int y = 0; y < tooth.size; ++y) {
     for (int x = 0; x < tooth.size; ++x) {
       const float slope =
           0.6f * (tooth.Near(x + 1, y) - tooth.Near(x - 1, y)) + 0.8f * (tooth.Near(x, y + 1) - tooth.Near(x, y - 1));
-      const float mottle = 0.03f * (CloudNoise(paper.Place(x, y) / 60.0f, 3, seed) - 0.5f);
-      paper.At(x, y) = color * (1.0f + mottle + relief * slope + 0.3f * relief * (tooth.At(x, y) - 0.5f));
+      const float mottle = clouds * (CloudNoise(PlaceIn(paper, x, y, 60.0f), 3, seed) - 0.5f);
+      paper.At(x, y) = stock.color * (1.0f + mottle + relief * slope + 0.3f * relief * (tooth.At(x, y) - 0.5f));
     }
   }
   return paper;

@@ -14,10 +14,17 @@ enum class Tooth {
   kColdPress,  // rounded hollows: watercolour paper
 };
 
-// Heights of the tooth in [0, 1], 0.5 in the middle. `period` is the width of a grain in units of kSide.
-Field MakeTooth(int size, Tooth tooth, float period, std::uint64_t seed);
+struct Stock {
+  Tooth tooth = Tooth::kFine;
+  float period = 4.0f;    // width of a grain, in units; on a tile it gives a little, so that a whole number fits
+  glm::vec3 color{1.0f};  // sRGB-encoded
+  float relief = 0.0f;    // how strongly light from the upper left shows the tooth
+};
 
-// Bare paper of the given colour: mottled a little, its tooth lit from the upper left by `relief`.
-Colors MakePaper(const Field& tooth, glm::vec3 color, float relief, std::uint64_t seed);
+// Heights of the tooth in [0, 1], 0.5 in the middle.
+Field MakeTooth(const Sheet& sheet, const Stock& stock, std::uint64_t seed);
+
+// Bare paper with that tooth, mottled a little.
+Colors MakePaper(const Field& tooth, const Stock& stock, std::uint64_t seed);
 
 }  // namespace scumble::paint

@@ -126,10 +126,10 @@ std::vector<Stroke> PlanHatching(Chance& chance, Flow (*flow_of)(glm::vec3), glm
   return strokes;
 }
 
-std::vector<glm::vec2> SowEvenly(Chance& chance, float spacing, float margin) {
+std::vector<glm::vec2> SowEvenly(Chance& chance, float spacing, float side, float margin) {
   std::vector<glm::vec2> places;
-  for (float y = -margin; y < kSide + margin; y += spacing) {
-    for (float x = -margin; x < kSide + margin; x += spacing) {
+  for (float y = -margin; y < side + margin; y += spacing) {
+    for (float x = -margin; x < side + margin; x += spacing) {
       const float dx = chance.Uniform(0.0f, spacing);
       places.emplace_back(x + dx, y + chance.Uniform(0.0f, spacing));
     }

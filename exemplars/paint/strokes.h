@@ -44,9 +44,9 @@ struct HatchOptions {
 std::vector<Stroke> PlanHatching(Chance& chance, Flow (*flow_of)(glm::vec3), glm::vec3 axis, const Touch& touch,
                                  const HatchOptions& options);
 
-// Places all over the square, past the rim and past the picture's edge by `margin`: one in each cell of a grid of that
-// spacing, moved by chance, in an order of chance. Even cover without a pattern.
-std::vector<glm::vec2> SowEvenly(Chance& chance, float spacing, float margin = 24.0f);
+// Places all over a square of that side, and past its edge by `margin`: one in each cell of a grid of that spacing,
+// moved by chance, in an order of chance. Even cover without a pattern.
+std::vector<glm::vec2> SowEvenly(Chance& chance, float spacing, float side = kSide, float margin = 24.0f);
 
 // Broken, searching lines along the rim, `inset` ± deviation units inside it.
 struct RimOptions {

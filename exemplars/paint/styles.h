@@ -15,21 +15,28 @@ struct Studio {
   std::uint64_t seed = 1;
 };
 
-// The sphere fills the square; what lies outside it is continued paint or paper. Same studio, same picture.
+// Same studio, same picture. The sphere fills the square; what lies outside it is continued paint or paper.
 Expected<Picture> PaintCharcoal(const Studio& studio);
 Expected<Picture> PaintGraphite(const Studio& studio);
 Expected<Picture> PaintOil(const Studio& studio);
 Expected<Picture> PaintWatercolour(const Studio& studio);
 
+// What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
+Expected<Picture> CharcoalPaper(const Studio& studio);
+Expected<Picture> GraphitePaper(const Studio& studio);
+Expected<Picture> OilGround(const Studio& studio);
+Expected<Picture> WatercolourPaper(const Studio& studio);
+
 struct StyleEntry {
   const char* name;
   Expected<Picture> (*paint)(const Studio& studio);
+  Expected<Picture> (*paper)(const Studio& studio);
 };
 inline constexpr StyleEntry kStyles[] = {
-    {"charcoal", PaintCharcoal},
-    {"graphite", PaintGraphite},
-    {"oil", PaintOil},
-    {"watercolour", PaintWatercolour},
+    {"charcoal", PaintCharcoal, CharcoalPaper},
+    {"graphite", PaintGraphite, GraphitePaper},
+    {"oil", PaintOil, OilGround},
+    {"watercolour", PaintWatercolour, WatercolourPaper},
 };
 
 }  // namespace scumble::paint

@@ -14,7 +14,7 @@
 namespace scumble::paint {
 namespace {
 
-constexpr glm::vec3 kPaper{0.985f, 0.975f, 0.95f};
+constexpr Stock kPaper{Tooth::kColdPress, 6.5f, {0.985f, 0.975f, 0.95f}, 0.035f};
 
 enum Pass : std::uint64_t { kTooth, kMottle, kFirstGlaze };
 
@@ -95,18 +95,23 @@ void Dry(Colors& picture, const Layer& layer, const Field& tooth, const Glaze& g
 Expected<Picture> PaintWatercolour(const Studio& studio) {
   SCUMBLE_ASSIGN(Brush brush, Brush::Load(studio.brushes, "deevad/brush"));
   brush.Color(glm::vec3(0.2f));
-  const Field tooth = MakeTooth(studio.size, Tooth::kColdPress, 6.5f, Hash(studio.seed, kTooth));
-  Colors picture = MakePaper(tooth, kPaper, 0.035f, Hash(studio.seed, kMottle));
+  const Field tooth = MakeTooth({studio.size}, kPaper, Hash(studio.seed, kTooth));
+  Colors picture = MakePaper(tooth, kPaper, Hash(studio.seed, kMottle));
   std::uint64_t pass = kFirstGlaze;
   for (const Glaze& glaze : kGlazes) {
     const std::uint64_t stream = Hash(studio.seed, pass);
     Chance chance(studio.seed, pass++);
-    Canvas wet(studio.size);
+    Canvas wet({studio.size});
     brush.Radius(glaze.radius);
     brush.Paint(wet, PlanGlaze(glaze, chance, stream));
     Dry(picture, wet.Read(), tooth, glaze, stream);
   }
   return ToPicture(picture);
+}
+
+Expected<Picture> WatercolourPaper(const Studio& studio) {
+  const Field tooth = MakeTooth(TileFor(studio.size), kPaper, Hash(studio.seed, kTooth));
+  return ToPicture(MakePaper(tooth, kPaper, Hash(studio.seed, kMottle)));
 }
 
 }  // namespace scumble::paint
