@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/json_text.h"
@@ -45,9 +46,10 @@ void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Global
 
 Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& globals) {
   SCUMBLE_ASSIGN(LayerSet layers, ParseLayers(verb.layers));
+  std::optional<Style> style;
   if (!verb.style.style.empty()) {
-    SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
-    layers.Add(RequiredLayers(style.transfer));
+    SCUMBLE_ASSIGN(style, OpenStyle(verb.style));
+    layers.Add(RequiredLayers(style->transfer));
   }
   const bool plan_only = verb.output.empty();
   if (plan_only && !verb.scene.explain)
@@ -57,6 +59,7 @@ Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& glob
   if (verb.style.style.empty() && !verb.style.sets.empty()) return UsageError("--set changes a style: give --style too");
   ProgressBar bar("guidegen", globals.quiet);
   SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(verb.scene, layers, globals, bar.Part(0.0, 1.0), plan_only));
+  if (style) NameStyleInPlan(made.plan, *style);
   if (!plan_only) {
     Stopwatch watch;
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(verb.output, made.guides, write));

@@ -154,6 +154,15 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
   return result;
 }
 
+void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style) {
+  const LayerSet read = RequiredLayers(style.transfer);
+  for (PlanItem& item : plan) {
+    for (const LayerInfo& info : AllLayers()) {
+      if (read.Has(info.layer) && item.layer == info.name) item.reason += ", read by style " + style.name;
+    }
+  }
+}
+
 std::string PlanToText(const std::vector<PlanItem>& plan) {
   std::size_t widest_layer = 5, widest_reason = 3;
   for (const PlanItem& item : plan) {

@@ -64,6 +64,8 @@ struct SceneGuides {
 Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
                                  const Progress& progress, bool plan_only);
 
+// Says in the plan which layers the style reads.
+void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style);
 std::string PlanToText(const std::vector<PlanItem>& plan);
 nlohmann::ordered_json PlanToJson(const std::vector<PlanItem>& plan);
 

@@ -49,6 +49,7 @@ Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& global
                  MakeGuides(verb.scene, RequiredLayers(style.transfer), globals, bar.Part(0.0, 0.5), false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
+  NameStyleInPlan(made.plan, style);
   if (!verb.scene.explain) made.plan.clear();
   const GuideSource source{verb.scene.scene, std::move(made.times), std::move(made.plan)};
   return RunTransfer(style, made.guides, source, verb.picture, globals, bar.Part(0.5, 1.0));

@@ -18,15 +18,15 @@ enum class NormalFrame {
 };
 
 struct GuidegenOptions {
-  int width = 0;   // pixels, 1 … kMaxImageSide
+  int width = 0;  // pixels, 1 … kMaxImageSide
   int height = 0;
-  LayerSet layers;      // what is wanted on top of AlwaysWritten()
+  LayerSet layers;  // what is wanted on top of AlwaysWritten()
   // N × N subsamples of the coverage, 1 … 16; data layers are never averaged. A pixel whose centre is hit counts as one
   // subsample at least, however thin what it hit.
   int aa = 1;
   NormalFrame normal_frame = NormalFrame::kCamera;
-  int threads = 0;      // 0: all
-  std::string isa;      // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"
+  int threads = 0;  // 0: all
+  std::string isa;  // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"
   Progress progress;
 };
 
@@ -50,7 +50,7 @@ struct RayCounts {
 struct GuidegenResult {
   GuideSet guides;
   RayCounts rays;
-  double build_ms = 0;   // acceleration structure
+  double build_ms = 0;  // acceleration structure
   double render_ms = 0;
 };
 

@@ -13,7 +13,8 @@ namespace scumble {
 
 // Loads by the file's ending. Missing normals are made smooth, weighted by angle. A scene without geometry is legal
 // (a warning says so). Errors name the file and what is wrong with it: unreadable, corrupt, an accessor that points
-// outside its buffer, an index that points outside its attributes, a texture that is missing. Never reads outside the file's data.
+// outside its buffer, an index that points outside its attributes, a texture that is missing. Never reads outside the
+// file's data.
 Expected<Scene> LoadScene(const std::filesystem::path& path);
 
 // From where a scene without a camera is seen. Azimuth from +Z towards +X, elevation up from the horizon, degrees.
@@ -37,7 +38,7 @@ struct PreparedView {
   Camera camera;
   std::vector<std::string> notes;
 };
-Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name,
-                                   const std::optional<ViewAngles>& view, double aspect, bool needs_light);
+Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name, const std::optional<ViewAngles>& view,
+                                   double aspect, bool needs_light);
 
 }  // namespace scumble

@@ -53,17 +53,6 @@ bool IsEar(const std::vector<glm::dvec2>& points, const std::vector<unsigned>& r
   return true;
 }
 
-Status TakeFrom(const std::string& file, const char* what, std::uint64_t limit, std::uint64_t& taken,
-                std::uint64_t more) {
-  if (more <= limit - taken) {
-    taken += more;
-    return Ok();
-  }
-  const std::uint64_t found = more > ~taken ? ~std::uint64_t(0) : taken + more;
-  return InputError(file + " has at least " + std::to_string(found) + " " + what +
-                    ", each instance counted; expected at most " + std::to_string(limit) + ": simplify the scene");
-}
-
 }  // namespace
 
 Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& path) {
@@ -113,13 +102,24 @@ void WarningCounter::MoveTo(std::vector<std::string>& lines) {
   entries_.clear();
 }
 
+Status GeometryBudget::TakeFrom(Account& account, const std::string& file, std::uint64_t more) {
+  if (more <= account.limit - account.taken) {
+    account.taken += more;
+    return Ok();
+  }
+  const std::uint64_t found = more > ~account.taken ? ~std::uint64_t(0) : account.taken + more;
+  return InputError(file + " has at least " + std::to_string(found) + " " + account.what +
+                    ", each instance counted; expected at most " + std::to_string(account.limit) +
+                    ": simplify the scene");
+}
+
 Status GeometryBudget::Take(const std::string& file, std::uint64_t vertices, std::uint64_t triangles) {
-  SCUMBLE_RETURN_IF_ERROR(TakeFrom(file, "triangles", kMaxTriangles, triangles_, triangles));
-  return TakeFrom(file, "vertices", kMaxVertices, vertices_, vertices);
+  SCUMBLE_RETURN_IF_ERROR(TakeFrom(triangles_, file, triangles));
+  return TakeFrom(vertices_, file, vertices);
 }
 
 Status GeometryBudget::TakeInstance(const std::string& file, const Mesh& mesh, bool is_first) {
-  SCUMBLE_RETURN_IF_ERROR(TakeFrom(file, "instances", kMaxInstances, instances_, 1));
+  SCUMBLE_RETURN_IF_ERROR(TakeFrom(instances_, file, 1));
   return is_first ? Ok() : Take(file, mesh.positions.size(), mesh.triangles.size());
 }
 

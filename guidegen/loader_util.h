@@ -62,12 +62,19 @@ class GeometryBudget {
   Status Take(const std::string& file, std::uint64_t vertices, std::uint64_t triangles);
   // One more instance of a mesh. The first one's triangles were taken when the mesh was loaded.
   Status TakeInstance(const std::string& file, const Mesh& mesh, bool is_first);
-  void GiveBackVertices(std::uint64_t vertices) { vertices_ -= vertices; }
+  void GiveBackVertices(std::uint64_t vertices) { vertices_.taken -= vertices; }
 
  private:
-  std::uint64_t vertices_ = 0;
-  std::uint64_t triangles_ = 0;
-  std::uint64_t instances_ = 0;
+  struct Account {
+    const char* what;
+    std::uint64_t limit;
+    std::uint64_t taken = 0;
+  };
+  static Status TakeFrom(Account& account, const std::string& file, std::uint64_t more);
+
+  Account vertices_{"vertices", kMaxVertices};
+  Account triangles_{"triangles", kMaxTriangles};
+  Account instances_{"instances", kMaxInstances};
 };
 
 // Cuts a simple polygon into corners - 2 triangles of corner numbers, winding kept: ear clipping in the plane of its

@@ -97,6 +97,23 @@ Status ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDe
   return Ok();
 }
 
+// A camera notes how it was held (Exif's Orientation, 1 to 8); the picture is turned so that up is up.
+Picture Upright(const Picture& stored, int orientation) {
+  if (orientation < 2 || orientation > 8) return stored;
+  const bool transposed = orientation >= 5;
+  Picture upright(transposed ? stored.height : stored.width, transposed ? stored.width : stored.height);
+  const bool mirror_x = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
+  const bool mirror_y = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+  for (int y = 0; y < upright.height; ++y) {
+    for (int x = 0; x < upright.width; ++x) {
+      const int u = transposed ? y : x, v = transposed ? x : y;
+      std::copy_n(stored.At(mirror_x ? stored.width - 1 - u : u, mirror_y ? stored.height - 1 - v : v), 4,
+                  upright.At(x, y));
+    }
+  }
+  return upright;
+}
+
 // What the data window of an EXR leaves out of the display window is transparent; what lies beyond it is cut off.
 Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
   const OIIO::ImageSpec spec = input.spec();
@@ -208,7 +225,8 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, path.string()));
   }
-  return ReadFrom(*input, path.string());
+  SCUMBLE_ASSIGN(const Picture stored, ReadFrom(*input, path.string()));
+  return Upright(stored, input->spec().get_int_attribute("Orientation", 1));
 }
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {

@@ -13,11 +13,12 @@ namespace scumble {
 
 // Reads any picture as 16-bit sRGB-encoded RGBA with straight alpha. 8-bit values v become v · 257, 16-bit values are
 // kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
-// Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A file that ends early is
+// Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
+// turned upright by its Exif orientation; colour profiles are not applied. A file that ends early is
 // an error, JPEG included. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
-// The same from memory, for pictures inside .glb files. `name` stands for the picture in messages.
+// The same from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in messages.
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 
 struct PictureWriteOptions {

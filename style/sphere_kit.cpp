@@ -115,12 +115,13 @@ std::optional<int> SphereMargin(const GuideSet& guides) {
 }
 
 bool LooksLikeTemplate(const Picture& picture) {
+  constexpr int kSmallestRecognised = 63;  // below it the crosses are specks
   if (picture.width != picture.height) return false;
   // The sphere's side from the whole template's: size + 2 · margin(size) grows with the size, so at most one fits.
   int size = picture.width * 4 / 5 - 8;
   while (size + 2 * TemplateMargin(size) < picture.width) ++size;
   const int margin = TemplateMargin(size), arm = margin / 3;
-  if (size < 16 || size + 2 * margin != picture.width) return false;
+  if (size < kSmallestRecognised || size + 2 * margin != picture.width) return false;
   const auto brightness = [&](int x, int y) { return picture.At(x, y)[1]; };
   for (const int cy : {margin / 2, picture.height - margin / 2}) {
     for (const int cx : {margin / 2, picture.width - margin / 2}) {

@@ -29,7 +29,8 @@ std::optional<int> SphereMargin(const GuideSet& guides);
 // corners of the margin, outside that square.
 Picture DrawTemplate(const KitLight& light);
 
-// Whether a picture still shows the template's four crosses on light paper, margin included.
+// Whether a picture still shows the template's four crosses on light paper, margin included. Templates of spheres smaller
+// than 63 pixels are not recognised.
 bool LooksLikeTemplate(const Picture& picture);
 
 // Writes template.png, guides.exr, style.toml and HOWTO.txt into `folder`; further lights give template-2.png,

@@ -253,9 +253,9 @@ TEST_F(CliBadOutput, NamesThatCannotBe) {
   EXPECT_EQ(Bytes("file"), "a regular file");
 }
 
-TEST_F(CliBadOutput, FoldersAreMade) {
-  RunOk(Transfer("new/deeper/p.png"));
-  EXPECT_TRUE(ReadPicture(At("new/deeper/p.png")));
+TEST_F(CliBadOutput, AMissingFolderIsNotMade) {
+  ExpectError(Transfer("new/p.png"), 4, {"new/p.png", "no folder", "make it first"});
+  EXPECT_FALSE(fs::exists(At("new")));
 }
 
 TEST_F(CliBadOutput, FullDisks) {

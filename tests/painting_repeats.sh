@@ -13,6 +13,7 @@ trap 'rm -rf "$folder"' EXIT
 for style in "$folder"/first/*/; do
   name=$(basename "$style")
   cmp "$style/lit.png" "$folder/second/$name/lit.png"
+  cmp "$style/paper.png" "$folder/second/$name/paper.png"
   if cmp -s "$style/lit.png" "$folder/other/$name/lit.png"; then echo "$name: the seed changes nothing"; exit 1; fi
   "$program" styles check "$style/lit.png"
 done

@@ -425,5 +425,29 @@ TEST_P(DamagedPicture, FlippedBytesNeverCrash) {
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedPicture, testing::Values("p.png", "p.jpg", "p.tif", "p.exr"),
                          [](const auto& format) { return fs::path(format.param).extension().string().substr(1); });
 
+// By the Exif standard's table: where row 0 and column 0 of the stored picture are seen.
+TEST(PictureFile, PhotographsAreTurnedUpright) {
+  const TemporaryFolder folder;
+  // Stored as 3 × 2 with the numbers 0 to 5 row by row.
+  const std::vector<std::vector<int>> upright = {{0, 1, 2, 3, 4, 5}, {2, 1, 0, 5, 4, 3}, {5, 4, 3, 2, 1, 0},
+                                                 {3, 4, 5, 0, 1, 2}, {0, 3, 1, 4, 2, 5}, {3, 0, 4, 1, 5, 2},
+                                                 {5, 2, 4, 1, 3, 0}, {2, 5, 1, 4, 0, 3}};
+  for (int orientation = 1; orientation <= 8; ++orientation) {
+    OIIO::ImageSpec spec(3, 2, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("Orientation", orientation);
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < 18; ++i) pixels.push_back(static_cast<std::uint8_t>(40 * (i / 3)));
+    const std::string name = (folder / "photo.tif").string();
+    auto file = OIIO::ImageOutput::create(name);
+    ASSERT_TRUE(file && file->open(name, spec) && file->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && file->close());
+    const auto picture = ReadPicture(name);
+    ASSERT_TRUE(picture) << picture.error().message;
+    ASSERT_EQ(picture->width, orientation <= 4 ? 3 : 2);
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_EQ(picture->rgba[4 * i], 40 * 257 * upright[orientation - 1][i]) << orientation << " pixel " << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace scumble

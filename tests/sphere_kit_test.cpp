@@ -99,7 +99,7 @@ TEST(SphereKit, FromTemplateToStyle) {
   ASSERT_TRUE(written) << written.error().message;
   EXPECT_EQ(written->size(), 4u);
   for (const fs::path& path : *written) EXPECT_TRUE(fs::is_regular_file(path)) << path;
-  ExpectRefusal(LoadStyle(folder / "mine"), ErrorKind::kInput, {"lit.png", "no such file"});
+  ExpectRefusal(LoadStyle(folder / "mine"), ErrorKind::kInput, {"lit.png", "not there yet", "template.png"});
 
   fs::copy_file(folder / "mine/template.png", folder / "mine/lit.png");
   const auto whole = LoadStyle(folder / "mine");
@@ -153,7 +153,7 @@ TEST(SphereKit, FurtherLightsGetFilesOfTheirOwn) {
 }
 
 TEST(SphereKit, ATemplateIsRecognisedAtEverySizeAndOtherPicturesAreNot) {
-  for (int size : {16, 17, 20, 63, 64, 200, 511, 512}) {
+  for (int size : {63, 64, 65, 200, 511, 512}) {
     const Picture drawn = DrawTemplate({-40, 40, SphereGuides(size)});
     EXPECT_TRUE(LooksLikeTemplate(drawn)) << size;
     EXPECT_FALSE(LooksLikeTemplate(InnerSquare(drawn, TemplateMargin(size)))) << size;

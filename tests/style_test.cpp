@@ -272,7 +272,7 @@ TEST_F(StyleFile, WhatAnExemplarNeeds) {
   ExpectRefusal(Load("[[exemplar]]\nimage = '.'\n"), ErrorKind::kInput, {"folder"});
   ExpectRefusal(Load(e + "luminance = 0.8\n"), ErrorKind::kUnavailable, {"style.toml:3", "exemplar.luminance"});
   ExpectRefusal(Load(e + "guides = 'no.exr'\n"), ErrorKind::kInput, {"no.exr", "no such file"});
-  ExpectRefusal(Load(e + "guides = 'lit.png'\n"), ErrorKind::kInput, {"lit.png", "no layer"});
+  ExpectRefusal(Load(e + "guides = 'lit.png'\n"), ErrorKind::kUnavailable, {"lit.png", "scumble sphere"});
   ASSERT_TRUE(WritePicture(folder_ / "lit.png", RandomPicture(8, 6)));
   ExpectRefusal(Load(e), ErrorKind::kInput, {"lit.png", "8×6", "square"});
 }
@@ -350,7 +350,7 @@ TEST_F(StyleFile, BadOverridesAreTheCallersMistake) {
   ExpectRefusal(Load(toml, {""}), ErrorKind::kUsage, {"KEY=VALUE"});
   ExpectRefusal(Load(toml, {"transfer.levels=3\nname=\"x\""}), ErrorKind::kUsage, {"transfer.levels"});
   ExpectRefusal(Load(toml, {"transfer.levels=[1]"}), ErrorKind::kUsage, {"transfer.levels", "whole number"});
-  ExpectRefusal(Load(toml, {"transfer.paper=no.png"}), ErrorKind::kUsage, {"transfer.paper", "no.png"});
+  ExpectRefusal(Load(toml, {"transfer.paper=no.png"}), ErrorKind::kInput, {"transfer.paper", "no.png"});
   ExpectRefusal(Load(toml, {"transfer.method=stylit"}), ErrorKind::kUnavailable, {"--set: transfer.method", "stylit"});
   ExpectRefusal(Load(toml, {"transfer.colorize=0.5"}), ErrorKind::kUnavailable,
                 {"transfer.colorize", "not built into"});

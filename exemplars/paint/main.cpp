@@ -34,9 +34,10 @@ Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, con
   const std::filesystem::path style_folder = folder / style.name;
   std::error_code failure;
   std::filesystem::create_directories(style_folder, failure);
-  if (failure)
+  if (failure) {
     return OutputError(style_folder.string() + " cannot be made: " + failure.message() +
                        "; choose another folder with -o");
+  }
   SCUMBLE_ASSIGN(const Picture paper, style.paper(studio));
   SCUMBLE_ASSIGN(const Picture sphere, style.paint(studio));
   PictureWriteOptions options;
