@@ -26,7 +26,7 @@ test-asan: ## unit tests under AddressSanitizer and UndefinedBehaviorSanitizer, 
 	@.ci/install test
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)
-	@ctest --test-dir build-asan --output-on-failure -j $(JOBS) -L unit
+	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -L unit
 
 bench: ## measure speed, with spread; gates nothing
 	@.ci/install test
