@@ -36,6 +36,7 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen);
+void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen);

@@ -31,6 +31,12 @@ void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Global
       json["width"] = made.guides.width();
       json["height"] = made.guides.height();
       json["layers"] = made.guides.layers().ToString();
+      json["rays"] = {{"primary", made.rays.primary},
+                      {"coverage", made.rays.coverage},
+                      {"shadow", made.rays.shadow},
+                      {"bounce", made.rays.bounce}};
+      if (made.samples > 0) json["samples"] = made.samples;
+      if (made.noise > 0.0) json["noise"] = made.noise;
     }
     json["plan"] = PlanToJson(made.plan);
     for (const auto& [name, ms] : made.times) json["ms"][name] = ms;
@@ -41,7 +47,9 @@ void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Global
   if (verb.output.empty()) return;
   std::string steps;
   for (const auto& [name, ms] : made.times) steps += fmt::format("{}{} {:.1f}", steps.empty() ? "" : ", ", name, ms);
-  Print(fmt::format("{}  {}; {} ms\n", verb.output, made.guides.layers().ToString(), steps));
+  std::string samples;
+  if (made.noise > 0.0) samples = fmt::format("; noise {:.3g}, repeat with --samples {}", made.noise, made.samples);
+  Print(fmt::format("{}  {}; {} ms{}\n", verb.output, made.guides.layers().ToString(), steps, samples));
 }
 
 Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& globals) {
@@ -50,6 +58,9 @@ Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& glob
   if (!verb.style.style.empty()) {
     SCUMBLE_ASSIGN(style, OpenStyle(verb.style));
     layers.Add(RequiredLayers(style->transfer));
+  }
+  if (verb.scene.blender.frame && !IsBlenderScene(verb.scene.scene)) {
+    return UsageError("--frame is for .blend scenes; " + verb.scene.scene + " is one moment: leave it out");
   }
   const bool plan_only = verb.output.empty();
   if (plan_only && !verb.scene.explain)
@@ -77,10 +88,14 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
       app.add_subcommand("guidegen", "scene -> guides: what a renderer tells the transfer about every pixel");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, false);
+  sub->add_option("--frame", verb->scene.blender.frame,
+                  "frame of a .blend scene; left out: the one it was saved at")
+      ->type_name("N");
+  AddLightPathOptions(*sub, verb->scene);
   sub->add_option(
          "--layers", verb->layers,
          "layers on top of A, normal, depth, object and material, with commas between: position, pref, albedo, "
-         "luminance, shadow")
+         "luminance, shadow, lpe.full, lpe.LDE, lpe.LSE, lpe.LDDE, lpe.LD12E")
       ->type_name("LIST");
   sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless")
       ->type_name("NAME")

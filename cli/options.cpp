@@ -75,7 +75,10 @@ Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t 
 }
 
 void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("scene", options.scene, "scene file: .glb, .gltf, .obj or .ply")->type_name("FILE")->required();
+  verb.add_option("scene", options.scene,
+                  "scene file: .glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first")
+      ->type_name("FILE")
+      ->required();
   verb.add_option("--size", options.size, "pixels of the picture; one number makes a square")
       ->type_name("WIDTHxHEIGHT")
       ->capture_default_str();
@@ -98,8 +101,29 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine. "
                   "Name one where several machines must give the same bytes")
       ->type_name("NAME");
+  verb.add_option("--blender", options.blender.program,
+                  "the Blender that exports a .blend scene; left out: blender in PATH")
+      ->type_name("PATH");
   verb.add_flag("--half", options.half, "16-bit half floats for colour layers; data layers stay 32-bit");
   verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
+}
+
+void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
+  verb.add_option("--samples", options.samples, "paths a pixel, for lpe.* layers and under lights with extent")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxSamples))
+      ->capture_default_str();
+  verb.add_option("--max-bounces", options.max_bounces, "reflections after the first surface's; 0: direct light alone")
+      ->type_name("N")
+      ->check(CLI::Range(0, kMaxBounces))
+      ->capture_default_str();
+  verb.add_option("--noise", options.noise, "sample lpe.* layers until the estimated error, RMS over mean, is below this")
+      ->type_name("X")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--time-budget", options.time_budget_seconds,
+                  "sample lpe.* layers for about so many seconds; the samples that repeat it are printed")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
 }
 
 namespace {
@@ -118,6 +142,14 @@ void WarnIfNothingShows(const GuideSet& guides, const std::string& scene) {
   Warn(scene + ": the camera sees nothing, the picture is empty; try --view or another --camera");
 }
 
+Expected<Scene> LoadAnyScene(const SceneOptions& options, const Globals& globals) {
+  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, options.blender, globals);
+  if (!options.blender.program.empty()) {
+    return UsageError("--blender is for .blend scenes; " + options.scene + " is read without Blender: leave it out");
+  }
+  return LoadScene(options.scene);
+}
+
 }  // namespace
 
 Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
@@ -126,10 +158,13 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
   SCUMBLE_ASSIGN(const auto view, ParseView(options.view));
   Stopwatch watch;
   SceneGuides result;
-  SCUMBLE_ASSIGN(Scene scene, LoadScene(options.scene));
+  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, globals));
   for (const std::string& warning : scene.warnings) Warn(options.scene + ": " + warning);
   const double aspect = static_cast<double>(size.width) / size.height;
-  const bool needs_light = layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow);
+  bool needs_light = layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow);
+  for (const Layer layer : {Layer::kLpeFull, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E}) {
+    needs_light = needs_light || layers.Has(layer);
+  }
   SCUMBLE_ASSIGN(const PreparedView prepared, PrepareView(scene, options.camera, view, aspect, needs_light));
   for (const std::string& note : prepared.notes) Say(globals, note);
   result.times.emplace_back("load", watch.Lap());
@@ -142,6 +177,10 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
   guidegen.threads = globals.threads;
   guidegen.isa = options.isa;
   guidegen.progress = progress;
+  guidegen.samples = options.samples;
+  guidegen.max_bounces = options.max_bounces;
+  guidegen.noise = options.noise;
+  guidegen.time_budget_seconds = options.time_budget_seconds;
   result.plan = PlanGuides(scene, guidegen);
   if (plan_only) return result;
 
@@ -149,6 +188,7 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
   result.times.emplace_back("build", rendered.build_ms);
   result.times.emplace_back("rays", rendered.render_ms);
   result.guides = std::move(rendered.guides);
+  result.rays = rendered.rays, result.samples = rendered.samples, result.noise = rendered.noise;
   if (options.half) RoundColorLayersToHalf(result.guides);
   if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene);
   return result;
@@ -196,17 +236,19 @@ void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
       ->allow_extra_args(false);
 }
 
-std::vector<fs::path> StyleRoots() {
+std::vector<fs::path> DataRoots(const std::string& name) {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
   if (failed) return {};
   const fs::path above = program.parent_path().parent_path();
   std::vector<fs::path> roots;
-  for (const fs::path& root : {above / "exemplars", above / "share" / "scumble" / "exemplars"}) {
+  for (const fs::path& root : {above / name, above / "share" / "scumble" / name}) {
     if (fs::is_directory(root, failed)) roots.push_back(root);
   }
   return roots;
 }
+
+std::vector<fs::path> StyleRoots() { return DataRoots("exemplars"); }
 
 Expected<Style> OpenStyle(const StyleOptions& options) {
   std::error_code failed;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/blender.h"
 #include "cli/command.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
@@ -47,7 +48,16 @@ struct SceneOptions {
   std::string isa;
   bool half = false;
   bool explain = false;
+  BlenderOptions blender;  // for .blend scenes
+  // Light-path layers, as in GuidegenOptions.
+  int samples = GuidegenOptions().samples;
+  int max_bounces = GuidegenOptions().max_bounces;
+  double noise = 0.0;
+  double time_budget_seconds = 0.0;
 };
+// For guides with light paths, which no style reads.
+void AddLightPathOptions(CLI::App& verb, SceneOptions& options);
+// All but blender.frame, because verbs that make pictures have a frame already.
 void AddSceneOptions(CLI::App& verb, SceneOptions& options);
 
 // Milliseconds by step, in the order they happened.
@@ -57,6 +67,9 @@ struct SceneGuides {
   GuideSet guides;
   std::vector<PlanItem> plan;
   StepTimes times;
+  RayCounts rays;
+  int samples = 0;     // of each pixel, in light-path layers
+  double noise = 0.0;  // estimated, where noise or a time budget was asked for
 };
 
 // Loads the scene and casts its guides; says camera and light decisions on stderr, warns of what the scene asks for in
@@ -78,7 +91,10 @@ void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
 // A path, or the name of a bundled style.
 Expected<Style> OpenStyle(const StyleOptions& options);
 
-// Folders that may hold bundled styles: beside the build, or where `install` put them.
+// Folders of that name in which the program's own files may be: beside the build, or where `install` put them.
+std::vector<std::filesystem::path> DataRoots(const std::string& name);
+
+// Folders that may hold bundled styles.
 std::vector<std::filesystem::path> StyleRoots();
 
 }  // namespace scumble

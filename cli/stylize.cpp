@@ -15,6 +15,7 @@ namespace {
 struct TransferVerb {
   std::string guides;
   std::string view_layer;
+  std::string camera;
   StyleOptions style;
   PictureOptions picture;
 };
@@ -26,6 +27,7 @@ Expected<ExitCode> RunTransferVerb(const TransferVerb& verb, const Globals& glob
   GuideReadOptions read;
   read.required = RequiredLayers(style.transfer);
   read.view_layer = verb.view_layer;
+  read.blender_camera = verb.camera;
   if (style.transfer.edge_aware) read.mend = "; --set transfer.edge_aware=false does without depth and object";
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   ProgressBar bar("transfer", globals.quiet);
@@ -45,8 +47,10 @@ Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& global
   SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
   const double style_ms = watch.Lap();
   ProgressBar bar("stylize", globals.quiet);
+  SceneOptions scene = verb.scene;
+  scene.blender.frame = verb.picture.frame;
   SCUMBLE_ASSIGN(SceneGuides made,
-                 MakeGuides(verb.scene, RequiredLayers(style.transfer), globals, bar.Part(0.0, 0.5), false));
+                 MakeGuides(scene, RequiredLayers(style.transfer), globals, bar.Part(0.0, 0.5), false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
   NameStyleInPlan(made.plan, style);
@@ -62,6 +66,8 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("transfer", "guides + style -> picture, from a guide file that guidegen wrote");
   sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
   sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file")->type_name("NAME");
+  sub->add_option("--camera", verb->camera, "the .camera file of a Blender render, which its header lacks")
+      ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture);
   AddGlobalOptions(*sub, globals);

@@ -121,9 +121,10 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
-  verb.add_option("--frame", options.frame, "frame number, for transfer.jitter_fps")
-      ->type_name("N")
-      ->capture_default_str();
+  verb.add_option("--frame", options.frame,
+                  "frame number, for transfer.jitter_fps and of a .blend scene; left out: 0, and the frame that the "
+                  "scene was saved at")
+      ->type_name("N");
   verb.add_option("--fps", options.fps, "frames a second, for transfer.jitter_fps, as 24 or 24000/1001")
       ->type_name("RATE")
       ->capture_default_str();
@@ -149,7 +150,7 @@ Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const
 
   TransferOptions transfer;
   transfer.seed = options.seed;
-  transfer.time_step = JitterStep(style.transfer.jitter_fps, options.frame, fps.numerator, fps.denominator);
+  transfer.time_step = JitterStep(style.transfer.jitter_fps, options.frame.value_or(0), fps.numerator, fps.denominator);
   transfer.threads = globals.threads;
   transfer.over = over ? &*over : nullptr;
   TransferScratch scratch;

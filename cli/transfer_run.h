@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct PictureOptions {
   std::string over;
   int bits = 8;
   int png_level = 6;
-  int frame = 0;
+  std::optional<int> frame;
   std::string fps = "24";
   std::uint64_t seed = 0;
   int repeat = 1;

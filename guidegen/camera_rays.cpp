@@ -21,11 +21,26 @@ std::string FindFault(const Camera& camera) {
   if (camera.aspect && (!(*camera.aspect > 0.0) || !std::isfinite(*camera.aspect))) {
     return "has the aspect ratio " + std::to_string(*camera.aspect) + ": give it one above 0, or none";
   }
+  if (!std::isfinite(camera.shift_x) || !std::isfinite(camera.shift_y)) {
+    return "has a shift that is not finite: give it one around 0";
+  }
   if (!(std::max(camera.z_near, 0.0) < camera.z_far) || std::isnan(camera.z_near)) {
     return "has its near plane at " + std::to_string(camera.z_near) + " and its far plane at " +
            std::to_string(camera.z_far) + ": the near plane must come first";
   }
   return {};
+}
+
+bool MeasuresWidth(const Camera& camera, double picture_aspect) {
+  return camera.fit == CameraFit::kHorizontal || (camera.fit == CameraFit::kLonger && picture_aspect >= 1.0);
+}
+
+// Half the picture's width and height, where `half` is half of the side that the camera measures.
+glm::dvec2 HalfExtent(const Camera& camera, double half, double picture_aspect) {
+  if (MeasuresWidth(camera, picture_aspect)) return {half, half / picture_aspect};
+  const bool keep_horizontal = camera.fit == CameraFit::kVertical && camera.aspect && *camera.aspect > picture_aspect;
+  const double half_width = half * (keep_horizontal ? *camera.aspect : picture_aspect);
+  return {half_width, keep_horizontal ? half_width / picture_aspect : half};
 }
 
 }  // namespace
@@ -47,18 +62,17 @@ Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int heigh
   rays.near_depth_ = std::max(camera.z_near, 0.0);
   rays.far_depth_ = camera.z_far;
 
-  const double picture_aspect = double(width) / height;
-  const double half_height = camera.orthographic ? camera.ymag : std::tan(glm::radians(camera.yfov_degrees) / 2.0);
-  const bool keep_horizontal = camera.aspect && *camera.aspect > picture_aspect;
-  const double half_width = half_height * (keep_horizontal ? *camera.aspect : picture_aspect);
-  rays.half_extent_ = {half_width, keep_horizontal ? half_width / picture_aspect : half_height};
+  const double half = camera.orthographic ? camera.ymag : std::tan(glm::radians(camera.yfov_degrees) / 2.0);
+  rays.half_extent_ = HalfExtent(camera, half, double(width) / height);
+  const bool across = MeasuresWidth(camera, double(width) / height);
+  rays.shift_ = 2.0 * (across ? rays.half_extent_.x : rays.half_extent_.y) * glm::dvec2(camera.shift_x, camera.shift_y);
   rays.step_ = rays.half_extent_ / glm::dvec2(width, height);
   return rays;
 }
 
 ViewRay CameraRays::Through(double x, double y) const {
-  const double across = (2.0 * x - width_) * step_.x;
-  const double up = (height_ - 2.0 * y) * step_.y;
+  const double across = (2.0 * x - width_) * step_.x + shift_.x;
+  const double up = (height_ - 2.0 * y) * step_.y + shift_.y;
   ViewRay ray;
   (orthographic_ ? ray.origin : ray.direction) += glm::dvec3(across, up, 0.0);
   return ray;
@@ -88,6 +102,8 @@ GuideCamera CameraRays::ToGuideCamera() const {
     const double f = std::isinf(far_depth_) ? n + 1000.0 : far_depth_;
     clip[2][2] = -2.0 / (f - n);
     clip[3][2] = -(f + n) / (f - n);
+    clip[3][0] = -shift_.x / half_extent_.x;
+    clip[3][1] = -shift_.y / half_extent_.y;
     clip[3][3] = 1.0;
     return camera;
   }
@@ -95,6 +111,8 @@ GuideCamera CameraRays::ToGuideCamera() const {
   const bool endless = std::isinf(far_depth_);
   clip[2][2] = endless ? -1.0 : -(far_depth_ + n) / (far_depth_ - n);
   clip[3][2] = endless ? -2.0 * n : -2.0 * far_depth_ * n / (far_depth_ - n);
+  clip[2][0] = shift_.x / half_extent_.x;
+  clip[2][1] = shift_.y / half_extent_.y;
   clip[2][3] = -1.0;
   return camera;
 }

@@ -20,7 +20,7 @@ class CameraRays {
  public:
   // Only the direction of the camera matrix's axes counts: scale is dropped and shear is straightened, keeping the
   // viewing direction. Fails with kInput, naming the camera, on a matrix that has no direction, an angle outside
-  // (0, 180), a height that is not positive, or a far plane before the near one.
+  // (0, 180), a height that is not positive, a shift that is not finite, or a far plane before the near one.
   static Expected<CameraRays> Make(const Camera& camera, int width, int height);
 
   // The ray through a point of the picture, in pixels from the top left corner.
@@ -50,6 +50,7 @@ class CameraRays {
   int height_ = 1;
   glm::dvec2 half_extent_{1.0};  // at depth 1 in perspective, in metres otherwise
   glm::dvec2 step_{1.0};         // half a pixel, in the same unit
+  glm::dvec2 shift_{0.0};        // of the picture's centre, in the same unit
   double near_depth_ = 0.0;
   double far_depth_ = 0.0;
 };

@@ -6,53 +6,32 @@
 
 #include <algorithm>
 #include <atomic>
-#include <mutex>
+#include <cmath>
 #include <optional>
 #include <string>
 
 #include "guidegen/embree_scene.h"
+#include "guidegen/light_passes.h"
+#include "guidegen/path_layers.h"
+#include "guidegen/progress_gate.h"
 #include "guidegen/tile_caster.h"
 #include "image/stopwatch.h"
 
 namespace scumble {
 namespace {
 
-constexpr Layer kUnavailableLayers[] = {Layer::kMotion, Layer::kLpeFull, Layer::kLpeLDE,
-                                        Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E};
-
-// Counts tiles and passes the share on, one caller at a time; a thread that finds the line busy works on instead.
-class ProgressGate {
- public:
-  ProgressGate(const Progress& progress, std::size_t total) : progress_(progress), total_(total) {}
-
-  bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
-
-  void TileDone() {
-    const std::size_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
-    if (!progress_) return;
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock || done <= reported_ || cancelled()) return;
-    reported_ = done;
-    // The end is told once, after the last tile, by CastGuides.
-    if (done < total_ && !progress_(double(done) / double(total_))) cancelled_ = true;
-  }
-
- private:
-  const Progress& progress_;
-  const std::size_t total_;
-  std::atomic<std::size_t> done_{0};
-  std::atomic<bool> cancelled_{false};
-  std::mutex mutex_;
-  std::size_t reported_ = 0;
-};
-
 bool Continue(const Progress& progress, double share) { return !progress || progress(share); }
 
-// False where the caller asked to stop.
-bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, RayCounts& counts) {
+// The progress that casting takes where light paths follow, which nearly always take longer.
+constexpr double kCastShare = 0.05;
+
+// False where the caller asked to stop. Covered pixels are listed by tile where `pixels` is given.
+bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double end, RayCounts& counts,
+               std::vector<std::vector<PathPixel>>* pixels) {
   const std::size_t columns = (options.width + kTileSide - 1) / kTileSide;
   const std::size_t rows = (options.height + kTileSide - 1) / kTileSide;
-  ProgressGate gate(options.progress, columns * rows);
+  ProgressGate gate(options.progress, columns * rows, 0.0, end);
+  if (pixels) pixels->resize(columns * rows);
   std::atomic<std::size_t> primary{0};
   std::atomic<std::size_t> coverage{0};
   std::atomic<std::size_t> shadow{0};
@@ -64,13 +43,13 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, RayCoun
     tile.width = std::min(kTileSide, options.width - tile.x0);
     tile.height = std::min(kTileSide, options.height - tile.y0);
     RayCounts cast;
-    caster.Cast(tile, cast);
+    caster.Cast(tile, cast, pixels ? &(*pixels)[i] : nullptr);
     primary += cast.primary;
     coverage += cast.coverage;
     shadow += cast.shadow;
     gate.TileDone();
   });
-  counts = {primary, coverage, shadow};
+  counts = {primary, coverage, shadow, 0};
   return !gate.cancelled();
 }
 
@@ -90,16 +69,51 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   result.build_ms = watch.Lap();
 
   result.guides = EmptyGuides(options);
+  const PathFollower follower(options.layers, view.supply, options.max_bounces);
   const TileCaster caster(scene, view, options, result.guides);
-  if (!CastTiles(caster, options, result.rays)) return CancelledError();
+  std::vector<std::vector<PathPixel>> pixels;
+  const bool paths = !follower.empty();
+  if (!CastTiles(caster, options, paths ? kCastShare : 1.0, result.rays, paths ? &pixels : nullptr)) {
+    return CancelledError();
+  }
+  if (paths) {
+    const LightPathTracer tracer(scene, view, follower, options.max_bounces);
+    const LightPassResult traced = TraceLightPaths(tracer, follower, pixels, options, kCastShare, result.guides);
+    if (traced.cancelled) return CancelledError();
+    result.rays.shadow += traced.rays.shadow;
+    result.rays.bounce += traced.rays.bounce;
+    result.samples = traced.samples;
+    result.noise = traced.noise;
+  }
   result.render_ms = watch.Lap();
   if (!Continue(options.progress, 1.0)) return CancelledError();
 
   result.guides.camera = view.camera.ToGuideCamera();
   result.guides.attributes["scumble:generator"] = "guidegen " SCUMBLE_VERSION;
   result.guides.attributes["scumble:isa"] = scene.isa();
+  if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);
   result.guides.attributes["scumble:normal_frame"] = options.normal_frame == NormalFrame::kEye ? "eye" : "camera";
   return result;
+}
+
+Status CheckSampling(const GuidegenOptions& options) {
+  const auto refuse = [](const std::string& what, const std::string& expected) -> Status {
+    return UsageError(what + " is out of range: expected " + expected);
+  };
+  if (options.samples < 1 || options.samples > kMaxSamples) {
+    return refuse("samples " + std::to_string(options.samples), "1 to " + std::to_string(kMaxSamples));
+  }
+  if (options.max_bounces < 0 || options.max_bounces > kMaxBounces) {
+    return refuse("max_bounces " + std::to_string(options.max_bounces), "0 to " + std::to_string(kMaxBounces));
+  }
+  if (!(options.noise >= 0.0) || std::isinf(options.noise)) {
+    return refuse("noise " + std::to_string(options.noise), "0 (a fixed number of samples) or an error like 0.01");
+  }
+  if (!(options.time_budget_seconds >= 0.0) || std::isinf(options.time_budget_seconds)) {
+    return refuse("a time budget of " + std::to_string(options.time_budget_seconds) + " s",
+                  "0 (no budget) or a number of seconds");
+  }
+  return Ok();
 }
 
 }  // namespace
@@ -117,12 +131,11 @@ Status CheckOptions(const GuidegenOptions& options) {
   if (options.threads < 0) {
     return UsageError("threads " + std::to_string(options.threads) + " is out of range: expected 0 (all) or more");
   }
-  for (const Layer layer : kUnavailableLayers) {
-    if (!options.layers.Has(layer)) continue;
-    return UnavailableError("layer " + std::string(Info(layer).name) +
+  if (options.layers.Has(Layer::kMotion)) {
+    return UnavailableError("layer " + std::string(Info(Layer::kMotion).name) +
                             " is not built into this version's guidegen: leave it out, or take it from Blender");
   }
-  return Ok();
+  return CheckSampling(options);
 }
 
 Expected<GuidegenResult> CastGuides(View view, const GuidegenOptions& options) {

@@ -6,6 +6,7 @@
 #include "guidegen/camera_rays.h"
 #include "guidegen/direct_light.h"
 #include "guidegen/guidegen.h"
+#include "guidegen/path_layers.h"
 #include "guidegen/surface.h"
 
 namespace scumble {
@@ -14,7 +15,9 @@ namespace scumble {
 struct View {
   CameraRays camera;
   std::vector<PlacedObject> objects;
-  std::vector<PlacedLight> lights;  // looked at only where a layer needs them
+  std::vector<PlacedLight> lights;  // looked at only where a layer needs them, as the rest
+  glm::dvec3 world_radiance{0.0};
+  PathSupply supply;
 };
 
 // kUsage or kUnavailable where the options make no sense or ask for what is not built in.

@@ -1,4 +1,4 @@
-// Embree's device and committed scene, relative to the camera. Only tile_caster.cpp casts into it.
+// Embree's device and committed scene, relative to the camera. Only tile_caster.cpp and single_ray.cpp cast into it.
 #pragma once
 
 #include <embree3/rtcore.h>

@@ -98,6 +98,18 @@ Light KeyLight(const Camera& camera, double azimuth, double elevation) {
   return light;
 }
 
+namespace {
+
+// A lamp, a surface that shines, or a world that does.
+bool HasLight(const Scene& scene) {
+  if (!scene.lights.empty() || scene.world_radiance != glm::vec3(0.0f)) return true;
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    return scene.materials[scene.meshes[instance.mesh].material].emission != glm::vec3(0.0f);
+  });
+}
+
+}  // namespace
+
 Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name, const std::optional<ViewAngles>& view,
                                    double aspect, bool needs_light) {
   PreparedView prepared;
@@ -121,7 +133,7 @@ Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name,
       prepared.notes.push_back("seen by camera '" + prepared.camera.name + "', the first of " + Names(scene.cameras));
     }
   }
-  if (needs_light && scene.lights.empty()) {
+  if (needs_light && !HasLight(scene)) {
     scene.lights.push_back(KeyLight(prepared.camera));
     std::ostringstream note;
     note << scene.name << " has no light: lit by a sun at azimuth " << kKeyLightAzimuth << "°, elevation "

@@ -151,6 +151,44 @@ class TextureLoader {
   std::map<int, int> loaded_;
 };
 
+// A factor that the format confines to 0 … 1.
+Expected<float> UnitFactor(double value, const char* what, const std::string& where) {
+  if (value >= 0.0 && value <= 1.0) return float(value);
+  return InputError(where + " has the " + what + " factor " + std::to_string(value) + "; expected 0 … 1");
+}
+
+// KHR_materials_emissive_strength: emission above 1, 1 where it is absent.
+Expected<double> EmissiveStrength(const tinygltf::Material& from, const std::string& where) {
+  const auto extension = from.extensions.find("KHR_materials_emissive_strength");
+  if (extension == from.extensions.end() || !extension->second.Has("emissiveStrength")) return 1.0;
+  const tinygltf::Value& value = extension->second.Get("emissiveStrength");
+  const double strength = value.IsNumber() ? value.GetNumberAsDouble() : -1.0;
+  if (strength >= 0.0 && std::isfinite(strength)) return strength;
+  return InputError(where + " has an emissive strength that is not a number of 0 or more; export it again");
+}
+
+// How the material answers light: metalness and roughness, and what it emits.
+Status LoadLighting(const tinygltf::Material& from, const std::string& file, const std::string& owner,
+                    TextureLoader& textures, Material& material) {
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  const std::string where = file + ": " + owner;
+  SCUMBLE_ASSIGN(material.metallic, UnitFactor(pbr.metallicFactor, "metallic", where));
+  SCUMBLE_ASSIGN(material.roughness, UnitFactor(pbr.roughnessFactor, "roughness", where));
+  SCUMBLE_ASSIGN(material.metallic_roughness_texture, textures.Use(pbr.metallicRoughnessTexture, owner));
+  SCUMBLE_ASSIGN(const double strength, EmissiveStrength(from, where));
+  for (int c = 0; c < 3 && std::size_t(c) < from.emissiveFactor.size(); ++c) {
+    const float value = float(from.emissiveFactor[std::size_t(c)] * strength);
+    if (!std::isfinite(value) || value < 0.0f) {
+      return InputError(where + " has the emissive factor " + std::to_string(value) + "; expected 0 or more");
+    }
+    material.emission[c] = value;
+  }
+  if (material.emission != glm::vec3(0.0f)) {
+    SCUMBLE_ASSIGN(material.emission_texture, textures.Use(from.emissiveTexture, owner));
+  }
+  return Ok();
+}
+
 }  // namespace
 
 Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene,
@@ -175,6 +213,7 @@ Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, 
     SCUMBLE_ASSIGN(material.normal_texture, textures.Use(from.normalTexture, owner));
     material.normal_scale =
         std::isfinite(from.normalTexture.scale) ? static_cast<float>(from.normalTexture.scale) : 1.0f;
+    SCUMBLE_RETURN_IF_ERROR(LoadLighting(from, file, owner, textures, material));
     if (from.alphaMode == "MASK") material.alpha_mode = AlphaMode::kMask;
     if (from.alphaMode == "BLEND") material.alpha_mode = AlphaMode::kBlend;
     material.alpha_cutoff = std::isfinite(from.alphaCutoff) ? static_cast<float>(from.alphaCutoff) : 0.5f;

@@ -15,8 +15,8 @@ class Model;
 namespace scumble {
 
 // Appends every material of the file to scene.materials, in the file's order, and decodes the pictures that their base
-// colours and normal maps need (others are never looked at). A picture that is missing or cannot be decoded is an
-// error that names it.
+// colours, normal maps, roughness, metalness and emission need (others are never looked at). A picture that is missing
+// or cannot be decoded is an error that names it.
 Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings);
 
 }  // namespace scumble

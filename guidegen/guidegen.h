@@ -12,6 +12,9 @@
 
 namespace scumble {
 
+inline constexpr int kMaxSamples = 1 << 16;
+inline constexpr int kMaxBounces = 1024;
+
 enum class NormalFrame {
   kCamera,  // view space, the same for every pixel
   kEye,     // rotated to each pixel's own view direction: wide cameras stop stretching
@@ -28,6 +31,18 @@ struct GuidegenOptions {
   int threads = 0;  // 0: all
   std::string isa;  // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"
   Progress progress;
+
+  // For light-path layers, and for luminance and shadow under lights with extent. Samples of a pixel, 1 … kMaxSamples;
+  // they share the pixel's first surface, so no layer is averaged across a silhouette.
+  int samples = 64;
+  // Reflections after the first surface's, 0 … kMaxBounces; 0 is direct light alone, as in Cycles.
+  int max_bounces = 8;
+  // Light-path layers only. Above 0: samples are doubled until the estimated error, root mean square over mean, of each
+  // layer's luminance is not larger than this; `samples` does not count then.
+  double noise = 0.0;
+  // Light-path layers only. Above 0: samples are taken until about this time is over, or `noise` is reached. The clock
+  // decides, so the picture may differ from run to run; GuidegenResult::samples repeats it.
+  double time_budget_seconds = 0.0;
 };
 
 // One line of the plan: what is computed, why, and what it costs.
@@ -44,7 +59,8 @@ std::vector<PlanItem> PlanGuides(const Scene& scene, const GuidegenOptions& opti
 struct RayCounts {
   std::size_t primary = 0;
   std::size_t coverage = 0;  // extra subsamples
-  std::size_t shadow = 0;
+  std::size_t shadow = 0;    // that only ask whether light is seen
+  std::size_t bounce = 0;    // that look for the next surface of a path
 };
 
 struct GuidegenResult {
@@ -52,12 +68,17 @@ struct GuidegenResult {
   RayCounts rays;
   double build_ms = 0;  // acceleration structure
   double render_ms = 0;
+  // Of each pixel, in light-path layers; 0 where they need no chance. Also in guides.attributes["scumble:samples"].
+  int samples = 0;
+  double noise = 0.0;  // the error estimated where `noise` or a time budget was given
 };
 
 // Casts rays through pixel centres and returns the guides (conventions in image/guides.h). Transforms compose in
 // double and Embree's scene is relative to the camera. Deterministic for one isa, whatever the threads; the isa in use
-// is recorded in guides.attributes["scumble:isa"]. Layers that are not built in yet are a kUnavailable error by name.
-// An empty scene, or a camera that sees nothing, is an empty picture and no error. Uses oneTBB and Embree 3.
+// is recorded in guides.attributes["scumble:isa"]. Light-path layers are in light_paths.h; each is traced only as far
+// as its expression and the scene's lights and materials require. Layers that are not built in yet are a kUnavailable
+// error by name. An empty scene, or a camera that sees nothing, is an empty picture and no error. Uses oneTBB and
+// Embree 3.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options);
 
 struct SphereOptions {

@@ -14,6 +14,7 @@
 #include "guidegen/gltf_materials.h"
 #include "guidegen/gltf_meshes.h"
 #include "guidegen/gltf_parse.h"
+#include "guidegen/load_gltf_extras.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/matrix_util.h"
 
@@ -59,6 +60,8 @@ class GltfLoader {
     SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, model_, warnings_));
     SCUMBLE_RETURN_IF_ERROR(CheckVersionAndExtensions());
     SCUMBLE_RETURN_IF_ERROR(LoadGltfMaterials(model_, file_, scene_, warnings_));
+    SCUMBLE_RETURN_IF_ERROR(ReadMaterialExtras(model_, file_, scene_));
+    SCUMBLE_RETURN_IF_ERROR(ReadSceneExtras(model_, std::max(model_.defaultScene, 0), file_, scene_));
     SCUMBLE_ASSIGN(const std::vector<int> roots, ChooseRoots());
     SCUMBLE_RETURN_IF_ERROR(WalkNodes(roots));
     NameObjects();
@@ -222,6 +225,8 @@ class GltfLoader {
     const tinygltf::Node& node = model_.nodes[std::size_t(visit.node)];
     if (node.mesh >= 0) SCUMBLE_RETURN_IF_ERROR(LoadInstances(index));
     if (node.camera >= 0) SCUMBLE_RETURN_IF_ERROR(LoadCamera(visit));
+    SCUMBLE_ASSIGN(const std::optional<Light> lamp, ReadLampExtras(node, file_ + ": " + NodeLabel(visit.node)));
+    if (lamp) return PlaceLight(visit, *lamp);
     const auto light = node.extensions.find("KHR_lights_punctual");
     if (light != node.extensions.end() && light->second.Has("light") && light->second.Get("light").IsInt()) {
       return LoadLight(visit, light->second.Get("light").GetNumberAsInt());
@@ -291,6 +296,8 @@ class GltfLoader {
     if (!(camera.z_near >= 0.0) || !(camera.z_far > camera.z_near)) return bad("has its far plane before its near one");
     const std::optional<glm::dmat4> world = WithoutScale(visit.world);
     if (!world) return bad("is scaled or sheared until it has no direction");
+    SCUMBLE_RETURN_IF_ERROR(
+        ReadCameraExtras(model_.nodes[std::size_t(visit.node)], file_ + ": " + NodeLabel(visit.node), camera));
     camera.world_from_camera = *world;
     scene_.cameras.push_back(std::move(camera));
     return Ok();
@@ -303,8 +310,7 @@ class GltfLoader {
     if (index < 0 || std::size_t(index) >= model_.lights.size()) return bad("does not exist");
     const tinygltf::Light& from = model_.lights[std::size_t(index)];
     Light light;
-    light.name = model_.nodes[std::size_t(visit.node)].name;
-    if (light.name.empty()) light.name = from.name.empty() ? "light_" + std::to_string(index) : from.name;
+    light.name = from.name.empty() ? "light_" + std::to_string(index) : from.name;
     if (from.type == "directional") {
       light.type = LightType::kSun;
     } else if (from.type == "spot") {
@@ -330,8 +336,18 @@ class GltfLoader {
           light.inner_cone_degrees <= light.outer_cone_degrees)) {
       return bad("has wrong cone angles");
     }
+    return PlaceLight(visit, std::move(light));
+  }
+
+  // Appends a light at its node, whose name it takes if there is one.
+  Status PlaceLight(const Visit& visit, Light light) {
+    const std::string& name = model_.nodes[std::size_t(visit.node)].name;
+    if (!name.empty()) light.name = name;
     const std::optional<glm::dmat4> world = WithoutScale(visit.world);
-    if (!world) return bad("is scaled or sheared until it has no direction");
+    if (!world) {
+      return InputError(file_ + ": the light of " + NodeLabel(visit.node) +
+                        " is scaled or sheared until it has no direction: export it again");
+    }
     light.world_from_light = *world;
     scene_.lights.push_back(std::move(light));
     return Ok();

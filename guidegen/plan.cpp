@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
+#include "guidegen/path_layers.h"
 
 namespace scumble {
 namespace {
@@ -14,6 +15,23 @@ std::string Counted(std::size_t count, const std::string& noun) {
 bool HasTexturedColor(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
                      [](const Material& material) { return material.base_color_texture.texture >= 0; });
+}
+
+std::string Samples(const GuidegenOptions& options) {
+  if (options.time_budget_seconds <= 0.0 && options.noise <= 0.0) return Counted(std::size_t(options.samples), "path");
+  return options.time_budget_seconds > 0.0 ? "as many paths as the time allows" : "paths until the noise is reached";
+}
+
+std::string PathCost(Layer layer, const Scene& scene, const GuidegenOptions& options) {
+  const PathSupply supply = SupplyOf(scene);
+  if (!supply.light) return "none: the scene has no light, so it is 0";
+  const PathFollower follower({layer}, supply, options.max_bounces);
+  const std::string expression = PathLayerExpression(layer);
+  if (follower.empty()) return "none: the scene has no path " + expression + ", so it is 0";
+  if (!follower.NeedsSamples()) return "1 shadow ray per light and covered pixel; no random numbers";
+  const std::string reach = follower.Bounces() ? "bounced up to " + Counted(std::size_t(options.max_bounces), "time")
+                                               : "direct light alone, never bounced";
+  return Samples(options) + " " + expression + " per covered pixel, " + reach;
 }
 
 std::string LayerCost(Layer layer, const Scene& scene, const GuidegenOptions& options) {
@@ -33,9 +51,11 @@ std::string LayerCost(Layer layer, const Scene& scene, const GuidegenOptions& op
       return HasTexturedColor(scene) ? "1 texture lookup per covered pixel" : "none: no material has a texture";
     case Layer::kLuminance:
     case Layer::kShadow:
-      return scene.lights.empty() ? "none: the scene has no light, so it is 0" : "shadow rays";
-    default:
+      return SupplyOf(scene).light ? "shadow rays" : "none: the scene has no light, so it is 0";
+    case Layer::kMotion:
       return "not built in";
+    default:
+      return PathCost(layer, scene, options);
   }
 }
 
@@ -50,10 +70,19 @@ std::vector<PlanItem> PlanGuides(const Scene& scene, const GuidegenOptions& opti
   }
   const bool luminance = options.layers.Has(Layer::kLuminance);
   const bool shadow = options.layers.Has(Layer::kShadow);
-  if ((luminance || shadow) && !scene.lights.empty()) {
+  const PathSupply supply = SupplyOf(scene);
+  if ((luminance || shadow) && supply.light) {
+    std::string cost;
+    if (supply.delta_lights > 0) {
+      cost = Counted(supply.delta_lights, "shadow ray") + " per covered pixel, where the light faces it";
+    }
+    if (supply.may_be_met) {
+      cost += (cost.empty() ? "" : "; ") + Counted(std::size_t(options.samples), "sample") +
+              " per covered pixel of the lights with extent";
+    }
     plan.push_back({"shadow rays",
                     luminance && shadow ? "for luminance and shadow" : (luminance ? "for luminance" : "for shadow"),
-                    Counted(scene.lights.size(), "shadow ray") + " per covered pixel, where the light faces it"});
+                    cost});
   }
   const bool holes = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; });

@@ -1,9 +1,11 @@
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "guidegen/cast_guides.h"
 #include "guidegen/guidegen.h"
+#include "guidegen/path_layers.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -24,10 +26,34 @@ void CheckMesh(const Mesh& mesh, const Scene& scene) {
 }
 
 void CheckMaterial(const Material& material, const Scene& scene) {
-  for (const TextureUse* use : {&material.base_color_texture, &material.normal_texture}) {
+  for (const TextureUse* use : {&material.base_color_texture, &material.normal_texture,
+                                &material.metallic_roughness_texture, &material.emission_texture}) {
     SCUMBLE_CHECK(use->texture < 0 || std::size_t(use->texture) < scene.textures.size());
     SCUMBLE_CHECK(use->uv_set == 0 || use->uv_set == 1);
   }
+}
+
+bool NeedsLight(const LayerSet& layers) {
+  for (const LayerInfo& info : AllLayers()) {
+    const bool lit = info.layer == Layer::kLuminance || info.layer == Layer::kShadow || PathLayerExpression(info.layer);
+    if (lit && layers.Has(info.layer)) return true;
+  }
+  return false;
+}
+
+Status CheckRadiance(const std::string& who, const glm::vec3& radiance) {
+  for (int i = 0; i < 3; ++i) {
+    if (radiance[i] >= 0.0f && std::isfinite(radiance[i])) continue;
+    return InputError(who + " has the radiance " + std::to_string(radiance[i]) + ": give it one of 0 or more");
+  }
+  return Ok();
+}
+
+Status CheckEmission(const Scene& scene) {
+  for (const Material& material : scene.materials) {
+    SCUMBLE_RETURN_IF_ERROR(CheckRadiance("material \"" + material.name + "\"", material.emission));
+  }
+  return CheckRadiance("the world of " + scene.name, scene.world_radiance);
 }
 
 std::vector<std::string> ObjectNames(const Scene& scene) {
@@ -61,8 +87,11 @@ Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, 
 
   View view;
   SCUMBLE_ASSIGN(view.camera, CameraRays::Make(camera, options.width, options.height));
-  if (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow)) {
+  if (NeedsLight(options.layers)) {
     SCUMBLE_ASSIGN(view.lights, PlaceLights(scene.lights, view.camera));
+    SCUMBLE_RETURN_IF_ERROR(CheckEmission(scene));
+    view.world_radiance = scene.world_radiance;
+    view.supply = SupplyOf(scene);
   }
   const std::vector<std::string> object_names = ObjectNames(scene);
   const std::vector<std::string> material_names = MaterialNames(scene);

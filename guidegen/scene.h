@@ -27,6 +27,10 @@ struct TextureUse {
 
 enum class AlphaMode { kOpaque, kMask, kBlend };
 
+// How a surface answers light. The last three are Blender's pure shaders, which glTF cannot say: Lambert and GGX
+// without Fresnel, whose colour is the base colour, and a black surface that only emits.
+enum class Bsdf { kMetallicRoughness, kDiffuse, kGlossy, kEmission };
+
 // Textures are kept as their pictures are stored; colours are decoded from sRGB when sampled, normals are not.
 // UV (0, 0) is the picture's top left corner, as in glTF; loaders of other formats flip v.
 struct Material {
@@ -38,6 +42,12 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = true;
+  Bsdf bsdf = Bsdf::kMetallicRoughness;
+  float metallic = 0.0f;
+  float roughness = 1.0f;                 // glTF's: GGX's α is its square, 0 is a mirror
+  TextureUse metallic_roughness_texture;  // linear: G multiplies the roughness, B the metalness
+  glm::vec3 emission{0.0f};               // radiance, linear, from both sides
+  TextureUse emission_texture;
 };
 
 // One glTF primitive: a triangle list with one material. Every non-empty attribute has one value per position.
@@ -57,30 +67,47 @@ struct Instance {
   glm::dmat4 world_from_object{1.0};
 };
 
+// Which side of the picture a camera's extent measures: a fixed one, or the longer one of whatever picture is made.
+enum class CameraFit { kVertical, kHorizontal, kLonger };
+
 struct Camera {
   std::string name;
   glm::dmat4 world_from_camera{1.0};  // looks down its −Z, +Y up; rotation and translation only
   bool orthographic = false;
-  double yfov_degrees = 40.0;  // perspective: full vertical angle, in (0, 180)
-  double ymag = 1.0;           // orthographic: half the height, m
+  double yfov_degrees = 40.0;  // perspective: full angle, vertical unless `fit` says otherwise, in (0, 180)
+  double ymag = 1.0;           // orthographic: half the height, or half the side that `fit` names, m
+  CameraFit fit = CameraFit::kVertical;
+  double shift_x = 0.0;  // moves the picture's frame right and up across the scene, as Blender's lens shift does:
+  double shift_y = 0.0;  // fractions of the side that `fit` names
   // Both kinds keep the vertical extent and let the picture's own proportions decide the horizontal one, except where
-  // the file states an aspect (width / height) larger than the picture's: then the horizontal extent is kept.
+  // the file states an aspect (width / height) larger than the picture's: then the horizontal extent is kept. Looked at
+  // only where `fit` is vertical.
   std::optional<double> aspect;
   double z_near = 0.0;
   double z_far = std::numeric_limits<double>::infinity();
 };
 
-enum class LightType { kPoint, kSpot, kSun };
+enum class LightType { kPoint, kSpot, kSun, kArea };
 
 // Radiometric units, so that they can be compared with Cycles: glTF's candela and lux are divided by 683 lm/W.
 struct Light {
   std::string name;
   LightType type = LightType::kPoint;
-  glm::vec3 color{1.0f};    // linear
-  double intensity = 1.0;   // point, spot: W/sr; sun: W/m² on a facing surface
-  double inner_cone_degrees = 0.0;   // spot: half angles, as KHR_lights_punctual has them
+  glm::vec3 color{1.0f};            // linear
+  double intensity = 1.0;           // point, spot: W/sr; sun: W/m² on a facing surface; area: radiance, W/(sr·m²)
+  double inner_cone_degrees = 0.0;  // spot: half angles, as KHR_lights_punctual has them
   double outer_cone_degrees = 45.0;
   glm::dmat4 world_from_light{1.0};  // shines down its −Z
+  double radius = 0.0;  // point, spot: m; a disc that turns to face the point it lights, of radiance I / (π r²)
+  // Sun: full angular diameter. As in Cycles 3.4, its directions are spread evenly over a flat disc, so that a surface
+  // which faces a wide sun receives 2 (1/cos α − 1) / tan² α of its intensity, α half the angle: 0.998 at 10°.
+  double angle_degrees = 0.0;
+  bool cycles_spot = false;  // spot: Cycles' cosθ · smoothstep falloff instead of KHR_lights_punctual's
+  double spot_blend = 0.0;   // with cycles_spot: Blender's blend; outer_cone_degrees is the half angle
+  bool ellipse = false;      // area: an ellipse, or a rectangle
+  // Area: m in the world, whatever the matrix's scale; the full extents along the light's own x and y. One-sided.
+  double size_x = 1.0;
+  double size_y = 1.0;
 };
 
 struct Scene {
@@ -91,6 +118,7 @@ struct Scene {
   std::vector<Picture> textures;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
+  glm::vec3 world_radiance{0.0f};     // from every direction that meets nothing; linear
   std::vector<std::string> warnings;  // what the file asks for and we do not do, in the user's words
 };
 

@@ -45,7 +45,9 @@ Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
   View view;
   SCUMBLE_ASSIGN(view.camera, CameraRays::Make(SphereCamera(), options.size, options.size));
   SCUMBLE_ASSIGN(view.lights, PlaceLights({SphereSun(options)}, view.camera));
-  const Material material;
+  Material material;
+  material.bsdf = Bsdf::kDiffuse;
+  view.supply.light = view.supply.diffuse = true;
   PlacedObject sphere = Place(nullptr, &material, {}, view.camera.ViewFromObject(glm::dmat4(1.0)));
   const std::vector<std::string> names = {"sphere"};
   const std::uint32_t id = IdsForNames(names)[0];

@@ -174,6 +174,22 @@ glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm:
   return color;
 }
 
+std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                       glm::dvec2 barycentric) {
+  const Picture* picture = FindTexture(object, use);
+  if (!picture) return std::nullopt;
+  const Mesh& mesh = *object.mesh;
+  return SampleRaw(*picture, use, Interpolate(mesh.uvs[use.uv_set], mesh.triangles[primitive], barycentric));
+}
+
+std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                            glm::dvec2 barycentric) {
+  const Picture* picture = FindTexture(object, use);
+  if (!picture) return std::nullopt;
+  const Mesh& mesh = *object.mesh;
+  return SampleColor(*picture, use, Interpolate(mesh.uvs[use.uv_set], mesh.triangles[primitive], barycentric));
+}
+
 bool MayHaveHoles(const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; }
 
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {

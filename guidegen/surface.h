@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 
 #include "guidegen/camera_rays.h"
@@ -52,6 +53,13 @@ SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitiv
 
 // Base colour × texture × vertex colour, linear, and alpha.
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
+
+// A texture at a point of the surface: its stored values, or its linear colour. Nothing where the use names no texture
+// or the mesh lacks its UV set.
+std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                       glm::dvec2 barycentric);
+std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                            glm::dvec2 barycentric);
 
 // Whether rays pass here: alpha masks, and blending taken for a mask at one half.
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);

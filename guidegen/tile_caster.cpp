@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "guidegen/soft_light.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -13,9 +14,6 @@ namespace {
 constexpr int kPacket = 8;
 constexpr int kPacketWidth = 4;
 constexpr int kPacketHeight = 2;
-
-// Shadow rays towards a lamp stop this share of the way before it, where only the lamp itself would be.
-constexpr double kShadowReach = 1.0 - 1e-5;
 
 // A ray and the stretch of it, in lengths of its direction, on which surfaces count.
 struct Segment {
@@ -97,10 +95,23 @@ std::array<float*, 3> PlanesOrNull(GuideSet& guides, Layer layer) {
   return {PlaneOrNull(guides, layer, 0), PlaneOrNull(guides, layer, 1), PlaneOrNull(guides, layer, 2)};
 }
 
+// Whose emission luminance and shadow ask for; nobody looks at it where neither is wanted.
+std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSet& guides) {
+  if (!guides.Has(Layer::kLuminance) && !guides.Has(Layer::kShadow)) return {};
+  return scene.objects();
+}
+
+// The sampler's seed for luminance and shadow: not the light paths' own.
+constexpr std::uint32_t kSoftSeed = 1;
+
 }  // namespace
 
 TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const GuidegenOptions& options, GuideSet& guides)
-    : scene_(scene), view_(view), options_(options), width_(guides.width()) {
+    : scene_(scene),
+      view_(view),
+      options_(options),
+      width_(guides.width()),
+      lights_(view.lights, LitObjects(scene, guides), view.world_radiance) {
   const int n = options.aa;
   std::vector<std::array<int, 3>> ranked;  // squared distance in half subsamples, row, column
   for (int row = 0; row < n; ++row) {
@@ -275,6 +286,7 @@ void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<Sur
     if (!blocked) reached[tag.first] += tag.second;
   };
   for (const PlacedLight& light : view_.lights) {
+    if (!light.IsDelta()) continue;
     for (int pixel = 0; pixel < kTilePixels; ++pixel) {
       if (hits[pixel].object == kNothing) continue;
       const LightSample sample = SampleLight(light, points[pixel]);
@@ -291,6 +303,12 @@ void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<Sur
   for (int pixel = 0; pixel < kTilePixels; ++pixel) {
     if (hits[pixel].object == kNothing) continue;
     const std::size_t index = Index(tile, pixel);
+    if (lights_.CanBeMet()) {
+      const Sampler sampler(std::uint32_t(index), kSoftSeed);
+      const SoftLight soft = SampleSoftLight(scene_, lights_, points[pixel], sampler, options_.samples, counts);
+      reached[pixel] += soft.reached;
+      unoccluded[pixel] += soft.unoccluded;
+    }
     // Each light is within float's range; their sum need not be.
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
     if (planes_.luminance) planes_.luminance[index] = float(std::min(reached[pixel], kMaxFloat));
@@ -300,19 +318,23 @@ void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<Sur
   }
 }
 
-void TileCaster::Cast(const Tile& tile, RayCounts& counts) const {
+void TileCaster::Cast(const Tile& tile, RayCounts& counts, std::vector<PathPixel>* pixels) const {
   Hits hits;
   CastCentres(tile, hits);
   counts.primary += std::size_t(tile.width) * tile.height;
   Cover(tile, hits, counts);
-  const bool lit = (planes_.luminance || planes_.shadow) && !view_.lights.empty();
+  const bool lit = (planes_.luminance || planes_.shadow) && !lights_.empty();
   std::vector<SurfacePoint> points(lit ? kTilePixels : 0);
   for (int pixel = 0; pixel < kTilePixels; ++pixel) {
     if (hits[pixel].object == kNothing) continue;
     const SurfacePoint point = Write(Index(tile, pixel), hits[pixel]);
     if (lit) points[pixel] = point;
+    if (pixels) {
+      const Hit& hit = hits[pixel];
+      pixels->push_back({std::uint32_t(Index(tile, pixel)), hit.object, hit.primitive, {hit.u, hit.v}, {hit.x, hit.y}});
+    }
   }
-  // Without lights, luminance and shadow keep their background value, which is 0.
+  // Where nothing shines, luminance and shadow keep their background value, which is 0.
   if (lit) Light(tile, hits, points, counts);
 }
 

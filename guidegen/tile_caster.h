@@ -9,6 +9,8 @@
 #include "guidegen/cast_guides.h"
 #include "guidegen/embree_scene.h"
 #include "guidegen/guidegen.h"
+#include "guidegen/light_paths.h"
+#include "guidegen/light_sampling.h"
 
 namespace scumble {
 
@@ -30,8 +32,8 @@ class TileCaster {
   // All four outlive the caster. The set's layers are filled with their background values.
   TileCaster(const EmbreeScene& scene, const View& view, const GuidegenOptions& options, GuideSet& guides);
 
-  // Adds what was cast to `counts`.
-  void Cast(const Tile& tile, RayCounts& counts) const;
+  // Adds what was cast to `counts`, and to `pixels`, unless null, the covered ones for their light paths.
+  void Cast(const Tile& tile, RayCounts& counts, std::vector<PathPixel>* pixels = nullptr) const;
 
  private:
   struct Hit {
@@ -80,6 +82,7 @@ class TileCaster {
   const View& view_;
   const GuidegenOptions& options_;
   std::size_t width_;
+  const LightSet lights_;
   std::vector<Offset> offsets_;  // of subsamples, by rank
   Planes planes_;
 };

@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "io/blender_camera.h"
 #include "io/guide_header.h"
 #include "io/oiio.h"
 
@@ -314,10 +315,15 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   const std::string name = path.string();
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
-  if (contents.from_blender) {
+  if (contents.from_blender && options.blender_camera.empty()) {
     return InputError(name +
-                      " is a Blender render: its normals are in world space and its header holds no camera; "
-                      "make the guides with `scumble guidegen` from the scene exported as .glb");
+                      " is a Blender render: its normals are in world space and its header holds no camera; give the "
+                      ".camera file that blender_scripts/render_guides.py wrote with it, or make the guides with "
+                      "`scumble guidegen` from the scene exported as .glb");
+  }
+  if (!contents.from_blender && !options.blender_camera.empty()) {
+    return InputError(name + " is no Blender render: its normals are taken to be in view space, and it needs no " +
+                      options.blender_camera.string());
   }
   SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, options.view_layer, name));
   LayerSet wanted = options.required;
@@ -345,6 +351,10 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
                                            1;
   for (int part = 0; part < parts; ++part) SCUMBLE_RETURN_IF_ERROR(ReadPart(*input, part, channels, name, guides));
   ReadHeader(contents.spec, guides);
+  if (contents.from_blender) {
+    SCUMBLE_ASSIGN(const BlenderCamera camera, ReadBlenderCamera(options.blender_camera));
+    ConvertBlenderPasses(camera, guides);
+  }
   if (guides.Has(Layer::kNormal)) {
     if (guides.Has(Layer::kCoverage) && LookPacked(guides)) {
       return InputError(name + ": its normals look packed into 0 to 1; write them as they are, in -1 to 1");

@@ -28,11 +28,13 @@ struct GuideReadOptions {
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
   std::string mend;                     // how the caller can do without, for the message about missing layers
+  std::filesystem::path blender_camera;  // the .camera file of a Blender render (io/blender_camera.h)
 };
 
 // Reads only the channels that are asked for; matches them by name (ParseChannelName). The result is validated:
 // normals whose length is off by more than a half float's rounding are normalised, and what GuideSet::Validate
-// refuses is an error. A file that Blender wrote has world-space normals and no camera: it is refused with what to do.
+// refuses is an error. A file that Blender wrote has world-space normals and no
+// camera: without `blender_camera` it is refused with what to do.
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
 
 // What a guide file holds, without reading its pixels.

@@ -63,27 +63,34 @@ Error ReadFailure(OIIO::ImageInput& input, const std::string& name) {
   return InputError("cannot read " + name + ": " + (reason.empty() ? "the pixel data is damaged" : LibraryReason(reason)));
 }
 
-Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
-                      const std::function<bool(OIIO::ImageOutput&)>& write_pixels) {
+Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::ImageSpec& spec,
+                                        const std::function<bool(OIIO::ImageOutput&)>& write_pixels) {
   // The JPEG writer ends the whole process when it is asked to open an empty picture.
-  if (spec.width < 1 || spec.height < 1) return OutputError("cannot write " + path.string() + ": the picture is empty");
-  auto output = OIIO::ImageOutput::create(path.string());
+  if (spec.width < 1 || spec.height < 1) return OutputError("cannot write " + name + ": the picture is empty");
+  auto output = OIIO::ImageOutput::create(name);
   if (!output) {
-    return OutputError("cannot write " + path.string() + ": " + LibraryReason(OIIO::geterror()) +
+    return OutputError("cannot write " + name + ": " + LibraryReason(OIIO::geterror()) +
                        "; name it .png, .exr, .tif or .jpg");
   }
   std::vector<unsigned char> encoded;
   OIIO::Filesystem::IOVecOutput proxy(encoded);
   if (!output->supports("ioproxy") || !output->set_ioproxy(&proxy)) {
-    return OutputError("cannot write " + path.string() + ": the format " + output->format_name() +
+    return OutputError("cannot write " + name + ": the format " + output->format_name() +
                        " cannot be written safely; name it .png, .exr, .tif or .jpg");
   }
   OIIO::ImageSpec timeless = spec;
   timeless.attribute("DateTime", "");  // the library would write the hour, and the same picture would differ by it
-  if (!output->open(path.string(), timeless) || !write_pixels(*output) || !output->close()) {
-    return OutputError("cannot write " + path.string() + ": " + LibraryReason(output->geterror()));
+  if (!output->open(name, timeless) || !write_pixels(*output) || !output->close()) {
+    return OutputError("cannot write " + name + ": " + LibraryReason(output->geterror()));
   }
-  return WriteFileAtomically(path, std::as_bytes(std::span(encoded)));
+  const auto bytes = std::as_bytes(std::span(encoded));
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
+}
+
+Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
+                      const std::function<bool(OIIO::ImageOutput&)>& write_pixels) {
+  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, Encode(path.string(), spec, write_pixels));
+  return WriteFileAtomically(path, encoded);
 }
 
 Status CheckSize(const OIIO::ImageSpec& spec, const std::string& name) {

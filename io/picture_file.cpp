@@ -145,14 +145,18 @@ OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureW
   return spec;
 }
 
+std::vector<std::uint8_t> In8Bits(const Picture& picture) {
+  std::vector<std::uint8_t> bytes(picture.rgba.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>((picture.rgba[i] + 128u) / 257u);
+  return bytes;
+}
+
 Status WriteEncoded(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   OIIO::ImageSpec spec = EncodedSpec(picture, 4, options);
   // A TIFF would say sRGB in a second directory, which OpenImageIO 2.4 spoils in memory; integers are sRGB without it.
   if (Upper(path.extension().string()) != ".PNG") spec.erase_attribute("oiio:ColorSpace");
   if (options.bits == 8) {
-    std::vector<std::uint8_t> bytes(picture.rgba.size());
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-      bytes[i] = static_cast<std::uint8_t>((picture.rgba[i] + 128u) / 257u);
+    const std::vector<std::uint8_t> bytes = In8Bits(picture);
     return internal::EncodeAndWrite(
         path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT8, bytes.data()); });
   }
@@ -257,6 +261,13 @@ Status WritePicture(const std::filesystem::path& path, const Picture& picture, c
   if (ending == ".EXR") return WriteLinear(path, picture, options);
   if (ending == ".JPG" || ending == ".JPEG") return WriteOnWhite(path, picture, options);
   return WriteEncoded(path, picture, options);
+}
+
+Expected<std::vector<std::byte>> EncodePng(const Picture& picture) {
+  const std::vector<std::uint8_t> bytes = In8Bits(picture);
+  return internal::Encode("picture.png", EncodedSpec(picture, 4, {}), [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
+  });
 }
 
 }  // namespace scumble

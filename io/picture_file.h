@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "image/picture.h"
 #include "image/status.h"
@@ -33,5 +34,8 @@ Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteO
 // Format by the file's ending. PNG and TIFF get straight alpha (not associated), JPEG is composited on white, EXR is
 // linear with associated alpha. The file appears whole under its name or not at all.
 Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options = {});
+
+// The bytes of an 8-bit PNG, for pictures inside other files.
+Expected<std::vector<std::byte>> EncodePng(const Picture& picture);
 
 }  // namespace scumble

@@ -74,7 +74,7 @@ TEST_F(CliBadFiles, ScenesThatAreNone) {
   ExpectError({"stylize", "picture.png", "--style", "picture.png", "-o", "out.png"}, 3,
               {"picture.png has the ending '.png'", ".glb, .gltf, .obj or .ply"});
   WriteText("scene.blend", "BLENDER-v304");
-  ExpectError({"stylize", "scene.blend", "--style", "picture.png", "-o", "out.png"}, 5,
+  ExpectError({"stylize", "scene.blend", "--blender", "no/blender", "--style", "picture.png", "-o", "out.png"}, 5,
               {"scene.blend", "export", ".glb"});
   WriteText("lost.gltf", TriangleGltf(false).replace(TriangleGltf(false).find("data:"), 40, "lost.bin\"}]} "));
   ExpectError({"info", "lost.gltf"}, 3, {"lost.gltf"});
@@ -298,6 +298,15 @@ TEST_F(CliBadOutput, StandardOutputThatTakesNothing) {
   // Nothing that was to be printed has found its way into a file instead.
   EXPECT_TRUE(ReadPicture(At("new.png")));
   EXPECT_TRUE(ReadGuides(At("new.exr")));
+}
+
+TEST_F(CliBadContent, CrosscheckNeedsWhatBlenderReads) {
+  WriteText("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  ExpectError({"crosscheck", "tri.obj"}, 3, {"tri.obj", ".glb"});
+  ExpectError({"crosscheck", "gone.glb"}, 3, {"gone.glb", "no such file"});
+  ExpectError({"crosscheck"}, 2, {"scenes"});
+  ExpectError({"crosscheck", Scene("snail.glb"), "--size", "32x18", "--blender", "/no/blender", "-q"}, 5,
+              {"/no/blender", "install Blender"});
 }
 
 }  // namespace

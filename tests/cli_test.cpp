@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using CliVerbs = CliTest;
 using CliUsage = CliTest;
 
-const std::vector<std::string> kVerbs = {"sphere", "guidegen", "transfer", "stylize", "compare", "info", "styles"};
+const std::vector<std::string> kVerbs = {"sphere", "guidegen", "transfer", "stylize", "compare", "crosscheck", "info", "styles"};
 
 bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -52,7 +52,8 @@ TEST_F(CliUsage, EveryVerbHasHelp) {
 }
 
 TEST_F(CliUsage, VerbsThatAreNone) {
-  ExpectError({}, 2, {"no verb given: expected one of sphere, guidegen, transfer, stylize, compare, info, styles"});
+  ExpectError({}, 2, {"no verb given: expected one of sphere, guidegen, transfer, stylize, compare, crosscheck, info, "
+                  "styles"});
   ExpectError({"bogus"}, 2, {"unknown verb 'bogus': expected one of sphere, guidegen"});
   ExpectError({""}, 2, {"expected one of sphere"});
   ExpectError({"--bogus"}, 2, {"unknown option --bogus: options follow the verb"});
@@ -192,8 +193,8 @@ TEST_F(CliVerbs, GuidegenWritesTheLayersAskedFor) {
   EXPECT_FALSE(info["objects"].empty());
   ExpectError({"guidegen", Scene("stilllife.glb"), "--layers", "bogus", "-o", "x.exr"}, 2, {"'bogus'", "position"});
   EXPECT_FALSE(Exists("x.exr"));
-  ExpectError({"guidegen", Scene("stilllife.glb"), "--size", "16", "--layers", "lpe.full", "-o", "x.exr"}, 5,
-              {"lpe.full", "not built"});
+  ExpectError({"guidegen", Scene("stilllife.glb"), "--size", "16", "--layers", "motion", "-o", "x.exr"}, 5,
+              {"motion", "not built"});
   ExpectError({"guidegen", Scene("stilllife.glb"), "--size", "16", "--isa", "bogus", "-o", "x.exr"}, 2,
               {"bogus", "sse2, sse4.2, avx, avx2, avx512"});
   ExpectError({"guidegen", Scene("stilllife.glb"), "--size", "16", "--compression", "dwaa", "-o", "x.exr"}, 2,

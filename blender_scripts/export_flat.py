@@ -1,0 +1,218 @@
+"""The scene as a render sees it, as a flat list of meshes in the world: part of export_scene.py."""
+
+from dataclasses import dataclass, field
+
+import bpy
+
+MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
+RAYS = {"visible_camera": "camera", "visible_diffuse": "diffuse", "visible_glossy": "glossy",
+        "visible_shadow": "shadow"}
+
+
+@dataclass
+class Placed:
+    """Something at a place: `matrix` is Blender's world matrix, `source` the original object."""
+    name: str
+    source: object
+    matrix: object
+    mesh: object = None
+    slots: tuple = ()  # original materials, None where there is none
+    exported: str = ""  # the name that the exporter sees
+
+
+@dataclass
+class FlatScene:
+    meshes: list = field(default_factory=list)
+    lamps: list = field(default_factory=list)
+    cameras: list = field(default_factory=list)  # the active one first
+    materials: dict = field(default_factory=dict)  # by the key that MaterialKey gives
+
+
+def material_key(material):
+    return material.name_full if material else ""
+
+
+def mute_visibility(thing):
+    """Animation of the viewport's eye would bring back, at the next evaluation, what the render hides."""
+    action = thing.animation_data.action if thing.animation_data else None
+    for curve in action.fcurves if action else []:
+        curve.mute = curve.mute or curve.data_path == "hide_viewport"
+
+
+def use_render_modifiers(thing):
+    for modifier in thing.modifiers:
+        modifier.show_viewport = modifier.show_render
+        if modifier.type in {"SUBSURF", "MULTIRES"}:
+            modifier.levels = modifier.render_levels
+    for system in thing.particle_systems:
+        settings = system.settings
+        settings.display_percentage = 100
+        if settings.child_type != "NONE":
+            settings.child_nbr = settings.rendered_child_count
+
+
+def use_render_data(data):
+    for render, viewport in (("render_resolution_u", "resolution_u"), ("render_resolution_v", "resolution_v"),
+                             ("render_resolution", "resolution")):
+        if getattr(data, render, 0) and hasattr(data, viewport):
+            setattr(data, viewport, getattr(data, render))
+
+
+def show_as_rendered(scene, view_layer):
+    """Scripts see a scene as the viewport does, so the viewport gets the render's settings."""
+    scene.render.simplify_subdivision = scene.render.simplify_subdivision_render
+    pending = [view_layer.layer_collection]
+    while pending:
+        layer = pending.pop()
+        pending += layer.children
+        layer.hide_viewport = False
+        layer.collection.hide_viewport = layer.collection.hide_render
+    for collection in bpy.data.collections:
+        collection.hide_viewport = collection.hide_render
+    for thing in bpy.data.objects:
+        mute_visibility(thing)
+        thing.hide_viewport = thing.hide_render
+        thing.show_instancer_for_viewport = thing.show_instancer_for_render
+        use_render_modifiers(thing)
+        if thing.data is not None:
+            use_render_data(thing.data)
+    for thing in view_layer.objects:
+        thing.hide_set(False, view_layer=view_layer)
+    view_layer.update()
+
+
+def name_of(instance, taken):
+    """The object's name; of an instance "Instancer/Object". Repeated ones count on in Blender's own order."""
+    name = instance.object.original.name
+    if instance.is_instance and instance.parent:
+        name = instance.parent.original.name + "/" + name
+    taken[name] = taken.get(name, 0) + 1
+    return name if taken[name] == 1 else f"{name}#{taken[name]}"
+
+
+def mesh_key(instance):
+    """Equal for those that show the same triangles in the same materials."""
+    thing = instance.object
+    slots = tuple(material_key(slot.material) for slot in thing.material_slots)
+    original = thing.original
+    plain = original.type == "MESH" and original.data is not None and not original.modifiers
+    if plain and not original.data.shape_keys and not (instance.is_instance and thing.data.name != original.data.name):
+        return ("plain", original.data.name_full, slots)
+    return ("evaluated", thing.data.as_pointer(), slots)
+
+
+def note_limits(thing, unsupported):
+    rays = [name for key, name in RAYS.items() if not getattr(thing, key, True)]
+    if rays:
+        unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
+    if getattr(thing, "is_holdout", False):
+        unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
+    if getattr(thing, "is_shadow_catcher", False):
+        unsupported.add(f"object '{thing.name}': is a shadow catcher, which is ignored")
+    for system in thing.particle_systems:
+        if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
+            unsupported.add(f"object '{thing.name}': its hair '{system.name}' is left out")
+
+
+def flatten(scene, unsupported):
+    view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+    bpy.context.window.view_layer = view_layer
+    show_as_rendered(scene, view_layer)
+    depsgraph = view_layer.depsgraph
+    depsgraph.update()
+    flat, meshes, taken = FlatScene(), {}, {}
+    for instance in depsgraph.object_instances:
+        thing = instance.object
+        if not instance.is_instance and not instance.show_self:
+            continue
+        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
+            continue  # a curve's triangles, which follow the curve itself
+        place_object(flat, meshes, taken, instance, depsgraph, unsupported)
+    flat.cameras.sort(key=lambda camera: camera.source != scene.camera)
+    if scene.camera and not any(camera.source == scene.camera for camera in flat.cameras):
+        flat.cameras.insert(0, Placed(scene.camera.name, scene.camera, scene.camera.matrix_world.copy()))
+    usable = [camera for camera in flat.cameras if camera.source.data.type in {"PERSP", "ORTHO"}]
+    for camera in flat.cameras:
+        if camera not in usable:
+            unsupported.add(f"camera '{camera.name}': is panoramic, left out")
+    flat.cameras = usable
+    if abs(scene.render.pixel_aspect_x - scene.render.pixel_aspect_y) > 1e-6:
+        unsupported.add("the render's pixels are not square, which is ignored")
+    return flat
+
+
+def place_object(flat, meshes, taken, instance, depsgraph, unsupported):
+    thing = instance.object
+    if thing.type in SILENT_TYPES:
+        return
+    if thing.type not in MESH_TYPES | {"CAMERA", "LIGHT"}:
+        unsupported.add(f"object '{thing.original.name}': is of type {thing.type}, left out")
+        return
+    placed = Placed(name_of(instance, taken), thing.original, instance.matrix_world.copy())
+    if thing.type == "LIGHT":
+        flat.lamps.append(placed)
+    elif thing.type == "CAMERA":
+        flat.cameras.append(placed)
+    else:
+        note_limits(thing.original, unsupported)
+        place_mesh(flat, meshes, placed, instance, depsgraph)
+
+
+def place_mesh(flat, meshes, placed, instance, depsgraph):
+    thing = instance.object
+    key = mesh_key(instance)
+    if key not in meshes:
+        mesh = bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=depsgraph)
+        meshes[key] = mesh if len(mesh.polygons) else None
+        if meshes[key]:
+            mesh.name = f"scumble.{len(meshes):06d}"
+    if meshes[key] is None:
+        return
+    placed.mesh = meshes[key]
+    materials = [slot.material.original if slot.material else None for slot in thing.material_slots]
+    placed.slots = tuple(materials or [None])
+    for material in placed.slots:
+        flat.materials.setdefault(material_key(material), material)
+    flat.meshes.append(placed)
+
+
+def fill_export_scene(flat, materials, unsupported):
+    """A new scene that holds one object for each mesh at a place, at the origin: places are written afterwards, because
+    the exporter would drop the shear of a matrix. `materials` are the exporter's, by key."""
+    scene = bpy.data.scenes.new("scumble")
+    done = set()
+    for number, placed in enumerate(flat.meshes):
+        mesh = placed.mesh
+        if mesh.name not in done:
+            done.add(mesh.name)
+            fill_slots(mesh, [materials[material_key(slot)] for slot in placed.slots])
+            if not keep_used_colors(mesh):
+                unsupported.add(f"object '{placed.name}': its materials read different colour attributes, none is kept")
+        copy = bpy.data.objects.new(f"scumble.{number:06d}", mesh)
+        scene.collection.objects.link(copy)
+        placed.exported = copy.name
+    bpy.context.window.scene = scene
+
+
+def fill_slots(mesh, materials):
+    indices = [min(polygon.material_index, len(materials) - 1) for polygon in mesh.polygons]
+    mesh.materials.clear()
+    for material in materials:
+        mesh.materials.append(material)
+    mesh.polygons.foreach_set("material_index", indices)
+
+
+def keep_used_colors(mesh):
+    """glTF multiplies vertex colours into every material, so only those stay that all materials of the mesh read.
+    Returns false where the materials do not agree."""
+    wanted = {material.get("scumble_color_attribute") for material in mesh.materials}
+    agreed = len(wanted) == 1
+    name = wanted.pop() if agreed else None
+    if name == "":
+        name = mesh.color_attributes.active_color.name if mesh.color_attributes.active_color else None
+    for unused in [attribute.name for attribute in mesh.color_attributes if attribute.name != name]:
+        mesh.color_attributes.remove(mesh.color_attributes[unused])
+    if len(mesh.color_attributes) > 0:
+        mesh.color_attributes.render_color_index = 0
+    return agreed

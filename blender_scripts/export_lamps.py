@@ -1,0 +1,98 @@
+"""Lamps, cameras and the world's colour in numbers: part of export_scene.py."""
+
+import math
+
+from export_materials import constant, previous
+
+
+def emission_of(lamp, complain):
+    """Colour and strength that a lamp's nodes multiply into it; ones where it has none."""
+    if not lamp.use_nodes or not lamp.node_tree:
+        return (1.0, 1.0, 1.0), 1.0
+    output = lamp.node_tree.get_output_node("CYCLES")
+    surface = previous(output.inputs["Surface"]) if output else None
+    if surface is None:
+        return (0.0, 0.0, 0.0), 1.0
+    if surface.node.type != "EMISSION":
+        complain(f"node '{surface.node.name}' ({surface.node.type}) is ignored")
+        return (1.0, 1.0, 1.0), 1.0
+    color, strength = (constant(surface.node.inputs[name]) for name in ("Color", "Strength"))
+    if color is None:
+        node = previous(surface.node.inputs["Color"]).node
+        complain(f"node '{node.name}' ({node.type}) feeds its colour, which is white instead")
+        color = (1.0, 1.0, 1.0)
+    if strength is None:
+        node = previous(surface.node.inputs["Strength"]).node
+        complain(f"node '{node.name}' ({node.type}) feeds its strength, which is 1 instead")
+        strength = 1.0
+    color = color if isinstance(color, tuple) else (color,) * 3
+    return color, strength if isinstance(strength, float) else sum(strength) / 3
+
+
+def describe_lamp(placed, unsupported):
+    """The extras of one lamp. An area lamp's size includes its object's scale, as in Cycles; other kinds heed none."""
+    lamp = placed.source.data
+
+    def complain(what):
+        unsupported.add(f"lamp '{placed.source.name}': {what}")
+
+    color, strength = emission_of(lamp, complain)
+    extras = {"type": lamp.type, "color": [max(a * b, 0.0) for a, b in zip(lamp.color, color)],
+              "energy": max(lamp.energy * strength, 0.0)}
+    if lamp.energy * strength < 0.0 or any(a * b < 0.0 for a, b in zip(lamp.color, color)):
+        complain("takes light away, which is ignored")
+    if lamp.type in {"POINT", "SPOT"}:
+        extras["radius"] = lamp.shadow_soft_size
+    if lamp.type == "SPOT":
+        extras["spot_size"] = lamp.spot_size
+        extras["spot_blend"] = lamp.spot_blend
+    elif lamp.type == "SUN":
+        extras["angle"] = lamp.angle
+    elif lamp.type == "AREA":
+        width, height = (placed.matrix.col[axis].to_3d().length for axis in (0, 1))
+        extras["shape"] = lamp.shape
+        extras["size"] = lamp.size * width
+        extras["size_y"] = (lamp.size_y if lamp.shape in {"RECTANGLE", "ELLIPSE"} else lamp.size) * height
+        if lamp.spread < math.pi - 1e-4:
+            complain(f"its spread of {math.degrees(lamp.spread):.4g}° is taken for 180°")
+        if lamp.cycles.is_portal:
+            complain("is a portal, which gives no light")
+            extras["energy"] = 0.0
+    if not lamp.cycles.cast_shadow:
+        complain("casts no shadows, which is ignored")
+    return extras
+
+
+def describe_camera(placed, scene):
+    """The extras of one camera. `angle` and `ortho_scale` measure the side that the sensor fits; `aspect` is the
+    render's width / height. Shifts are fractions of the fitted side."""
+    camera = placed.source.data
+    render = scene.render
+    return {"type": camera.type, "shift_x": camera.shift_x, "shift_y": camera.shift_y, "sensor_fit": camera.sensor_fit,
+            "angle": camera.angle, "angle_x": camera.angle_x, "ortho_scale": camera.ortho_scale,
+            "clip_start": camera.clip_start, "clip_end": camera.clip_end,
+            "aspect": render.resolution_x * render.pixel_aspect_x / (render.resolution_y * render.pixel_aspect_y)}
+
+
+def world_radiance(scene, unsupported):
+    """Colour times strength of the world's background."""
+    world = scene.world
+    if world is None:
+        return [0.0, 0.0, 0.0]
+    if not world.use_nodes or not world.node_tree:
+        return list(world.color)
+    output = world.node_tree.get_output_node("CYCLES")
+    surface = previous(output.inputs["Surface"]) if output else None
+    if output and previous(output.inputs["Volume"]) is not None:
+        unsupported.add(f"world '{world.name}': its volume is ignored")
+    if surface is None:
+        return [0.0, 0.0, 0.0]
+    if surface.node.type not in {"BACKGROUND", "EMISSION"}:
+        unsupported.add(f"world '{world.name}': node '{surface.node.name}' ({surface.node.type}); it is black instead")
+        return [0.0, 0.0, 0.0]
+    color, strength = (constant(surface.node.inputs[name]) for name in ("Color", "Strength"))
+    if color is None or strength is None:
+        fed = previous(surface.node.inputs["Color" if color is None else "Strength"]).node
+        unsupported.add(f"world '{world.name}': node '{fed.name}' ({fed.type}); it is black instead")
+        return [0.0, 0.0, 0.0]
+    return [max(strength * c, 0.0) for c in (color if isinstance(color, tuple) else (color,) * 3)]

@@ -1,0 +1,277 @@
+"""Materials as glTF and our extras can say them: part of export_scene.py.
+
+Every material becomes a new one with a Principled node that carries its colour and texture, which the exporter keeps,
+and an entry of extras that says what it really was. What a node tree says beyond that is named in `unsupported`; a tree
+that is not understood at all becomes a Diffuse surface in the material's viewport colour.
+"""
+
+import bpy
+
+PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
+CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # what Cycles gives to faces without a material
+GGX = {"GGX", "MULTI_GGX"}
+
+# Inputs of the Principled node that nothing here can express, and the value at which they do nothing.
+IGNORED = {"Subsurface": 0.0, "Specular": 0.5, "Specular Tint": 0.0, "Anisotropic": 0.0, "Sheen": 0.0, "Clearcoat": 0.0,
+           "Transmission": 0.0}
+
+
+def previous(socket):
+    """The socket that feeds this one, past reroutes; None where nothing does."""
+    while socket is not None and socket.is_linked:
+        source = socket.links[0].from_socket
+        if source.node.type != "REROUTE":
+            return None if source.node.mute else source
+        socket = source.node.inputs[0]
+    return None
+
+
+def constant(socket):
+    """The value of an input that is a number or a colour; None where something else feeds it."""
+    source = previous(socket)
+    value = None
+    if source is None:
+        value = socket.default_value
+    elif source.node.type in {"RGB", "VALUE"}:
+        value = source.default_value
+    if value is None or isinstance(value, (int, float)):
+        return value
+    return tuple(value)[:3]
+
+
+def coordinates_fault(socket):
+    """What is wrong with the coordinates of a texture; None where glTF has them."""
+    source = previous(socket)
+    if source is None or source.node.type == "UVMAP":
+        return None
+    if source.node.type == "TEX_COORD" and source.name == "UV":
+        return None
+    if source.node.type == "MAPPING" and source.node.vector_type == "POINT":
+        if all(previous(source.node.inputs[name]) is None for name in ("Location", "Rotation", "Scale")):
+            return coordinates_fault(source.node.inputs["Vector"])
+    return f"node '{source.node.name}' ({source.node.type}) as coordinates"
+
+
+def image_fault(node, data):
+    """What is wrong with an image texture; None where glTF has it. `data`: it holds numbers, not colours."""
+    if node.image is None:
+        return f"node '{node.name}' without an image"
+    if node.projection != "FLAT" or node.extension == "CLIP":
+        return f"node '{node.name}' with {node.projection} projection and extension {node.extension}"
+    if node.image.source not in {"FILE", "GENERATED"}:
+        return f"node '{node.name}' with an image of source {node.image.source}"
+    space = node.image.colorspace_settings.name
+    if (space == "sRGB") == data or node.image.is_float:
+        return f"node '{node.name}' with an image in {space}{', float' if node.image.is_float else ''}"
+    return coordinates_fault(node.inputs["Vector"])
+
+
+class Reader:
+    """Reads one material's nodes; what it cannot say goes to `unsupported` under the material's name."""
+
+    def __init__(self, name, unsupported):
+        self.name = name
+        self.unsupported = unsupported
+
+    def complain(self, what):
+        self.unsupported.add(f"material '{self.name}': {what}")
+
+    def number(self, socket):
+        value = constant(socket)
+        if value is None:
+            node = previous(socket).node
+            self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own value instead")
+            value = socket.default_value
+        return float(value if isinstance(value, (int, float)) else sum(value) / 3)
+
+    def color(self, socket):
+        """The colour, and what glTF can keep of the input: nothing, an image's socket, or a tuple with the name of a
+        colour attribute."""
+        value = constant(socket)
+        if value is not None:
+            return (value if isinstance(value, tuple) else (value,) * 3), None
+        source = previous(socket)
+        node = source.node
+        if node.type == "TEX_IMAGE" and source.name == "Color":
+            fault = image_fault(node, False)
+            if fault is None:
+                return (1.0, 1.0, 1.0), source
+            self.complain(f"{fault} feeds {socket.name}, which keeps its own colour instead")
+        elif node.type == "VERTEX_COLOR" and source.name == "Color":
+            return (1.0, 1.0, 1.0), (node.layer_name,)
+        elif node.type == "ATTRIBUTE" and source.name == "Color" and node.attribute_type == "GEOMETRY":
+            return (1.0, 1.0, 1.0), (node.attribute_name,)
+        else:
+            self.complain(f"node '{node.name}' ({node.type}) feeds {socket.name}, which keeps its own colour instead")
+        return tuple(socket.default_value)[:3], None
+
+
+def is_texture(source):
+    return True if isinstance(source, bpy.types.NodeSocket) else None
+
+
+def surface_of(material):
+    output = material.node_tree.get_output_node("CYCLES")
+    return output, previous(output.inputs["Surface"]) if output else None
+
+
+def diffuse(color):
+    return {"type": "DIFFUSE", "color": list(color), "roughness": 0.0, "texture": None}
+
+
+def read_plain(kind, node, reader):
+    """A Diffuse, Glossy or Emission node: its extras and what feeds its colour."""
+    color, source = reader.color(node.inputs["Color"])
+    bsdf = {"type": kind, "color": list(color), "texture": is_texture(source)}
+    if kind == "EMISSION":
+        bsdf["strength"] = reader.number(node.inputs["Strength"])
+        return bsdf, source
+    bsdf["roughness"] = reader.number(node.inputs["Roughness"])
+    if kind == "GLOSSY":
+        bsdf["distribution"] = node.distribution
+        if node.distribution == "SHARP":
+            bsdf["roughness"] = 0.0
+        elif node.distribution not in GGX:
+            reader.complain(f"distribution {node.distribution} is taken for GGX")
+    elif bsdf["roughness"] > 0.0:
+        reader.complain(f"Diffuse roughness {bsdf['roughness']:.3g} (Oren-Nayar) is taken for Lambert")
+    if previous(node.inputs["Normal"]) is not None and not is_normal_map(node.inputs["Normal"]):
+        reader.complain(f"node '{previous(node.inputs['Normal']).node.name}' feeds Normal, which is ignored")
+    return bsdf, source
+
+
+def is_normal_map(socket):
+    """A tangent-space normal map from an image: glTF's own."""
+    source = previous(socket)
+    if source is None or source.node.type != "NORMAL_MAP" or source.node.space != "TANGENT":
+        return False
+    image = previous(source.node.inputs["Color"])
+    return image is not None and image.node.type == "TEX_IMAGE" and image_fault(image.node, True) is None
+
+
+def keep_or_cut(tree, reader, node, name):
+    """An input of numbers that only an image may feed. Returns its constant, or None for an image."""
+    source = previous(node.inputs[name])
+    if source is not None and source.node.type in {"SEPARATE_COLOR", "SEPRGB"}:
+        source = previous(source.node.inputs[0])
+    if source is not None and source.node.type == "TEX_IMAGE" and image_fault(source.node, True) is None:
+        return None
+    value = reader.number(node.inputs[name])
+    clear_links(tree, node.inputs[name])
+    node.inputs[name].default_value = value
+    return value
+
+
+def read_principled(tree, node, reader):
+    """Everything of the Principled node that glTF has no place for is cut off its copy, so that nothing half-understood
+    is exported."""
+    color, source = reader.color(node.inputs["Base Color"])
+    emission, emission_source = reader.color(node.inputs["Emission"])
+    strength = reader.number(node.inputs["Emission Strength"])
+    if isinstance(emission_source, tuple):
+        reader.complain("a colour attribute feeds Emission, which keeps its own colour instead")
+        emission, emission_source = tuple(node.inputs["Emission"].default_value)[:3], None
+    if emission_source is None:
+        clear_links(tree, node.inputs["Emission"])
+        node.inputs["Emission"].default_value = (*emission, 1.0)
+    bsdf = {"type": "PRINCIPLED", "color": list(color), "texture": is_texture(source),
+            "roughness": keep_or_cut(tree, reader, node, "Roughness"),
+            "metallic": keep_or_cut(tree, reader, node, "Metallic"),
+            "emission": [strength * c for c in emission] if emission_source is None else None,
+            "strength": strength, "distribution": node.distribution}
+    for name, nothing in IGNORED.items():
+        if previous(node.inputs[name]) is not None or node.inputs[name].default_value != nothing:
+            reader.complain(f"Principled {name} is ignored")
+    if previous(node.inputs["Normal"]) is not None and not is_normal_map(node.inputs["Normal"]):
+        reader.complain(f"node '{previous(node.inputs['Normal']).node.name}' feeds Normal, which is ignored")
+    alpha = previous(node.inputs["Alpha"])
+    if alpha is not None and alpha.node.type != "TEX_IMAGE":
+        reader.number(node.inputs["Alpha"])
+        alpha = None
+    return bsdf, source, alpha is not None or node.inputs["Alpha"].default_value < 1.0
+
+
+def rebuild(copy, bsdf, source, surface, output):
+    """Puts a Principled node that carries the colour in the place of another surface node."""
+    tree = copy.node_tree
+    carrier = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    carrier.inputs["Base Color"].default_value = (*[min(max(c, 0.0), 1.0) for c in bsdf["color"]], 1.0)
+    carrier.inputs["Metallic"].default_value = 1.0 if bsdf["type"] == "GLOSSY" else 0.0
+    carrier.inputs["Roughness"].default_value = bsdf.get("roughness", 1.0) if bsdf["type"] == "GLOSSY" else 1.0
+    if bsdf["type"] == "EMISSION":
+        carrier.inputs["Emission"].default_value = carrier.inputs["Base Color"].default_value
+        carrier.inputs["Emission Strength"].default_value = bsdf["strength"]
+    if isinstance(source, bpy.types.NodeSocket):
+        tree.links.new(source, carrier.inputs["Base Color"])
+        if bsdf["type"] == "EMISSION":
+            tree.links.new(source, carrier.inputs["Emission"])
+    normal = surface.node.inputs.get("Normal") if surface else None
+    if normal is not None and is_normal_map(normal):
+        tree.links.new(previous(normal), carrier.inputs["Normal"])
+    if surface:
+        tree.nodes.remove(surface.node)
+    tree.links.new(carrier.outputs[0], output.inputs["Surface"])
+
+
+def simplify_nodes(copy, reader):
+    """The extras of a material with nodes, whose copy is made exportable; also whether it has holes."""
+    output, surface = surface_of(copy)
+    if output is not None:
+        for name in ("Volume", "Displacement"):
+            if previous(output.inputs[name]) is not None:
+                reader.complain(f"its {name.lower()} is ignored")
+    kind = PLAIN.get(surface.node.type) if surface else None
+    if kind == "PRINCIPLED":
+        bsdf, source, holes = read_principled(copy.node_tree, surface.node, reader)
+        if source is None:
+            clear_links(copy.node_tree, surface.node.inputs["Base Color"])
+            surface.node.inputs["Base Color"].default_value = (*bsdf["color"], 1.0)
+    elif kind is not None:
+        bsdf, source = read_plain(kind, surface.node, reader)
+        holes = False
+        rebuild(copy, bsdf, source, surface, output)
+    else:
+        what = f"node '{surface.node.name}' ({surface.node.type})" if surface else "a surface without a node"
+        if surface is None:
+            bsdf = diffuse((0.0, 0.0, 0.0))  # as in Cycles
+            reader.complain(f"{what} is black")
+        else:
+            bsdf = diffuse(copy.diffuse_color[:3])
+            reader.complain(f"{what} cannot be expressed; it is Diffuse in its viewport colour instead")
+        source, holes = None, False
+        if output is None:
+            output = copy.node_tree.nodes.new("ShaderNodeOutputMaterial")
+        rebuild(copy, bsdf, None, surface, output)
+    if isinstance(source, tuple):
+        copy["scumble_color_attribute"] = source[0]
+        carrier = surface_of(copy)[1].node.inputs["Base Color"]
+        clear_links(copy.node_tree, carrier)
+        carrier.default_value = (1.0, 1.0, 1.0, 1.0)
+    return bsdf, holes
+
+
+def clear_links(tree, socket):
+    for link in list(socket.links):
+        tree.links.remove(link)
+
+
+def simplify(materials, unsupported):
+    """For each material by its key: {"material": what the exporter gets, "name": the original's, "extras": …}."""
+    entries = {}
+    for number, (key, material) in enumerate(materials.items()):
+        if material is None:
+            copy = bpy.data.materials.new("scumble")
+            copy.diffuse_color = (*CYCLES_DEFAULT, 1.0)
+            name = "default"
+        else:
+            copy, name = material.copy(), material.name
+        copy.name = f"scumble.{number:06d}"
+        holes, bsdf = False, diffuse(copy.diffuse_color[:3])
+        if copy.use_nodes and copy.node_tree:
+            bsdf, holes = simplify_nodes(copy, Reader(name, unsupported))
+        # These settings are the viewport's; Cycles shows both sides of everything and always heeds alpha.
+        copy.use_backface_culling = False
+        copy.blend_method = "BLEND" if holes else "OPAQUE"
+        extras = {"bsdf": bsdf, "pass_index": material.pass_index if material else 0}
+        entries[key] = {"material": copy, "name": name, "extras": extras, "exported": copy.name}
+    return entries

@@ -1,0 +1,113 @@
+"""Exports a .blend scene as the renderer sees it to .glb, with what glTF lacks in `extras`, key "scumble".
+
+    blender -b -noaudio --factory-startup -Y scene.blend -P blender_scripts/export_scene.py -- --output scene.glb
+                                                                               [--frame N] [--scene NAME]
+
+`scumble guidegen scene.blend` and `stylize scene.blend` run it by themselves. Modifiers, shape keys, armatures and
+geometry nodes are applied as for a render; instances share their mesh; what is hidden from render is left out. The
+active camera comes first. docs/blender.md lists what the extras mean.
+
+Each thing that cannot be expressed is one line "scumble: unsupported: …" on stderr and one in the scene's extras.
+Exit codes: 0, 3 when the scene cannot be exported, 5 when this Blender's version is not supported. The reason is a line
+"scumble: error: …" on stderr.
+"""
+
+import argparse
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+
+import bpy
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import export_flat  # noqa: E402  (Blender does not put a script's own folder on the path)
+import export_glb  # noqa: E402
+import export_lamps  # noqa: E402
+import export_materials  # noqa: E402
+import export_stretch  # noqa: E402
+
+SUPPORTED = (3, 4)  # lamp formulas, node sockets and the exporter's options are known for this one
+EXIT_INPUT, EXIT_VERSION = 3, 5
+
+
+class Unsupported:
+    """Collects what cannot be expressed, each line once, in order."""
+
+    def __init__(self):
+        self.lines = []
+
+    def add(self, line):
+        if line not in self.lines:
+            self.lines.append(line)
+
+
+def fail(message, code=EXIT_INPUT):
+    sys.stdout.flush()
+    print("scumble: error: " + message, file=sys.stderr, flush=True)
+    sys.exit(code)
+
+
+def choose_scene(name):
+    if not bpy.data.filepath:
+        fail("Blender did not open the file: it is no .blend file, or one of a newer Blender")
+    if name is None:
+        return bpy.context.window.scene
+    if name not in bpy.data.scenes:
+        fail(f"there is no scene '{name}'; there are: " + ", ".join(f"'{scene.name}'" for scene in bpy.data.scenes))
+    return bpy.data.scenes[name]
+
+
+def export(scene, output, unsupported):
+    """Everything is decided before the glTF exporter runs: it gets plain objects with short names of ours, so that
+    what it writes can be found again and completed."""
+    flat = export_flat.flatten(scene, unsupported)
+    materials = export_materials.simplify(flat.materials, unsupported)
+    world = export_lamps.world_radiance(scene, unsupported)
+    lamps = [export_lamps.describe_lamp(lamp, unsupported) for lamp in flat.lamps]
+    cameras = [export_lamps.describe_camera(camera, scene) for camera in flat.cameras]
+    export_flat.fill_export_scene(flat, {name: entry["material"] for name, entry in materials.items()}, unsupported)
+    with tempfile.TemporaryDirectory(prefix="scumble-") as folder:
+        raw = Path(folder) / "raw.glb"
+        bpy.ops.export_scene.gltf(
+            filepath=str(raw), export_format="GLB", use_active_scene=True, export_yup=True, export_apply=False,
+            export_cameras=False, export_lights=False, export_animations=False, export_skins=False, export_morph=False,
+            export_colors=True, export_tangents=False, export_extras=False, export_image_format="AUTO")
+        document, binary = export_glb.read(raw)
+    export_glb.complete(document, flat, materials, lamps, cameras)
+    binary = export_stretch.bake(document, binary, document.get("nodes", []))
+    document["scenes"][document["scene"]]["name"] = scene.name
+    document["scenes"][document["scene"]]["extras"] = {"scumble": {
+        "world": world, "blender": bpy.app.version_string, "frame": scene.frame_current,
+        "unsupported": unsupported.lines}}
+    export_glb.write(output, document, binary)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="export_scene.py", description="Exports a .blend scene for scumble.")
+    parser.add_argument("--output", required=True, type=Path, help=".glb file to write")
+    parser.add_argument("--frame", type=int, help="frame of the scene; left out: the one it was saved at")
+    parser.add_argument("--scene", help="scene by name; left out: the one that was open when the file was saved")
+    arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+    if bpy.app.version[:2] != SUPPORTED:
+        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
+             "lamps shine by other formulas in other versions: name another one with --blender, or export to .glb by "
+             "hand",
+             EXIT_VERSION)
+    scene = choose_scene(arguments.scene)
+    bpy.context.window.scene = scene
+    scene.frame_set(arguments.frame if arguments.frame is not None else scene.frame_current)
+    unsupported = Unsupported()
+    export(scene, arguments.output, unsupported)
+    sys.stdout.flush()
+    for line in unsupported.lines:
+        print("scumble: unsupported: " + line, file=sys.stderr)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except Exception as problem:  # Blender itself would print the traceback and exit with 0
+        traceback.print_exc()
+        fail(f"the export stopped at {type(problem).__name__}: {problem}")

@@ -1,0 +1,224 @@
+#include "guidegen/light_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "guidegen/single_ray.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Reflections after which roulette begins: before, paths carry most of the light.
+constexpr int kFirstRoulette = 3;
+constexpr double kLeastSurvival = 0.05;
+// A lobe that is wanted is chosen at least this often, however little of the light it carries.
+constexpr double kLeastLobe = 0.1;
+
+constexpr PathEvent kLobeEvents[2] = {PathEvent::kDiffuse, PathEvent::kSpecular};
+
+// The balance heuristic: the weight of a technique of density `a` beside one of density `b`.
+double Balance(double a, double b) { return std::isinf(a) ? 1.0 : a / (a + b); }
+
+// The blur of what a path sees after a wide reflection, by the smallest density on its way: Cycles' "filter glossy" at
+// its default of 1. A mirror that only diffuse light looks into would otherwise show lamps as fireflies.
+double RoughenedAlpha(double density) { return density < 1.0 ? 0.5 * std::sqrt(1.0 - density) : 0.0; }
+
+double Largest(const glm::dvec3& c) { return std::max(c.r, std::max(c.g, c.b)); }
+
+}  // namespace
+
+LightPathTracer::LightPathTracer(const EmbreeScene& scene, const View& view, const PathFollower& follower,
+                                 int max_bounces)
+    : scene_(scene),
+      view_(view),
+      follower_(follower),
+      max_bounces_(max_bounces),
+      lights_(view.lights, scene.objects(), view.world_radiance) {}
+
+LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::uint32_t primitive,
+                                                    const glm::dvec2& barycentric, const ViewRay& ray,
+                                                    double least_alpha) const {
+  const PlacedObject& placed = scene_.objects()[object];
+  const SurfacePoint point = FindSurfacePoint(placed, primitive, barycentric, ray);
+  const SurfaceBsdf bsdf(placed, primitive, point, glm::normalize(-ray.direction), least_alpha);
+  return {point, bsdf, ShadowRayOrigin(point), object, primitive};
+}
+
+LightPathTracer::Vertex LightPathTracer::FirstVertex(const PathPixel& pixel) const {
+  return MakeVertex(pixel.object, pixel.primitive, pixel.barycentric, view_.camera.Through(pixel.at.x, pixel.at.y),
+                    0.0);
+}
+
+void LightPathTracer::Add(const PathState& state, const glm::dvec3& light, PathSums& sums) const {
+  for (int layer = 0; layer < int(follower_.layers().size()); ++layer) {
+    if (follower_.WantsLight(state, layer)) sums[std::size_t(layer)] += light;
+  }
+}
+
+LightPathTracer::Lobes LightPathTracer::LobesAt(const Vertex& vertex, const PathState& state, bool last) const {
+  Lobes lobes;
+  std::array<double, 2> share = {vertex.bsdf.DiffuseShare(), vertex.bsdf.SpecularShare()};
+  for (int i = 0; i < 2; ++i) {
+    lobes.after[i] = follower_.Step(state, kLobeEvents[i]);
+    lobes.lit[i] = share[i] > 0.0 && follower_.WantsLight(lobes.after[i]);
+    const bool useful =
+        (lobes.lit[i] && lights_.CanBeMet()) || (!last && share[i] > 0.0 && follower_.WantsMore(lobes.after[i]));
+    if (!useful) share[i] = 0.0;
+  }
+  const double total = share[0] + share[1];
+  if (!(total > 0.0)) return lobes;
+  double diffuse = share[0] / total;
+  if (share[0] > 0.0 && share[1] > 0.0) diffuse = std::clamp(diffuse, kLeastLobe, 1.0 - kLeastLobe);
+  lobes.probability = {diffuse, 1.0 - diffuse};
+  return lobes;
+}
+
+bool LightPathTracer::IsBlocked(const Vertex& vertex, const LightDraw& draw, RayCounts& rays) const {
+  ++rays.shadow;
+  return draw.endless ? scumble::IsBlocked(scene_, vertex.origin, draw.direction, kInfinity)
+                      : scumble::IsBlocked(scene_, vertex.origin, draw.target - vertex.origin, kShadowReach);
+}
+
+// Next-event estimation. `probability` is that of the light's choice.
+void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, const LightDraw& draw, double probability,
+                              const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
+  if (draw.radiance == glm::dvec3(0.0)) return;
+  const double density = draw.is_delta ? probability : probability * draw.density;
+  if (!(density > 0.0) || std::isinf(density)) return;
+  std::array<glm::dvec3, 2> light = {glm::dvec3(0.0), glm::dvec3(0.0)};
+  bool any = false;
+  for (int i = 0; i < 2; ++i) {
+    if (!lobes.lit[i]) continue;
+    const SurfaceBsdf::Value value =
+        i == 0 ? vertex.bsdf.Diffuse(draw.direction) : vertex.bsdf.Specular(draw.direction);
+    const double other = draw.is_delta ? 0.0 : lobes.probability[i] * value.density;
+    light[i] = throughput * value.value * draw.radiance / (density + other);
+    any = any || light[i] != glm::dvec3(0.0);
+  }
+  if (!any || IsBlocked(vertex, draw, rays)) return;
+  for (int i = 0; i < 2; ++i) {
+    if (lobes.lit[i]) Add(lobes.after[i], light[i], sums);
+  }
+}
+
+// Lamps that a sampled direction meets before `length`, and the world where it meets nothing.
+void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length,
+                             PathSums& sums) const {
+  const glm::dvec3& point = vertex.point.position;
+  lights_.VisitLamps(point, flight.direction, length, [&](int light, const glm::dvec3& radiance, double density) {
+    const double other = density * lights_.Probability(point, light, flight.direct_sampled);
+    Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
+  });
+  if (std::isinf(length)) Add(state, flight.throughput * lights_.world(), sums);
+}
+
+void LightPathTracer::AddEmission(const Vertex& from, const Vertex& to, const PathState& state, const Flight& flight,
+                                  PathSums& sums) const {
+  const int light = lights_.EmitterOf(to.object);
+  if (light < 0) return;
+  const glm::dvec3 radiance = SurfaceEmission(scene_.objects()[to.object], to.primitive, to.point.barycentric);
+  if (radiance == glm::dvec3(0.0)) return;
+  const glm::dvec3& point = from.point.position;
+  const double other =
+      lights_.EmitterDensity(light, point, to.point) * lights_.Probability(point, light, flight.direct_sampled);
+  Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
+}
+
+bool LightPathTracer::MayMeetLight(const Vertex& vertex, const Flight& flight) const {
+  if (lights_.has_world() || lights_.has_emitters()) return true;
+  bool met = false;
+  lights_.VisitLamps(vertex.point.position, flight.direction, kInfinity,
+                     [&](int, const glm::dvec3&, double) { met = true; });
+  return met;
+}
+
+void LightPathTracer::AddExact(const Vertex& first, PathSums& sums, RayCounts& rays) const {
+  const PathState state = follower_.AtEye();
+  if (follower_.WantsLight(state)) {
+    Add(state, SurfaceEmission(scene_.objects()[first.object], first.primitive, first.point.barycentric), sums);
+  }
+  if (lights_.delta_count() == 0) return;
+  const Lobes lobes = LobesAt(first, state, false);
+  if (!lobes.lit[0] && (!lobes.lit[1] || first.bsdf.IsMirror())) return;
+  for (int light = 0; light < lights_.count(); ++light) {
+    if (!lights_.IsDelta(light)) continue;
+    AddDraw(first, lobes, lights_.Draw(light, first.point.position, 0.0, 0.0), 1.0, glm::dvec3(1.0), sums, rays);
+  }
+}
+
+// Light on a vertex by one light that is chosen.
+void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const Quad& u, bool with_delta,
+                                const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
+  const LightChoice choice = lights_.Choose(vertex.point.position, u[2], with_delta);
+  if (choice.light < 0) return;
+  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, u[0], u[1]);
+  AddDraw(vertex, lobes, draw, choice.probability, throughput, sums, rays);
+}
+
+// Sends the path on by one of its lobes, roulette included. False where it ends.
+bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Quad& u, int bounce,
+                              Flight& flight) const {
+  flight.lobe = u[2] < lobes.probability[0] ? 0 : 1;
+  const double probability = lobes.probability[flight.lobe];
+  if (!(probability > 0.0)) return false;
+  const SurfaceBsdf::Bounce way =
+      flight.lobe == 0 ? vertex.bsdf.SampleDiffuse(u[0], u[1]) : vertex.bsdf.SampleSpecular(u[0], u[1]);
+  flight.throughput *= way.weight / probability;
+  flight.direction = way.direction;
+  flight.density = way.density * probability;
+  flight.widest = std::min(flight.widest, way.density);
+  flight.direct_sampled = bounce > 0;
+  if (flight.throughput == glm::dvec3(0.0)) return false;
+  if (bounce < kFirstRoulette) return true;
+  const double survival = std::clamp(Largest(flight.throughput), kLeastSurvival, 1.0);
+  flight.throughput /= survival;
+  return u[3] < survival;
+}
+
+// Follows the flight to the next surface, adding the light on its way; nothing where the path ends.
+std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex, const Lobes& lobes,
+                                                            const Flight& flight, bool goes_on, PathSums& sums,
+                                                            RayCounts& rays) const {
+  const PathState& state = lobes.after[flight.lobe];
+  const bool lit = lobes.lit[flight.lobe];
+  if (!goes_on && !MayMeetLight(vertex, flight)) return std::nullopt;
+  ++(goes_on ? rays.bounce : rays.shadow);
+  const RTCRayHit hit = CastSingleRay(scene_, vertex.origin, flight.direction);
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+    if (lit) AddMet(vertex, state, flight, kInfinity, sums);
+    return std::nullopt;
+  }
+  const Vertex next = MakeVertex(hit.hit.geomID, hit.hit.primID, {hit.hit.u, hit.hit.v},
+                                 {vertex.origin, flight.direction}, RoughenedAlpha(flight.widest));
+  if (lit) {
+    AddMet(vertex, state, flight, glm::length(next.point.position - vertex.origin), sums);
+    AddEmission(vertex, next, state, flight, sums);
+  }
+  return goes_on ? std::optional(next) : std::nullopt;
+}
+
+void LightPathTracer::AddSample(const Vertex& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
+                                RayCounts& rays) const {
+  PathState state = follower_.AtEye();
+  Flight flight;
+  std::optional<Vertex> vertex(first);
+  for (int bounce = 0; vertex; ++bounce) {
+    const bool last = bounce >= max_bounces_;
+    const Lobes lobes = LobesAt(*vertex, state, last);
+    const bool with_delta = bounce > 0;
+    if ((lobes.lit[0] || lobes.lit[1]) && (with_delta || lights_.delta_count() < lights_.count())) {
+      const Quad u = sampler.Draw(sample, std::uint32_t(2 * bounce + 1));
+      AddChosen(*vertex, lobes, u, with_delta, flight.throughput, sums, rays);
+    }
+    if (!(lobes.probability[0] + lobes.probability[1] > 0.0)) return;
+    if (!Scatter(*vertex, lobes, sampler.Draw(sample, std::uint32_t(2 * bounce)), bounce, flight)) return;
+    state = lobes.after[flight.lobe];
+    vertex = Fly(*vertex, lobes, flight, !last && follower_.WantsMore(state), sums, rays);
+  }
+}
+
+}  // namespace scumble

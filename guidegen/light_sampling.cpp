@@ -1,0 +1,288 @@
+#include "guidegen/light_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "guidegen/bsdf.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kPi = glm::pi<double>();
+
+// Squared distances below this are lights inside the surface.
+constexpr double kLeastSquare = 1e-30;
+
+// Irradiance beyond this does not fit a float once it is reflected, and could become infinite on its way.
+constexpr double kMostIrradiance = std::numeric_limits<float>::max();
+
+double AreaOf(const PlacedLight& lamp) {
+  const double sides = glm::length(lamp.half_x) * glm::length(lamp.half_y);
+  return lamp.ellipse ? kPi * sides : 4.0 * sides;
+}
+
+// A sun is a disc at a distance of 1, sampled by area; `cosine` is that of the angle to its middle.
+double SunDensity(const PlacedLight& sun, double cosine) {
+  const double radius = std::tan(sun.half_angle);
+  return 1.0 / (kPi * radius * radius * cosine * cosine * cosine);
+}
+
+// From a density per area to one per solid angle.
+double PerSolidAngle(double area, double square, double cosine) {
+  return area > 0.0 && cosine > 0.0 ? square / (area * cosine) : 0.0;
+}
+
+LightDraw DrawDelta(const PlacedLight& lamp, const glm::dvec3& point) {
+  LightDraw draw;
+  draw.is_delta = true;
+  if (lamp.type == LightType::kSun) {
+    draw.direction = -lamp.axis;
+    draw.endless = true;
+    draw.radiance = lamp.color;
+    return draw;
+  }
+  const glm::dvec3 way = lamp.position - point;
+  const double length = glm::length(way);
+  if (!(length > 0.0)) return draw;
+  draw.direction = way / length;
+  draw.target = lamp.position;
+  const double share = SpotAttenuation(lamp, -draw.direction) / std::max(length * length, kLeastSquare);
+  for (int i = 0; i < 3; ++i) draw.radiance[i] = std::min(lamp.color[i] * share, kMostIrradiance);
+  return draw;
+}
+
+// The radiance is the irradiance times the density, as in Cycles: what the directions bring is the same for all.
+LightDraw DrawSun(const PlacedLight& sun, double u, double v) {
+  LightDraw draw;
+  draw.endless = true;
+  const glm::dvec2 disc = SquareToDisc(u, v) * std::tan(sun.half_angle);
+  glm::dvec3 x, y;
+  MakeFrame(-sun.axis, x, y);
+  draw.direction = glm::normalize(x * disc.x + y * disc.y - sun.axis);
+  draw.density = SunDensity(sun, -glm::dot(draw.direction, sun.axis));
+  draw.radiance = sun.color * draw.density;
+  return draw;
+}
+
+LightDraw DrawBall(const PlacedLight& lamp, const glm::dvec3& point, double u, double v) {
+  LightDraw draw;
+  const glm::dvec3 way = lamp.position - point;
+  const double distance = glm::length(way);
+  if (!(distance > 0.0)) return draw;
+  const glm::dvec3 axis = way / distance;
+  glm::dvec3 x, y;
+  MakeFrame(axis, x, y);
+  const glm::dvec2 disc = SquareToDisc(u, v) * lamp.radius;
+  draw.target = lamp.position + x * disc.x + y * disc.y;
+  const glm::dvec3 to_target = draw.target - point;
+  const double square = glm::dot(to_target, to_target);
+  draw.direction = to_target / std::sqrt(square);
+  const double area = kPi * lamp.radius * lamp.radius;
+  draw.density = PerSolidAngle(area, square, glm::dot(axis, draw.direction));
+  draw.radiance = lamp.color * (SpotAttenuation(lamp, -draw.direction) / area);
+  return draw;
+}
+
+LightDraw DrawArea(const PlacedLight& lamp, const glm::dvec3& point, double u, double v) {
+  LightDraw draw;
+  const glm::dvec2 at = lamp.ellipse ? SquareToDisc(u, v) : glm::dvec2(2.0 * u - 1.0, 2.0 * v - 1.0);
+  draw.target = lamp.position + lamp.half_x * at.x + lamp.half_y * at.y;
+  const glm::dvec3 way = draw.target - point;
+  const double square = glm::dot(way, way);
+  if (!(square > kLeastSquare)) return draw;
+  draw.direction = way / std::sqrt(square);
+  draw.density = PerSolidAngle(AreaOf(lamp), square, -glm::dot(lamp.axis, draw.direction));
+  if (draw.density > 0.0) draw.radiance = lamp.color;
+  return draw;
+}
+
+LightDraw MeetSun(const PlacedLight& sun, const glm::dvec3& direction) {
+  LightDraw met;
+  // By the sine, which tells small angles apart; beyond a right angle the sine falls again.
+  const double sine = glm::length(glm::cross(direction, sun.axis));
+  const double cosine = -glm::dot(direction, sun.axis);
+  if (!(cosine > 0.0) || sine > std::sin(sun.half_angle)) return met;
+  met.density = SunDensity(sun, cosine);
+  met.radiance = sun.color * met.density;
+  return met;
+}
+
+LightDraw MeetBall(const PlacedLight& lamp, const glm::dvec3& point, const glm::dvec3& direction, double length) {
+  LightDraw met;
+  const glm::dvec3 way = lamp.position - point;
+  const double distance = glm::length(way);
+  const double along = glm::dot(way, direction);
+  if (!(along > 0.0) || !(distance > 0.0)) return met;
+  const double t = distance * (distance / along);
+  if (!(t * kShadowReach < length)) return met;
+  const glm::dvec3 off = direction * t - way;
+  if (glm::dot(off, off) > lamp.radius * lamp.radius) return met;
+  const double area = kPi * lamp.radius * lamp.radius;
+  met.density = PerSolidAngle(area, t * t, along / distance);
+  met.radiance = lamp.color * (SpotAttenuation(lamp, -direction) / area);
+  return met;
+}
+
+LightDraw MeetArea(const PlacedLight& lamp, const glm::dvec3& point, const glm::dvec3& direction, double length) {
+  LightDraw met;
+  const double cosine = -glm::dot(lamp.axis, direction);
+  if (!(cosine > 0.0)) return met;
+  const glm::dvec3 way = lamp.position - point;
+  const double t = -glm::dot(way, lamp.axis) / cosine;
+  if (!(t > 0.0) || !(t * kShadowReach < length)) return met;
+  const glm::dvec3 off = direction * t - way;
+  const double x = glm::dot(off, lamp.half_x) / glm::dot(lamp.half_x, lamp.half_x);
+  const double y = glm::dot(off, lamp.half_y) / glm::dot(lamp.half_y, lamp.half_y);
+  const bool inside = lamp.ellipse ? x * x + y * y <= 1.0 : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
+  if (!inside) return met;
+  met.density = PerSolidAngle(AreaOf(lamp), t * t, cosine);
+  met.radiance = lamp.color;
+  return met;
+}
+
+// About the irradiance that a lamp can bring to a point; 0 only where it brings none.
+double LampWeight(const PlacedLight& lamp, const glm::dvec3& point) {
+  const double brightness = std::min(Brightness(lamp.color), kMostIrradiance);
+  if (lamp.type == LightType::kSun) return brightness;
+  const glm::dvec3 way = point - lamp.position;
+  const double square = std::max(glm::dot(way, way), kLeastSquare);
+  if (lamp.type == LightType::kArea) {
+    if (!(glm::dot(way, lamp.axis) > 0.0)) return 0.0;
+    const double area = AreaOf(lamp);
+    return brightness * area / std::max(square, area);
+  }
+  if (lamp.IsDelta()) return brightness * SpotAttenuation(lamp, way / std::sqrt(square)) / square;
+  return brightness / std::max(square, lamp.radius * lamp.radius);
+}
+
+}  // namespace
+
+LightSet::LightSet(std::span<const PlacedLight> lamps, std::span<const PlacedObject> objects, const glm::dvec3& world)
+    : objects_(objects), emitter_of_(objects.size(), -1), world_(world) {
+  for (const PlacedLight& lamp : lamps) {
+    if (lamp.color == glm::dvec3(0.0) || (lamp.type == LightType::kArea && !(AreaOf(lamp) > 0.0))) continue;
+    lamps_.push_back(lamp);
+    if (lamp.IsDelta()) ++delta_count_;
+  }
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].mesh && MayEmit(*objects[i].material)) AddEmitter(std::uint32_t(i));
+  }
+}
+
+void LightSet::AddEmitter(std::uint32_t object) {
+  Emitter emitter;
+  emitter.object = object;
+  const PlacedObject& placed = objects_[object];
+  double area = 0.0;
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high = -low;
+  for (std::size_t i = 0; i < placed.mesh->triangles.size(); ++i) {
+    const Triangle triangle = ViewTriangle(placed, std::uint32_t(i));
+    const glm::dvec3& a = triangle.corner[0];
+    const double size = 0.5 * glm::length(glm::cross(triangle.corner[1] - a, triangle.corner[2] - a));
+    if (!(size > 0.0) || !std::isfinite(size)) continue;
+    area += size;
+    emitter.triangles.push_back(std::uint32_t(i));
+    emitter.areas_up_to.push_back(area);
+    for (const glm::dvec3& corner : triangle.corner) {
+      low = glm::min(low, corner);
+      high = glm::max(high, corner);
+    }
+  }
+  if (!(area > 0.0) || !std::isfinite(area)) return;
+  emitter.centre = 0.5 * (low + high);
+  emitter.radius = 0.5 * glm::length(high - low);
+  emitter.power = Brightness(glm::dvec3(placed.material->emission)) * area;
+  emitter_of_[object] = count();
+  emitters_.push_back(std::move(emitter));
+}
+
+double LightSet::Weight(int light, const glm::dvec3& point, bool with_delta) const {
+  if (light < int(lamps_.size())) {
+    const PlacedLight& lamp = lamps_[std::size_t(light)];
+    return with_delta || !lamp.IsDelta() ? LampWeight(lamp, point) : 0.0;
+  }
+  const Emitter& emitter = emitters_[std::size_t(light) - lamps_.size()];
+  const glm::dvec3 way = emitter.centre - point;
+  const double reach = std::max(glm::dot(way, way), emitter.radius * emitter.radius);
+  return emitter.power / std::max(reach, kLeastSquare);
+}
+
+LightChoice LightSet::Choose(const glm::dvec3& point, double u, bool with_delta) const {
+  double total = 0.0;
+  for (int light = 0; light < count(); ++light) total += Weight(light, point, with_delta);
+  LightChoice choice;
+  double left = u * total;
+  for (int light = 0; light < count() && total > 0.0; ++light) {
+    const double weight = Weight(light, point, with_delta);
+    if (!(weight > 0.0)) continue;
+    choice = {light, weight / total};  // rounding may leave a little over for the last one
+    left -= weight;
+    if (left < 0.0) break;
+  }
+  return choice;
+}
+
+double LightSet::Probability(const glm::dvec3& point, int light, bool with_delta) const {
+  if (count() == 1) return 1.0;
+  double total = 0.0;
+  for (int other = 0; other < count(); ++other) total += Weight(other, point, with_delta);
+  return total > 0.0 ? Weight(light, point, with_delta) / total : 0.0;
+}
+
+LightDraw LightSet::Draw(int light, const glm::dvec3& point, double u, double v) const {
+  if (IsEmitter(light)) return DrawEmitter(emitters_[std::size_t(light) - lamps_.size()], point, u, v);
+  const PlacedLight& lamp = lamps_[std::size_t(light)];
+  if (lamp.IsDelta()) return DrawDelta(lamp, point);
+  if (lamp.type == LightType::kSun) return DrawSun(lamp, u, v);
+  if (lamp.type == LightType::kArea) return DrawArea(lamp, point, u, v);
+  return DrawBall(lamp, point, u, v);
+}
+
+LightDraw LightSet::Meet(int light, const glm::dvec3& point, const glm::dvec3& direction, double length) const {
+  const PlacedLight& lamp = lamps_[std::size_t(light)];
+  if (lamp.IsDelta()) return {};
+  if (lamp.type == LightType::kSun) return std::isinf(length) ? MeetSun(lamp, direction) : LightDraw{};
+  if (lamp.type == LightType::kArea) return MeetArea(lamp, point, direction, length);
+  return MeetBall(lamp, point, direction, length);
+}
+
+LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point, double u, double v) const {
+  LightDraw draw;
+  const double area = emitter.areas_up_to.back();
+  const double wanted = u * area;
+  const auto found = std::upper_bound(emitter.areas_up_to.begin(), emitter.areas_up_to.end(), wanted);
+  const std::size_t at = std::min(std::size_t(found - emitter.areas_up_to.begin()), emitter.triangles.size() - 1);
+  const double before = at > 0 ? emitter.areas_up_to[at - 1] : 0.0;
+  const double rest = std::clamp((wanted - before) / (emitter.areas_up_to[at] - before), 0.0, 1.0);
+  const PlacedObject& object = objects_[emitter.object];
+  const std::uint32_t primitive = emitter.triangles[at];
+  const Triangle triangle = ViewTriangle(object, primitive);
+  const double root = std::sqrt(rest);
+  const glm::dvec2 barycentric(root * (1.0 - v), root * v);
+  const glm::dvec3 first = triangle.corner[1] - triangle.corner[0];
+  const glm::dvec3 second = triangle.corner[2] - triangle.corner[0];
+  draw.target = triangle.corner[0] + first * barycentric.x + second * barycentric.y;
+  const glm::dvec3 way = draw.target - point;
+  const double square = glm::dot(way, way);
+  if (!(square > kLeastSquare)) return draw;
+  draw.direction = way / std::sqrt(square);
+  const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
+  draw.density = PerSolidAngle(area, square, std::abs(glm::dot(normal, draw.direction)));
+  if (draw.density > 0.0 && !IsHole(object, primitive, barycentric)) {
+    draw.radiance = SurfaceEmission(object, primitive, barycentric);
+  }
+  return draw;
+}
+
+double LightSet::EmitterDensity(int light, const glm::dvec3& point, const SurfacePoint& on_emitter) const {
+  const Emitter& emitter = emitters_[std::size_t(light) - lamps_.size()];
+  const glm::dvec3 way = on_emitter.position - point;
+  const double square = glm::dot(way, way);
+  if (!(square > kLeastSquare)) return 0.0;
+  const double cosine = std::abs(glm::dot(on_emitter.facing, way)) / std::sqrt(square);
+  return PerSolidAngle(emitter.areas_up_to.back(), square, cosine);
+}
+
+}  // namespace scumble

@@ -1,0 +1,30 @@
+// Random numbers for light paths: Owen-scrambled Sobol points, hashed for each pixel.
+//
+// Burley, "Practical Hash-based Owen Scrambling", JCGT 2020; direction numbers: Joe & Kuo 2008. Each set of four
+// dimensions is a Sobol sequence of its own, shuffled and scrambled by its number (padding): the first 2^k samples of
+// any set are a (0, k, 2)-net in its first two dimensions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace scumble {
+
+// Four numbers in [0, 1).
+using Quad = std::array<double, 4>;
+
+// The samples of one pixel. The same (seed, pixel, index, set) gives the same numbers on every machine.
+class Sampler {
+ public:
+  Sampler(std::uint32_t pixel, std::uint32_t seed = 0);
+
+  Quad Draw(std::uint32_t index, std::uint32_t set) const;
+
+ private:
+  std::uint64_t key_;
+};
+
+// One coordinate of the unscrambled sequence, dimension 0 … 3, as a 32-bit fraction.
+std::uint32_t Sobol(std::uint32_t index, int dimension);
+
+}  // namespace scumble

@@ -1,0 +1,88 @@
+#include "guidegen/soft_light.h"
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
+
+#include "guidegen/bsdf.h"
+#include "guidegen/single_ray.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Seen from a white Lambert surface: the density with which it samples directions is also what it reflects.
+double DiffuseDensity(const SurfacePoint& point, const glm::dvec3& direction) {
+  const double cosine = glm::dot(point.normal, direction);
+  return cosine > 0.0 && glm::dot(point.facing, direction) > 0.0 ? cosine * glm::one_over_pi<double>() : 0.0;
+}
+
+struct Sample {
+  const EmbreeScene& scene;
+  const LightSet& lights;
+  const SurfacePoint& point;
+  const glm::dvec3 origin;
+  SoftLight& sum;
+  RayCounts& rays;
+
+  // A point of a light. The other technique never meets meshes here, so their weight is whole.
+  void TakeLight(const Quad& u) {
+    const LightChoice choice = lights.Choose(point.position, u[2], false);
+    if (choice.light < 0) return;
+    const LightDraw draw = lights.Draw(choice.light, point.position, u[0], u[1]);
+    const double reflected = DiffuseDensity(point, draw.direction);
+    const double density = choice.probability * draw.density;
+    if (!(reflected > 0.0) || !(density > 0.0) || std::isinf(density)) return;
+    const double other = lights.IsEmitter(choice.light) ? 0.0 : reflected;
+    const double light = Brightness(draw.radiance) * reflected / (density + other);
+    if (!(light > 0.0)) return;
+    sum.unoccluded += light;
+    ++rays.shadow;
+    const bool blocked = draw.endless ? IsBlocked(scene, origin, draw.direction, kInfinity)
+                                      : IsBlocked(scene, origin, draw.target - origin, kShadowReach);
+    if (!blocked) sum.reached += light;
+  }
+
+  // A direction of the surface.
+  void TakeDirection(const Quad& u) {
+    const glm::dvec2 disc = SquareToDisc(u[0], u[1]);
+    glm::dvec3 x, y;
+    MakeFrame(point.normal, x, y);
+    const double up = std::sqrt(std::max(0.0, 1.0 - glm::dot(disc, disc)));
+    const glm::dvec3 direction = glm::normalize(x * disc.x + y * disc.y + point.normal * up);
+    const double reflected = DiffuseDensity(point, direction);
+    if (!(reflected > 0.0)) return;
+    const auto met_before = [&](double length) {
+      double light = std::isinf(length) ? Brightness(lights.world()) : 0.0;
+      lights.VisitLamps(point.position, direction, length, [&](int lamp, const glm::dvec3& radiance, double density) {
+        const double other = density * lights.Probability(point.position, lamp, false);
+        light += Brightness(radiance) * reflected / (reflected + other);
+      });
+      return light;
+    };
+    const double unoccluded = met_before(kInfinity);
+    if (!(unoccluded > 0.0)) return;
+    sum.unoccluded += unoccluded;
+    ++rays.shadow;
+    const RTCRayHit hit = CastSingleRay(scene, origin, direction);
+    sum.reached += hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? unoccluded : met_before(double(hit.ray.tfar));
+  }
+};
+
+}  // namespace
+
+SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
+                          const Sampler& sampler, int samples, RayCounts& rays) {
+  SoftLight sum;
+  Sample sample{scene, lights, point, ShadowRayOrigin(point), sum, rays};
+  const bool by_light = lights.delta_count() < lights.count();
+  const bool by_direction = lights.has_extended_lamps() || lights.has_world();
+  for (int i = 0; i < samples; ++i) {
+    if (by_light) sample.TakeLight(sampler.Draw(std::uint32_t(i), 1));
+    if (by_direction) sample.TakeDirection(sampler.Draw(std::uint32_t(i), 0));
+  }
+  return {sum.reached / samples, sum.unoccluded / samples};
+}
+
+}  // namespace scumble

@@ -1,0 +1,22 @@
+// Direct light on white Lambert from lights with extent: lamps, meshes that emit, the world. The luminance and shadow
+// layers' share that no single ray can tell.
+#pragma once
+
+#include "guidegen/embree_scene.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/light_sampling.h"
+#include "guidegen/sampler.h"
+
+namespace scumble {
+
+// Reflected luminance, irradiance/π, with and without what stands in the way.
+struct SoftLight {
+  double reached = 0.0;
+  double unoccluded = 0.0;
+};
+
+// The mean of `samples` samples; delta lights are left out. The same sampler gives the same bits.
+SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
+                          const Sampler& sampler, int samples, RayCounts& rays);
+
+}  // namespace scumble

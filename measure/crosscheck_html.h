@@ -1,0 +1,22 @@
+// The cross-check as one self-contained HTML page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/status.h"
+#include "measure/crosscheck.h"
+
+namespace scumble {
+
+// What the page says about the run.
+struct CrosscheckRun {
+  std::string reference;  // "Cycles, Blender 3.4.1"
+  std::string command;    // how to repeat it
+};
+
+// Figures and limits, and for each layer both pictures and where they differ. Pictures are embedded as PNG; nothing is
+// loaded from elsewhere.
+Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& reports, const CrosscheckRun& run);
+
+}  // namespace scumble

@@ -1,0 +1,153 @@
+// The cross-check's figures and verdict on guides made by hand, and Blender's passes turned into guides.
+#include "measure/crosscheck.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/atomic_file.h"
+#include "io/blender_camera.h"
+#include "measure/crosscheck_html.h"
+#include "tests/temporary_folder.h"
+
+namespace scumble {
+namespace {
+
+// Two objects side by side before an empty left edge, all layers that are compared.
+GuideSet TwoObjects() {
+  GuideSet guides(40, 20);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo}) {
+    guides.Add(layer);
+  }
+  for (int y = 0; y < 20; ++y) {
+    for (int x = 5; x < 40; ++x) {
+      const std::size_t i = guides.Index(x, y);
+      guides.Plane(Layer::kCoverage)[i] = 1.0f;
+      guides.Plane(Layer::kNormal, 2)[i] = 1.0f;
+      guides.Plane(Layer::kDepth)[i] = 4.0f;
+      guides.Plane(Layer::kObject)[i] = x < 20 ? 7.0f : 9.0f;
+      guides.Plane(Layer::kPosition, 0)[i] = 0.1f * x;
+      guides.Plane(Layer::kAlbedo, 1)[i] = 0.5f;
+    }
+  }
+  return guides;
+}
+
+const CrosscheckFigure& Figure(const CrosscheckReport& report, const std::string& layer, const std::string& name) {
+  for (const CrosscheckFigure& figure : report.figures) {
+    if (figure.layer == layer && figure.name == name) return figure;
+  }
+  ADD_FAILURE() << "no figure " << layer << " " << name;
+  return report.figures.front();
+}
+
+TEST(Crosscheck, EqualGuidesAgreeInsideTheErodedMasks) {
+  const auto report = Crosscheck("scene", TwoObjects(), TwoObjects());
+  ASSERT_TRUE(report.ok());
+  EXPECT_TRUE(report->passed());
+  // Two pixels less on every side of each object: 15 - 4 and 20 - 4 columns of 20 - 4 rows.
+  EXPECT_EQ(report->compared, std::size_t((11 + 16) * 16));
+  for (const CrosscheckFigure& figure : report->figures) EXPECT_EQ(figure.value, 0.0) << figure.layer;
+}
+
+TEST(Crosscheck, EveryLimitCanBreak) {
+  const GuideSet reference = TwoObjects();
+  const auto broken = [&](auto change) {
+    GuideSet ours = TwoObjects();
+    for (std::size_t i = 0; i < ours.pixel_count(); ++i) {
+      if (ours.Plane(Layer::kCoverage)[i] > 0.0f) change(ours, i);
+    }
+    const auto report = Crosscheck("scene", reference, ours);
+    EXPECT_TRUE(report.ok());
+    EXPECT_FALSE(report->passed());
+    return *report;
+  };
+  const float tilt = 0.02f * 3.14159265f / 180.0f;
+  const auto tilted = broken([&](GuideSet& g, std::size_t i) { g.Plane(Layer::kNormal, 0)[i] = tilt; });
+  EXPECT_NEAR(Figure(tilted, "normal", "99% within").value, 0.02, 1e-5);
+  EXPECT_TRUE(Figure(tilted, "normal", "99.9% within").kept());
+  const auto far = broken([](GuideSet& g, std::size_t i) { g.Plane(Layer::kDepth)[i] *= 1.0001f; });
+  EXPECT_NEAR(Figure(far, "depth", "99.9% within").value, 1e-4, 1e-6);
+  const auto renamed = broken([](GuideSet& g, std::size_t i) { g.Plane(Layer::kObject)[i] += 1.0f; });
+  EXPECT_EQ(Figure(renamed, "object", "differing").value, double(renamed.compared));
+  broken([](GuideSet& g, std::size_t i) { g.Plane(Layer::kPosition, 1)[i] += 0.001f; });
+  broken([](GuideSet& g, std::size_t i) { g.Plane(Layer::kAlbedo, 1)[i] += 0.01f; });
+  broken([](GuideSet& g, std::size_t i) { g.Plane(Layer::kCoverage)[i] = i % 50 ? 1.0f : 0.0f; });
+  broken([](GuideSet& g, std::size_t i) { g.Plane(Layer::kNormal, 2)[i] = std::nanf(""); });
+}
+
+TEST(Crosscheck, ALayerThatTheReferenceLacksFailsTheVerdict) {
+  GuideSet reference = TwoObjects();
+  reference.Remove(Layer::kAlbedo);
+  const auto report = Crosscheck("scene", reference, TwoObjects());
+  ASSERT_TRUE(report.ok());
+  EXPECT_EQ(report->skipped, std::vector<std::string>{"albedo"});
+  EXPECT_FALSE(report->passed());
+}
+
+TEST(Crosscheck, NothingToCompareFailsTheVerdictAndUnequalSizesAreAnError) {
+  GuideSet empty(40, 20);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) empty.Add(layer);
+  const auto report = Crosscheck("scene", empty, empty);
+  ASSERT_TRUE(report.ok());
+  EXPECT_FALSE(report->passed());
+  GuideSet small(39, 20);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) small.Add(layer);
+  EXPECT_FALSE(Crosscheck("scene", empty, small).ok());
+  small.Remove(Layer::kDepth);
+  EXPECT_FALSE(Crosscheck("scene", small, small).ok());
+}
+
+TEST(Crosscheck, ThePageIsOneFileAndEscapesNames) {
+  const auto report = Crosscheck("a<b>&.glb", TwoObjects(), TwoObjects());
+  const auto html = CrosscheckToHtml({*report}, {"Cycles", "scumble crosscheck \"a<b>\""});
+  ASSERT_TRUE(html.ok());
+  EXPECT_NE(html->find("a&lt;b&gt;&amp;.glb"), std::string::npos);
+  EXPECT_EQ(html->find("<b>"), std::string::npos);
+  EXPECT_EQ(html->find("http"), std::string::npos) << "nothing is loaded from elsewhere";
+  EXPECT_NE(html->find("data:image/png;base64,iVBORw0KGgo"), std::string::npos) << "a PNG's first bytes";
+}
+
+TEST(BlenderPasses, BecomeGuidesInOurSpaces) {
+  GuideSet passes(2, 1);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition}) passes.Add(layer);
+  passes.Plane(Layer::kCoverage)[0] = 1.0f;
+  passes.Plane(Layer::kNormal, 2)[0] = 1.0f;  // up, in Blender's axes
+  passes.Plane(Layer::kDepth)[0] = 3.0f, passes.Plane(Layer::kDepth)[1] = 1e10f;
+  passes.Plane(Layer::kObject)[0] = 12.0f;
+  for (int c = 0; c < 3; ++c) passes.Plane(Layer::kPosition, c)[0] = float(c + 1);  // x 1, y 2, z 3
+  BlenderCamera camera;
+  camera.objects[12] = "Teapot";
+  // The camera looks straight down from above: world +Y is towards the viewer.
+  camera.camera.view_from_world = glm::dmat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+  ConvertBlenderPasses(camera, passes);
+  EXPECT_EQ(passes.Vec3(Layer::kNormal, 0), glm::vec3(0, 0, 1));
+  EXPECT_EQ(passes.Vec3(Layer::kPosition, 0), glm::vec3(1, 3, -2));
+  EXPECT_TRUE(std::isinf(passes.Plane(Layer::kDepth)[1]));
+  const std::string name = "Teapot";
+  EXPECT_EQ(passes.Plane(Layer::kObject)[0], float(IdsForNames(std::span(&name, 1))[0]));
+  EXPECT_EQ(passes.object_names.begin()->second, "Teapot");
+  EXPECT_EQ(passes.Plane(Layer::kObject)[1], 0.0f);
+}
+
+TEST(BlenderCamera, ReadsItsTextAndRefusesOthers) {
+  const TemporaryFolder folder;
+  const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n";
+  ASSERT_TRUE(WriteFileAtomically(folder / "a.camera", "camera The one\nviewFromWorld " + identity + "clipFromView " +
+                                                           identity + "object 3 A name with spaces\n"));
+  const auto camera = ReadBlenderCamera(folder / "a.camera");
+  ASSERT_TRUE(camera.ok()) << camera.error().message;
+  EXPECT_EQ(camera->camera.name, "The one");
+  EXPECT_EQ(camera->objects.at(3), "A name with spaces");
+  for (const std::string text : {"", "nonsense\n", "viewFromWorld 1 2 3\n", "object x y\n", "object 99999999999999999999 y\n"}) {
+    ASSERT_TRUE(WriteFileAtomically(folder / "b.camera", text));
+    const auto refused = ReadBlenderCamera(folder / "b.camera");
+    ASSERT_FALSE(refused.ok()) << text;
+    EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
+    EXPECT_NE(refused.error().message.find("render_guides.py"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace scumble
