@@ -149,7 +149,7 @@ TEST(AtomicFile, TheLongestNameIsStillWritten) {
 }
 
 TEST(AtomicFile, AFullDeviceIsSaidInWords) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  ASSERT_TRUE(fs::exists("/dev/full"));
   const TemporaryFolder folder;
   for (const char* name : {"x.png", "x.jpg", "x.tif", "x.exr"}) {
     fs::create_symlink("/dev/full", folder / name);
