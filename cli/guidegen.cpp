@@ -57,7 +57,7 @@ Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& glob
   std::optional<Style> style;
   if (!verb.style.style.empty()) {
     SCUMBLE_ASSIGN(style, OpenStyle(verb.style));
-    layers.Add(RequiredLayers(style->transfer));
+    layers.Add(RequiredLayers(*style));
   }
   if (verb.scene.blender.frame && !IsBlenderScene(verb.scene.scene)) {
     return UsageError("--frame is for .blend scenes; " + verb.scene.scene + " is one moment: leave it out");

@@ -195,7 +195,7 @@ Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& la
 }
 
 void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style) {
-  const LayerSet read = RequiredLayers(style.transfer);
+  const LayerSet read = RequiredLayers(style);
   for (PlanItem& item : plan) {
     for (const LayerInfo& info : AllLayers()) {
       if (read.Has(info.layer) && item.layer == info.name) item.reason += ", read by style " + style.name;
@@ -234,6 +234,15 @@ void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
           "overrides a key of style.toml, as transfer.blend_radius=0; repeatable. scumble styles --keys lists them")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+void AddAssignOption(CLI::App& verb, StyleOptions& options) {
+  verb.add_option("--assign", options.assigned,
+                  "another style for an object or material, * stands for any text, as 'Tree*=charcoal'; "
+                  "NAME=rendered leaves it as it is, for --over; repeatable")
+      ->type_name("NAME=STYLE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 std::vector<fs::path> DataRoots(const std::string& name) {

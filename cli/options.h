@@ -85,8 +85,11 @@ nlohmann::ordered_json PlanToJson(const std::vector<PlanItem>& plan);
 struct StyleOptions {
   std::string style;
   std::vector<std::string> sets;
+  std::vector<std::string> assigned;  // "NAME=STYLE"
 };
 void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
+// For verbs that paint: several styles in one picture.
+void AddAssignOption(CLI::App& verb, StyleOptions& options);
 
 // A path, or the name of a bundled style.
 Expected<Style> OpenStyle(const StyleOptions& options);

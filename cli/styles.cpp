@@ -55,7 +55,7 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
 
 // Loads and prepares the style as a transfer would, and looks for what a painter overlooks.
 Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
-  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}}));
+  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
   SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, 1080));
   const PreparedExemplar& exemplar = *prepared.exemplar;
   std::size_t usable = 0, transparent = 0;

@@ -22,17 +22,17 @@ struct TransferVerb {
 
 Expected<ExitCode> RunTransferVerb(const TransferVerb& verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
-  SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
+  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(verb.style));
   Stopwatch watch;
   GuideReadOptions read;
-  read.required = RequiredLayers(style.transfer);
+  read.required = styles.Required();
   read.view_layer = verb.view_layer;
   read.blender_camera = verb.camera;
-  if (style.transfer.edge_aware) read.mend = "; --set transfer.edge_aware=false does without depth and object";
+  if (styles.first().transfer.edge_aware) read.mend = "; --set transfer.edge_aware=false does without depth and object";
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
-  return RunTransfer(style, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
+  return RunTransfer(styles, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
 }
 
 struct StylizeVerb {
@@ -44,19 +44,19 @@ struct StylizeVerb {
 Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   Stopwatch watch;
-  SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
+  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(verb.style));
   const double style_ms = watch.Lap();
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
   scene.blender.frame = verb.picture.frame;
   SCUMBLE_ASSIGN(SceneGuides made,
-                 MakeGuides(scene, RequiredLayers(style.transfer), globals, bar.Part(0.0, 0.5), false));
+                 MakeGuides(scene, styles.Required(), globals, bar.Part(0.0, 0.5), false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
-  NameStyleInPlan(made.plan, style);
+  for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
   if (!verb.scene.explain) made.plan.clear();
   const GuideSource source{verb.scene.scene, std::move(made.times), std::move(made.plan)};
-  return RunTransfer(style, made.guides, source, verb.picture, globals, bar.Part(0.5, 1.0));
+  return RunTransfer(styles, made.guides, source, verb.picture, globals, bar.Part(0.5, 1.0));
 }
 
 }  // namespace
@@ -69,6 +69,7 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--camera", verb->camera, "the .camera file of a Blender render, which its header lacks")
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
+  AddAssignOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTransferVerb(*verb, globals); }; });
@@ -79,6 +80,7 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("stylize", "scene + style -> picture: guidegen and transfer in one go");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
+  AddAssignOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunStylizeVerb(*verb, globals); }; });

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -54,7 +55,7 @@ CoherenceReport CoherenceOf(const SourceField& field) {
   std::vector<std::uint8_t> covered(field.level.size());
   std::transform(field.level.begin(), field.level.end(), covered.begin(),
                  [](std::int8_t level) { return level != SourceField::kNoSource; });
-  return MeasureCoherence({field.width, field.height, field.x, field.y, covered, {}});
+  return MeasureCoherence({field.width, field.height, field.x, field.y, covered, field.exemplar});
 }
 
 std::string StepsToText(const Steps& steps, int repeat) {
@@ -68,7 +69,7 @@ std::string StepsToText(const Steps& steps, int repeat) {
   return text + fmt::format(", total {:.1f} ms", total);
 }
 
-std::string ToJson(const Style& style, const PreparedStyle& prepared, const SourceField& field,
+std::string ToJson(const Style& style, const PreparedStyle& prepared, const SourceField& field, double exposure,
                    const PictureOptions& options, const std::vector<PlanItem>& plan, const Steps& steps) {
   nlohmann::ordered_json json;
   json["output"] = options.output;
@@ -84,6 +85,7 @@ std::string ToJson(const Style& style, const PreparedStyle& prepared, const Sour
   json["chunks"] = coherence.chunks;
   json["mean_chunk_area"] = coherence.mean_chunk_area;
   json["seed"] = options.seed;
+  if (prepared.illumination.active()) json["exposure"] = exposure;
   json["version"] = SCUMBLE_VERSION;
   json["repeat"] = options.repeat;
   if (!plan.empty()) json["plan"] = PlanToJson(plan);
@@ -128,6 +130,11 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
   verb.add_option("--fps", options.fps, "frames a second, for transfer.jitter_fps, as 24 or 24000/1001")
       ->type_name("RATE")
       ->capture_default_str();
+  verb.add_option("--exposure", options.exposure,
+                  "stops by which the scene's light is brightened for styles of several exemplars; auto fits it to "
+                  "the brightest one and prints the stops that repeat it")
+      ->type_name("auto|STOPS")
+      ->capture_default_str();
   verb.add_option("--seed", options.seed, "another seed, another pattern of chunks; the same seed, the same bytes")
       ->type_name("N")
       ->check(RefuseNegative)
@@ -138,19 +145,59 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
       ->capture_default_str();
 }
 
-Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const GuideSource& source,
+// Stops for the scene's luminance; 0 where no style looks at it.
+Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const GuideSet& guides,
+                             const PictureOptions& options, const Globals& globals) {
+  std::vector<float> luminances;
+  for (const PreparedStyle& style : prepared) {
+    if (!style.illumination.active()) continue;
+    luminances.insert(luminances.end(), style.illumination.luminances().begin(), style.illumination.luminances().end());
+  }
+  double stops = 0.0;
+  if (options.exposure != "auto") {
+    const char *begin = options.exposure.data(), *end = begin + options.exposure.size();
+    const auto [parsed, failure] = std::from_chars(begin, end, stops);
+    if (failure != std::errc() || parsed != end || !(std::fabs(stops) <= 64.0)) {
+      return UsageError("--exposure " + options.exposure + ": expected auto, or stops from -64 to 64");
+    }
+    return stops;
+  }
+  if (luminances.empty()) return 0.0;
+  stops = MeasureExposure(guides, luminances);
+  Say(globals, fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", stops, stops));
+  return stops;
+}
+
+Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int height) {
+  std::vector<PreparedStyle> prepared;
+  for (const Style& style : styles.styles) {
+    SCUMBLE_ASSIGN(PreparedStyle one, Prepare(style, height));
+    prepared.push_back(std::move(one));
+  }
+  return prepared;
+}
+
+Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                const PictureOptions& options, const Globals& globals, const Progress& progress) {
   SCUMBLE_ASSIGN(const FrameRate fps, ParseFps(options.fps));
   StepTimes times = source.times;
   Stopwatch watch;
   SCUMBLE_ASSIGN(const std::optional<Picture> over, ReadOver(options, guides, source.name));
   if (over) times.emplace_back("over", watch.Lap());
-  SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, guides.height()));
+  SCUMBLE_ASSIGN(const std::vector<PreparedStyle> prepared, PrepareAll(styles, guides.height()));
+  std::vector<const PreparedStyle*> pointers;
+  for (const PreparedStyle& one : prepared) pointers.push_back(&one);
+  StyleMap map;
+  if (styles.NeedsMap()) {
+    SCUMBLE_ASSIGN(map, MapStyles(styles, guides));
+  }
   times.emplace_back("prepare", watch.Lap());
 
   TransferOptions transfer;
   transfer.seed = options.seed;
-  transfer.time_step = JitterStep(style.transfer.jitter_fps, options.frame.value_or(0), fps.numerator, fps.denominator);
+  transfer.frame = options.frame.value_or(0);
+  transfer.fps_numerator = fps.numerator, transfer.fps_denominator = fps.denominator;
+  SCUMBLE_ASSIGN(transfer.exposure, ExposureFor(prepared, guides, options, globals));
   transfer.threads = globals.threads;
   transfer.over = over ? &*over : nullptr;
   TransferScratch scratch;
@@ -160,7 +207,8 @@ Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const
     if (progress) {
       transfer.progress = [&, run](double share) { return progress((run + share) / options.repeat); };
     }
-    SCUMBLE_RETURN_IF_ERROR(Transfer(prepared, guides, transfer, scratch, picture));
+    SCUMBLE_RETURN_IF_ERROR(styles.NeedsMap() ? Transfer(pointers, map, guides, transfer, scratch, picture)
+                                              : Transfer(prepared.front(), guides, transfer, scratch, picture));
     match.push_back(scratch.times.match_ms);
     vote.push_back(scratch.times.vote_ms);
     compose.push_back(scratch.times.compose_ms);
@@ -176,7 +224,7 @@ Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const
   const double write_ms = watch.Lap();
   steps.emplace_back("write", Spread{write_ms, write_ms, write_ms});
   if (globals.json) {
-    Print(ToJson(style, prepared, scratch.field, options, source.plan, steps));
+    Print(ToJson(styles.first(), prepared.front(), scratch.field, transfer.exposure, options, source.plan, steps));
   } else {
     if (!source.plan.empty()) Print(PlanToText(source.plan));
     Print(fmt::format("{}  {}\n", options.output, StepsToText(steps, options.repeat)));

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "cli/style_set.h"
 #include "image/guides.h"
-#include "image/style.h"
 
 namespace scumble {
 
@@ -20,6 +20,7 @@ struct PictureOptions {
   int png_level = 6;
   std::optional<int> frame;
   std::string fps = "24";
+  std::string exposure = "auto";
   std::uint64_t seed = 0;
   int repeat = 1;
 };
@@ -34,7 +35,7 @@ struct GuideSource {
 
 // Prepares, transfers `repeat` times, writes the picture and prints its path with the time of each step. Under --json
 // the steps, coherence and sizes as an object.
-Expected<ExitCode> RunTransfer(const Style& style, const GuideSet& guides, const GuideSource& source,
+Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                const PictureOptions& options, const Globals& globals, const Progress& progress);
 
 }  // namespace scumble

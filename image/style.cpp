@@ -2,9 +2,14 @@
 
 namespace scumble {
 
-LayerSet RequiredLayers(const TransferSettings& settings) {
+LayerSet RequiredLayers(const Style& style) {
+  const TransferSettings& settings = style.transfer;
   LayerSet layers{Layer::kCoverage, Layer::kNormal};
-  if (settings.edge_aware && settings.blend_radius > 0) layers.Add(Layer::kDepth).Add(Layer::kObject);
+  const bool votes_stop_at_edges = settings.edge_aware && settings.blend_radius > 0;
+  if (votes_stop_at_edges || settings.variety > 0.0) layers.Add(Layer::kObject);
+  if (votes_stop_at_edges) layers.Add(Layer::kDepth);
+  if (style.exemplars.size() > 1) layers.Add(Layer::kLuminance);
+  if (settings.colorize > 0.0) layers.Add(Layer::kAlbedo);
   return layers;
 }
 

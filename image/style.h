@@ -24,6 +24,18 @@ enum class ThresholdMetric {
   kL1,  // sum of absolute differences, the authors' own
 };
 
+// What a lighting condition costs that is not the best one for a pixel; L are luminances of the pixel, of the exemplar that
+// the seed chose, and of exemplar k.
+enum class LuminanceError {
+  kExcess,     // |L_p - L_e| - min_k |L_p - L_k|: nothing where e is the best there is
+  kPublished,  // |L_p - L_e|
+};
+
+enum class ColorizeMode {
+  kMultiply,  // paint times the scene's base colour
+  kOklab,     // lightness varies as the paint's does, hue and chroma are the scene's
+};
+
 // Lengths are pixels at `reference_height` and follow the output's height.
 struct TransferSettings {
   Method method = Method::kStyleBlit;
@@ -34,6 +46,11 @@ struct TransferSettings {
   double jitter_fps = 0.0;   // renewals a second; 0 frozen, -1 every frame
   int blend_radius = 1;      // voting window of (2r + 1)² pixels, 0 … 64
   bool edge_aware = true;    // votes do not cross object borders, depth steps and creases
+  float luminance_weight = 0.3f;  // 0 or more: how much a pixel's own light counts inside a chunk; several exemplars only
+  LuminanceError luminance_error = LuminanceError::kExcess;
+  double colorize = 0.0;     // 0 … 1: how much of the scene's base colour the paint takes on
+  ColorizeMode colorize_mode = ColorizeMode::kMultiply;
+  double variety = 0.0;      // 0 … 90 degrees: how far from its own normal a seed on a flat surface may take its paint
   double scale = 1.0;        // exemplar size, above 0
   double rim = 2.0;          // exemplar pixels at the painted edge that are never used
   int reference_height = 1080;  // 0: lengths are plain pixels
@@ -43,7 +60,10 @@ struct TransferSettings {
 struct Exemplar {
   std::string name;  // for messages
   Picture picture;
+  std::optional<double> luminance;  // of the light it is painted for, 0 or more; none: measured from the paint
 };
+
+inline constexpr int kMaxExemplars = 4;
 
 // What is behind the stylised objects.
 struct Paper {
@@ -55,11 +75,11 @@ struct Style {
   std::string name;
   std::string licence;
   TransferSettings transfer;
-  std::vector<Exemplar> exemplars;  // exactly one
+  std::vector<Exemplar> exemplars;  // one, or up to kMaxExemplars lighting conditions of the same style
   Paper paper;                      // neither set: transparent
 };
 
-// The layers that a transfer with these settings reads: what `guidegen` is asked for, and no more.
-LayerSet RequiredLayers(const TransferSettings& settings);
+// The layers that a transfer with this style reads: what `guidegen` is asked for, and no more.
+LayerSet RequiredLayers(const Style& style);
 
 }  // namespace scumble

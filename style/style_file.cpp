@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "io/atomic_file.h"
@@ -119,11 +120,16 @@ Expected<Picture> FitToGuides(Picture picture, const std::string& picture_name, 
 
 Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder) {
   std::string image, guides;
+  std::optional<double> luminance;
   for (const auto& [key, node] : table) {
     const std::string name(key.str());
     const std::string where = Where(file, node);
     if (name == "luminance") {
-      return UnavailableError(where + ": exemplar.luminance: illuminated styles are not built into this version");
+      luminance = node.value<double>();
+      if (!luminance || !(*luminance >= 0.0 && std::isfinite(*luminance))) {
+        return InputError(where + ": exemplar.luminance: expected a number, 0 or more");
+      }
+      continue;
     }
     if (name != "image" && name != "guides") {
       return InputError(where + ": unknown key exemplar." + name + "; there are image, guides, luminance");
@@ -142,15 +148,15 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& fil
   if (!guides.empty()) {
     SCUMBLE_ASSIGN(picture, FitToGuides(std::move(picture), image_path.string(), folder / guides));
   }
-  return Exemplar{image_path.string(), std::move(picture)};
+  return Exemplar{image_path.string(), std::move(picture), luminance};
 }
 
 Status ReadExemplars(const toml::node& node, const std::string& file, const fs::path& folder, Style& style) {
   const auto* array = node.as_array();
   if (!array) return InputError(Where(file, node) + ": write [[exemplar]] with two brackets");
-  if (array->size() > 1) {
-    return UnavailableError(Where(file, node) + ": " + std::to_string(array->size()) +
-                            " exemplars: illuminated styles are not built into this version; keep one [[exemplar]]");
+  if (array->size() > std::size_t(kMaxExemplars)) {
+    return InputError(Where(file, node) + ": " + std::to_string(array->size()) + " exemplars: a style has up to " +
+                      std::to_string(kMaxExemplars) + ", for different light");
   }
   for (const auto& item : *array) {
     const auto* table = item.as_table();
@@ -217,7 +223,7 @@ Expected<Style> ReadPictureStyle(const fs::path& path) {
                       "`scumble sphere` wrote as the style, or crop the picture to the sphere");
   }
   Style style;
-  style.exemplars.push_back({path.string(), std::move(picture)});
+  style.exemplars.push_back({path.string(), std::move(picture), std::nullopt});
   return style;
 }
 
@@ -238,10 +244,10 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
   }
   if (style.name.empty()) style.name = NameFor(path, fs::is_directory(kind));
   for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
-  const Picture& picture = style.exemplars.front().picture;
-  if (picture.width != picture.height) {
-    return InputError(style.exemplars.front().name + " is " + std::to_string(picture.width) + "×" +
-                      std::to_string(picture.height) +
+  for (const Exemplar& exemplar : style.exemplars) {
+    const Picture& picture = exemplar.picture;
+    if (picture.width == picture.height) continue;
+    return InputError(exemplar.name + " is " + std::to_string(picture.width) + "×" + std::to_string(picture.height) +
                       ": an exemplar is a square that its sphere fills; crop it to the sphere");
   }
   return style;

@@ -83,6 +83,20 @@ Status SetMetric(Style& style, const KeyValue& value, const std::filesystem::pat
   return UsageError("expected \"l2\" or \"l1\"");
 }
 
+Status SetLuminanceError(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "excess") return style.transfer.luminance_error = LuminanceError::kExcess, Ok();
+  if (text && *text == "published") return style.transfer.luminance_error = LuminanceError::kPublished, Ok();
+  return UsageError("expected \"excess\" or \"published\"");
+}
+
+Status SetColorizeMode(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "multiply") return style.transfer.colorize_mode = ColorizeMode::kMultiply, Ok();
+  if (text && *text == "oklab") return style.transfer.colorize_mode = ColorizeMode::kOklab, Ok();
+  return UsageError("expected \"multiply\" or \"oklab\"");
+}
+
 Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto number = AsNumber(value);
   if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= 1000.0))) {
@@ -139,11 +153,14 @@ std::vector<StyleKey> MakeKeys() {
       {"transfer.blend_radius", "1", "voting window, pixels, 0 to 64", true, Whole(&T::blend_radius, 0, 64)},
       {"transfer.edge_aware", "true", "votes do not cross object borders, depth steps and creases", true,
        Flag(&T::edge_aware)},
-      ToCome("luminance_weight", 0.3, "alpha of the illuminated extension"),
-      ToCome("luminance_error", std::string("excess"), "error of the illuminated extension"),
-      ToCome("colorize", 0.0, "0 exemplar colours to 1 fully tinted"),
-      ToCome("colorize_mode", std::string("multiply"), "how colorize tints"),
-      ToCome("variety", 0.0, "freedom of choice on flat surfaces, degrees"),
+      {"transfer.luminance_weight", "0.3", "how much light counts inside a chunk, with several exemplars", true,
+       Number(&T::luminance_weight, 0.0, kInfinity)},
+      {"transfer.luminance_error", "\"excess\"", "excess, or published: the thesis's own", true, SetLuminanceError},
+      {"transfer.colorize", "0.0", "0 exemplar colours to 1 fully tinted by the scene", true,
+       Number(&T::colorize, 0.0, 1.0)},
+      {"transfer.colorize_mode", "\"multiply\"", "multiply, or oklab: for coloured exemplars", true, SetColorizeMode},
+      {"transfer.variety", "0.0", "freedom of choice on flat surfaces, degrees, 0 to 90", true,
+       Number(&T::variety, 0.0, 90.0)},
       {"transfer.scale", "1.0", "exemplar size, above 0 to 64", true, Number(&T::scale, 1e-3, 64.0)},
       {"transfer.rim", "2", "exemplar pixels at the painted edge that are never used", true,
        Number(&T::rim, 0.0, 16384.0)},

@@ -195,11 +195,6 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
 
 TEST_F(StyleFile, WhatIsStillToComeIsRefusedByName) {
   const std::map<std::string, std::vector<std::string>> others = {{"transfer.coherent", {"true", "1"}},
-                                                                  {"transfer.luminance_weight", {"0.31", "nan", "'x'"}},
-                                                                  {"transfer.luminance_error", {"'published'"}},
-                                                                  {"transfer.colorize", {"0.5", "1", "true"}},
-                                                                  {"transfer.colorize_mode", {"'oklab'", "3"}},
-                                                                  {"transfer.variety", {"10"}},
                                                                   {"transfer.edge", {"'exemplar'"}}};
   for (const StyleKey& key : StyleKeys()) {
     if (key.built_in) continue;
@@ -212,7 +207,7 @@ TEST_F(StyleFile, WhatIsStillToComeIsRefusedByName) {
                     {"style.toml:2", key.name, "not built into this version"});
     }
   }
-  EXPECT_TRUE(LoadLine("colorize = 0\nvariety = 0.0\nedge = 'exact'\nluminance_weight = 0.3\ncoherent = false"));
+  EXPECT_TRUE(LoadLine("edge = 'exact'\ncoherent = false"));
   ExpectRefusal(LoadLine("method = 'stylit'"), ErrorKind::kUnavailable, {"style.toml:2", "transfer.method", "stylit"});
 }
 
@@ -261,7 +256,7 @@ TEST_F(StyleFile, WhatAnExemplarNeeds) {
   const std::string e = kExemplar;
   ExpectRefusal(Load("name = 'x'\n"), ErrorKind::kInput, {"style.toml", "no [[exemplar]]", "image = \"lit.png\""});
   ExpectRefusal(Load("exemplar = []\n"), ErrorKind::kInput, {"no [[exemplar]]"});
-  ExpectRefusal(Load(e + e), ErrorKind::kUnavailable, {"style.toml:1", "2 exemplars", "illuminated"});
+  ExpectRefusal(Load(e + e + e + e + e), ErrorKind::kInput, {"style.toml:1", "5 exemplars", "up to 4"});
   ExpectRefusal(Load("[exemplar]\nimage = 'lit.png'\n"), ErrorKind::kInput, {"style.toml:1", "two brackets"});
   ExpectRefusal(Load("exemplar = [3]\n"), ErrorKind::kInput, {"two brackets"});
   ExpectRefusal(Load("[[exemplar]]\n"), ErrorKind::kInput, {"style.toml:1", "no image"});
@@ -270,11 +265,32 @@ TEST_F(StyleFile, WhatAnExemplarNeeds) {
   ExpectRefusal(Load("[[exemplar]]\nimage = 'missing.png'\n"), ErrorKind::kInput, {"missing.png", "no such file"});
   ExpectRefusal(Load("[[exemplar]]\nimage = 'style.toml'\n"), ErrorKind::kInput, {"style.toml"});
   ExpectRefusal(Load("[[exemplar]]\nimage = '.'\n"), ErrorKind::kInput, {"folder"});
-  ExpectRefusal(Load(e + "luminance = 0.8\n"), ErrorKind::kUnavailable, {"style.toml:3", "exemplar.luminance"});
+  for (const char* bad : {"-0.1", "'bright'", "nan", "inf", "true"}) {
+    ExpectRefusal(Load(e + "luminance = " + bad + "\n"), ErrorKind::kInput, {"style.toml:3", "exemplar.luminance"});
+  }
   ExpectRefusal(Load(e + "guides = 'no.exr'\n"), ErrorKind::kInput, {"no.exr", "no such file"});
   ExpectRefusal(Load(e + "guides = 'lit.png'\n"), ErrorKind::kUnavailable, {"lit.png", "scumble sphere"});
   ASSERT_TRUE(WritePicture(folder_ / "lit.png", RandomPicture(8, 6)));
   ExpectRefusal(Load(e), ErrorKind::kInput, {"lit.png", "8×6", "square"});
+}
+
+TEST_F(StyleFile, UpToFourLightingConditions) {
+  const std::string e = kExemplar;
+  auto style = Load(e + "luminance = 0.8\n" + e + e + "luminance = 0\n" + e);
+  ASSERT_TRUE(style) << style.error().message;
+  ASSERT_EQ(style->exemplars.size(), 4u);
+  EXPECT_EQ(style->exemplars[0].luminance, 0.8);
+  EXPECT_EQ(style->exemplars[1].luminance, std::nullopt);
+  EXPECT_EQ(style->exemplars[2].luminance, 0.0);
+  EXPECT_TRUE(RequiredLayers(*style).Has(Layer::kLuminance));
+  style = Load(std::string("[transfer]\ncolorize = 0.5\ncolorize_mode = 'oklab'\nvariety = 10\nluminance_error = 'published'\n") + e);
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_EQ(style->transfer.colorize, 0.5);
+  EXPECT_EQ(style->transfer.colorize_mode, ColorizeMode::kOklab);
+  EXPECT_EQ(style->transfer.variety, 10.0);
+  EXPECT_EQ(style->transfer.luminance_error, LuminanceError::kPublished);
+  EXPECT_TRUE(RequiredLayers(*style).Has(Layer::kAlbedo));
+  EXPECT_FALSE(RequiredLayers(*style).Has(Layer::kLuminance));
 }
 
 TEST_F(StyleFile, TheExemplarIsThePictureAsPainted) {
@@ -352,8 +368,8 @@ TEST_F(StyleFile, BadOverridesAreTheCallersMistake) {
   ExpectRefusal(Load(toml, {"transfer.levels=[1]"}), ErrorKind::kUsage, {"transfer.levels", "whole number"});
   ExpectRefusal(Load(toml, {"transfer.paper=no.png"}), ErrorKind::kInput, {"transfer.paper", "no.png"});
   ExpectRefusal(Load(toml, {"transfer.method=stylit"}), ErrorKind::kUnavailable, {"--set: transfer.method", "stylit"});
-  ExpectRefusal(Load(toml, {"transfer.colorize=0.5"}), ErrorKind::kUnavailable,
-                {"transfer.colorize", "not built into"});
+  ExpectRefusal(Load(toml, {"transfer.coherent=true"}), ErrorKind::kUnavailable,
+                {"transfer.coherent", "not built into"});
 }
 
 // ---- where styles are --------------------------------------------------------------------------------------------

@@ -202,7 +202,7 @@ TEST(Chunks, WithInfiniteThresholdAreTheCellsOfTheSeeds) {
       std::optional<Source> expected;
       int expected_level = 0;
       for (int level = 5; level >= 1 && !expected; --level) {
-        const SeedGrid grid(rules, level, 160, 120);
+        const SeedGrid grid(rules, level, {0, 0, 160, 120});
         const PixelPosition q = grid.Position(grid.Nearest(x, y));
         if (q.x < 0 || q.y < 0 || q.x >= 160 || q.y >= 120) continue;
         if (field.level[field.Index(q.x, q.y)] == SourceField::kNoSource) continue;

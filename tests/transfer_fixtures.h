@@ -88,7 +88,7 @@ inline Picture NoisePicture(int size) {
 inline Style PlainStyle(Picture picture) {
   Style style;
   style.name = "test";
-  style.exemplars.push_back({"test.png", std::move(picture)});
+  style.exemplars.push_back({"test.png", std::move(picture), std::nullopt});
   style.transfer.reference_height = 0;
   return style;
 }

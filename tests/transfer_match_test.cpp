@@ -170,7 +170,7 @@ TEST(Seeds, StayInTheirCellAndFollowTheirInputs) {
 TEST(Seeds, NearestIsTheFirstOfTheClosestInThreeByThreeCells) {
   const SeedRules rules{1, 0, 1.0f};
   for (const int level : {1, 2, 4, 6}) {
-    const SeedGrid grid(rules, level, 150, 90);
+    const SeedGrid grid(rules, level, {0, 0, 150, 90});
     for (int y = 0; y < 90; y += 3) {
       for (int x = 0; x < 150; ++x) {
         PixelPosition best{};

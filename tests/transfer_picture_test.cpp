@@ -45,12 +45,13 @@ TEST(Determinism, ThreadsAndRegionsDoNotChangeAByte) {
 
 TEST(Determinism, SeedAndTimeStepChooseThePattern) {
   const GuideSet guides = HillGuides(120, 90);
-  const Style style = PlainStyle(NoisePicture(160));
+  Style style = PlainStyle(NoisePicture(160));
+  style.transfer.jitter_fps = -1.0;
   TransferOptions options;
   const Picture first = MustTransfer(style, guides, options).picture;
   options.seed = 1;
   EXPECT_NE(MustTransfer(style, guides, options).picture.rgba, first.rgba);
-  options.seed = 0, options.time_step = 1;
+  options.seed = 0, options.frame = 1;
   EXPECT_NE(MustTransfer(style, guides, options).picture.rgba, first.rgba);
 }
 
@@ -229,7 +230,11 @@ TEST(Refusals, SettingsOutsideTheirRangesAndImpossibleExemplars) {
       << "19200 pixels a side";
   EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].picture = Picture(8, 9); }));
   EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].picture = Picture(); }));
-  EXPECT_TRUE(refuses([&](Style& s) { s.exemplars.push_back(s.exemplars[0]); }));
+  EXPECT_TRUE(refuses([&](Style& s) { s.exemplars.assign(5, s.exemplars[0]); }));
+  EXPECT_TRUE(refuses([&](Style& s) { s.exemplars[0].luminance = -0.1; }));
+  EXPECT_TRUE(refuses([&](Style& s) { s.transfer.luminance_weight = -1.0f; }));
+  EXPECT_TRUE(refuses([&](Style& s) { s.transfer.colorize = 1.5; }));
+  EXPECT_TRUE(refuses([&](Style& s) { s.transfer.variety = nan; }));
 }
 
 TEST(Refusals, AMissingLayerIsNamed) {

@@ -5,8 +5,8 @@ namespace scumble::internal {
 namespace {
 
 // Offers the anchor's source to every free pixel near enough to land inside the exemplar.
-void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, Source anchor, SourceField& field) {
-  const auto coverage = input.guides.Plane(Layer::kCoverage);
+void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Offer& offer, SourceField& field) {
+  const Source anchor = offer.source;
   const int size = input.exemplar.size();
   const int x0 = std::max(input.region.x0, anchor_x - anchor.x);
   const int x1 = std::min(input.region.x1, anchor_x - anchor.x + size);
@@ -14,14 +14,13 @@ void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, Source ancho
   for (int y = anchor_y; y < y1; ++y) {  // rows above the anchor have no free pixel left
     for (int x = x0; x < x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (field.level[i] != SourceField::kNoSource || !(coverage[i] > 0.0f)) continue;
+      if (field.level[i] != SourceField::kNoSource || !input.active[i]) continue;
       const Source candidate{anchor.x + (x - anchor_x), anchor.y + (y - anchor_y)};
       if (!input.exemplar.Usable(candidate.x, candidate.y)) continue;
       const glm::vec3 guide = input.guides.Vec3(Layer::kNormal, i);
-      if (!input.test.Alike(guide, input.exemplar.Normal(candidate.x, candidate.y))) continue;
-      field.x[i] = static_cast<std::int16_t>(candidate.x);
-      field.y[i] = static_cast<std::int16_t>(candidate.y);
-      field.level[i] = 0;
+      const float extra = input.illumination.Error(input.LuminanceAt(i), offer.exemplar);
+      if (!input.test.Alike(guide, input.exemplar.Normal(candidate.x, candidate.y), extra)) continue;
+      field.Set(i, candidate.x, candidate.y, offer.exemplar, 0);
     }
   }
 }
@@ -29,15 +28,12 @@ void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, Source ancho
 }  // namespace
 
 bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& progress) {
-  const auto coverage = input.guides.Plane(Layer::kCoverage);
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (field.level[i] != SourceField::kNoSource || !(coverage[i] > 0.0f)) continue;
-      const Source own = input.exemplar.NearestNeighbour(input.guides.Vec3(Layer::kNormal, i));
-      field.x[i] = static_cast<std::int16_t>(own.x);
-      field.y[i] = static_cast<std::int16_t>(own.y);
-      field.level[i] = 0;
+      if (field.level[i] != SourceField::kNoSource || !input.active[i]) continue;
+      const Offer own = OwnOffer(input, i);
+      field.Set(i, own.source.x, own.source.y, own.exemplar, 0);
       GrowChunk(input, x, y, own, field);
     }
     progress.Finished(1);

@@ -9,10 +9,10 @@
 
 namespace scumble {
 
-// ‖a - b‖ < threshold, strictly, in float without contraction: ties fall the same way on every machine.
+// ‖a - b‖ + extra < threshold, strictly, in float without contraction: ties fall the same way on every machine.
 class GuideTest {
  public:
-  GuideTest(float threshold, ThresholdMetric metric) : metric_(metric) {
+  GuideTest(float threshold, ThresholdMetric metric) : threshold_(threshold), metric_(metric) {
     // The Euclidean test compares squares. `bound_` is the smallest float not below threshold², so that a float d²
     // satisfies d² < bound_ exactly when d² < threshold² holds without rounding, denormal thresholds included.
     const double exact = metric == ThresholdMetric::kL2 ? double(threshold) * threshold : double(threshold);
@@ -26,7 +26,18 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < bound_;
   }
 
+  // `extra` is 0 or more; with 0 this is the same test.
+  bool Alike(glm::vec3 a, glm::vec3 b, float extra) const {
+    if (!(extra > 0.0f)) return Alike(a, b);
+    const float left = threshold_ - extra;
+    if (!(left > 0.0f)) return false;
+    const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    if (metric_ == ThresholdMetric::kL2) return dx * dx + dy * dy + dz * dz < left * left;
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < left;
+  }
+
  private:
+  float threshold_;
   ThresholdMetric metric_;
   float bound_;
 };

@@ -1,17 +1,21 @@
+// The Lit Sphere (Sloan, Martin, Gooch, Gooch, "The Lit Sphere: A Model for Capturing NPR Shading from Art", Graphics
+// Interface 2001), with the light of the illuminated extension.
 #include "transfer/match.h"
 
 namespace scumble::internal {
 
+Offer OwnOffer(const MatchInput& input, std::size_t pixel) {
+  const Source own = input.exemplar.NearestNeighbour(input.guides.Vec3(Layer::kNormal, pixel));
+  return {own, input.illumination.Choose(input.LuminanceAt(pixel))};
+}
+
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress) {
-  const auto coverage = input.guides.Plane(Layer::kCoverage);
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (!(coverage[i] > 0.0f)) continue;
-      const Source own = input.exemplar.NearestNeighbour(input.guides.Vec3(Layer::kNormal, i));
-      field.x[i] = static_cast<std::int16_t>(own.x);
-      field.y[i] = static_cast<std::int16_t>(own.y);
-      field.level[i] = 0;
+      if (!input.active[i]) continue;
+      const Offer own = OwnOffer(input, i);
+      field.Set(i, own.source.x, own.source.y, own.exemplar, 0);
     }
   });
 }

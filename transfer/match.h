@@ -1,9 +1,13 @@
-// Three ways to fill a SourceField. All run inside the caller's oneTBB arena, write only pixels of `region`, and leave
-// uncovered ones at kNoSource. False: the progress callback asked to stop.
+// Three ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region`, and
+// leave the others as they are. False: the progress callback asked to stop.
 #pragma once
+
+#include <cstdint>
+#include <span>
 
 #include "image/guides.h"
 #include "transfer/guide_distance.h"
+#include "transfer/illumination.h"
 #include "transfer/parallel.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/seeds.h"
@@ -14,19 +18,33 @@ namespace scumble::internal {
 // What a match looks at. `field` has the picture's size already.
 struct MatchInput {
   const GuideSet& guides;
+  std::span<const std::uint8_t> active;  // 1: a pixel that this style paints
   const PreparedExemplar& exemplar;
+  const Illumination& illumination;
+  std::span<const float> luminance;  // exposed; empty where the illumination is not active
   GuideTest test;
   SeedRules seeds;
   int levels = 1;  // effective, at the output's size
+  double variety_degrees = 0.0;
+  int flat_reach = 16;  // pixels around a seed that must be flat for `variety`
   Region region;
+
+  float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }
 };
+
+// A piece of an exemplar: its nearest neighbour to a pixel's guide, and the exemplar that suits the pixel's light.
+struct Offer {
+  Source source;
+  int exemplar = 0;
+};
+Offer OwnOffer(const MatchInput& input, std::size_t pixel);
 
 // Every pixel takes its own nearest neighbour.
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress);
 
 // Parallel StyleBlit: from coarse to fine, the nearest seed q offers its u*; pixel p takes u* + (p - q) where that is
-// usable and its guide is like p's. A seed outside the picture or on background fails its level. If no level accepts,
-// p takes its own u*.
+// usable and its guide is like p's, light included. A seed outside the picture or on a pixel that is not active fails
+// its level. If no level accepts, p takes its own u*.
 bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress);
 
 // Sýkora's algorithm 1: the first free pixel in row order is the next anchor; its u* is offered to every free pixel of

@@ -42,15 +42,20 @@ Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
 
 }  // namespace
 
-PreparedExemplar::PreparedExemplar(const Picture& picture, double rim, int size) : size_(size) {
-  SCUMBLE_CHECK_EQ(picture.width, picture.height);
-  SCUMBLE_CHECK(size >= 1 && size <= 32767);
-  const double fraction = 1.0 - rim / (0.5 * picture.width);
-  limit_ = UsableLimit(size, fraction);
+PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size) : size_(size) {
+  SCUMBLE_CHECK(!pictures.empty() && size >= 1 && size <= 32767);
+  const auto fraction = [rim](const Picture& picture) { return 1.0 - rim / (0.5 * picture.width); };
+  limit_ = std::numeric_limits<std::int64_t>::max();
+  for (const Picture* picture : pictures) {
+    SCUMBLE_CHECK_EQ(picture->width, picture->height);
+    limit_ = std::min(limit_, UsableLimit(size, fraction(*picture)));
+  }
   usable_radius_ = static_cast<float>(std::sqrt(static_cast<double>(limit_)) / size);
   coordinate_.resize(size);
   for (int i = 0; i < size; ++i) coordinate_[i] = static_cast<float>(2 * i + 1 - size) / static_cast<float>(size);
-  picture_ = Resample(ExtendPaint(picture, UsableLimit(picture.width, fraction)), size, size);
+  for (const Picture* picture : pictures) {
+    pictures_.push_back(Resample(ExtendPaint(*picture, UsableLimit(picture->width, fraction(*picture))), size, size));
+  }
 }
 
 Source PreparedExemplar::NearestNeighbour(glm::vec3 normal) const {

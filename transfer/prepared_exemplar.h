@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "image/picture.h"
@@ -21,12 +22,16 @@ struct Source {
 // are never shown. Immutable once made; concurrent reads are safe.
 class PreparedExemplar {
  public:
-  // `rim` in pixels of `picture`, which must be square; `size` is N after resizing, 1 … 32767. Paint is extended
-  // outward from the rim before resizing, so nothing from outside the painted disc reaches a usable texel.
-  PreparedExemplar(const Picture& picture, double rim, int size);
+  // One picture or several, the same sphere under different light; all are resized to N = `size`, 1 … 32767. `rim` is in
+  // pixels of each picture; all must be square. Paint is extended outward from the rim before resizing, so nothing from
+  // outside the painted disc reaches a usable texel.
+  PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size);
+  PreparedExemplar(const Picture& picture, double rim, int size)
+      : PreparedExemplar(std::vector<const Picture*>{&picture}, rim, size) {}
 
   int size() const { return size_; }
-  const Picture& picture() const { return picture_; }
+  int count() const { return static_cast<int>(pictures_.size()); }
+  const Picture& picture(int index = 0) const { return pictures_[std::size_t(index)]; }
 
   bool Usable(int x, int y) const {
     if (static_cast<unsigned>(x) >= static_cast<unsigned>(size_)) return false;
@@ -55,7 +60,7 @@ class PreparedExemplar {
   std::int64_t limit_;              // squared usable radius in half pixels
   float usable_radius_;             // the same as a fraction of the sphere's
   std::vector<float> coordinate_;   // pixel index → [-1, 1]
-  Picture picture_;
+  std::vector<Picture> pictures_;
 };
 
 // N for a picture of `size` pixels at `scale`, for an output of `output_height` pixels; `reference_height` 0 means that

@@ -16,23 +16,28 @@ PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell
           cell_y * (1 << level) + static_cast<int>(std::floor(h * jitter_y))};
 }
 
-SeedGrid::SeedGrid(const SeedRules& rules, int level, int width, int height) : level_(level) {
-  const int last_cell_x = (width - 1) >> level, last_cell_y = (height - 1) >> level;
-  columns_ = last_cell_x + 3;
-  seeds_.reserve(static_cast<std::size_t>(columns_) * (last_cell_y + 3));
-  for (int cell_y = -1; cell_y <= last_cell_y + 1; ++cell_y) {
-    for (int cell_x = -1; cell_x <= last_cell_x + 1; ++cell_x) {
-      seeds_.push_back(SeedOfCell(rules, level, cell_x, cell_y));
+SeedGrid::SeedGrid(const SeedRules& rules, int level, const Region& region)
+    : level_(level), first_column_((region.x0 >> level) - 1), first_row_((region.y0 >> level) - 1) {
+  if (region.empty()) {
+    columns_ = 0;
+    return;
+  }
+  const int last_column = ((region.x1 - 1) >> level) + 1, last_row = ((region.y1 - 1) >> level) + 1;
+  columns_ = last_column - first_column_ + 1;
+  seeds_.reserve(static_cast<std::size_t>(columns_) * (last_row - first_row_ + 1));
+  for (int row = first_row_; row <= last_row; ++row) {
+    for (int column = first_column_; column <= last_column; ++column) {
+      seeds_.push_back(SeedOfCell(rules, level, column, row));
     }
   }
 }
 
 std::size_t SeedGrid::Nearest(int x, int y) const {
-  const int cell_x = x >> level_, cell_y = y >> level_;
+  const int column = (x >> level_) - first_column_ - 1, first_row = (y >> level_) - first_row_ - 1;
   std::size_t best = 0;
   std::int64_t best_distance = std::numeric_limits<std::int64_t>::max();
   for (int dy = 0; dy < 3; ++dy) {
-    const std::size_t row = static_cast<std::size_t>(cell_y + dy) * columns_ + cell_x;
+    const std::size_t row = static_cast<std::size_t>(first_row + dy) * columns_ + column;
     for (int dx = 0; dx < 3; ++dx) {
       const PixelPosition seed = seeds_[row + dx];
       const std::int64_t ex = seed.x - x, ey = seed.y - y;

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "transfer/region.h"
+
 namespace scumble {
 
 struct SeedRules {
@@ -23,22 +25,23 @@ struct PixelPosition {
 // (seed, time step, level, cell) and scaled by the jitter. Cells outside the picture have seeds too.
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y);
 
-// All seeds that pixels of a width × height picture can be near to, on one level.
+// All seeds that pixels of a region can be near to, on one level.
 class SeedGrid {
  public:
-  SeedGrid(const SeedRules& rules, int level, int width, int height);
+  SeedGrid(const SeedRules& rules, int level, const Region& region);
 
   int level() const { return level_; }
   std::size_t size() const { return seeds_.size(); }
   PixelPosition Position(std::size_t index) const { return seeds_[index]; }
 
-  // Index of the nearest seed among the 3 × 3 cells around the pixel's own, by squared integer distance; ties to the
-  // first in row order.
+  // Index of the nearest seed among the 3 × 3 cells around the own one of a pixel of the region, by squared integer
+  // distance; ties to the first in row order.
   std::size_t Nearest(int x, int y) const;
 
  private:
   int level_;
-  int columns_;  // cells a row, one more on each side than the picture needs
+  int first_column_, first_row_;  // cells; one more on each side than the region needs
+  int columns_;
   std::vector<PixelPosition> seeds_;
 };
 

@@ -7,8 +7,9 @@
 
 namespace scumble {
 
-// Per pixel the source position in the resized exemplar, and the level that settled it (0: the pixel's own nearest
-// neighbour). Rows from the top. Uncovered pixels have level kNoSource and position 0.
+// Per pixel the source position in the resized exemplar, which of the style's exemplars it is, and the level that
+// settled it (0: the pixel's own nearest neighbour). Rows from the top. Uncovered pixels have level kNoSource, position
+// and exemplar 0.
 struct SourceField {
   static constexpr std::int8_t kNoSource = -1;
 
@@ -17,11 +18,16 @@ struct SourceField {
   std::vector<std::int16_t> x;
   std::vector<std::int16_t> y;
   std::vector<std::int8_t> level;
+  std::vector<std::uint8_t> exemplar;
 
   void Reset(int new_width, int new_height) {
     width = new_width, height = new_height;
     const std::size_t count = std::size_t(width) * height;
-    x.assign(count, 0), y.assign(count, 0), level.assign(count, kNoSource);
+    x.assign(count, 0), y.assign(count, 0), level.assign(count, kNoSource), exemplar.assign(count, 0);
+  }
+  void Set(std::size_t i, int source_x, int source_y, int source_exemplar, int settled) {
+    x[i] = static_cast<std::int16_t>(source_x), y[i] = static_cast<std::int16_t>(source_y);
+    exemplar[i] = static_cast<std::uint8_t>(source_exemplar), level[i] = static_cast<std::int8_t>(settled);
   }
   std::size_t Index(int px, int py) const { return std::size_t(py) * width + px; }
 };

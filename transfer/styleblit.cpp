@@ -3,37 +3,56 @@
 #include <optional>
 #include <vector>
 
+#include "image/hash.h"
 #include "transfer/match.h"
+#include "transfer/variety.h"
 
 namespace scumble::internal {
 namespace {
 
+// What a seed offers to the pixels around it.
+struct SeedOffer {
+  Offer offer;
+  // What `variety` moved the source's guide by: a pixel is compared as if its own guide were moved by the same.
+  glm::vec3 moved{0.0f};
+};
+
+SeedOffer MakeOffer(const MatchInput& input, int level, PixelPosition q, std::size_t pixel) {
+  SeedOffer made{OwnOffer(input, pixel)};
+  if (!(input.variety_degrees > 0.0) || !IsFlat(input, q, std::max(input.flat_reach, 1 << level))) return made;
+  const Source own = made.offer.source;
+  made.offer.source = ChooseAlike(input, own, Hash(input.seeds.seed, input.seeds.time_step, level, q.x, q.y, 0x7a));
+  made.moved = input.exemplar.Normal(made.offer.source.x, made.offer.source.y) - input.exemplar.Normal(own.x, own.y);
+  return made;
+}
+
 // The seeds of one level with what they offer; thousands of pixels share each.
 struct Level {
   SeedGrid grid;
-  std::vector<std::optional<Source>> offers;  // empty: outside the picture or on background
+  std::vector<std::optional<SeedOffer>> offers;  // empty: outside the picture, or not to be painted
 
   Level(const MatchInput& input, int level)
-      : grid(input.seeds, level, input.guides.width(), input.guides.height()), offers(grid.size()) {
-    const auto coverage = input.guides.Plane(Layer::kCoverage);
+      : grid(input.seeds, level, input.region), offers(grid.size()) {
     for (std::size_t s = 0; s < grid.size(); ++s) {
       const PixelPosition q = grid.Position(s);
       if (q.x < 0 || q.y < 0 || q.x >= input.guides.width() || q.y >= input.guides.height()) continue;
       const std::size_t i = input.guides.Index(q.x, q.y);
-      if (coverage[i] > 0.0f) offers[s] = input.exemplar.NearestNeighbour(input.guides.Vec3(Layer::kNormal, i));
+      if (input.active[i]) offers[s] = MakeOffer(input, level, q, i);
     }
   }
 };
 
 // What p may take from its nearest seed on this level, if anything.
-std::optional<Source> Accept(const MatchInput& input, const Level& level, int x, int y, glm::vec3 guide) {
+std::optional<Offer> Accept(const MatchInput& input, const Level& level, int x, int y, glm::vec3 guide, float light) {
   const std::size_t s = level.grid.Nearest(x, y);
   if (!level.offers[s]) return std::nullopt;
+  const SeedOffer& seed = *level.offers[s];
   const PixelPosition q = level.grid.Position(s);
-  const Source candidate{level.offers[s]->x + (x - q.x), level.offers[s]->y + (y - q.y)};
+  const Source candidate{seed.offer.source.x + (x - q.x), seed.offer.source.y + (y - q.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
-  if (!input.test.Alike(guide, input.exemplar.Normal(candidate.x, candidate.y))) return std::nullopt;
-  return candidate;
+  const float extra = input.illumination.Error(light, seed.offer.exemplar);
+  if (!input.test.Alike(guide + seed.moved, input.exemplar.Normal(candidate.x, candidate.y), extra)) return std::nullopt;
+  return Offer{candidate, seed.offer.exemplar};
 }
 
 }  // namespace
@@ -42,24 +61,22 @@ bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& pr
   // Level 0 has a seed on every pixel, so its offer is the pixel's own nearest neighbour, accepted or not.
   std::vector<Level> levels;
   for (int level = input.levels - 1; level >= 1; --level) levels.emplace_back(input, level);
-  const auto coverage = input.guides.Plane(Layer::kCoverage);
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (!(coverage[i] > 0.0f)) continue;
+      if (!input.active[i]) continue;
       const glm::vec3 guide = input.guides.Vec3(Layer::kNormal, i);
-      std::optional<Source> source;
+      const float light = input.LuminanceAt(i);
+      std::optional<Offer> offer;
       int settled = 0;
       for (const Level& level : levels) {
-        if ((source = Accept(input, level, x, y, guide))) {
+        if ((offer = Accept(input, level, x, y, guide, light))) {
           settled = level.grid.level();
           break;
         }
       }
-      if (!source) source = input.exemplar.NearestNeighbour(guide);
-      field.x[i] = static_cast<std::int16_t>(source->x);
-      field.y[i] = static_cast<std::int16_t>(source->y);
-      field.level[i] = static_cast<std::int8_t>(settled);
+      if (!offer) offer = OwnOffer(input, i);
+      field.Set(i, offer->source.x, offer->source.y, offer->exemplar, settled);
     }
   });
 }

@@ -6,173 +6,227 @@
 
 #include "image/check.h"
 #include "image/stopwatch.h"
+#include "transfer/colorize.h"
 #include "transfer/compose.h"
 #include "transfer/match.h"
-#include "transfer/resample.h"
 #include "transfer/vote.h"
 
 namespace scumble {
 namespace {
 
 constexpr std::size_t kBruteForcePixels = 1 << 20;
-constexpr int kMaxExemplarSize = 16384;
+// Around a seed so many pixels must be flat before `variety` gives it freedom, at the reference height.
+constexpr int kFlatReach = 16;
 
-// Lengths follow the height; the seed grids are powers of two, so levels follow in whole steps, to the nearest octave.
-// In integers: height / reference ≥ √2 is one level more, ≥ 2√2 two, < 1/√2 one less.
-int ScaledLevels(int levels, int reference_height, int output_height) {
-  if (reference_height == 0) return levels;
-  const std::int64_t reference = reference_height, output = output_height;
-  std::int64_t reference_squared = reference * reference, output_squared = output * output;
-  for (; output_squared >= 2 * reference_squared && levels < 16; reference_squared *= 4) ++levels;
-  for (; 2 * output_squared < reference_squared && levels > 1; output_squared *= 4) --levels;
-  return levels;
-}
+// Where the time of one style goes, as shares of it.
+constexpr double kMatchShare = 0.6, kVoteShare = 0.35;
+constexpr double kComposeShare = 0.1;  // of the whole
 
-int ScaledRadius(int radius, int reference_height, int output_height) {
-  if (reference_height == 0) return radius;
-  const double scaled = static_cast<double>(radius) * output_height / reference_height;
-  // A style that blends goes on doing so in a small preview: without it patches would show hard edges there alone.
-  return static_cast<int>(std::clamp(std::floor(scaled + 0.5), radius > 0 ? 1.0 : 0.0, 1024.0));
-}
-
-Status CheckSettings(const TransferSettings& settings) {
-  if (!(settings.threshold >= 0.0f)) return UsageError("transfer.threshold must be 0 or more, infinity included");
-  if (settings.levels < 1 || settings.levels > 16) return UsageError("transfer.levels must be 1 to 16");
-  if (!(settings.jitter >= 0.0f && settings.jitter <= 1.0f)) return UsageError("transfer.jitter must be 0 to 1");
-  if (settings.blend_radius < 0 || settings.blend_radius > 64) {
-    return UsageError("transfer.blend_radius must be 0 to 64");
-  }
-  if (!(settings.scale > 0.0 && settings.scale <= 64.0)) return UsageError("transfer.scale must be above 0, at most 64");
-  if (!(settings.rim >= 0.0 && std::isfinite(settings.rim))) return UsageError("transfer.rim must be 0 or more");
-  if (settings.reference_height < 0) return UsageError("transfer.reference_height must be 0 or more");
-  return Ok();
-}
-
-Picture ScaledPaper(const Picture& paper, int reference_height, int output_height) {
-  const auto scaled = [&](int side) {
-    return std::min(kMaxExemplarSize, ScaledSize(side, 1.0, reference_height, output_height));
-  };
-  return Resample(paper, scaled(paper.width), scaled(paper.height));
-}
-
-Status CheckInputs(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options) {
-  const LayerSet required = RequiredLayers(style.settings);
-  for (const LayerInfo& info : AllLayers()) {
-    if (required.Has(info.layer) && !guides.Has(info.layer)) {
-      return InputError("the style needs layer " + std::string(info.name) + "; the guides hold " +
-                        guides.layers().ToString());
+Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
+                   const TransferOptions& options) {
+  for (const PreparedStyle* style : styles) {
+    for (const LayerInfo& info : AllLayers()) {
+      if (style->required.Has(info.layer) && !guides.Has(info.layer)) {
+        return InputError("the style needs layer " + std::string(info.name) + "; the guides hold " +
+                          guides.layers().ToString());
+      }
+    }
+    SCUMBLE_CHECK_EQ(guides.height(), style->output_height);
+    if (style->settings.method == Method::kBruteForce && guides.pixel_count() > kBruteForcePixels) {
+      return UsageError("method bruteforce takes time quadratic in the pixels and is meant for pictures of at most " +
+                        std::to_string(kBruteForcePixels) + " pixels; use styleblit");
     }
   }
-  SCUMBLE_CHECK_EQ(guides.height(), style.output_height);
+  if (map) SCUMBLE_CHECK_EQ(map->style.size(), guides.pixel_count());
   if (options.over && (options.over->width != guides.width() || options.over->height != guides.height())) {
     return InputError("the picture underneath is " + std::to_string(options.over->width) + "×" +
                       std::to_string(options.over->height) + ", the guides are " + std::to_string(guides.width()) +
                       "×" + std::to_string(guides.height()) + ": render both at one size");
   }
-  if (style.settings.method == Method::kBruteForce && guides.pixel_count() > kBruteForcePixels) {
-    return UsageError("method bruteforce takes time quadratic in the pixels and is meant for pictures of at most " +
-                      std::to_string(kBruteForcePixels) + " pixels; use styleblit");
-  }
   return Ok();
 }
 
-bool Match(const PreparedStyle& style, const internal::MatchInput& input, SourceField& field,
-           internal::RowProgress& progress) {
-  switch (style.settings.method) {
-    case Method::kLitSphere: return internal::MatchLitSphere(input, field, progress);
-    case Method::kStyleBlit: return internal::MatchStyleBlit(input, field, progress);
-    case Method::kBruteForce: return internal::MatchBruteForce(input, field, progress);
+// The rectangle around each style's covered pixels.
+std::vector<Region> Extents(std::size_t styles, const StyleMap* map, const GuideSet& guides) {
+  if (!map) return {Region{0, 0, guides.width(), guides.height()}};
+  std::vector<Region> extents(styles, Region{guides.width(), guides.height(), 0, 0});
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  for (int y = 0; y < guides.height(); ++y) {
+    for (int x = 0; x < guides.width(); ++x) {
+      const std::size_t i = guides.Index(x, y);
+      if (!(coverage[i] > 0.0f) || map->style[i] == StyleMap::kLeave) continue;
+      SCUMBLE_CHECK(map->style[i] < styles);
+      Region& extent = extents[map->style[i]];
+      extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1), std::max(extent.y1, y + 1)};
+    }
   }
-  return false;
+  return extents;
 }
 
-Status TransferInArena(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
-                       TransferScratch& scratch, Picture& out) {
-  const int width = guides.width(), height = guides.height();
-  const Region whole{0, 0, width, height};
-  const Region region = options.region ? options.region->GrownBy(0, width, height) : whole;
-  // Chunks of the brute force depend on every pixel above them, so it always runs over the whole picture.
-  const Region matched = style.settings.method == Method::kBruteForce
-                             ? whole
-                             : region.GrownBy(style.blend_radius, width, height);
-  const internal::MatchInput input{guides,
-                                   *style.exemplar,
-                                   GuideTest(style.settings.threshold, style.settings.threshold_metric),
-                                   SeedRules{options.seed, options.time_step, style.settings.jitter,
-                                             style.settings.levels - style.levels},
-                                   style.levels,
-                                   matched};
-  Stopwatch watch;
-  scratch.field.Reset(width, height);
-  if (out.width != width || out.height != height || !options.region) out = Picture(width, height);
-  internal::RowProgress match_progress(options.progress, 0.0, 0.6, std::max(1, matched.y1 - matched.y0));
-  if (!Match(style, input, scratch.field, match_progress)) return CancelledError();
-  scratch.times.match_ms = watch.Lap();
+// Styles are painted one after the other, each as if nothing else were there.
+class Run {
+ public:
+  Run(const StyleMap* map, const GuideSet& guides, const TransferOptions& options, TransferScratch& scratch, Picture& out)
+      : map_(map), guides_(guides), options_(options), scratch_(scratch), out_(out) {
+    const Region whole{0, 0, guides.width(), guides.height()};
+    region_ = options.region ? options.region->GrownBy(0, guides.width(), guides.height()) : whole;
+    scratch.field.Reset(guides.width(), guides.height());
+    scratch.active.assign(guides.pixel_count(), 0);
+    scratch.times = {};
+    if (out.width != guides.width() || out.height != guides.height() || !options.region) {
+      out = Picture(guides.width(), guides.height());
+    }
+  }
 
-  std::optional<internal::EdgeTest> edges;
-  if (style.settings.edge_aware && style.blend_radius > 0) edges.emplace(guides);
-  const int rows = std::max(1, region.y1 - region.y0);
-  internal::RowProgress vote_progress(options.progress, 0.6, 0.9, rows);
-  const internal::VoteInput votes{scratch.field, *style.exemplar, style.blend_radius, edges ? &*edges : nullptr, region};
-  if (!internal::Vote(votes, out, vote_progress)) return CancelledError();
-  scratch.times.vote_ms = watch.Lap();
+  Status Paint(const PreparedStyle& style, int index, const Region& extent, double from, double to) {
+    const Region painted = Intersection(region_, extent);
+    if (painted.empty()) return Ok();
+    // Chunks of the brute force depend on every pixel above them, so it always runs over all of them.
+    const Region matched = style.settings.method == Method::kBruteForce
+                               ? extent
+                               : Intersection(extent, painted.GrownBy(style.blend_radius, guides_.width(), guides_.height()));
+    Activate(index, extent);
+    const Status done = MatchAndVote(style, matched, painted, from, to);
+    Deactivate(extent);
+    return done;
+  }
 
-  internal::RowProgress compose_progress(options.progress, 0.9, 1.0, rows);
-  const internal::Background background{style.paper, options.over};
-  if (!internal::Compose(guides, background, region, out, compose_progress)) return CancelledError();
-  scratch.times.compose_ms = watch.Lap();
-  return Ok();
+  Status Finish(const Paper& paper) {
+    Stopwatch watch;
+    internal::RowProgress progress(options_.progress, 1.0 - kComposeShare, 1.0, std::max(1, region_.y1 - region_.y0));
+    const internal::Background background{paper, options_.over};
+    if (!internal::Compose(guides_, background, region_, out_, progress)) return CancelledError();
+    scratch_.times.compose_ms += watch.Lap();
+    return Ok();
+  }
+
+ private:
+  static Region Intersection(const Region& a, const Region& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+  }
+
+  void Activate(int index, const Region& extent) {
+    const auto coverage = guides_.Plane(Layer::kCoverage);
+    for (int y = extent.y0; y < extent.y1; ++y) {
+      for (int x = extent.x0; x < extent.x1; ++x) {
+        const std::size_t i = guides_.Index(x, y);
+        scratch_.active[i] = coverage[i] > 0.0f && (!map_ || map_->style[i] == index);
+      }
+    }
+  }
+
+  void Deactivate(const Region& extent) {
+    if (!map_) return;
+    for (int y = extent.y0; y < extent.y1; ++y) {
+      std::fill_n(scratch_.active.begin() + std::ptrdiff_t(guides_.Index(extent.x0, y)), extent.x1 - extent.x0, 0);
+    }
+  }
+
+  // The scene's luminance under the exposure; made when the first style asks for it.
+  std::span<const float> ExposedLuminance() {
+    if (luminance_.empty()) {
+      const auto plane = guides_.Plane(Layer::kLuminance);
+      const float factor = static_cast<float>(std::exp2(options_.exposure));
+      luminance_.assign(plane.begin(), plane.end());
+      for (float& value : luminance_) value *= factor;
+    }
+    return luminance_;
+  }
+
+  Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from, double to) {
+    const TransferSettings& settings = style.settings;
+    const std::int64_t step =
+        JitterStep(settings.jitter_fps, options_.frame, options_.fps_numerator, options_.fps_denominator);
+    const internal::MatchInput input{
+        guides_,
+        scratch_.active,
+        *style.exemplar,
+        style.illumination,
+        style.illumination.active() ? ExposedLuminance() : std::span<const float>(),
+        GuideTest(settings.threshold, settings.threshold_metric),
+        SeedRules{options_.seed, step, settings.jitter, settings.levels - style.levels},
+        style.levels,
+        settings.variety,
+        kFlatReach,
+        matched};
+    Stopwatch watch;
+    const auto part = [&](double share) { return from + (to - from) * share; };
+    internal::RowProgress match_progress(options_.progress, part(0.0), part(kMatchShare), matched.y1 - matched.y0);
+    if (!Match(settings.method, input, match_progress)) return CancelledError();
+    scratch_.times.match_ms += watch.Lap();
+
+    const internal::EdgeTest* edges = nullptr;
+    if (settings.edge_aware && style.blend_radius > 0) edges = edges_ ? &*edges_ : &edges_.emplace(guides_);
+    const int rows = painted.y1 - painted.y0;
+    internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
+    const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, edges, painted};
+    if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
+    scratch_.times.vote_ms += watch.Lap();
+
+    if (!(settings.colorize > 0.0)) return Ok();
+    internal::RowProgress tint_progress(options_.progress, part(kMatchShare + kVoteShare), part(1.0), rows);
+    const internal::ColorizeInput tint{guides_,
+                                       scratch_.active,
+                                       scratch_.field,
+                                       style.mean_lightness,
+                                       static_cast<float>(settings.colorize),
+                                       settings.colorize_mode,
+                                       painted};
+    if (!internal::Colorize(tint, out_, tint_progress)) return CancelledError();
+    scratch_.times.compose_ms += watch.Lap();
+    return Ok();
+  }
+
+  bool Match(Method method, const internal::MatchInput& input, internal::RowProgress& progress) {
+    switch (method) {
+      case Method::kLitSphere: return internal::MatchLitSphere(input, scratch_.field, progress);
+      case Method::kStyleBlit: return internal::MatchStyleBlit(input, scratch_.field, progress);
+      case Method::kBruteForce: return internal::MatchBruteForce(input, scratch_.field, progress);
+    }
+    return false;
+  }
+
+  const StyleMap* map_;
+  const GuideSet& guides_;
+  const TransferOptions& options_;
+  TransferScratch& scratch_;
+  Picture& out_;
+  Region region_;
+  std::vector<float> luminance_;
+  std::optional<internal::EdgeTest> edges_;
+};
+
+Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
+                       const TransferOptions& options, TransferScratch& scratch, Picture& out) {
+  const std::vector<Region> extents = Extents(styles.size(), map, guides);
+  Run run(map, guides, options, scratch, out);
+  const double share = (1.0 - kComposeShare) / static_cast<double>(styles.size());
+  for (std::size_t s = 0; s < styles.size(); ++s) {
+    const double from = share * static_cast<double>(s);
+    SCUMBLE_RETURN_IF_ERROR(run.Paint(*styles[s], static_cast<int>(s), extents[s], from, from + share));
+  }
+  return run.Finish(styles.front()->paper);
+}
+
+Status TransferAll(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
+                   const TransferOptions& options, TransferScratch& scratch, Picture& out) {
+  SCUMBLE_RETURN_IF_ERROR(CheckInputs(styles, map, guides, options));
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return TransferInArena(styles, map, guides, options, scratch, out); });
 }
 
 }  // namespace
 
-Expected<PreparedStyle> Prepare(const Style& style, int output_height) {
-  SCUMBLE_RETURN_IF_ERROR(CheckSettings(style.transfer));
-  if (style.exemplars.size() != 1) {
-    return UnavailableError("style " + style.name + " has " + std::to_string(style.exemplars.size()) +
-                            " exemplars; this version takes exactly one");
-  }
-  const Exemplar& exemplar = style.exemplars.front();
-  if (exemplar.picture.empty() || exemplar.picture.width != exemplar.picture.height) {
-    return InputError(exemplar.name + " is " + std::to_string(exemplar.picture.width) + "×" +
-                      std::to_string(exemplar.picture.height) + ": an exemplar is a square that its sphere fills");
-  }
-  const TransferSettings& settings = style.transfer;
-  const int size = ScaledSize(exemplar.picture.width, settings.scale, settings.reference_height, output_height);
-  if (size > kMaxExemplarSize) {
-    return UsageError(exemplar.name + " would be resized from " + std::to_string(exemplar.picture.width) + " to " +
-                      std::to_string(size) + " pixels by transfer.scale and the output's height: at most " +
-                      std::to_string(kMaxExemplarSize) + " are possible; lower transfer.scale");
-  }
-  PreparedStyle prepared;
-  prepared.settings = settings;
-  prepared.output_height = output_height;
-  prepared.levels = ScaledLevels(settings.levels, settings.reference_height, output_height);
-  prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
-  prepared.exemplar = std::make_shared<PreparedExemplar>(exemplar.picture, settings.rim, size);
-  prepared.paper = style.paper;
-  if (style.paper.picture) {
-    prepared.paper.picture = ScaledPaper(*style.paper.picture, settings.reference_height, output_height);
-  }
-  return prepared;
-}
-
 Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
                 TransferScratch& scratch, Picture& out) {
-  SCUMBLE_RETURN_IF_ERROR(CheckInputs(style, guides, options));
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  return arena.execute([&] { return TransferInArena(style, guides, options, scratch, out); });
+  const PreparedStyle* const styles[] = {&style};
+  return TransferAll(styles, nullptr, guides, options, scratch, out);
 }
 
-std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,
-                        std::int64_t fps_denominator) {
-  if (jitter_fps < 0.0) return frame;
-  // 128 bits: frame numbers that carry a date, times a rate in thousandths, leave 64 behind.
-  __extension__ using Int128 = __int128;
-  const Int128 numerator = static_cast<Int128>(frame) * std::llround(jitter_fps * 1000.0) * fps_denominator;
-  const Int128 denominator = static_cast<Int128>(fps_numerator) * 1000;
-  const Int128 quotient = numerator / denominator;
-  return static_cast<std::int64_t>(numerator % denominator < 0 ? quotient - 1 : quotient);
+Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& map, const GuideSet& guides,
+                const TransferOptions& options, TransferScratch& scratch, Picture& out) {
+  SCUMBLE_CHECK(!styles.empty() && styles.size() <= std::size_t(StyleMap::kMaxStyles));
+  return TransferAll(styles, &map, guides, options, scratch, out);
 }
 
 }  // namespace scumble

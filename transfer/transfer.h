@@ -7,35 +7,45 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "image/guides.h"
 #include "image/picture.h"
 #include "image/progress.h"
 #include "image/status.h"
 #include "image/style.h"
+#include "transfer/illumination.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/region.h"
 #include "transfer/source_field.h"
+#include "transfer/style_map.h"
 
 namespace scumble {
 
 // A style made ready for outputs of one height. Immutable; any number of threads may use it at once.
 struct PreparedStyle {
   TransferSettings settings;
+  LayerSet required;  // of the guides
   std::shared_ptr<const PreparedExemplar> exemplar;
+  Illumination illumination;
+  std::vector<float> mean_lightness;  // Oklab's, by exemplar; only where the style tints in Oklab
   Paper paper;
   int output_height = 0;
   int levels = 1;        // settings.levels at the output's height
   int blend_radius = 0;  // settings.blend_radius at the output's height
 };
 
-// Resizes exemplar and paper for outputs of `output_height` pixels. Fails where the exemplar is empty or not square,
-// or where a setting is outside the range that image/style.h states.
+// Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
+// Fails where an exemplar is empty or not square, or where a setting is outside the range that image/style.h states.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height);
 
 struct TransferOptions {
   std::uint64_t seed = 0;
-  std::int64_t time_step = 0;       // which jitter; see JitterStep
+  std::int64_t frame = 0;           // with the rate, which jitter; see JitterStep
+  std::int64_t fps_numerator = 24;
+  std::int64_t fps_denominator = 1;
+  double exposure = 0.0;            // stops by which the scene's luminance is brightened; see MeasureExposure
   int threads = 0;                  // 0: all
   const Picture* over = nullptr;    // composited underneath instead of the paper; the guides' size
   std::optional<Region> region;     // only these pixels of the result are made; empty: all
@@ -52,15 +62,22 @@ struct StageTimes {
 // Memory that a sequence keeps from frame to frame, and what there is to look at after a transfer.
 struct TransferScratch {
   SourceField field;
+  std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints
   StageTimes times;
 };
 
 // Stylises one frame into `out` (resized to the guides; straight alpha = coverage × paint). The guides must hold
-// RequiredLayers(style.settings) and pass GuideSet::Validate; their height must be the prepared one. The bytes depend on guides, style,
+// style.required and pass GuideSet::Validate; their height must be the prepared one. The bytes depend on guides, style,
 // seed and time step only: not on threads, tiles, region or machine. O(covered pixels), except for kBruteForce, which
 // is refused above a megapixel.
 Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
                 TransferScratch& scratch, Picture& out);
+
+// The same with several styles in one picture: `map` says which paints what. Chunks and votes never cross from one style
+// to another. Pixels of StyleMap::kLeave show what is underneath, and their coverage does not count. The paper is the
+// first style's. O(covered pixels + the rectangles around each style's pixels).
+Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& map, const GuideSet& guides,
+                const TransferOptions& options, TransferScratch& scratch, Picture& out);
 
 // floor(frame · jitter_fps / fps) in integers, fps = numerator / denominator: the same for a frame however a range is
 // cut. 0 for jitter_fps 0 (frozen), the frame itself for -1. jitter_fps is rounded to thousandths.

@@ -1,0 +1,35 @@
+// The colorized extension: the paint takes on the scene's base colours.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/picture.h"
+#include "image/style.h"
+#include "transfer/parallel.h"
+#include "transfer/prepared_exemplar.h"
+#include "transfer/source_field.h"
+
+namespace scumble::internal {
+
+struct ColorizeInput {
+  const GuideSet& guides;                // with albedo
+  std::span<const std::uint8_t> active;  // 1: a pixel that this style paints
+  const SourceField& field;
+  std::span<const float> mean_lightness;  // Oklab's, of each exemplar
+  float weight = 0.0f;                    // 0 … 1
+  ColorizeMode mode = ColorizeMode::kMultiply;
+  Region region;
+};
+
+// Changes the colours of active pixels in place, in linear light; alpha stays. kMultiply: paint × (1 − w + w · albedo).
+// kOklab: from the paint towards the scene's colour, whose lightness is varied by what the paint's differs from its
+// exemplar's mean; chroma follows lightness and is reduced where the colour would leave the gamut. False: asked to stop.
+bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress);
+
+// The mean of Oklab's L over the usable texels of an exemplar's picture, weighted by alpha.
+float MeanLightness(const PreparedExemplar& exemplar, int index);
+
+}  // namespace scumble::internal

@@ -1,0 +1,43 @@
+// The illuminated extension: exemplars painted for different light, and which of them a pixel wants.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/style.h"
+
+namespace scumble {
+
+// Up to kMaxExemplars lighting conditions with a luminance each. Immutable; free to use from any thread.
+class Illumination {
+ public:
+  Illumination() = default;
+  // `luminances` in the exemplars' order, which need not be theirs; equal ones are legal, the first is taken.
+  Illumination(std::span<const double> luminances, float weight, LuminanceError form);
+
+  // With one exemplar light does not matter.
+  bool active() const { return luminances_.size() > 1; }
+  std::span<const float> luminances() const { return luminances_; }
+
+  // The exemplar whose luminance is nearest; ties to the first. NaN counts as darkness.
+  int Choose(float luminance) const;
+
+  // What painting a pixel of this luminance with exemplar `chosen` adds to its guide distance: 0 or more.
+  float Error(float luminance, int chosen) const;
+
+ private:
+  std::vector<float> luminances_;
+  float weight_ = 0.0f;
+  LuminanceError form_ = LuminanceError::kExcess;
+};
+
+// Mean luminance, linear, of the paint inside the disc of a square picture, weighted by its alpha.
+double MeasuredLuminance(const Picture& picture, double rim);
+
+// The exposure, in stops to the hundredth, that maps the 90th percentile of the luminance of covered pixels to the
+// brightest exemplar's. 0 where nothing is lit. The guides must hold luminance.
+double MeasureExposure(const GuideSet& guides, std::span<const float> luminances);
+
+}  // namespace scumble
