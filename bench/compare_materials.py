@@ -30,6 +30,12 @@ ROUGHNESS = (0.1, 0.25, 0.5, 0.75, 1.0)
 METALLIC = (0.0, 0.5, 1.0)
 LIGHTS = {"sun": "sun", "world": "white world", "area": "area lamp"}
 FURNACE_ROUGHNESS = (0.0, 0.1, 0.25, 0.5, 0.75, 1.0)
+SHEET_ROWS = (("area", "grey", 0.0, "area lamp, dielectric"), ("area", "red", 0.0, "area lamp, red dielectric"),
+              ("area", "red", 1.0, "area lamp, red metal"), ("world", "grey", 0.0, "white world, dielectric"),
+              ("world", "grey", 1.0, "white world, metal"))
+SHEET_ROUGHNESS = (0.1, 0.5, 1.0)
+SHEET_SAMPLES = 8  # times as many: differences are shown four times as large
+EXPOSURE = 0.6  # of the sheet
 LUMA = np.array([0.2126, 0.7152, 0.0722])
 KEY = np.array([math.cos(math.radians(40)) * math.sin(math.radians(-40)), math.sin(math.radians(40)),
                 math.cos(math.radians(40)) * math.cos(math.radians(-40))])  # image/direction.h
@@ -158,6 +164,10 @@ def all_cases(size, samples):
             for metallic in METALLIC:
                 for roughness in ROUGHNESS:
                     add(light, "principled", color, value, roughness, metallic)
+    shown = {name_of(light, "principled", color, roughness, metallic)
+             for light, color, metallic, _ in SHEET_ROWS for roughness in SHEET_ROUGHNESS}
+    for case in cases:
+        case["samples"] *= SHEET_SAMPLES if case["name"] in shown else 1
     for metallic in (0.0, 1.0):
         for roughness in FURNACE_ROUGHNESS:
             add("world", "principled", "white", (1.0, 1.0, 1.0), roughness, metallic)
@@ -222,25 +232,19 @@ class Pair:
         return cycles / ours - 1.0 if ours > 1e-9 else math.nan
 
     def largest(self):
-        """The largest difference of the whole, Cycles − ours, and the angles of eye and light there in degrees. Where
-        the light is all around, rings of equal angle are compared, which noise cannot feign."""
+        """The largest difference of the whole, Cycles − ours, our radiance there, and the angles of eye and light there
+        in degrees. Where the light is all around, rings of equal angle are compared, which noise cannot feign."""
         ours, cycles = self.parts["full"]
         if self.case["light"] == "sun":
             at = np.argmax(np.abs(cycles - ours))
             n = self.normal[at] / np.linalg.norm(self.normal[at])
-            return (cycles - ours)[at], angle(n[2]), angle(n @ KEY)
-        if self.case["light"] == "area":
-            return math.nan, math.nan, math.nan
-        edges, difference = self.rings()
-        at = np.argmax(np.abs(difference))
-        return difference[at], edges[at], math.nan
-
-    def rings(self, count=40):
-        ours, cycles = self.parts["full"]
+            return (cycles - ours)[at], ours[at], angle(n[2]), angle(n @ KEY)
+        count = 40
         ring = np.minimum((self.normal[:, 2] ** 2 * count).astype(int), count - 1)
         total = np.maximum(np.bincount(ring, minlength=count), 1)
-        difference = (np.bincount(ring, cycles, count) - np.bincount(ring, ours, count)) / total
-        return [angle(math.sqrt((i + 0.5) / count)) for i in range(count)], difference
+        mean, other = np.bincount(ring, ours, count) / total, np.bincount(ring, cycles, count) / total
+        at = np.argmax(np.abs(other - mean))
+        return other[at] - mean[at], mean[at], angle(math.sqrt((at + 0.5) / count)), math.nan
 
 
 def angle(cosine):
@@ -284,15 +288,15 @@ def principled_table(pairs, color):
 
 
 def largest_table(pairs):
-    print("\n| colour | metallic | roughness | sun: largest | eye at | light at | white world: largest ring | eye at |"
-          "\n|---|---|---|---|---|---|---|---|")
+    print("\n| colour | metallic | roughness | sun: largest | of | eye at | light at | white world: largest ring | of | "
+          "eye at |\n|---|---|---|---|---|---|---|---|---|---|")
     for color in COLORS:
         for metallic in METALLIC:
             for roughness in ROUGHNESS:
                 sun, world = (pairs[name_of(light, "principled", color, roughness, metallic)].largest()
                               for light in ("sun", "world"))
-                print(f"| {color} | {metallic:g} | {roughness:g} | {signed(sun[0])} | {sun[1]:.0f}° | {sun[2]:.0f}° | "
-                      f"{signed(world[0], 3)} | {world[1]:.0f}° |")
+                print(f"| {color} | {metallic:g} | {roughness:g} | {signed(sun[0])} | {sun[1]:.2f} | {sun[2]:.0f}° | "
+                      f"{sun[3]:.0f}° | {signed(world[0], 3)} | {world[1]:.3f} | {world[2]:.0f}° |")
 
 
 def formula_table(pairs):
@@ -347,21 +351,24 @@ def encode(linear):
 def tile(pair, which, side):
     background = 0.18
     if which == "difference":
-        linear = 0.5 + 4.0 * (pair.cycles_full - pair.ours_full)  # grey: equal; not encoded, so that ± look alike
-        picture = np.where(pair.seen[:, :, None], np.clip(linear, 0.0, 1.0), background)
+        linear = pair.cycles_full - pair.ours_full
     else:
         linear = pair.ours_full if which == "ours" else pair.cycles_full
-        picture = np.where(pair.seen[:, :, None], encode(linear), background)
-    factor = picture.shape[0] // side
-    return picture.reshape(side, factor, side, factor, 3).mean((1, 3))
+    factor = linear.shape[0] // side
+
+    def shrink(picture):
+        return picture.reshape(side, factor, side, factor, -1).mean((1, 3))
+
+    seen = shrink(pair.seen[:, :, None].astype(float))
+    linear = EXPOSURE * shrink(linear * pair.seen[:, :, None]) / np.maximum(seen, 1e-9)
+    # A difference of nothing is grey, and is not encoded, so that more and less look alike.
+    shown = np.clip(0.5 + 4.0 * linear, 0.0, 1.0) if which == "difference" else encode(linear)
+    return seen * shown + (1.0 - seen) * background
 
 
 def make_sheet(pairs, path, side=128):
     """Rows: light and material; columns: roughness, each as ours | Cycles | four times the difference about grey."""
-    rows = [("area", "grey", 0.0, "area lamp, dielectric"), ("area", "red", 0.0, "area lamp, red dielectric"),
-            ("area", "red", 1.0, "area lamp, red metal"), ("world", "grey", 0.0, "white world, dielectric"),
-            ("world", "grey", 1.0, "white world, metal")]
-    columns = (0.1, 0.5, 1.0)
+    rows, columns = SHEET_ROWS, SHEET_ROUGHNESS
     label, head, gap = 24, 44, 12
     width = len(columns) * (3 * side + gap) + gap
     sheet = np.full((head + len(rows) * (side + label), width, 3), 0.18)
