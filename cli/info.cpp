@@ -18,15 +18,14 @@ using Json = nlohmann::ordered_json;
 
 Expected<Json> DescribeGuides(const std::string& path) {
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
-  Json json{{"kind", "guides"},
-            {"width", info.width},
-            {"height", info.height},
-            {"channels", info.channels}};
+  Json json{{"kind", "guides"}, {"width", info.width}, {"height", info.height}, {"channels", info.channels}};
   for (const auto& [view_layer, layers] : info.layers) {
     json[view_layer.empty() ? "layers" : "layers of " + view_layer] = layers.ToString();
   }
-  if (info.from_blender) json["note"] = 
+  if (info.from_blender) {
+    json["note"] =
         "rendered by Blender: transfer reads it with the .camera file that render_guides.py wrote, --camera FILE";
+  }
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
   if (info.header.camera) json["camera"] = info.header.camera->name;

@@ -1,7 +1,7 @@
 // What blender_scripts/export_scene.py writes into the `extras` of a glTF file, key "scumble", because glTF has no
-// words for it: Cycles' lamps, shifted cameras, Blender's pure shaders, the world's colour, objects' styles. Where extras and glTF both
-// speak, the extras win. Files without them are not touched. Values of a wrong type or range are a kInput error that
-// names the place.
+// words for it: Cycles' lamps, shifted cameras, Blender's pure shaders, the world's colour, objects' styles. Where
+// extras and glTF both speak, the extras win. Files without them are not touched. Values of a wrong type or range are a
+// kInput error that names the place.
 #pragma once
 
 #include <optional>

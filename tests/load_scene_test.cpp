@@ -188,16 +188,15 @@ TEST_F(LoadText, ObjMaterialsAnswerLightAsBlenderReadsThem) {
   Picture picture(1, 1);
   picture.rgba = {65535, 65535, 65535, 65535};
   ASSERT_TRUE(WritePicture(Path("glow.png"), picture).ok());
-  Write("lib.mtl",
-        std::string("newmtl chalk\nKd 0.5 0.5 0.5\n"
-                    "newmtl chalk0\nKd 0.5 0.5 0.5\nKs 0 0 0\nNs 250\nillum 1\n"
-                    "newmtl plastic\nKd 1 0 0\nKs 0.5 0.5 0.5\nNs 250\nKa 1 1 1\nillum 2\n"
-                    "newmtl steel\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nNs 640\nKa 1 1 1\nillum 3\n"
-                    "newmtl chrome\nKd 0 0 0\nKs 0.9 0.8 2\nNs 1000\nd 0.25\n"
-                    "newmtl pbr\nKd 0.8 0.8 0.8\nPr 0.25\nPm 0.75\n"
-                    "newmtl lamp\nKd 0 0 0\nKe 2 3 4\n"
-                    "newmtl panel\nKd 0 0 0\nKe 2 3 4\nmap_Ke glow.png\n"
-                    "newmtl odd\nKd 1 1 1\nKs 1 1 1\nNs 1e30\nKe -1 0 0\nPm 7\n"));
+  Write("lib.mtl", std::string("newmtl chalk\nKd 0.5 0.5 0.5\n"
+                               "newmtl chalk0\nKd 0.5 0.5 0.5\nKs 0 0 0\nNs 250\nillum 1\n"
+                               "newmtl plastic\nKd 1 0 0\nKs 0.5 0.5 0.5\nNs 250\nKa 1 1 1\nillum 2\n"
+                               "newmtl steel\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nNs 640\nKa 1 1 1\nillum 3\n"
+                               "newmtl chrome\nKd 0 0 0\nKs 0.9 0.8 2\nNs 1000\nd 0.25\n"
+                               "newmtl pbr\nKd 0.8 0.8 0.8\nPr 0.25\nPm 0.75\n"
+                               "newmtl lamp\nKd 0 0 0\nKe 2 3 4\n"
+                               "newmtl panel\nKd 0 0 0\nKe 2 3 4\nmap_Ke glow.png\n"
+                               "newmtl odd\nKd 1 1 1\nKs 1 1 1\nNs 1e30\nKe -1 0 0\nPm 7\n"));
   const Scene scene = Load("a.obj", "mtllib lib.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl chalk\nf 1 2 3\n");
   ASSERT_EQ(scene.materials.size(), 9u);
   const auto expect = [&](int index, Bsdf bsdf, double roughness, double metallic) {
@@ -236,9 +235,9 @@ TEST_F(LoadText, FacesWithoutAMaterialAreMatt) {
   expect_matt(Load("a.obj", face), grey);
   expect_matt(Load("b.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n"), glm::vec4(1.0f));
   const auto ply = [](const std::string& properties, const std::string& values) {
-    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" + properties +
-           "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0" + values + "\n1 0 0" + values +
-           "\n0 1 0" + values + "\n3 0 1 2\n";
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+           properties + "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0" + values +
+           "\n1 0 0" + values + "\n0 1 0" + values + "\n3 0 1 2\n";
   };
   expect_matt(Load("a.ply", ply("", "")), grey);
   expect_matt(Load("b.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n", " 255 0 9")),
