@@ -18,14 +18,14 @@ using Json = nlohmann::ordered_json;
 
 Expected<Json> DescribeGuides(const std::string& path) {
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
-  Json json{{"kind", "guides"},
-            {"width", info.width},
-            {"height", info.height},
-            {"channels", info.channels}};
+  Json json{{"kind", "guides"}, {"width", info.width}, {"height", info.height}, {"channels", info.channels}};
   for (const auto& [view_layer, layers] : info.layers) {
     json[view_layer.empty() ? "layers" : "layers of " + view_layer] = layers.ToString();
   }
-  if (info.from_blender) json["note"] = "rendered by Blender: transfer cannot read it, use guidegen on the scene";
+  if (info.from_blender) {
+    json["note"] =
+        "rendered by Blender: transfer reads it with the .camera file that render_guides.py wrote, --camera FILE";
+  }
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
   if (info.header.camera) json["camera"] = info.header.camera->name;
@@ -45,10 +45,14 @@ Expected<Json> DescribeScene(const std::string& path) {
     }
   };
   names("objects", scene.instances, [](const Instance& i) { return i.object; });
+  for (const Instance& instance : scene.instances) {
+    if (!instance.style.empty()) json["styles"][instance.object] = instance.style;
+    if (instance.pass_index != 0) json["pass_indices"][instance.object] = instance.pass_index;
+  }
   names("materials", scene.materials, [](const Material& m) { return m.name; });
   names("cameras", scene.cameras, [](const Camera& c) { return c.name; });
   names("lights", scene.lights, [](const Light& light) {
-    constexpr const char* kTypes[] = {"point", "spot", "sun"};
+    constexpr const char* kTypes[] = {"point", "spot", "sun", "area"};
     return light.name + " (" + kTypes[static_cast<int>(light.type)] + ")";
   });
   json["warnings"] = scene.warnings;
@@ -80,6 +84,10 @@ std::string ToText(const Json& json) {
     if (value.is_array()) {
       for (const Json& item : value) shown += (shown.empty() ? "" : ", ") + item.get<std::string>();
       if (shown.empty()) shown = "none";
+    } else if (value.is_object()) {
+      for (const auto& [name, item] : value.items()) {
+        shown += (shown.empty() ? "" : ", ") + name + ": " + (item.is_string() ? item.get<std::string>() : item.dump());
+      }
     } else {
       shown = value.is_string() ? value.get<std::string>() : value.dump();
     }

@@ -256,9 +256,12 @@ class GltfLoader {
     if (is_new) {
       SCUMBLE_ASSIGN(loaded->second, LoadGltfMesh({model_, file_, scene_, budget_, warnings_}, node.mesh));
     }
+    Instance instance{names_[index], 0, visit.world};
+    SCUMBLE_RETURN_IF_ERROR(ReadObjectExtras(node, file_ + ": " + NodeLabel(visit.node), instance));
     for (int mesh : loaded->second) {
       SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_new));
-      scene_.instances.push_back({names_[index], mesh, visit.world});
+      instance.mesh = mesh;
+      scene_.instances.push_back(instance);
     }
     return Ok();
   }

@@ -12,6 +12,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegreesPerRadian = 180.0 / kPi;
 constexpr std::size_t kMaxWarnings = 100;
+constexpr double kLargestPassIndex = 32767.0;  // Blender's limit
 
 // The object of that name inside extras.scumble, or null.
 const tinygltf::Value* Find(const tinygltf::Value& extras, const std::string& key) {
@@ -190,6 +191,16 @@ Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const 
   SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
   if (!shines) light.intensity = 0.0, light.size_x = light.size_y = 1.0;
   return std::optional(light);
+}
+
+Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance) {
+  const bool has_style = Find(node.extras, "style");
+  const bool has_index = Find(node.extras, "pass_index");
+  if (!has_style && !has_index) return Ok();
+  Fields fields(node.extras.Get("scumble"), where);
+  if (has_style) instance.style = fields.Text("style");
+  if (has_index) instance.pass_index = static_cast<int>(fields.Number("pass_index", 0.0, kLargestPassIndex));
+  return fields.Verdict();
 }
 
 Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Camera& camera) {

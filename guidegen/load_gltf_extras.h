@@ -1,7 +1,7 @@
 // What blender_scripts/export_scene.py writes into the `extras` of a glTF file, key "scumble", because glTF has no
-// words for it: Cycles' lamps, shifted cameras, Blender's pure shaders, the world's colour. Where extras and glTF both
-// speak, the extras win. Files without them are not touched. Values of a wrong type or range are a kInput error that
-// names the place.
+// words for it: Cycles' lamps, shifted cameras, Blender's pure shaders, the world's colour, objects' styles. Where
+// extras and glTF both speak, the extras win. Files without them are not touched. Values of a wrong type or range are a
+// kInput error that names the place.
 #pragma once
 
 #include <optional>
@@ -27,6 +27,9 @@ Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std:
 // The lamp that a node's extras describe, in watts as Cycles 3.4 means them: point and spot I = P/(4π), sun W/m², area
 // L = P/(4A). Name and place are the caller's. Nothing where the node is no such lamp. `where` is for the messages.
 Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const std::string& where);
+
+// Completes an instance by the style and pass index that its node's extras name.
+Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance);
 
 // Completes a camera by what its node's extras say of sensor fit, angle and shift.
 Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Camera& camera);

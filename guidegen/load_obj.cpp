@@ -24,6 +24,9 @@ std::filesystem::path BesideScene(const std::filesystem::path& scene, std::strin
   return scene.parent_path() / name;
 }
 
+// MTL's illumination model of metals.
+constexpr int kMetalIllumination = 3;
+
 // Reads material libraries from regular files only, and says which one is missing.
 class LibraryReader : public tinyobj::MaterialReader {
  public:
@@ -33,7 +36,7 @@ class LibraryReader : public tinyobj::MaterialReader {
                   std::map<std::string, int>* indices, std::string* warning, std::string* error) override {
     const auto bytes = ReadRegularFile(BesideScene(scene_, name));
     if (!bytes) {
-      warnings_.Add("a material library is missing, its objects are white", Excerpt(name));
+      warnings_.Add("a material library is missing, its objects are matt and light grey", Excerpt(name));
       return false;
     }
     std::istringstream stream(AsText(bytes.value()));
@@ -225,11 +228,10 @@ class ObjLoader {
   }
 
   void LoadMaterials() {
-    UniqueNames names;
     for (std::size_t i = 0; i < materials_.size(); ++i) {
       const tinyobj::material_t& from = materials_[i];
       Material material;
-      material.name = names.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
+      material.name = material_names_.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
       material.base_color_texture = LoadTexture(from.diffuse_texname, from.diffuse_texopt);
       material.normal_texture = LoadTexture(from.normal_texname, from.normal_texopt);
       for (int c = 0; c < 3; ++c) {
@@ -238,8 +240,59 @@ class ObjLoader {
       }
       material.base_color.a = std::isfinite(from.dissolve) ? std::clamp(from.dissolve, 0.0f, 1.0f) : 1.0f;
       if (material.base_color.a < 1.0f) material.alpha_mode = AlphaMode::kBlend;
+      LoadLighting(from, material);
       scene_.materials.push_back(std::move(material));
     }
+  }
+
+  // MTL knows a colour, a highlight and its exponent. They are read as Blender 3.4 reads and writes them. A highlight
+  // only says that there is a coat: how strongly one reflects is glTF's.
+  void LoadLighting(const tinyobj::material_t& from, Material& material) {
+    const glm::vec3 highlight = Color(from.specular);
+    const float shininess = std::isfinite(from.shininess) ? std::clamp(from.shininess, 0.0f, 1000.0f) : 0.0f;
+    material.roughness = 1.0f - std::sqrt(shininess / 1000.0f);
+    const auto share = [](float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; };
+    if (from.illum == kMetalIllumination) {
+      const glm::vec3 metallic = Color(from.ambient);
+      material.metallic = share((metallic.r + metallic.g + metallic.b) / 3.0f);
+    }
+    // Pr and Pm of the format's later extension; their absence reads as 0.
+    if (from.roughness > 0.0f) material.roughness = share(from.roughness);
+    if (from.metallic > 0.0f) material.metallic = share(from.metallic);
+    const bool says_pbr = from.roughness > 0.0f || material.metallic > 0.0f;
+    if (highlight == glm::vec3(0.0f) && !says_pbr) {
+      material.bsdf = Bsdf::kDiffuse;
+      material.roughness = 1.0f;
+    } else if (glm::vec3(material.base_color) == glm::vec3(0.0f)) {
+      material.bsdf = Bsdf::kGlossy;  // all its colour is in the highlight, as metals were written before Pm
+      material.base_color = glm::vec4(glm::min(highlight, 1.0f), material.base_color.a);
+    }
+    material.emission_texture = LoadTexture(from.emissive_texname, from.emissive_texopt);
+    material.emission = material.emission_texture.texture >= 0 ? glm::vec3(1.0f) : Color(from.emission);
+  }
+
+  static glm::vec3 Color(const float* from) {
+    glm::vec3 color;
+    for (int c = 0; c < 3; ++c) color[c] = std::isfinite(from[c]) ? std::max(from[c], 0.0f) : 0.0f;
+    return color;
+  }
+
+  // What faces without a material have: Blender's own, so that nobody meets a highlight that nobody asked for. Where
+  // the vertices have colours, those are the surface's.
+  int PlainMaterial() {
+    if (plain_material_ < 0) {
+      Material material;
+      material.name = material_names_.Take("default");
+      material.bsdf = Bsdf::kDiffuse;
+      if (!HasColors()) material.base_color = kPlainColor;
+      plain_material_ = static_cast<int>(scene_.materials.size());
+      scene_.materials.push_back(std::move(material));
+    }
+    return plain_material_;
+  }
+
+  bool HasColors() const {
+    return !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
   }
 
   TextureUse LoadTexture(const std::string& name, const tinyobj::texture_option_t& options) {
@@ -291,8 +344,8 @@ class ObjLoader {
 
   void AddMesh(const std::string& object, int material, const std::vector<std::size_t>& members) {
     Mesh mesh;
-    mesh.material = material >= 0 && std::size_t(material) < materials_.size() ? material : DefaultMaterial(scene_);
-    const bool has_colors = !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
+    mesh.material = material >= 0 && std::size_t(material) < materials_.size() ? material : PlainMaterial();
+    const bool has_colors = HasColors();
     bool has_uvs = false;
     for (std::size_t t : members) {
       for (const Corner& corner : triangles_[t].corners) has_uvs |= corner.uv >= 0;
@@ -346,6 +399,8 @@ class ObjLoader {
   Scene scene_;
   GeometryBudget budget_;
   WarningCounter warnings_;
+  UniqueNames material_names_;
+  int plain_material_ = -1;
   std::map<std::string, int> textures_;  // index into the scene's, -1 where unreadable
   std::vector<Triangle> triangles_;
   std::vector<glm::vec3> smooth_normals_;

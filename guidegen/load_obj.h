@@ -2,9 +2,19 @@
 // have in common.
 //
 // Each shape (o or g) becomes an object, one instance for each of its materials. Read: polygons, normals, texture
-// coordinates (v turned over), vertex colours (sRGB-encoded), smoothing groups where there are no normals; from the MTL
-// Kd (linear), d, map_Kd (in place of Kd, as Blender takes it) with -s, -o and -clamp, and norm. A material library or
-// texture that is missing is a warning, not an error: OBJ files are often passed on without them.
+// coordinates (v turned over), vertex colours (sRGB-encoded), smoothing groups where there are no normals. A material
+// library or texture that is missing is a warning, not an error: OBJ files are often passed on without them.
+//
+// From the MTL, as Blender 3.4 understands it:
+//   Kd, map_Kd    base colour, linear; the map stands in place of Kd; -s, -o and -clamp are heeded
+//   Ks            0 or absent: no highlight, Lambert. Else glTF's coat, however strong Ks is; with a black Kd, GGX in
+//                 the colour Ks
+//   Ns            roughness 1 − √(Ns/1000)
+//   illum 3, Ka   a metal, to the share that Ka says
+//   Pr, Pm        roughness and metalness, where above 0, instead of those
+//   Ke, map_Ke    emission; the map stands in place of Ke
+//   d, norm       opacity; normal map
+// Faces without a material are Lambert in Blender's grey of 0.8, or in their vertex colours.
 #pragma once
 
 #include <filesystem>

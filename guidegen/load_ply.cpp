@@ -388,7 +388,11 @@ class PlyLoader {
 
   Expected<Scene> Finish() {
     Scene scene;
-    mesh_.material = DefaultMaterial(scene);
+    Material material;
+    material.name = "default";
+    material.bsdf = Bsdf::kDiffuse;
+    if (mesh_.colors.empty()) material.base_color = kPlainColor;
+    scene.materials.push_back(std::move(material));
     if (!mesh_.triangles.empty()) {
       if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", "");
       scene.meshes.push_back(std::move(mesh_));

@@ -89,6 +89,9 @@ bool IsFinite(const glm::vec4& v);
 // At most `max_bytes` of a text that comes from a file, on one line, for use inside a message.
 std::string Excerpt(const std::string& text, std::size_t max_bytes = 200);
 
+// The colour of what no file gives a colour: Blender's own for faces without a material.
+inline constexpr glm::vec4 kPlainColor{0.8f, 0.8f, 0.8f, 1.0f};
+
 // The index of an opaque white material named "default", made when there is none yet.
 int DefaultMaterial(Scene& scene);
 

@@ -65,6 +65,8 @@ struct Instance {
   std::string object;  // full name: the node's; its hash is the object id
   int mesh = 0;
   glm::dmat4 world_from_object{1.0};
+  std::string style{};  // what the scene's author wants it painted in; empty: nothing was said
+  int pass_index = 0;   // Blender's, 0 … 32767; 0: none was given
 };
 
 // Which side of the picture a camera's extent measures: a fixed one, or the longer one of whatever picture is made.

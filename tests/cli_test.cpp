@@ -254,6 +254,35 @@ TEST_F(CliVerbs, EveryVerbSpeaksJson) {
   EXPECT_EQ(json({"styles", "check", "style"})["size"], 64);
 }
 
+TEST_F(CliVerbs, InfoTellsWhatAScenesAuthorWants) {
+  const auto node = [](const std::string& name, const std::string& extras) {
+    return R"({"name": ")" + name + R"(", "mesh": 0, "extras": {"scumble": {)" + extras + "}}}";
+  };
+  const std::string lamp = R"("lamp": {"type": "AREA", "energy": 1, "color": [1, 1, 1], "shape": "SQUARE", "size": 1,
+                              "size_y": 1})";
+  WriteText("a.gltf", R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2, 3]}],
+      "buffers": [{"byteLength": 36, "uri": "a.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "nodes": [)" +
+                          node("Pot", R"("style": "oil", "pass_index": 4)") + "," + node("Lid", R"("pass_index": 2)") +
+                          "," + node("Table", R"("pass_index": 0)") + R"(, {"name": "Panel", "extras": {"scumble": {)" +
+                          lamp + "}}}]}");
+  const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  WriteText("a.bin", std::string(reinterpret_cast<const char*>(corners), sizeof(corners)));
+  const nlohmann::json json = RunOk({"info", "a.gltf", "--json"}).Json();
+  EXPECT_EQ(json["objects"], (nlohmann::json{"Pot", "Lid", "Table"}));
+  EXPECT_EQ(json["styles"], (nlohmann::json{{"Pot", "oil"}}));
+  EXPECT_EQ(json["pass_indices"], (nlohmann::json{{"Pot", 4}, {"Lid", 2}}));
+  EXPECT_EQ(json["lights"], (nlohmann::json{"Panel (area)"}));
+  const std::string text = RunOk({"info", "a.gltf"}).out;
+  EXPECT_TRUE(Contains(text, "styles        Pot: oil\n")) << text;
+  EXPECT_TRUE(Contains(text, "pass_indices  Pot: 4, Lid: 2\n")) << text;
+  // Where nothing is said, nothing is listed.
+  const nlohmann::json plain = RunOk({"info", Scene("suzanne.glb"), "--json"}).Json();
+  EXPECT_FALSE(plain.contains("styles"));
+  EXPECT_FALSE(plain.contains("pass_indices"));
+}
+
 // Names come from other people's files and folders, and may hold anything but a zero byte.
 TEST_F(CliVerbs, JsonStandsNamesThatAreNoUtf8) {
   WriteText("tri\xff.obj", "o sheet\xfe\n" + TriangleObj());

@@ -403,6 +403,31 @@ TEST_F(LoadGltf, AnAddedObjectRenamesNobody) {
             (std::vector<std::string>{"Heap/Rock#2", "Leaf", "Rock", "Leaf#3", "Leaf#2", "Heap/Rock"}));
 }
 
+TEST_F(LoadGltf, StylesAndPassIndicesOfObjects) {
+  GltfBuilder gltf;
+  gltf.Triangle("A");
+  gltf.Root({{"name", "B"}, {"mesh", 0}, {"extras", {{"scumble", {{"style", "oil"}, {"pass_index", 7}}}}}});
+  gltf.Root({{"name", "C"}, {"mesh", 0}, {"extras", {{"scumble", {{"pass_index", 32767}}}}}});
+  const auto scene = LoadScene(Write("a.glb", gltf.Glb()));
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->instances.size(), 3u);
+  EXPECT_EQ(scene->instances[0].style, "");
+  EXPECT_EQ(scene->instances[0].pass_index, 0);
+  EXPECT_EQ(scene->instances[1].style, "oil");
+  EXPECT_EQ(scene->instances[1].pass_index, 7);
+  EXPECT_EQ(scene->instances[2].style, "");
+  EXPECT_EQ(scene->instances[2].pass_index, 32767);
+  for (const nlohmann::json& bad : {nlohmann::json{{"style", 3}}, nlohmann::json{{"pass_index", -1}},
+                                    nlohmann::json{{"pass_index", "7"}}, nlohmann::json{{"pass_index", 32768}}}) {
+    gltf.json["nodes"][1]["extras"]["scumble"] = bad;
+    const auto refused = LoadScene(Write("bad.glb", gltf.Glb()));
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_THAT(refused.error().message, HasSubstr("bad.glb"));
+    EXPECT_THAT(refused.error().message, HasSubstr("'B'"));
+    EXPECT_THAT(refused.error().message, HasSubstr(bad.begin().key()));
+  }
+}
+
 TEST_F(LoadGltf, TheDefaultSceneIsLoaded) {
   GltfBuilder b;
   b.Triangle("First");

@@ -183,6 +183,75 @@ TEST_F(LoadText, ObjWithoutItsMaterialLibrary) {
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("away.mtl")));
 }
 
+// As Blender 3.4 reads its own exporter's files and others'.
+TEST_F(LoadText, ObjMaterialsAnswerLightAsBlenderReadsThem) {
+  Picture picture(1, 1);
+  picture.rgba = {65535, 65535, 65535, 65535};
+  ASSERT_TRUE(WritePicture(Path("glow.png"), picture).ok());
+  Write("lib.mtl", std::string("newmtl chalk\nKd 0.5 0.5 0.5\n"
+                               "newmtl chalk0\nKd 0.5 0.5 0.5\nKs 0 0 0\nNs 250\nillum 1\n"
+                               "newmtl plastic\nKd 1 0 0\nKs 0.5 0.5 0.5\nNs 250\nKa 1 1 1\nillum 2\n"
+                               "newmtl steel\nKd 0.8 0.8 0.8\nKs 0.5 0.5 0.5\nNs 640\nKa 1 1 1\nillum 3\n"
+                               "newmtl chrome\nKd 0 0 0\nKs 0.9 0.8 2\nNs 1000\nd 0.25\n"
+                               "newmtl pbr\nKd 0.8 0.8 0.8\nPr 0.25\nPm 0.75\n"
+                               "newmtl lamp\nKd 0 0 0\nKe 2 3 4\n"
+                               "newmtl panel\nKd 0 0 0\nKe 2 3 4\nmap_Ke glow.png\n"
+                               "newmtl odd\nKd 1 1 1\nKs 1 1 1\nNs 1e30\nKe -1 0 0\nPm 7\n"));
+  const Scene scene = Load("a.obj", "mtllib lib.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl chalk\nf 1 2 3\n");
+  ASSERT_EQ(scene.materials.size(), 9u);
+  const auto expect = [&](int index, Bsdf bsdf, double roughness, double metallic) {
+    const Material& material = scene.materials[std::size_t(index)];
+    EXPECT_EQ(material.bsdf, bsdf) << material.name;
+    EXPECT_NEAR(material.roughness, roughness, 1e-6) << material.name;
+    EXPECT_NEAR(material.metallic, metallic, 1e-6) << material.name;
+  };
+  expect(0, Bsdf::kDiffuse, 1.0, 0.0);
+  expect(1, Bsdf::kDiffuse, 1.0, 0.0);
+  expect(2, Bsdf::kMetallicRoughness, 0.5, 0.0);
+  expect(3, Bsdf::kMetallicRoughness, 0.2, 1.0);
+  expect(4, Bsdf::kGlossy, 0.0, 0.0);
+  EXPECT_EQ(scene.materials[4].base_color, glm::vec4(0.9f, 0.8f, 1.0f, 0.25f));
+  expect(5, Bsdf::kMetallicRoughness, 0.25, 0.75);
+  EXPECT_EQ(scene.materials[5].emission, glm::vec3(0.0f));
+  expect(6, Bsdf::kDiffuse, 1.0, 0.0);
+  EXPECT_EQ(scene.materials[6].emission, glm::vec3(2, 3, 4));
+  EXPECT_EQ(scene.materials[7].emission, glm::vec3(1.0f));
+  EXPECT_EQ(scene.materials[7].emission_texture.texture, 0);
+  expect(8, Bsdf::kMetallicRoughness, 0.0, 1.0);
+  EXPECT_EQ(scene.materials[8].emission, glm::vec3(0.0f));
+}
+
+// Nobody who gives no material means a varnish.
+TEST_F(LoadText, FacesWithoutAMaterialAreMatt) {
+  const std::string face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto expect_matt = [](const Scene& scene, const glm::vec4& color) {
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    const Material& material = scene.materials[std::size_t(scene.meshes[0].material)];
+    EXPECT_EQ(material.name, "default");
+    EXPECT_EQ(material.bsdf, Bsdf::kDiffuse);
+    EXPECT_EQ(material.base_color, color);
+  };
+  const glm::vec4 grey(0.8f, 0.8f, 0.8f, 1.0f);
+  expect_matt(Load("a.obj", face), grey);
+  expect_matt(Load("b.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n"), glm::vec4(1.0f));
+  const auto ply = [](const std::string& properties, const std::string& values) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" +
+           properties + "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0" + values +
+           "\n1 0 0" + values + "\n0 1 0" + values + "\n3 0 1 2\n";
+  };
+  expect_matt(Load("a.ply", ply("", "")), grey);
+  expect_matt(Load("b.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n", " 255 0 9")),
+              glm::vec4(1.0f));
+  // A library's own "default" keeps its name, and two shapes without a material share one.
+  Write("lib.mtl", std::string("newmtl default\nKd 1 0 0\n"));
+  const Scene scene = Load("c.obj", "mtllib lib.mtl\no A\n" + face + "o B\nf 3 2 1\no C\nusemtl default\nf 1 2 3\n");
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(scene.materials[1].name, "default#2");
+  EXPECT_EQ(scene.meshes[0].material, 1);
+  EXPECT_EQ(scene.meshes[1].material, 1);
+  EXPECT_EQ(scene.meshes[2].material, 0);
+}
+
 TEST_F(LoadText, ObjVertexColorsAreEncoded) {
   const Scene scene = Load("a.obj", "v 0 0 0 1 0 0.5\nv 1 0 0 1 0 0.5\nv 0 1 0 1 0 0.5\nf 1 2 3\n");
   ASSERT_EQ(scene.meshes[0].colors.size(), 3u);
