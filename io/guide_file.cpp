@@ -454,10 +454,14 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
   GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.from_blender, {}, contents.all_names, {}};
-  for (const std::string& prefix : ViewLayers(contents)) {
+  std::set<std::string> prefixes = ViewLayers(contents);
+  if (prefixes.empty()) prefixes.insert("");
+  for (const std::string& prefix : prefixes) {
     info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
+    for (const FoundMatte& found : contents.mattes) {
+      if (info.from_blender && found.meaning.prefix == prefix) info.layers[prefix].Add(found.meaning.layer);
+    }
   }
-  if (info.layers.empty()) info.layers[""] = CompleteLayers(SelectChannels(contents, "", all));
   ReadHeader(contents.spec, info.header);
   return info;
 }
