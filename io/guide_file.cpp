@@ -235,7 +235,7 @@ struct ChannelRun {
 // The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which nobody
 // asked for are cheaper to read along than to leave out.
 std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage) {
-  constexpr int kCheapGap = 4;
+  constexpr int kCheapGap = 16;
   std::set<int> indices;
   for (const PlaneRead& read : reads) {
     if (read.subimage == subimage) indices.insert(read.channel);
