@@ -29,17 +29,19 @@ bool HasNormal(const GuideSet& guides, std::size_t i) {
 
 bool HasDepth(const GuideSet& guides, std::size_t i) { return guides.Plane(Layer::kDepth)[i] < kBackgroundDepth; }
 
-// Alpha of an opaque film is 1 everywhere, background included.
+// Alpha of an opaque film is 1 everywhere, background included, and 0 outside a render border.
 void FindCoverage(const BlenderMattes& mattes, GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
-  if (!std::all_of(coverage.begin(), coverage.end(), [](float a) { return a >= 0.9999f; })) return;
-  for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
-    const auto found = mattes.find(layer);
-    if (found != mattes.end()) return MatteCoverage(found->second.ranks, coverage);
+  if (std::any_of(coverage.begin(), coverage.end(), [](float a) { return a != 0.0f && !(a >= 0.9999f); })) return;
+  std::vector<float> shown(coverage.size());
+  if (!mattes.empty()) {
+    MatteCoverage(mattes.begin()->second.ranks, shown);
+  } else {
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      shown[i] = (guides.Has(Layer::kDepth) ? HasDepth(guides, i) : HasNormal(guides, i)) ? 1.0f : 0.0f;
+    }
   }
-  for (std::size_t i = 0; i < coverage.size(); ++i) {
-    coverage[i] = (guides.Has(Layer::kDepth) ? HasDepth(guides, i) : HasNormal(guides, i)) ? 1.0f : 0.0f;
-  }
+  for (std::size_t i = 0; i < shown.size(); ++i) coverage[i] = coverage[i] > 0.0f ? shown[i] : 0.0f;
 }
 
 Expected<GuideCamera> FindCamera(const std::string& name, const GuideSet& guides) {

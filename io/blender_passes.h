@@ -26,8 +26,9 @@ using BlenderMattes = std::map<Layer, Matte>;  // kObject, kMaterial
 //     background's depth of 1e10 becomes infinity.
 //   - object and material come from the Cryptomattes where there are any, else from the pass indices, whose names are
 //     "index N". Either way ids are those of the names (IdsForNames).
-//   - Where alpha is 1 in the whole picture the film was opaque and alpha says nothing: coverage is then that of the
-//     object's (else the material's) Cryptomatte; without one, 1 where there is depth; without that, where there is a normal.
+//   - Where no alpha lies between 0 and 1 the film was opaque, or might as well have been, and an alpha of 1 says
+//     nothing: coverage is then that of the object's (else the material's) Cryptomatte; without one, 1 where there is depth;
+//     without that, where there is a normal.
 //   - A pixel filter averages normals and alpha and leaves position and depth to one sample, which may have missed what
 //     covers the rest of the pixel: such pixels take depth and position from the nearest pixel within two that
 //     has them, of the same object if there is one. Covered pixels without a normal, as a volume's, do so with the normal, and

@@ -225,8 +225,7 @@ class Solver {
     if (static_cast<double>(off) > kOutliers * n) {
       return Refusal(name_,
                      "its depth is not planar in " + Number(100.0 * static_cast<double>(off) / n) +
-                         "% of the pixels, as with a panoramic camera, a shadow catcher, or Position and Depth that "
-                         "are not of one render");
+                         "% of the pixels, as with a panoramic camera, or Position and Depth that are not of one render");
     }
     if (noise > 0.01 * thickness || 4.0 * noise > 1e-4 * thickness * std::sqrt(n)) {
       return Refusal(name_, "all that is seen lies nearly in one plane (" + Number(thickness) + " m thick, positions are "

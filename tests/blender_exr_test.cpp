@@ -534,6 +534,26 @@ TEST(BlenderFile, AnotherViewLayersCryptomatteIsNotTaken) {
   ExpectRefusal(ReadGuides(folder / "half.exr", WithObjects()), {"half.exr", "half floats", "32-bit"});
 }
 
+TEST(BlenderFile, NothingIsOutsideARenderBorder) {
+  const TemporaryFolder folder;
+  BlenderFile file;
+  for (std::size_t i = 0; i < 600; ++i) {
+    file.Channel("Combined.A")[i] = 0.0f;
+    for (const char* axis : {"X", "Y", "Z"}) {
+      file.Channel(std::string("Normal.") + axis)[i] = file.Channel(std::string("Position.") + axis)[i] = 0.0f;
+    }
+    file.Channel("Depth.Z")[i] = 0.0f;  // Blender writes zeros there
+  }
+  file.Channel("Depth.Z")[1199] = 1e10f;  // background inside the border
+  for (const char* axis : {"X", "Y", "Z"}) file.Channel(std::string("Normal.") + axis)[1199] = 0.0f;
+  file.Write(folder / "shot.exr");
+  const auto guides = ReadGuides(folder / "shot.exr", WithObjects());
+  ASSERT_TRUE(guides) << guides.error().message;
+  for (std::size_t i = 0; i < file.Pixels(); ++i) {
+    ASSERT_EQ(guides->Plane(Layer::kCoverage)[i], i < 600 || i == 1199 ? 0.0f : 1.0f) << i;
+  }
+}
+
 TEST(BlenderFile, ATransparentFilmKeepsItsAlpha) {
   const TemporaryFolder folder;
   BlenderFile file;
