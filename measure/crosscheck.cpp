@@ -6,32 +6,14 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "image/color.h"
 #include "image/hash.h"
+#include "measure/crosscheck_parts.h"
 
 namespace scumble {
-namespace {
+namespace internal {
 
-// By nearest rank: the smallest value that is not exceeded by that share of all. NaN counts as infinitely far.
-double Percentile(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  for (double& value : values) {
-    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
-  }
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
-// In double, by both products: acos alone cannot tell small angles.
-double AngleDegrees(glm::dvec3 a, glm::dvec3 b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * (180.0 / 3.14159265358979323846);
-}
-
-// Pixels whose whole neighbourhood is covered in both sets and shows one object in each.
 std::vector<std::size_t> ErodedMask(const GuideSet& a, const GuideSet& b, int reach) {
   const int width = a.width(), height = a.height();
   std::vector<std::size_t> mask;
@@ -52,6 +34,34 @@ std::vector<std::size_t> ErodedMask(const GuideSet& a, const GuideSet& b, int re
     }
   }
   return mask;
+}
+
+void PutColor(Picture& picture, std::size_t i, glm::vec3 linear) {
+  for (int c = 0; c < 3; ++c) picture.rgba[4 * i + c] = Srgb16FromLinear(linear[c]);
+  picture.rgba[4 * i + 3] = 65535;
+}
+
+}  // namespace internal
+
+namespace {
+
+using internal::PutColor;
+
+// By nearest rank: the smallest value that is not exceeded by that share of all. NaN counts as infinitely far.
+double Percentile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  for (double& value : values) {
+    if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
+  }
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+// In double, by both products: acos alone cannot tell small angles.
+double AngleDegrees(glm::dvec3 a, glm::dvec3 b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * (180.0 / 3.14159265358979323846);
 }
 
 // How far a layer's pixels are apart, and how a value of it looks.
@@ -124,24 +134,19 @@ void AddFigures(const LayerMeasure& measure, const std::vector<double>& differen
   const double mean = sum / static_cast<double>(differences.size());
   switch (measure.layer) {
     case Layer::kNormal:
-      report.figures.push_back({layer, "99% within", "degrees", Percentile(differences, 0.99), 0.01});
-      report.figures.push_back({layer, "99.9% within", "degrees", Percentile(differences, 0.999), 0.1});
+      report.figures.push_back({layer, "99% within", "degrees", Percentile(differences, 0.99), 0.01, 0, 1e-4});
+      report.figures.push_back({layer, "99.9% within", "degrees", Percentile(differences, 0.999), 0.1, 0, 1e-4});
       break;
     case Layer::kObject: report.figures.push_back({layer, "differing", "pixels", sum, 0.0}); break;
-    case Layer::kAlbedo: report.figures.push_back({layer, "mean difference", "", mean, 0.002}); break;
-    default: report.figures.push_back({layer, "99.9% within", "relative", Percentile(differences, 0.999), 1e-5});
+    case Layer::kAlbedo: report.figures.push_back({layer, "mean difference", "", mean, 0.002, 0, 1e-6}); break;
+    default: report.figures.push_back({layer, "99.9% within", "relative", Percentile(differences, 0.999), 1e-5, 0, 1.2e-7});
   }
-}
-
-void PutColor(Picture& picture, std::size_t i, glm::vec3 linear) {
-  for (int c = 0; c < 3; ++c) picture.rgba[4 * i + c] = Srgb16FromLinear(linear[c]);
-  picture.rgba[4 * i + 3] = 65535;
 }
 
 CrosscheckPictures MakePictures(const LayerMeasure& measure, const GuideSet& a, const GuideSet& b,
                                 const std::vector<std::size_t>& mask, const std::vector<double>& differences) {
   CrosscheckPictures pictures{Info(measure.layer).name, Picture(a.width(), a.height()), Picture(a.width(), a.height()),
-                              Picture(a.width(), a.height()), measure.full_scale_words};
+                              Picture(a.width(), a.height()), "", std::string("yellow is ") + measure.full_scale_words};
   for (std::size_t i = 0; i < a.pixel_count(); ++i) {
     if (a.Plane(Layer::kCoverage)[i] > 0.0f) PutColor(pictures.reference, i, measure.look(a, i));
     if (b.Plane(Layer::kCoverage)[i] > 0.0f) PutColor(pictures.ours, i, measure.look(b, i));
@@ -160,14 +165,27 @@ void AddCoverage(const GuideSet& a, const GuideSet& b, CrosscheckReport& report)
     differing += (a.Plane(Layer::kCoverage)[i] >= 0.5f) != (b.Plane(Layer::kCoverage)[i] >= 0.5f);
   }
   const double percent = 100.0 * static_cast<double>(differing) / static_cast<double>(a.pixel_count());
-  report.figures.push_back({"A", "differing", "% of pixels", percent, 0.02});
+  // In a baseline one pixel may go either way.
+  const double one_pixel = 100.0 / static_cast<double>(a.pixel_count());
+  report.figures.push_back({"A", "differing", "% of pixels", percent, 0.02, 0, one_pixel});
 }
 
 }  // namespace
 
+double CrosscheckFigure::LimitInForce() const { return TightenedByBaseline() ? *baseline_limit : limit; }
+
+bool CrosscheckFigure::TooNoisy() const { return 2.0 * error > LimitInForce(); }
+
 bool CrosscheckReport::passed() const {
-  return skipped.empty() && compared > 0 &&
+  return skipped.empty() && problems.empty() && compared > 0 &&
          std::all_of(figures.begin(), figures.end(), [](const CrosscheckFigure& figure) { return figure.kept(); });
+}
+
+bool CrosscheckReport::KeepsBuiltInLimits() const {
+  CrosscheckReport alone;
+  alone.compared = compared, alone.skipped = skipped, alone.figures = figures;
+  for (CrosscheckFigure& figure : alone.figures) figure.baseline_limit.reset();
+  return alone.passed();
 }
 
 Expected<CrosscheckReport> Crosscheck(const std::string& scene, const GuideSet& reference, const GuideSet& ours,
@@ -183,12 +201,12 @@ Expected<CrosscheckReport> Crosscheck(const std::string& scene, const GuideSet& 
   }
   CrosscheckReport report;
   report.scene = scene;
-  report.width = ours.width(), report.height = ours.height();
+  report.setup.width = ours.width(), report.setup.height = ours.height();
   for (const Layer layer : {Layer::kPosition, Layer::kAlbedo}) {
     if (ours.Has(layer) && !reference.Has(layer)) report.skipped.push_back(Info(layer).name);
   }
   AddCoverage(reference, ours, report);
-  const std::vector<std::size_t> mask = ErodedMask(reference, ours, options.erode_pixels);
+  const std::vector<std::size_t> mask = internal::ErodedMask(reference, ours, options.erode_pixels);
   report.compared = mask.size();
   if (mask.empty()) return report;
   for (const LayerMeasure& measure : Measures(reference, ours)) {
@@ -201,36 +219,6 @@ Expected<CrosscheckReport> Crosscheck(const std::string& scene, const GuideSet& 
     }
   }
   return report;
-}
-
-std::string CrosscheckToText(const CrosscheckReport& report) {
-  std::string text = fmt::format("{}  {}×{}, {} pixels compared\n", report.scene, report.width, report.height, report.compared);
-  for (const CrosscheckFigure& figure : report.figures) {
-    text += fmt::format("  {:<9} {:<16} {:>12.3g}  limit {:<8.3g} {:<12} {}\n", figure.layer, figure.name, figure.value,
-                        figure.limit, figure.unit, figure.kept() ? "kept" : "BROKEN");
-  }
-  for (const std::string& layer : report.skipped) text += "  " + layer + ": the reference lacks it\n";
-  if (report.compared == 0) text += "  nothing to compare: no object is wide enough, or the pictures do not agree at all\n";
-  return text + (report.passed() ? "  verdict: agrees\n" : "  verdict: DIFFERS\n");
-}
-
-std::string CrosscheckToJson(const std::vector<CrosscheckReport>& reports) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const CrosscheckReport& report : reports) {
-    nlohmann::ordered_json item{{"scene", report.scene},       {"width", report.width},   {"height", report.height},
-                                {"compared", report.compared}, {"passed", report.passed()}};
-    item["skipped"] = report.skipped;
-    for (const CrosscheckFigure& figure : report.figures) {
-      item["figures"].push_back({{"layer", figure.layer},
-                                 {"name", figure.name},
-                                 {"unit", figure.unit},
-                                 {"value", figure.value},
-                                 {"limit", figure.limit},
-                                 {"kept", figure.kept()}});
-    }
-    json.push_back(std::move(item));
-  }
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace scumble
