@@ -18,6 +18,7 @@ std::string Escape(const std::string& text) {
     else if (c == '<') escaped += "&lt;";
     else if (c == '>') escaped += "&gt;";
     else if (c == '"') escaped += "&quot;";
+    else if (c == '\'') escaped += "&#39;";
     else escaped += c;
   }
   return escaped;

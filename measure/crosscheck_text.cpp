@@ -25,9 +25,14 @@ std::string SetupText(const CrosscheckSetup& setup) {
   return text;
 }
 
+// Beyond the limit by more than chance explains.
+bool IsBroken(const CrosscheckFigure& figure) {
+  return !(figure.value - (figure.TooNoisy() ? 2.0 * figure.error : 0.0) <= figure.LimitInForce());
+}
+
 std::string State(const CrosscheckFigure& figure) {
   if (figure.kept()) return "kept";
-  return figure.TooNoisy() && figure.value <= figure.LimitInForce() ? "TOO NOISY" : "BROKEN";
+  return IsBroken(figure) ? "BROKEN" : "TOO NOISY";
 }
 
 std::string FigureLine(const CrosscheckFigure& figure) {
@@ -126,7 +131,7 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
                                     "--samples",
                                     what, 2.0 * figure.error, limit));
     }
-    if (!(figure.value <= figure.LimitInForce())) {
+    if (IsBroken(figure)) {
       reasons.push_back(fmt::format("{}: {:.3g} is above {}", what, figure.value, limit) +
                         (figure.note.empty() ? "" : ", " + figure.note));
     }
