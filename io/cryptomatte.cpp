@@ -99,7 +99,7 @@ std::optional<Entry> HashAt(std::string_view text, std::size_t quote) {
 // The entry whose name begins at `start`. Names may hold quotation marks that are not escaped, so every mark is tried.
 // Where no reading gives the hash (another hash, or a damaged name) the first one stands.
 std::optional<Entry> NextEntry(std::string_view text, std::size_t start) {
-  constexpr std::size_t kLongestName = 1024;  // Blender's names have 63 bytes; bounds the search in hostile text
+  constexpr std::size_t kLongestName = 256;  // Blender's names have 63 bytes; bounds the search in hostile text
   std::optional<Entry> first;
   for (std::size_t quote = start; (quote = text.find('"', quote)) != std::string_view::npos; ++quote) {
     if (first && quote - start > kLongestName) break;
@@ -108,7 +108,7 @@ std::optional<Entry> NextEntry(std::string_view text, std::size_t start) {
     const std::string_view raw = text.substr(start, quote - start);
     entry->name = raw;
     if (MatteHash(raw) == entry->hash) return entry;
-    const auto unescaped = Unescape(raw);
+    const auto unescaped = raw.find('\\') == std::string_view::npos ? std::nullopt : Unescape(raw);
     if (unescaped) entry->name = *unescaped;
     if (unescaped && MatteHash(*unescaped) == entry->hash) return entry;
     if (!first) first = std::move(entry);

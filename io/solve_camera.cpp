@@ -291,9 +291,9 @@ class Solver {
     return view;
   }
 
-  // What a camera with pixels of any shape would make of it: tells why the right one does not fit. Nothing where no such
-  // camera fits either.
-  std::string ShapeFault(bool orthographic) const {
+  // What a camera with pixels of any shape would make of it: tells why the right one, with an error of `rms`, does not fit.
+  // Nothing where no such camera fits either.
+  std::string ShapeFault(bool orthographic, double rms) const {
     LeastSquares<4> along_u, along_v;
     const auto row = [&](const Sample& s) {
       const double k = orthographic ? 1.0 : centre_depth_ / s.z;
@@ -310,7 +310,8 @@ class Solver {
       for (int i = 0; i < 4; ++i) error_u -= u[i] * r[i], error_v -= v[i] * r[i];
       squares += 0.5 * (error_u * error_u + error_v * error_v);
     }
-    if (!(std::sqrt(squares / static_cast<double>(samples_.size())) < kFilterRms)) return "";
+    const double fitted_rms = std::sqrt(squares / static_cast<double>(samples_.size()));
+    if (!(fitted_rms < kFilterRms && fitted_rms < 0.3 * rms)) return "";  // the shape explains little of the error
     glm::dvec3 gu(u[0], u[1], u[2]), gv(v[0], v[1], v[2]);
     gu -= glm::dot(gu, back_) * back_, gv -= glm::dot(gv, back_) * back_;
     const double length_u = glm::length(gu), length_v = glm::length(gv);
@@ -365,8 +366,10 @@ class Solver {
       result.jittered = true;
       return Ok();
     }
-    const std::string fault = ShapeFault(view.orthographic);
-    if (!fault.empty()) return Refusal(name_, fault);
+    for (const bool orthographic : {false, true}) {
+      const std::string fault = ShapeFault(orthographic, result.error_pixels);
+      if (!fault.empty()) return Refusal(name_, fault);
+    }
     return Refusal(name_, "the best one is off by " + Number(result.error_pixels) +
                               " px (root mean square), as with a panoramic or distorted lens, depth of field, a "
                               "moving camera's motion blur or a very wide pixel filter");
