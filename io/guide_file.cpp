@@ -235,7 +235,7 @@ struct ChannelRun {
 // The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which nobody
 // asked for are cheaper to read along than to leave out.
 std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage) {
-  constexpr int kCheapGap = 4;
+  constexpr int kCheapGap = 16;
   std::set<int> indices;
   for (const PlaneRead& read : reads) {
     if (read.subimage == subimage) indices.insert(read.channel);
@@ -454,10 +454,14 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
   GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.from_blender, {}, contents.all_names, {}};
-  for (const std::string& prefix : ViewLayers(contents)) {
+  std::set<std::string> prefixes = ViewLayers(contents);
+  if (prefixes.empty()) prefixes.insert("");
+  for (const std::string& prefix : prefixes) {
     info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
+    for (const FoundMatte& found : contents.mattes) {
+      if (info.from_blender && found.meaning.prefix == prefix) info.layers[prefix].Add(found.meaning.layer);
+    }
   }
-  if (info.layers.empty()) info.layers[""] = CompleteLayers(SelectChannels(contents, "", all));
   ReadHeader(contents.spec, info.header);
   return info;
 }

@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kMinPixels = 64;
 constexpr std::size_t kMaxSamples = 100000;
 constexpr double kExactPixels = 0.02;    // a render at pixel centres reprojects as well as this
-constexpr double kFilterPixels = 3.0;    // how far a pixel filter of sensible width scatters its samples
-constexpr double kFilterRms = 1.0;
+constexpr double kScatterPixels = 3.0;   // how far slight depth of field, or a pixel filter, may scatter samples
+constexpr double kScatterRms = 1.0;
 constexpr double kOutliers = 0.001;
 constexpr double kFloatRounding = 0x1.0p-22;  // relative; a renderer's last steps lose two bits
 constexpr const char* kMend = "; give the .camera file that blender_scripts/render_guides.py writes, with --camera FILE";
@@ -311,7 +311,7 @@ class Solver {
       squares += 0.5 * (error_u * error_u + error_v * error_v);
     }
     const double fitted_rms = std::sqrt(squares / static_cast<double>(samples_.size()));
-    if (!(fitted_rms < kFilterRms && fitted_rms < 0.3 * rms)) return "";  // the shape explains little of the error
+    if (!(fitted_rms < kScatterRms && fitted_rms < 0.3 * rms)) return "";  // the shape explains little of the error
     glm::dvec3 gu(u[0], u[1], u[2]), gv(v[0], v[1], v[2]);
     gu -= glm::dot(gu, back_) * back_, gv -= glm::dot(gv, back_) * back_;
     const double length_u = glm::length(gu), length_v = glm::length(gv);
@@ -344,7 +344,7 @@ class Solver {
       const double rounding = position_rounding_ * (view.orthographic ? view.scale : view.scale / s.z);
       const double distance = glm::length(error);
       off += !(distance <= kExactPixels + rounding);
-      far_off += !(distance <= kFilterPixels + rounding);
+      far_off += !(distance <= kScatterPixels + rounding);
       squares += 0.5 * distance * distance;
       typical_rounding += rounding;
       const int column = static_cast<int>(i % in_.width), line = static_cast<int>(i / in_.width);
@@ -356,7 +356,7 @@ class Solver {
     result.error_pixels = std::sqrt(squares / n);
     typical_rounding /= n;
     if (static_cast<double>(off) <= kOutliers * n) return Ok();
-    bool scattered = static_cast<double>(far_off) <= kOutliers * n && result.error_pixels <= kFilterRms + typical_rounding;
+    bool scattered = static_cast<double>(far_off) <= kOutliers * n && result.error_pixels <= kScatterRms + typical_rounding;
     for (const Block& block : blocks) {
       if (block.count < 16.0) continue;
       const double limit = 6.0 * result.error_pixels / std::sqrt(block.count) + kExactPixels;
@@ -372,7 +372,7 @@ class Solver {
     }
     return Refusal(name_, "the best one is off by " + Number(result.error_pixels) +
                               " px (root mean square), as with a panoramic or distorted lens, depth of field, a "
-                              "moving camera's motion blur or a very wide pixel filter");
+                              "moving camera's motion blur");
   }
 
   // OpenGL's matrices, as Blender's own calc_matrix_camera gives them.

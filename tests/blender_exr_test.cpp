@@ -177,8 +177,7 @@ TEST(SolveCamera, LargeAndSmallWorlds) {
   }
 }
 
-// Cycles' first sample of a Blackman-Harris filter lies up to 1.5 px from the centre.
-TEST(SolveCamera, PositionsThatAPixelFilterScattered) {
+TEST(SolveCamera, PositionsScatteredAroundPixelCentres) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     TrueCamera camera;
     camera.view_from_world = RandomRotation(seed);

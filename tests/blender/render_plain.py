@@ -4,7 +4,7 @@
 
 Writes FOLDER/NAME.exr, multilayer, and FOLDER/NAME.camera with the camera that Blender had. A shot's name says what is
 out of the ordinary: one of the cameras (landscape, portrait, shifted, ortho, far), the film (opaque, clear), the
-filter (filtered, sharp), and lens, dof, or nopos: "shifted-opaque-filtered".
+filter (filtered, sharp), and lens, dof, slightdof or nopos: "shifted-opaque-filtered".
 """
 
 import argparse
@@ -44,8 +44,9 @@ def build(words):
         data.type, data.ortho_scale = "ORTHO", 8
     if "lens" in words:
         data.type, data.cycles.panorama_type = "PANO", "FISHEYE_EQUISOLID"
-    if "dof" in words:
-        data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 4.0, 0.1
+    if "dof" in words or "slightdof" in words:
+        data.dof.use_dof = True
+        data.dof.focus_distance, data.dof.aperture_fstop = (4.0, 0.1) if "dof" in words else (8.0, 0.2)
     scene.camera = eye
     return scene
 
