@@ -36,7 +36,7 @@ import guide_import  # noqa: E402
 import guide_materials  # noqa: E402
 from export_scene import EXIT_INPUT, EXIT_VERSION, SUPPORTED, Unsupported, fail  # noqa: E402
 
-DATA_PASSES = {"normal", "z", "position", "diffuse_color", "cryptomatte_object", "cryptomatte_material"}
+DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "cryptomatte_object", "cryptomatte_material"}
 LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", "glossy")
                                        for part in ("direct", "indirect", "color")}
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")

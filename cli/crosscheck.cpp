@@ -189,16 +189,17 @@ Status CheckScenes(const CrosscheckVerb& verb) {
 // Told before minutes of rendering, not after.
 Status CheckTargets(const CrosscheckVerb& verb) {
   for (const std::string& file : {verb.html, verb.write_baseline}) {
+    if (file.empty()) continue;
     std::error_code failed;
     const fs::path folder = fs::absolute(file).parent_path();
-    if (!file.empty() && !fs::is_directory(folder, failed)) {
+    if (!fs::is_directory(folder, failed)) {
       return OutputError(file + " cannot be written: there is no folder " + folder.string());
     }
   }
   if (verb.keep.empty()) return Ok();
   std::error_code failed;
   fs::create_directories(verb.keep, failed);
-  if (!fs::is_directory(verb.keep)) return OutputError("--keep " + verb.keep + " is no folder and none can be made: " + failed.message());
+  if (!fs::is_directory(fs::status(verb.keep, failed))) return OutputError("--keep " + verb.keep + " is no folder and none can be made: " + failed.message());
   return Ok();
 }
 

@@ -68,10 +68,12 @@ Expected<LightFile> ReadLightFile(const std::filesystem::path& stem, const std::
   return file;
 }
 
+std::string SizeText(int width, int height) { return std::to_string(width) + "×" + std::to_string(height); }
+
 Status CheckSameSize(const ChannelImage& a, const ChannelImage& b) {
   if (a.width == b.width && a.height == b.height) return Ok();
-  const auto size = [](const ChannelImage& image) { return std::to_string(image.width) + "×" + std::to_string(image.height); };
-  return InputError(b.name + " is " + size(b) + ", " + a.name + " " + size(a) + ": render them in one run");
+  return InputError(b.name + " is " + SizeText(b.width, b.height) + ", " + a.name + " " + SizeText(a.width, a.height) +
+                    ": render them in one run");
 }
 
 // The layer's value is color · (direct + indirect); null passes count as nothing, a null color as 1.
@@ -109,6 +111,20 @@ Expected<CyclesLight> ReadCyclesLight(const std::filesystem::path& stem, int sam
     }
   }
   return light;
+}
+
+Status AddSpecularColor(const std::filesystem::path& file, GuideSet& guides) {
+  SCUMBLE_ASSIGN(const ChannelImage image, ReadChannels(file));
+  SCUMBLE_ASSIGN(const ColorPlanes color, FindPass(image, "GlossCol"));
+  if (image.width != guides.width() || image.height != guides.height()) {
+    return InputError(image.name + " is " + SizeText(image.width, image.height) + ", its guides " +
+                      SizeText(guides.width(), guides.height()));
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto albedo = guides.Plane(Layer::kAlbedo, static_cast<int>(c));
+    for (std::size_t i = 0; i < albedo.size(); ++i) albedo[i] += (*color[c])[i];
+  }
+  return Ok();
 }
 
 }  // namespace scumble

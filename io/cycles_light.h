@@ -26,4 +26,8 @@ struct CyclesLight {
 // missing, two view layers hold it, the files differ in size.
 Expected<CyclesLight> ReadCyclesLight(const std::filesystem::path& stem, int samples);
 
+// Adds the GlossCol pass of the data file to the albedo of `guides`, which was read from it: for us the base colour of a
+// specular surface is albedo too, while DiffCol is black there. Errors: no such pass, another size.
+Status AddSpecularColor(const std::filesystem::path& file, GuideSet& guides);
+
 }  // namespace scumble

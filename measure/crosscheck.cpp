@@ -75,7 +75,8 @@ struct LayerMeasure {
 
 glm::vec3 LookOfId(const GuideSet& guides, std::size_t i) {
   const std::uint64_t hash = Hash(static_cast<std::uint64_t>(guides.Plane(Layer::kObject)[i]));
-  return {0.15f + 0.85f * UnitFloat(hash), 0.15f + 0.85f * UnitFloat(Mix64(hash)), 0.15f + 0.85f * UnitFloat(Mix64(hash + 1))};
+  const glm::vec3 color(UnitFloat(hash), UnitFloat(Mix64(hash)), UnitFloat(Mix64(hash + 1)));
+  return 0.05f + 0.7f * color * color;
 }
 
 std::vector<LayerMeasure> Measures(const GuideSet& a, const GuideSet& b) {

@@ -13,7 +13,7 @@ namespace scumble {
 struct CrosscheckRun {
   std::string reference;  // "Cycles, Blender 3.4.1"
   std::string command;    // how to repeat it
-  std::string baseline;   // the file that tightened limits; empty: none
+  std::string baseline = {};  // the file that tightened limits; empty: none
 };
 
 // A table of all scenes on top; for each scene what fails, what is not compared as authored, figures and limits, noise

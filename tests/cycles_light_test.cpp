@@ -111,5 +111,20 @@ TEST(CyclesLight, ErrorsNameFileAndPass) {
   expect(ReadCyclesLight(twice.folder / "stem.x", 16), "stem.x.ldde.16.exr", "is 3×2");
 }
 
+TEST(CyclesLight, SpecularColorIsAlbedoToo) {
+  const TemporaryFolder folder;
+  WritePasses(folder / "data.exr", {{"DiffCol", 0.5f}, {"GlossCol", 0.25f}});
+  GuideSet guides(3, 2);
+  guides.Add(Layer::kAlbedo);
+  guides.Plane(Layer::kAlbedo, 1)[4] = 0.125f;
+  ASSERT_TRUE(AddSpecularColor(folder / "data.exr", guides).ok());
+  EXPECT_EQ(guides.Vec3(Layer::kAlbedo, 4), glm::vec3(0.25f, 0.625f, 0.75f));
+  GuideSet other(2, 2);
+  other.Add(Layer::kAlbedo);
+  EXPECT_FALSE(AddSpecularColor(folder / "data.exr", other).ok());
+  WritePasses(folder / "none.exr", {{"DiffCol", 0.5f}});
+  EXPECT_FALSE(AddSpecularColor(folder / "none.exr", guides).ok());
+}
+
 }  // namespace
 }  // namespace scumble
