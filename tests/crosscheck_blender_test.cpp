@@ -38,7 +38,9 @@ class CrosscheckBlender : public CliTest {
   Json Check(Arguments arguments, int code) {
     arguments.insert(arguments.begin(), "crosscheck");
     arguments.insert(arguments.end(), {"--json", "--quiet"});
-    const CommandResult result = Run(arguments);
+    CommandSettings settings;
+    settings.patience_seconds = 240;  // Blender renders
+    const CommandResult result = Run(arguments, settings);
     EXPECT_EQ(result.code, code) << result.err << result.out;
     said_ = result.err;
     return result.Json();
@@ -49,14 +51,14 @@ class CrosscheckBlender : public CliTest {
 TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
   const Arguments run{kSuzanne, "--size", "160x90"};
   Arguments first = run;
-  first.insert(first.end(), {"--samples", "128", "--max-bounces", "3", "--keep", "kept", "-o", "report.html", "--write-baseline", "b.json"});
+  first.insert(first.end(), {"--samples", "96", "--max-bounces", "3", "--keep", "kept", "-o", "report.html", "--write-baseline", "b.json"});
   const Json reports = Check(first, 0);
   ASSERT_EQ(reports.size(), 1u);
   const auto figures = Figures(reports[0]);
   EXPECT_EQ(figures.at("lpe.LSE mean difference")["note"], "no such light");
   EXPECT_LT(figures.at("lpe.LDE mean difference")["value"], 0.5);
   EXPECT_EQ(reports[0]["noise"].size(), 6u);
-  EXPECT_EQ(reports[0]["noise"][0]["samples"], Json({8, 32, 128}));
+  EXPECT_EQ(reports[0]["noise"][0]["samples"], Json({6, 24, 96}));
   EXPECT_LT(reports[0]["noise"][2]["slope"], -0.4) << "LDDE";
   EXPECT_EQ(reports[0]["warnings"].size(), 1u);
   EXPECT_NE(reports[0]["warnings"][0].get<std::string>().find("Skin, Eyes, Plinth, Ball, Ring"), std::string::npos);
@@ -96,7 +98,7 @@ TEST_F(CrosscheckBlender, ABlendFileAgreesAtTheFrameAskedFor) {
   ASSERT_EQ(std::system(make.c_str()), 0) << TextOf(At("log"));
   const Arguments run{"room.blend", "--size", "160x90", "--max-bounces", "3"};
   Arguments first = run, fifth = run, data = run;
-  first.insert(first.end(), {"--samples", "128"});
+  first.insert(first.end(), {"--samples", "32"});
   fifth.insert(fifth.end(), {"--samples", "0", "--frame", "5", "--keep", "five"});
   data.insert(data.end(), {"--samples", "0", "--keep", "one"});
   const Json reports = Check(first, 0);
