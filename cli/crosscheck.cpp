@@ -68,8 +68,8 @@ void AddUnknown(const std::string& line, std::vector<std::string>& lines) {
 std::string Listed(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
 
 // Our guides: data as authored, light with pure materials.
-Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::vector<int>& counts, const Globals& globals,
-                ProgressBar& bar, BothSides& sides) {
+Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::vector<int>& counts,
+                const Globals& globals, ProgressBar& bar, BothSides& sides) {
   SceneOptions options;
   options.scene = path;
   options.size = verb.size;
@@ -78,12 +78,14 @@ Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::
   if (IsBlenderScene(path)) options.blender = {verb.blender, verb.frame};
   SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
   sides.warnings = scene.warnings;
-  SCUMBLE_ASSIGN(SceneGuides data, MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, globals, bar.Part(0.0, 0.02), false));
+  SCUMBLE_ASSIGN(SceneGuides data,
+                 MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, globals, bar.Part(0.0, 0.02), false));
   sides.ours = std::move(data.guides);
   if (counts.empty()) return Ok();
   if (const std::vector<std::string> replaced = UsePureMaterials(scene); !replaced.empty()) {
-    sides.warnings.push_back("light is compared with pure materials on both sides, Lambert or GGX without Fresnel, instead of: " +
-                             Listed(replaced));
+    sides.warnings.push_back(
+        "light is compared with pure materials on both sides, Lambert or GGX without Fresnel, instead of: " +
+        Listed(replaced));
   }
   Globals silent = globals;
   silent.quiet = true;  // the camera has been said
@@ -106,7 +108,8 @@ Expected<BothSides> MakeBothSides(const CrosscheckVerb& verb, const std::string&
   BothSides sides;
   ProgressBar bar("crosscheck", globals.quiet);
   SCUMBLE_RETURN_IF_ERROR(MakeOurs(verb, path, counts, globals, bar, sides));
-  ReferenceOptions options{verb.blender, path, size.width, size.height, verb.camera, verb.frame, counts, verb.max_bounces};
+  ReferenceOptions options{verb.blender, path,       size.width, size.height,
+                           verb.camera,  verb.frame, counts,     verb.max_bounces};
   SCUMBLE_ASSIGN(sides.reference, RenderReference(options, globals, bar.Part(counts.empty() ? 0.02 : 0.3, 1.0)));
   for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.warnings);
   return sides;
@@ -163,24 +166,28 @@ Expected<CheckedScene> CheckScene(const CrosscheckVerb& verb, const std::string&
   return CheckedScene{std::move(report), sides.reference.version};
 }
 
-// ---- Before the work --------------------------------------------------------------------------------------------------
+// ---- Before the work
+// --------------------------------------------------------------------------------------------------
 
 Status CheckScenes(const CrosscheckVerb& verb) {
   std::set<std::string> names, stems;
   for (const std::string& scene : verb.scenes) {
     const std::string ending = fs::path(scene).extension().string();
     if (ending != ".glb" && ending != ".gltf" && !IsBlenderScene(scene)) {
-      return InputError(scene + ": a cross-check needs a scene with a camera that Blender reads too: .glb, .gltf or .blend");
+      return InputError(scene +
+                        ": a cross-check needs a scene with a camera that Blender reads too: .glb, .gltf or .blend");
     }
     if (verb.frame && !IsBlenderScene(scene)) {
       return UsageError("--frame is for .blend scenes; " + scene + " has no frames: leave it out");
     }
     if (!names.insert(NameInBaseline(scene)).second && !(verb.baseline.empty() && verb.write_baseline.empty())) {
-      return UsageError(NameInBaseline(scene) + " is the file name of two scenes, and a baseline knows scenes by it: check them in "
+      return UsageError(NameInBaseline(scene) +
+                        " is the file name of two scenes, and a baseline knows scenes by it: check them in "
                         "two runs");
     }
     if (!stems.insert(fs::path(scene).stem().string()).second && !verb.keep.empty()) {
-      return UsageError("two scenes would be kept as " + fs::path(scene).stem().string() + ".cycles.exr: keep them in two runs");
+      return UsageError("two scenes would be kept as " + fs::path(scene).stem().string() +
+                        ".cycles.exr: keep them in two runs");
     }
   }
   return Ok();
@@ -199,7 +206,8 @@ Status CheckTargets(const CrosscheckVerb& verb) {
   if (verb.keep.empty()) return Ok();
   std::error_code failed;
   fs::create_directories(verb.keep, failed);
-  if (!fs::is_directory(fs::status(verb.keep, failed))) return OutputError("--keep " + verb.keep + " is no folder and none can be made: " + failed.message());
+  if (!fs::is_directory(fs::status(verb.keep, failed)))
+    return OutputError("--keep " + verb.keep + " is no folder and none can be made: " + failed.message());
   return Ok();
 }
 
@@ -211,7 +219,8 @@ Expected<Baseline> ReadBaseline(const std::string& path) {
 // A scene that the baseline cannot judge is an error, unless this run is about to measure it anew.
 Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.size));
-  const CrosscheckSetup setup{size.width, size.height, verb.samples, verb.samples > 0 ? verb.max_bounces : 0, verb.camera, verb.frame};
+  const CrosscheckSetup setup{size.width,  size.height, verb.samples, verb.samples > 0 ? verb.max_bounces : 0,
+                              verb.camera, verb.frame};
   std::set<std::string> unchecked;
   for (const auto& [name, scene] : baseline.scenes) unchecked.insert(name);
   for (const std::string& scene : verb.scenes) {
@@ -227,7 +236,8 @@ Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline) {
   return Ok();
 }
 
-// ---- The work ---------------------------------------------------------------------------------------------------------
+// ---- The work
+// ---------------------------------------------------------------------------------------------------------
 
 std::string RepeatCommand(const CrosscheckVerb& verb) {
   std::string command = "scumble crosscheck";
@@ -241,8 +251,8 @@ std::string RepeatCommand(const CrosscheckVerb& verb) {
 }
 
 // Entries of scenes that this run did not check stay as they are.
-Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckReport>& reports, const std::string& version,
-                     Baseline baseline, const Globals& globals) {
+Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckReport>& reports,
+                     const std::string& version, Baseline baseline, const Globals& globals) {
   baseline.blender = version;
   for (const CrosscheckReport& report : reports) {
     if (!report.KeepsBuiltInLimits()) {
@@ -275,7 +285,8 @@ Expected<ExitCode> RunCrosscheckVerb(const CrosscheckVerb& verb, const Globals& 
       Warn(verb.baseline + " was measured with Blender " + baseline.blender + ", this is " + version);
     }
     if (BaselineMismatch(baseline, NameInBaseline(scene), checked.report.setup).empty()) {
-      for (const std::string& note : ApplyBaseline(baseline, NameInBaseline(scene), checked.report)) Warn(verb.baseline + ": " + note);
+      for (const std::string& note : ApplyBaseline(baseline, NameInBaseline(scene), checked.report))
+        Warn(verb.baseline + ": " + note);
     }
     if (!globals.json) Print(CrosscheckToText(checked.report));
     passed = passed && checked.report.passed();
@@ -298,16 +309,19 @@ Expected<ExitCode> RunCrosscheckVerb(const CrosscheckVerb& verb, const Globals& 
 
 void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<CrosscheckVerb>();
-  CLI::App* sub = app.add_subcommand("crosscheck", "our guides against those of Blender's Cycles: figures, limits, verdict");
+  CLI::App* sub =
+      app.add_subcommand("crosscheck", "our guides against those of Blender's Cycles: figures, limits, verdict");
   sub->add_option("scenes", verb->scenes, "scene files with a camera: .glb or .blend")->type_name("FILE")->required();
   sub->add_option("--size", verb->size, "pixels of the pictures; one number makes a square")
       ->type_name("WIDTHxHEIGHT")
       ->capture_default_str();
   sub->add_option("--camera", verb->camera, "camera by name; left out: the scene's first")->type_name("NAME");
-  sub->add_option("--frame", verb->frame, "frame of .blend scenes; left out: the one that they were saved at")->type_name("N");
-  sub->add_option("--samples", verb->samples,
-                  "paths a pixel for the light layers, on both sides; also a quarter and a sixteenth of it, to show how noise "
-                  "falls. 0: data layers alone")
+  sub->add_option("--frame", verb->frame, "frame of .blend scenes; left out: the one that they were saved at")
+      ->type_name("N");
+  sub->add_option(
+         "--samples", verb->samples,
+         "paths a pixel for the light layers, on both sides; also a quarter and a sixteenth of it, to show how noise "
+         "falls. 0: data layers alone")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxSamples))
       ->capture_default_str();
@@ -317,8 +331,10 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->capture_default_str();
   sub->add_option("--baseline", verb->baseline, "limits from this file, where they are tighter than the built-in ones")
       ->type_name("FILE");
-  sub->add_option("--write-baseline", verb->write_baseline, "write what was measured, with some room, as a baseline")->type_name("FILE");
-  sub->add_option("--keep", verb->keep, "keep both sides' guides here, as SCENE.cycles.exr and SCENE.ours.exr")->type_name("FOLDER");
+  sub->add_option("--write-baseline", verb->write_baseline, "write what was measured, with some room, as a baseline")
+      ->type_name("FILE");
+  sub->add_option("--keep", verb->keep, "keep both sides' guides here, as SCENE.cycles.exr and SCENE.ours.exr")
+      ->type_name("FOLDER");
   sub->add_option("--blender", verb->blender, "the Blender to run")->type_name("PATH")->capture_default_str();
   sub->add_option("-o,--output", verb->html, "report to write: one .html file, pictures included")->type_name("FILE");
   AddGlobalOptions(*sub, globals);

@@ -60,8 +60,9 @@ std::vector<std::string> Arguments(const ReferenceOptions& options, const Global
                                    const fs::path& picture) {
   std::vector<std::string> arguments{options.blender, "-b", "-noaudio", "--factory-startup", "-Y"};
   if (globals.threads > 0) arguments.insert(arguments.end(), {"-t", std::to_string(globals.threads)});
-  arguments.insert(arguments.end(), {"-P", script.string(), "--", fs::absolute(options.scene).string(), picture.string(), "--size",
-                                     fmt::format("{}x{}", options.width, options.height), "--materials", "pure"});
+  arguments.insert(arguments.end(),
+                   {"-P", script.string(), "--", fs::absolute(options.scene).string(), picture.string(), "--size",
+                    fmt::format("{}x{}", options.width, options.height), "--materials", "pure"});
   if (!options.camera.empty()) arguments.insert(arguments.end(), {"--camera", options.camera});
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   if (!options.samples.empty()) {
@@ -76,7 +77,8 @@ void ReadLog(const std::vector<std::string>& lines, Reference& reference) {
     if (reference.version.empty() && StartsWith(line, "Blender ")) {
       reference.version = line.substr(8, line.find(' ', 8) - 8);
     }
-    if (StartsWith(line, kUnsupportedMark)) reference.unsupported.push_back(line.substr(std::string(kUnsupportedMark).size()));
+    if (StartsWith(line, kUnsupportedMark))
+      reference.unsupported.push_back(line.substr(std::string(kUnsupportedMark).size()));
   }
 }
 
@@ -85,10 +87,12 @@ void ReadLog(const std::vector<std::string>& lines, Reference& reference) {
 Expected<Reference> RenderReference(const ReferenceOptions& options, const Globals& globals, const Progress& progress) {
   SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", options.scene));
   const ScratchFolder scratch;
-  if (scratch.path().empty()) return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
+  if (scratch.path().empty())
+    return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   const fs::path picture = scratch.path() / "cycles.exr", log = scratch.path() / "log";
   Say(globals, options.scene + ": " + options.blender + " renders the reference");
-  const Expected<ProgramEnd> ended = RunWatched(Arguments(options, globals, script, picture), log, options.samples, progress);
+  const Expected<ProgramEnd> ended =
+      RunWatched(Arguments(options, globals, script, picture), log, options.samples, progress);
   if (!ended) return Error{ended.error().kind, options.scene + ": " + ended.error().message};
   const std::vector<std::string> lines = LinesOf(log);
   if (ended->code == kExitVersion) return UnavailableError(options.scene + ": " + ReasonFrom(lines));

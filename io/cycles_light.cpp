@@ -30,8 +30,8 @@ Expected<ColorPlanes> FindPass(const ChannelImage& image, const std::string& pas
     for (std::size_t i = 0; i < image.names.size(); ++i) {
       if (image.names[i] != channel && !EndsWith(image.names[i], "." + channel)) continue;
       if (planes[c]) {
-        return InputError(image.name + " holds the pass " + pass + " twice; expected one view layer: its channels are " +
-                          ChannelsOf(image));
+        return InputError(image.name + " holds the pass " + pass +
+                          " twice; expected one view layer: its channels are " + ChannelsOf(image));
       }
       planes[c] = &image.planes[i];
     }
@@ -77,7 +77,8 @@ Status CheckSameSize(const ChannelImage& a, const ChannelImage& b) {
 }
 
 // The layer's value is color · (direct + indirect); null passes count as nothing, a null color as 1.
-void Fill(GuideSet& guides, Layer layer, const ColorPlanes* color, const ColorPlanes& first, const ColorPlanes* second) {
+void Fill(GuideSet& guides, Layer layer, const ColorPlanes* color, const ColorPlanes& first,
+          const ColorPlanes* second) {
   guides.Add(layer);
   for (std::size_t c = 0; c < 3; ++c) {
     const auto out = guides.Plane(layer, static_cast<int>(c));

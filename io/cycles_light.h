@@ -22,12 +22,12 @@ struct CyclesLight {
 //   LSE   = GlossCol · GlossDir of `all`
 //   LDDE  = DiffCol · DiffInd of `ldde`, where the second surface from the eye has no specular lobe
 //   LD12E = DiffCol · (DiffDir + DiffInd) of `ld12e`, which moreover ends there
-// Values are as stored, NaN included. Passes are found by the end of their names, whatever the view layer. Errors: a file or a pass is
-// missing, two view layers hold it, the files differ in size.
+// Values are as stored, NaN included. Passes are found by the end of their names, whatever the view layer. Errors: a
+// file or a pass is missing, two view layers hold it, the files differ in size.
 Expected<CyclesLight> ReadCyclesLight(const std::filesystem::path& stem, int samples);
 
-// Adds the GlossCol pass of the data file to the albedo of `guides`, which was read from it: for us the base colour of a
-// specular surface is albedo too, while DiffCol is black there. Errors: no such pass, another size.
+// Adds the GlossCol pass of the data file to the albedo of `guides`, which was read from it: for us the base colour of
+// a specular surface is albedo too, while DiffCol is black there. Errors: no such pass, another size.
 Status AddSpecularColor(const std::filesystem::path& file, GuideSet& guides);
 
 }  // namespace scumble

@@ -89,7 +89,9 @@ std::vector<LayerMeasure> Measures(const GuideSet& a, const GuideSet& b) {
   std::vector<LayerMeasure> measures = {
       {Layer::kNormal,
        [&a, &b](std::size_t i) { return AngleDegrees(a.Vec3(Layer::kNormal, i), b.Vec3(Layer::kNormal, i)); },
-       [](const GuideSet& g, std::size_t i) { return glm::pow(g.Vec3(Layer::kNormal, i) * 0.5f + 0.5f, glm::vec3(2.2f)); },
+       [](const GuideSet& g, std::size_t i) {
+         return glm::pow(g.Vec3(Layer::kNormal, i) * 0.5f + 0.5f, glm::vec3(2.2f));
+       },
        0.1, "0.1 degrees"},
       {Layer::kDepth, [=](std::size_t i) { return relative(depth_a[i], depth_b[i]); },
        [=](const GuideSet& g, std::size_t i) {
@@ -107,15 +109,16 @@ std::vector<LayerMeasure> Measures(const GuideSet& a, const GuideSet& b) {
       if (!(a.Plane(Layer::kCoverage)[i] > 0.0f)) continue;
       low = glm::min(low, a.Vec3(Layer::kPosition, i)), high = glm::max(high, a.Vec3(Layer::kPosition, i));
     }
-    measures.push_back({Layer::kPosition,
-                        [&a, &b, depth_a](std::size_t i) {
-                          const glm::dvec3 d = glm::dvec3(a.Vec3(Layer::kPosition, i)) - glm::dvec3(b.Vec3(Layer::kPosition, i));
-                          return glm::length(d) / std::max<double>(std::fabs(depth_a[i]), 1e-30);
-                        },
-                        [=](const GuideSet& g, std::size_t i) {
-                          return (g.Vec3(Layer::kPosition, i) - low) / glm::max(high - low, glm::vec3(1e-6f)) * 0.8f + 0.05f;
-                        },
-                        1e-4, "1e-4 of the distance"});
+    measures.push_back(
+        {Layer::kPosition,
+         [&a, &b, depth_a](std::size_t i) {
+           const glm::dvec3 d = glm::dvec3(a.Vec3(Layer::kPosition, i)) - glm::dvec3(b.Vec3(Layer::kPosition, i));
+           return glm::length(d) / std::max<double>(std::fabs(depth_a[i]), 1e-30);
+         },
+         [=](const GuideSet& g, std::size_t i) {
+           return (g.Vec3(Layer::kPosition, i) - low) / glm::max(high - low, glm::vec3(1e-6f)) * 0.8f + 0.05f;
+         },
+         1e-4, "1e-4 of the distance"});
   }
   if (a.Has(Layer::kAlbedo) && b.Has(Layer::kAlbedo)) {
     measures.push_back({Layer::kAlbedo,
@@ -138,16 +141,25 @@ void AddFigures(const LayerMeasure& measure, const std::vector<double>& differen
       report.figures.push_back({layer, "99% within", "degrees", Percentile(differences, 0.99), 0.01, 0, 1e-4});
       report.figures.push_back({layer, "99.9% within", "degrees", Percentile(differences, 0.999), 0.1, 0, 1e-4});
       break;
-    case Layer::kObject: report.figures.push_back({layer, "differing", "pixels", sum, 0.0}); break;
-    case Layer::kAlbedo: report.figures.push_back({layer, "mean difference", "", mean, 0.002, 0, 1e-6}); break;
-    default: report.figures.push_back({layer, "99.9% within", "relative", Percentile(differences, 0.999), 1e-5, 0, 1.2e-7});
+    case Layer::kObject:
+      report.figures.push_back({layer, "differing", "pixels", sum, 0.0});
+      break;
+    case Layer::kAlbedo:
+      report.figures.push_back({layer, "mean difference", "", mean, 0.002, 0, 1e-6});
+      break;
+    default:
+      report.figures.push_back({layer, "99.9% within", "relative", Percentile(differences, 0.999), 1e-5, 0, 1.2e-7});
   }
 }
 
 CrosscheckPictures MakePictures(const LayerMeasure& measure, const GuideSet& a, const GuideSet& b,
                                 const std::vector<std::size_t>& mask, const std::vector<double>& differences) {
-  CrosscheckPictures pictures{Info(measure.layer).name, Picture(a.width(), a.height()), Picture(a.width(), a.height()),
-                              Picture(a.width(), a.height()), "", std::string("yellow is ") + measure.full_scale_words};
+  CrosscheckPictures pictures{Info(measure.layer).name,
+                              Picture(a.width(), a.height()),
+                              Picture(a.width(), a.height()),
+                              Picture(a.width(), a.height()),
+                              "",
+                              std::string("yellow is ") + measure.full_scale_words};
   for (std::size_t i = 0; i < a.pixel_count(); ++i) {
     if (a.Plane(Layer::kCoverage)[i] > 0.0f) PutColor(pictures.reference, i, measure.look(a, i));
     if (b.Plane(Layer::kCoverage)[i] > 0.0f) PutColor(pictures.ours, i, measure.look(b, i));
@@ -155,7 +167,8 @@ CrosscheckPictures MakePictures(const LayerMeasure& measure, const GuideSet& a, 
   }
   for (std::size_t m = 0; m < mask.size(); ++m) {
     const auto heat = static_cast<float>(std::min(1.0, differences[m] / measure.full_scale));
-    PutColor(pictures.difference, mask[m], glm::mix(glm::vec3(0.0f, 0.01f, 0.06f), glm::vec3(1.0f, 0.75f, 0.05f), heat));
+    PutColor(pictures.difference, mask[m],
+             glm::mix(glm::vec3(0.0f, 0.01f, 0.06f), glm::vec3(1.0f, 0.75f, 0.05f), heat));
   }
   return pictures;
 }

@@ -19,10 +19,10 @@ struct CrosscheckFigure {
   std::string name;   // "99% within"
   std::string unit;   // "degrees"
   double value = 0;
-  double limit = 0;  // built in
-  double error = 0;  // standard error of the value; 0 where chance plays no part
-  double floor = 0;  // the least limit that makes sense in a baseline
-  std::string note = {};  // "no such light"
+  double limit = 0;                           // built in
+  double error = 0;                           // standard error of the value; 0 where chance plays no part
+  double floor = 0;                           // the least limit that makes sense in a baseline
+  std::string note = {};                      // "no such light"
   std::optional<double> baseline_limit = {};  // from a file; can tighten and never loosen
 
   double LimitInForce() const;
@@ -46,11 +46,11 @@ struct CrosscheckPictures {
 // How far ours and the reference are apart pixel by pixel, at several sample counts.
 struct CrosscheckNoise {
   std::string layer;
-  std::vector<int> samples;      // ascending
-  std::vector<double> nrmse;     // root mean square difference over the reference's mean, by count; both sides' noise
-  std::optional<double> slope;   // of log NRMSE against log samples, least squares: −1/2 for independent samples
-  bool free_of_noise = false;    // NRMSE below 1e-3 at the largest count: no slope
-  bool no_such_light = false;    // zero in both
+  std::vector<int> samples;     // ascending
+  std::vector<double> nrmse;    // root mean square difference over the reference's mean, by count; both sides' noise
+  std::optional<double> slope;  // of log NRMSE against log samples, least squares: −1/2 for independent samples
+  bool free_of_noise = false;   // NRMSE below 1e-3 at the largest count: no slope
+  bool no_such_light = false;   // zero in both
   // The largest difference of a channel at the largest count.
   double worst = 0;
   int worst_x = 0;
@@ -91,9 +91,9 @@ struct CrosscheckOptions {
 };
 
 // Compares coverage over the whole picture, and normal, depth, position, object ids and albedo inside the object masks
-// eroded by `erode_pixels`. Limits: normals 99% within 0.01° and 99.9% within 0.1°; depth and position 99.9% within 1e-5
-// relative; coverage equal but for 0.02% of the pixels; ids equal; albedo 0.002 in the mean. Both sets must hold A,
-// normal, depth and object; sizes must agree.
+// eroded by `erode_pixels`. Limits: normals 99% within 0.01° and 99.9% within 0.1°; depth and position 99.9% within
+// 1e-5 relative; coverage equal but for 0.02% of the pixels; ids equal; albedo 0.002 in the mean. Both sets must hold
+// A, normal, depth and object; sizes must agree.
 Expected<CrosscheckReport> Crosscheck(const std::string& scene, const GuideSet& reference, const GuideSet& ours,
                                       const CrosscheckOptions& options = {});
 
@@ -104,13 +104,13 @@ struct CrosscheckLight {
   GuideSet ours;  // lpe.* layers
 };
 
-// Adds the light layers to the report of the data layers `reference` and `ours`, whose masks they share. `light` is in ascending
-// order of samples; figures and pictures are those of the last. Each layer's figure is the relative difference of the
-// mean, Σ|mean ours − mean reference| / Σ mean reference over the three channels, in percent; its error is the sum of
-// the channels' standard errors, so it holds however the channels' noise hangs together. `indirect` is full − LDE − LSE
-// where the surface itself does not shine. Limits: LDE 0.5%, LSE 2%, the others 1.5% where nothing is glossy and 2% else.
-// Zero in both is "no such light"; zero in one alone breaks. Every value of ours must be finite and not negative.
-// A layer that either side lacks is skipped, and fails the verdict. Errors: sizes differ.
+// Adds the light layers to the report of the data layers `reference` and `ours`, whose masks they share. `light` is in
+// ascending order of samples; figures and pictures are those of the last. Each layer's figure is the relative
+// difference of the mean, Σ|mean ours − mean reference| / Σ mean reference over the three channels, in percent; its
+// error is the sum of the channels' standard errors, so it holds however the channels' noise hangs together. `indirect`
+// is full − LDE − LSE where the surface itself does not shine. Limits: LDE 0.5%, LSE 2%, the others 1.5% where nothing
+// is glossy and 2% else. Zero in both is "no such light"; zero in one alone breaks. Every value of ours must be finite
+// and not negative. A layer that either side lacks is skipped, and fails the verdict. Errors: sizes differ.
 Status CrosscheckLightLayers(const GuideSet& reference, const GuideSet& ours, const std::vector<CrosscheckLight>& light,
                              const CrosscheckOptions& options, CrosscheckReport& report);
 

@@ -47,7 +47,8 @@ Status ReadLimits(const Json& json, const std::string& file, const std::string& 
   for (const auto& [figure, limit] : json.items()) {
     const double value = limit.is_number() ? limit.get<double>() : 0.0;
     if (!limit.is_number() || !(value >= 0.0 && std::isfinite(value))) {
-      const std::string found = limit.is_number() ? fmt::format("{:g}", value) : std::string("of type ") + limit.type_name();
+      const std::string found =
+          limit.is_number() ? fmt::format("{:g}", value) : std::string("of type ") + limit.type_name();
       return Wrong(file, place + "/" + figure, "is " + found + ", expected a number of 0 or more");
     }
     scene.limits[figure] = value;
@@ -80,7 +81,8 @@ Expected<BaselineScene> ReadScene(const Json& json, const std::string& file, con
       SCUMBLE_RETURN_IF_ERROR(ReadLimits(value, file, here, scene));
       has_limits = true;
     } else {
-      return Wrong(file, here, "is no key of a baseline's scene: expected size, samples, max_bounces, camera, frame, limits");
+      return Wrong(file, here,
+                   "is no key of a baseline's scene: expected size, samples, max_bounces, camera, frame, limits");
     }
   }
   if (!has_size || !has_samples || !has_bounces || !has_limits) {
@@ -134,7 +136,8 @@ std::string BaselineToJson(const Baseline& baseline) {
   OrderedJson json{{"scumble_baseline", kVersion}, {"blender", baseline.blender}, {"scenes", OrderedJson::object()}};
   for (const auto& [name, scene] : baseline.scenes) {
     OrderedJson& item = json["scenes"][name];
-    item = {{"size", SizeText(scene.setup)}, {"samples", scene.setup.samples}, {"max_bounces", scene.setup.max_bounces}};
+    item = {
+        {"size", SizeText(scene.setup)}, {"samples", scene.setup.samples}, {"max_bounces", scene.setup.max_bounces}};
     if (!scene.setup.camera.empty()) item["camera"] = scene.setup.camera;
     if (scene.setup.frame) item["frame"] = *scene.setup.frame;
     item["limits"] = OrderedJson::object();
@@ -154,14 +157,17 @@ std::string BaselineMismatch(const Baseline& baseline, const std::string& scene,
     if (then != now) differs += (differs.empty() ? "" : ", ") + option + " " + then + " and not " + now;
   };
   const auto name = [](const std::string& camera) { return camera.empty() ? std::string("left out") : camera; };
-  const auto number = [](const std::optional<int>& frame) { return frame ? std::to_string(*frame) : std::string("left out"); };
+  const auto number = [](const std::optional<int>& frame) {
+    return frame ? std::to_string(*frame) : std::string("left out");
+  };
   compare("--size", SizeText(was), SizeText(setup));
   compare("--samples", std::to_string(was.samples), std::to_string(setup.samples));
   compare("--max-bounces", std::to_string(was.max_bounces), std::to_string(setup.max_bounces));
   compare("--camera", name(was.camera), name(setup.camera));
   compare("--frame", number(was.frame), number(setup.frame));
   if (differs.empty()) return "";
-  return "the baseline of " + scene + " was measured with " + differs + ": run it so, or measure it anew with --write-baseline";
+  return "the baseline of " + scene + " was measured with " + differs +
+         ": run it so, or measure it anew with --write-baseline";
 }
 
 std::vector<std::string> ApplyBaseline(const Baseline& baseline, const std::string& scene, CrosscheckReport& report) {
@@ -179,8 +185,9 @@ std::vector<std::string> ApplyBaseline(const Baseline& baseline, const std::stri
     }
     figure->baseline_limit = limit;
     if (limit > figure->limit) {
-      notes.push_back(fmt::format("{}: the baseline's limit of {:g} for {} is above the built-in one and counts as {:g}", scene,
-                                  limit, name, figure->limit));
+      notes.push_back(
+          fmt::format("{}: the baseline's limit of {:g} for {} is above the built-in one and counts as {:g}", scene,
+                      limit, name, figure->limit));
     }
   }
   return notes;

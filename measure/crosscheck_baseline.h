@@ -1,9 +1,10 @@
-// Limits of a cross-check that a team commits: measured once, kept since. They can tighten the built-in limits and never
-// loosen them.
+// Limits of a cross-check that a team commits: measured once, kept since. They can tighten the built-in limits and
+// never loosen them.
 //
 // A baseline is JSON:
 //   {"scumble_baseline": 1, "blender": "3.4.1",
-//    "scenes": {"suzanne.glb": {"size": "640x360", "samples": 64, "max_bounces": 8, "limits": {"normal 99% within": 0.0007}}}}
+//    "scenes": {"suzanne.glb": {"size": "640x360", "samples": 64, "max_bounces": 8, "limits": {"normal 99% within":
+//    0.0007}}}}
 // A scene may name its "camera" and "frame", where they were chosen. Figures are named by layer and name.
 #pragma once
 

@@ -14,12 +14,18 @@ namespace {
 std::string Escape(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
-    if (c == '&') escaped += "&amp;";
-    else if (c == '<') escaped += "&lt;";
-    else if (c == '>') escaped += "&gt;";
-    else if (c == '"') escaped += "&quot;";
-    else if (c == '\'') escaped += "&#39;";
-    else escaped += c;
+    if (c == '&')
+      escaped += "&amp;";
+    else if (c == '<')
+      escaped += "&lt;";
+    else if (c == '>')
+      escaped += "&gt;";
+    else if (c == '"')
+      escaped += "&quot;";
+    else if (c == '\'')
+      escaped += "&#39;";
+    else
+      escaped += c;
   }
   return escaped;
 }
@@ -43,8 +49,10 @@ std::string Base64(const std::vector<std::byte>& bytes) {
 
 Expected<std::string> ImageTag(const Picture& picture, const std::string& caption) {
   SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(picture));
-  return fmt::format("<figure><img loading=\"lazy\" src=\"data:image/png;base64,{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
-                     Base64(png), Escape(caption), Escape(caption));
+  return fmt::format(
+      "<figure><img loading=\"lazy\" src=\"data:image/png;base64,{}\" "
+      "alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+      Base64(png), Escape(caption), Escape(caption));
 }
 
 constexpr const char* kHead = R"(<!DOCTYPE html>
@@ -96,18 +104,21 @@ const CrosscheckFigure* Tightest(const CrosscheckReport& report) {
 }
 
 std::string Summary(const std::vector<CrosscheckReport>& reports) {
-  std::string html = "<section><table><tr><th>scene</th><th>verdict</th><th class=\"number\">pixels</th><th class=\"number\">"
-                     "samples</th><th>nearest to its limit</th><th class=\"number\">measured</th><th class=\"number\">limit</th>"
-                     "<th></th></tr>\n";
+  std::string html =
+      "<section><table><tr><th>scene</th><th>verdict</th><th class=\"number\">pixels</th><th class=\"number\">"
+      "samples</th><th>nearest to its limit</th><th class=\"number\">measured</th><th class=\"number\">limit</th>"
+      "<th></th></tr>\n";
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const CrosscheckReport& report = reports[i];
-    html += fmt::format("<tr><td class=\"first\"><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>"
-                        "<td class=\"number\">{}</td>",
-                        Anchor(i), Escape(report.scene), Badge(report.passed()), report.compared,
-                        report.setup.samples > 0 ? std::to_string(report.setup.samples) : "data only");
+    html += fmt::format(
+        "<tr><td class=\"first\"><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>"
+        "<td class=\"number\">{}</td>",
+        Anchor(i), Escape(report.scene), Badge(report.passed()), report.compared,
+        report.setup.samples > 0 ? std::to_string(report.setup.samples) : "data only");
     if (const CrosscheckFigure* figure = Tightest(report)) {
       html += fmt::format("<td>{} {}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{:.3g}</td><td>{}</td>",
-                          Escape(figure->layer), Escape(figure->name), figure->value, figure->LimitInForce(), Escape(figure->unit));
+                          Escape(figure->layer), Escape(figure->name), figure->value, figure->LimitInForce(),
+                          Escape(figure->unit));
     }
     html += "</tr>\n";
   }
@@ -115,19 +126,21 @@ std::string Summary(const std::vector<CrosscheckReport>& reports) {
 }
 
 std::string FigureTable(const CrosscheckReport& report) {
-  std::string html = "<table><tr><th>layer</th><th>figure</th><th class=\"number\">measured</th><th class=\"number\">± error</th>"
-                     "<th class=\"number\">limit</th><th></th><th></th></tr>\n";
+  std::string html =
+      "<table><tr><th>layer</th><th>figure</th><th class=\"number\">measured</th><th class=\"number\">± error</th>"
+      "<th class=\"number\">limit</th><th></th><th></th></tr>\n";
   std::string above;
   for (const CrosscheckFigure& figure : report.figures) {
     std::string remark = figure.note;
     const auto add = [&remark](const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; };
     if (figure.TooNoisy()) add("too noisy: raise --samples");
     if (figure.TightenedByBaseline()) add(fmt::format("limit from the baseline; built in {:.3g}", figure.limit));
-    html += fmt::format("<tr{}><td class=\"{}\">{}</td><td>{}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{}</td>"
-                        "<td class=\"number\">{:.3g}</td><td>{}</td><td class=\"soft\">{}</td></tr>\n",
-                        figure.kept() ? "" : " class=\"broken\"", figure.layer == above ? "again" : "first", Escape(figure.layer),
-                        Escape(figure.name), figure.value, figure.error > 0.0 ? fmt::format("{:.2g}", figure.error) : "",
-                        figure.LimitInForce(), Escape(figure.unit), Escape(remark));
+    html += fmt::format(
+        "<tr{}><td class=\"{}\">{}</td><td>{}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{}</td>"
+        "<td class=\"number\">{:.3g}</td><td>{}</td><td class=\"soft\">{}</td></tr>\n",
+        figure.kept() ? "" : " class=\"broken\"", figure.layer == above ? "again" : "first", Escape(figure.layer),
+        Escape(figure.name), figure.value, figure.error > 0.0 ? fmt::format("{:.2g}", figure.error) : "",
+        figure.LimitInForce(), Escape(figure.unit), Escape(remark));
     above = figure.layer;
   }
   return html + "</table>\n";
@@ -149,7 +162,9 @@ std::string NoiseTable(const std::vector<CrosscheckNoise>& noise) {
       continue;
     }
     for (const double value : layer.nrmse) html += fmt::format("<td class=\"number\">{:.3g}</td>", value);
-    html += "<td class=\"number\">" + (layer.slope ? fmt::format("{:+.2f}", *layer.slope) : layer.free_of_noise ? "free of noise" : "–");
+    html += "<td class=\"number\">" + (layer.slope           ? fmt::format("{:+.2f}", *layer.slope)
+                                       : layer.free_of_noise ? "free of noise"
+                                                             : "–");
     html += fmt::format("</td><td>{:.3g} at ({}, {}): {:.4g} against {:.4g}</td></tr>\n", layer.worst, layer.worst_x,
                         layer.worst_y, layer.worst_ours, layer.worst_reference);
   }
@@ -159,8 +174,10 @@ std::string NoiseTable(const std::vector<CrosscheckNoise>& noise) {
 std::string NoisePart(const CrosscheckReport& report) {
   const std::string table = NoiseTable(report.noise);
   if (table.empty()) return "";
-  return "<h3>Noise against samples</h3>\n<p class=\"soft\">Root mean square difference of the pixels over the reference's mean: both "
-         "sides' noise, and what they really disagree about, which no sample count takes away. The dashed line falls as "
+  return "<h3>Noise against samples</h3>\n<p class=\"soft\">Root mean square difference of the pixels over the "
+         "reference's mean: both "
+         "sides' noise, and what they really disagree about, which no sample count takes away. The dashed line falls "
+         "as "
          "1/√samples.</p>\n<section>" +
          table + internal::NoiseChart(report.noise) + "</section>\n";
 }
@@ -188,7 +205,8 @@ Expected<std::string> PictureRows(const CrosscheckReport& report) {
     SCUMBLE_ASSIGN(const std::string ours, ImageTag(pictures.ours, "ours"));
     SCUMBLE_ASSIGN(const std::string difference, ImageTag(pictures.difference, "difference; " + pictures.full_scale));
     html += "<h3>" + Escape(pictures.layer);
-    if (!pictures.look.empty()) html += " <span class=\"soft\" style=\"font-weight:400\">" + Escape(pictures.look) + "</span>";
+    if (!pictures.look.empty())
+      html += " <span class=\"soft\" style=\"font-weight:400\">" + Escape(pictures.look) + "</span>";
     html += "</h3>\n<div class=\"row\">\n" + reference + ours + difference + "</div>\n";
   }
   return html;
@@ -200,11 +218,13 @@ Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& repo
   bool passed = !reports.empty();
   for (const CrosscheckReport& report : reports) passed = passed && report.passed();
   std::string html = kHead;
-  html += fmt::format("<h1>Scumble cross-check {}</h1>\n<p>Reference: {}. Repeat with <code>{}</code>.{}</p>\n", Badge(passed),
-                      Escape(run.reference), Escape(run.command),
+  html += fmt::format("<h1>Scumble cross-check {}</h1>\n<p>Reference: {}. Repeat with <code>{}</code>.{}</p>\n",
+                      Badge(passed), Escape(run.reference), Escape(run.command),
                       run.baseline.empty() ? "" : " Limits tightened by <code>" + Escape(run.baseline) + "</code>.");
-  html += "<p class=\"soft\">Coverage is compared over the whole picture; everything else where a pixel and its neighbours, two to "
-          "each side, show one object in both. Light layers: relative difference of the mean.</p>\n";
+  html +=
+      "<p class=\"soft\">Coverage is compared over the whole picture; everything else where a pixel and its "
+      "neighbours, two to "
+      "each side, show one object in both. Light layers: relative difference of the mean.</p>\n";
   html += Summary(reports);
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const CrosscheckReport& report = reports[i];

@@ -11,8 +11,8 @@ namespace scumble {
 
 // What the page says about the run.
 struct CrosscheckRun {
-  std::string reference;  // "Cycles, Blender 3.4.1"
-  std::string command;    // how to repeat it
+  std::string reference;      // "Cycles, Blender 3.4.1"
+  std::string command;        // how to repeat it
   std::string baseline = {};  // the file that tightened limits; empty: none
 };
 

@@ -17,8 +17,8 @@ namespace {
 using internal::PutColor;
 
 constexpr Layer kLightLayers[] = {Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E, Layer::kLpeFull};
-constexpr double kNoiseFree = 1e-3;       // NRMSE below which a layer holds no noise worth a slope
-constexpr double kBaselineFloor = 0.01;   // percent
+constexpr double kNoiseFree = 1e-3;      // NRMSE below which a layer holds no noise worth a slope
+constexpr double kBaselineFloor = 0.01;  // percent
 
 // A layer, or what is computed from several, in both sets.
 struct LightMeasure {
@@ -111,7 +111,8 @@ CrosscheckFigure MeanFigure(const LightMeasure& measure, const LightSums& sums) 
     return figure;
   }
   const double count = static_cast<double>(measure.mask.size()), total = Total(sums.reference);
-  const glm::dvec3 variance = glm::max(sums.difference_squared / count - (sums.difference / count) * (sums.difference / count), 0.0);
+  const glm::dvec3 variance =
+      glm::max(sums.difference_squared / count - (sums.difference / count) * (sums.difference / count), 0.0);
   figure.value = 100.0 * Total(glm::abs(sums.difference)) / total;
   // The mean's error is σ/√n; the total is n means.
   figure.error = 100.0 * Total(glm::sqrt(variance / count)) * count / total;
@@ -208,7 +209,10 @@ glm::vec3 SignedColor(double difference) {
 CrosscheckPictures LightPictures(const LightMeasure& measure, const GuideSet& reference, const CrosscheckLight& light) {
   const int width = light.ours.width(), height = light.ours.height();
   const double exposure = ExposureFor(measure, light);
-  CrosscheckPictures pictures{measure.name, Picture(width, height), Picture(width, height), Picture(width, height),
+  CrosscheckPictures pictures{measure.name,
+                              Picture(width, height),
+                              Picture(width, height),
+                              Picture(width, height),
                               fmt::format("both exposed by {:+.2f} stops, clipped at white", std::log2(exposure)),
                               "orange: ours is brighter, blue: darker; full colour is a tenth of white"};
   for (std::size_t i = 0; i < light.ours.pixel_count(); ++i) {
@@ -228,8 +232,9 @@ Status CheckSizes(const GuideSet& data, const std::vector<CrosscheckLight>& ligh
   for (const CrosscheckLight& count : light) {
     for (const GuideSet* side : {&count.reference.guides, &count.ours}) {
       if (side->width() == data.width() && side->height() == data.height()) continue;
-      return InputError(fmt::format("{}: the light layers of {} samples are {}×{}, the data layers {}×{}: render all at one size",
-                                    scene, count.samples, side->width(), side->height(), data.width(), data.height()));
+      return InputError(
+          fmt::format("{}: the light layers of {} samples are {}×{}, the data layers {}×{}: render all at one size",
+                      scene, count.samples, side->width(), side->height(), data.width(), data.height()));
     }
   }
   return Ok();

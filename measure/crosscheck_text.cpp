@@ -37,8 +37,8 @@ std::string State(const CrosscheckFigure& figure) {
 
 std::string FigureLine(const CrosscheckFigure& figure) {
   const std::string error = figure.error > 0.0 ? fmt::format("± {:.2g}", figure.error) : "";
-  std::string line = fmt::format("  {:<9} {:<16} {:>9.3g} {:<9} limit {:<8.3g} {:<12} {}", figure.layer, figure.name, figure.value,
-                                 error, figure.LimitInForce(), figure.unit, State(figure));
+  std::string line = fmt::format("  {:<9} {:<16} {:>9.3g} {:<9} limit {:<8.3g} {:<12} {}", figure.layer, figure.name,
+                                 figure.value, error, figure.LimitInForce(), figure.unit, State(figure));
   if (figure.TightenedByBaseline()) line += fmt::format(" (baseline; built in {:.3g})", figure.limit);
   if (!figure.note.empty()) line += ", " + figure.note;
   return line + "\n";
@@ -127,9 +127,10 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
     const std::string limit = fmt::format("the {}limit of {:.3g} {}", figure.TightenedByBaseline() ? "baseline's " : "",
                                           figure.LimitInForce(), figure.unit);
     if (figure.TooNoisy()) {
-      reasons.push_back(fmt::format("{}: twice its standard error, {:.3g}, is above {}, so the figure proves nothing: raise "
-                                    "--samples",
-                                    what, 2.0 * figure.error, limit));
+      reasons.push_back(
+          fmt::format("{}: twice its standard error, {:.3g}, is above {}, so the figure proves nothing: raise "
+                      "--samples",
+                      what, 2.0 * figure.error, limit));
     }
     if (IsBroken(figure)) {
       reasons.push_back(fmt::format("{}: {:.3g} is above {}", what, figure.value, limit) +
@@ -146,7 +147,8 @@ std::string CrosscheckVerdict(const CrosscheckReport& report) {
 }
 
 std::string CrosscheckToText(const CrosscheckReport& report) {
-  std::string text = fmt::format("{}  {}, {} pixels compared\n", report.scene, SetupText(report.setup), report.compared);
+  std::string text =
+      fmt::format("{}  {}, {} pixels compared\n", report.scene, SetupText(report.setup), report.compared);
   for (const CrosscheckFigure& figure : report.figures) text += FigureLine(figure);
   text += NoiseText(report.noise);
   if (!report.warnings.empty()) text += "  not compared as authored:\n";

@@ -105,7 +105,8 @@ TEST(CrosscheckBaseline, AnotherSetUpIsNamed) {
   const Baseline baseline = Parsed(Text(R"({"normal 99% within": 0.001})"));
   const CrosscheckSetup setup{20, 16, 64, 8, "", {}};
   EXPECT_EQ(BaselineMismatch(baseline, "a.glb", setup), "");
-  EXPECT_NE(BaselineMismatch(baseline, "b.glb", setup).find("no scene b.glb: add it with --write-baseline"), std::string::npos);
+  EXPECT_NE(BaselineMismatch(baseline, "b.glb", setup).find("no scene b.glb: add it with --write-baseline"),
+            std::string::npos);
   const auto mismatch = [&](CrosscheckSetup other) { return BaselineMismatch(baseline, "a.glb", other); };
   EXPECT_NE(mismatch({21, 16, 64, 8, "", {}}).find("--size 20x16 and not 21x16"), std::string::npos);
   EXPECT_NE(mismatch({20, 16, 16, 8, "", {}}).find("--samples 64 and not 16"), std::string::npos);
@@ -115,7 +116,9 @@ TEST(CrosscheckBaseline, AnotherSetUpIsNamed) {
 }
 
 TEST(CrosscheckBaseline, HostileFilesAreRefusedByPlace) {
-  const auto scene = [](const std::string& inside) { return R"({"scumble_baseline": 1, "scenes": {"a.glb": )" + inside + "}}"; };
+  const auto scene = [](const std::string& inside) {
+    return R"({"scumble_baseline": 1, "scenes": {"a.glb": )" + inside + "}}";
+  };
   const std::pair<std::string, std::string> cases[] = {
       {"", "no baseline"},
       {"{", "line 1"},
@@ -135,11 +138,15 @@ TEST(CrosscheckBaseline, HostileFilesAreRefusedByPlace) {
       {scene(R"({"size": "99999999999x16", "samples": 1, "max_bounces": 1, "limits": {"x": 1}})"), "scenes/a.glb/size"},
       {scene(R"({"size": 20, "samples": 1, "max_bounces": 1, "limits": {"x": 1}})"), "scenes/a.glb/size"},
       {scene(R"({"size": "20x16", "samples": 1.5, "max_bounces": 1, "limits": {"x": 1}})"), "scenes/a.glb/samples"},
-      {scene(R"({"size": "20x16", "samples": 18446744073709551615, "max_bounces": 1, "limits": {"x": 1}})"), "scenes/a.glb/samples"},
+      {scene(R"({"size": "20x16", "samples": 18446744073709551615, "max_bounces": 1, "limits": {"x": 1}})"),
+       "scenes/a.glb/samples"},
       {scene(R"({"size": "20x16", "samples": 1, "max_bounces": -1, "limits": {"x": 1}})"), "scenes/a.glb/max_bounces"},
-      {scene(R"({"size": "20x16", "samples": 1, "max_bounces": 1, "frame": 1e300, "limits": {"x": 1}})"), "scenes/a.glb/frame"},
-      {scene(R"({"size": "20x16", "samples": 1, "max_bounces": 1, "camera": 1, "limits": {"x": 1}})"), "scenes/a.glb/camera"},
-      {scene(R"({"size": "20x16", "samples": 1, "max_bounces": 1, "sample": 1, "limits": {"x": 1}})"), "scenes/a.glb/sample"},
+      {scene(R"({"size": "20x16", "samples": 1, "max_bounces": 1, "frame": 1e300, "limits": {"x": 1}})"),
+       "scenes/a.glb/frame"},
+      {scene(R"({"size": "20x16", "samples": 1, "max_bounces": 1, "camera": 1, "limits": {"x": 1}})"),
+       "scenes/a.glb/camera"},
+      {scene(R"({"size": "20x16", "samples": 1, "max_bounces": 1, "sample": 1, "limits": {"x": 1}})"),
+       "scenes/a.glb/sample"},
       {scene(R"({"size": "20x16", "samples": 1, "max_bounces": 1, "limits": {}})"), "scenes/a.glb/limits"},
       {Text(R"({"normal 99% within": -1})"), "limits/normal 99% within"},
       {Text(R"({"normal 99% within": "0.1"})"), "limits/normal 99% within"},

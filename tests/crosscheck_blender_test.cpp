@@ -51,7 +51,8 @@ class CrosscheckBlender : public CliTest {
 TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
   const Arguments run{kSuzanne, "--size", "160x90"};
   Arguments first = run;
-  first.insert(first.end(), {"--samples", "96", "--max-bounces", "3", "--keep", "kept", "-o", "report.html", "--write-baseline", "b.json"});
+  first.insert(first.end(), {"--samples", "96", "--max-bounces", "3", "--keep", "kept", "-o", "report.html",
+                             "--write-baseline", "b.json"});
   const Json reports = Check(first, 0);
   ASSERT_EQ(reports.size(), 1u);
   const auto figures = Figures(reports[0]);
@@ -80,7 +81,8 @@ TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
   EXPECT_LE(baseline["scenes"]["suzanne.glb"]["limits"]["lpe.LDE mean difference"], 0.5);
   Json& scene = baseline["scenes"]["suzanne.glb"];
   scene["samples"] = scene["max_bounces"] = 0;
-  scene["limits"] = {{"normal 99% within", 1e-6}, {"normal 99.9% within", scene["limits"]["normal 99.9% within"]},
+  scene["limits"] = {{"normal 99% within", 1e-6},
+                     {"normal 99.9% within", scene["limits"]["normal 99.9% within"]},
                      {"albedo mean difference", 5.0}};
   std::ofstream(At("b.json")) << baseline;
   Arguments again = run;
@@ -93,7 +95,8 @@ TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
 }
 
 TEST_F(CrosscheckBlender, ABlendFileAgreesAtTheFrameAskedFor) {
-  const std::string make = "blender -b -noaudio --factory-startup -P '" SCUMBLE_SOURCE_DIR "/tests/blender/make_crosscheck.py' -- '" +
+  const std::string make = "blender -b -noaudio --factory-startup -P '" SCUMBLE_SOURCE_DIR
+                           "/tests/blender/make_crosscheck.py' -- '" +
                            At("room.blend").string() + "' > '" + At("log").string() + "' 2>&1";
   ASSERT_EQ(std::system(make.c_str()), 0) << TextOf(At("log"));
   const Arguments run{"room.blend", "--size", "160x90", "--max-bounces", "3"};
@@ -114,7 +117,8 @@ TEST_F(CrosscheckBlender, ABlendFileAgreesAtTheFrameAskedFor) {
   const Json moved = Check(fifth, 0);
   EXPECT_EQ(moved[0]["frame"], 5);
   EXPECT_EQ(moved[0]["samples"], 0);
-  EXPECT_EQ(Run({"compare", "one/room.cycles.exr", "five/room.cycles.exr", "--layer", "object"}).code, 1) << "the box has moved";
+  EXPECT_EQ(Run({"compare", "one/room.cycles.exr", "five/room.cycles.exr", "--layer", "object"}).code, 1)
+      << "the box has moved";
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ namespace scumble {
 namespace {
 
 const std::string kSuzanne = SCUMBLE_SOURCE_DIR "/scenes/suzanne.glb";
-constexpr const char* kBaseline = R"({"scumble_baseline": 1, "blender": "3.4.1", "scenes": {"suzanne.glb": {"size": "64x36",
+constexpr const char* kBaseline =
+    R"({"scumble_baseline": 1, "blender": "3.4.1", "scenes": {"suzanne.glb": {"size": "64x36",
   "samples": 4, "max_bounces": 2, "limits": {"normal 99% within": 0.001}}}})";
 
 class CrosscheckCli : public CliTest {
@@ -19,8 +20,8 @@ class CrosscheckCli : public CliTest {
 
 TEST_F(CrosscheckCli, HelpNamesEveryOption) {
   const std::string help = Run({"crosscheck", "--help"}).out;
-  for (const std::string option : {"--samples", "--max-bounces", "--baseline", "--write-baseline", "--keep", "--frame", "--size",
-                                   "--camera", "--blender", "--output", "--json"}) {
+  for (const std::string option : {"--samples", "--max-bounces", "--baseline", "--write-baseline", "--keep", "--frame",
+                                   "--size", "--camera", "--blender", "--output", "--json"}) {
     EXPECT_NE(help.find(option), std::string::npos) << option;
   }
 }

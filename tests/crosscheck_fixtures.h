@@ -10,7 +10,8 @@
 
 namespace scumble {
 
-constexpr Layer kCrosscheckLight[] = {Layer::kLpeFull, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E};
+constexpr Layer kCrosscheckLight[] = {Layer::kLpeFull, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE,
+                                      Layer::kLpeLD12E};
 
 inline void FillLayer(GuideSet& guides, Layer layer, glm::vec3 value) {
   guides.Add(layer);
@@ -22,7 +23,8 @@ inline void FillLayer(GuideSet& guides, Layer layer, glm::vec3 value) {
 // One object that fills the picture: 16 × 12 pixels are compared.
 inline GuideSet OneObject() {
   GuideSet guides(20, 16);
-  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo}) {
+  for (const Layer layer :
+       {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo}) {
     guides.Add(layer);
   }
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
@@ -49,7 +51,8 @@ inline CrosscheckLight EqualLight(int samples) {
   return {samples, {DiffuseLight(), std::vector<std::uint8_t>(20 * 16, 0), false}, DiffuseLight()};
 }
 
-inline CrosscheckReport CheckLight(const std::vector<CrosscheckLight>& light, const CrosscheckOptions& options = {2, false}) {
+inline CrosscheckReport CheckLight(const std::vector<CrosscheckLight>& light,
+                                   const CrosscheckOptions& options = {2, false}) {
   auto report = Crosscheck("scene", OneObject(), OneObject(), options);
   EXPECT_TRUE(report.ok());
   const Status status = CrosscheckLightLayers(OneObject(), OneObject(), light, options, *report);
@@ -57,7 +60,8 @@ inline CrosscheckReport CheckLight(const std::vector<CrosscheckLight>& light, co
   return *report;
 }
 
-inline CrosscheckFigure FigureOf(const CrosscheckReport& report, const std::string& layer, const std::string& name = "mean difference") {
+inline CrosscheckFigure FigureOf(const CrosscheckReport& report, const std::string& layer,
+                                 const std::string& name = "mean difference") {
   for (const CrosscheckFigure& figure : report.figures) {
     if (figure.layer == layer && figure.name == name) return figure;
   }

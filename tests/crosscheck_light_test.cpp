@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kCompared = 16 * 12;
 
 bool Says(const std::vector<std::string>& lines, const std::string& part) {
-  return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) { return line.find(part) != std::string::npos; });
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const std::string& line) { return line.find(part) != std::string::npos; });
 }
 
 TEST(CrosscheckLight, EqualLightAgreesAndAbsentLightIsSaid) {
@@ -34,8 +35,12 @@ TEST(CrosscheckLight, LimitsFollowWhatIsSpecular) {
   const CrosscheckReport diffuse = CheckLight({light});
   light.reference.glossy = true;
   const CrosscheckReport glossy = CheckLight({light});
-  for (const auto& [layer, plain, mixed] : {std::tuple("lpe.LDE", 0.5, 0.5), {"lpe.LSE", 2.0, 2.0}, {"lpe.LDDE", 1.5, 2.0},
-                                            {"lpe.LD12E", 1.5, 2.0}, {"lpe.full", 1.5, 2.0}, {"indirect", 1.5, 2.0}}) {
+  for (const auto& [layer, plain, mixed] : {std::tuple("lpe.LDE", 0.5, 0.5),
+                                            {"lpe.LSE", 2.0, 2.0},
+                                            {"lpe.LDDE", 1.5, 2.0},
+                                            {"lpe.LD12E", 1.5, 2.0},
+                                            {"lpe.full", 1.5, 2.0},
+                                            {"indirect", 1.5, 2.0}}) {
     EXPECT_EQ(FigureOf(diffuse, layer).limit, plain) << layer;
     EXPECT_EQ(FigureOf(glossy, layer).limit, mixed) << layer;
   }
@@ -208,8 +213,9 @@ TEST(CrosscheckLight, ThePageHoldsFiguresChartWarningsAndReasons) {
   report.problems = {"the baseline names the figure 'x<y>'"};
   const auto html = CrosscheckToHtml({report}, {"Cycles", "scumble crosscheck scene", "limits<1>.json"});
   ASSERT_TRUE(html.ok());
-  for (const std::string part : {"<svg", "class=\"guide\"", "lpe.LDDE -0.50", "material &#39;a&lt;b&gt;&#39;: unlit", "x&lt;y&gt;",
-                                 "limits&lt;1&gt;.json", "href=\"#scene1\"", "stops, clipped at white", "±"}) {
+  for (const std::string part :
+       {"<svg", "class=\"guide\"", "lpe.LDDE -0.50", "material &#39;a&lt;b&gt;&#39;: unlit", "x&lt;y&gt;",
+        "limits&lt;1&gt;.json", "href=\"#scene1\"", "stops, clipped at white", "±"}) {
     EXPECT_NE(html->find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html->find("http"), std::string::npos) << "nothing is loaded from elsewhere";

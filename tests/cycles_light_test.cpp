@@ -21,9 +21,9 @@ using Passes = std::map<std::string, float>;  // value of R; G is twice, B three
 
 const Passes kAll = {{"Combined", 7.0f}, {"Emit", 0.0f},     {"DiffDir", 2.0f},  {"DiffInd", 5.0f},
                      {"DiffCol", 0.5f},  {"GlossDir", 3.0f}, {"GlossCol", 0.25f}};
-const Passes kLdde = {{"Combined", 6.0f}, {"Emit", 0.0f},     {"DiffDir", 2.0f},  {"DiffInd", 4.0f},
+const Passes kLdde = {{"Combined", 6.0f}, {"Emit", 0.0f},     {"DiffDir", 2.0f}, {"DiffInd", 4.0f},
                       {"DiffCol", 0.5f},  {"GlossDir", 0.0f}, {"GlossCol", 0.0f}};
-const Passes kLd12e = {{"Combined", 5.0f}, {"Emit", 0.0f},     {"DiffDir", 2.0f},  {"DiffInd", 3.0f},
+const Passes kLd12e = {{"Combined", 5.0f}, {"Emit", 0.0f},     {"DiffDir", 2.0f}, {"DiffInd", 3.0f},
                        {"DiffCol", 0.5f},  {"GlossDir", 0.0f}, {"GlossCol", 0.0f}};
 
 void WritePasses(const fs::path& path, const Passes& passes, int width = 3, const std::string& second_layer = "") {
