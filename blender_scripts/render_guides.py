@@ -3,8 +3,8 @@
     blender -b -noaudio --factory-startup -Y -P render_guides.py -- SCENE OUTPUT.exr --size WIDTHxHEIGHT
             [--camera NAME] [--frame N] [--samples 4,16,64] [--max-bounces N] [--materials authored|pure]
 
-SCENE is a .blend, a .glb or a .gltf. OUTPUT.exr is a multilayer EXR of data: Normal, Depth, Position, DiffCol and
-Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the picture was seen, for
+SCENE is a .blend, a .glb or a .gltf. OUTPUT.exr is a multilayer EXR of data: Normal, Depth, Position, DiffCol,
+GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the picture was seen, for
 `scumble transfer --camera` and `scumble crosscheck`.
 
 With --samples there are three renders of the light for each number N of the list, named after OUTPUT without its ending:
@@ -33,10 +33,12 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import guide_camera  # noqa: E402  (Blender does not put a script's own folder on the path)
 import guide_import  # noqa: E402
+import guide_instances  # noqa: E402
 import guide_materials  # noqa: E402
 from export_scene import EXIT_INPUT, EXIT_VERSION, SUPPORTED, Unsupported, fail  # noqa: E402
 
-DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "cryptomatte_object", "cryptomatte_material"}
+DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit", "cryptomatte_object",
+               "cryptomatte_material"}
 LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", "glossy")
                                        for part in ("direct", "indirect", "color")}
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
@@ -86,6 +88,7 @@ def open_scene(options, unsupported):
         scene = bpy.context.scene
         set_size(scene.render, options.size)
         scene.frame_set(scene.frame_current if options.frame is None else options.frame)
+        guide_instances.name_apart(scene, choose_layer(scene), unsupported)
     else:
         guide_import.load(options.scene, options.size, unsupported)
         set_size(bpy.context.scene.render, options.size)
