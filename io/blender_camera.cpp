@@ -24,16 +24,20 @@ Expected<GuideCamera> ReadBlenderCamera(const std::filesystem::path& path) {
     ++number;
     const std::size_t space = line.find(' ');
     const std::string key = line.substr(0, space), rest = space == std::string::npos ? "" : line.substr(space + 1);
-    if (key == "camera") result.name = rest;
-    else if (key == "viewFromWorld") view = internal::MatrixFromText(rest);
-    else if (key == "clipFromView") clip = internal::MatrixFromText(rest);
+    if (key == "camera")
+      result.name = rest;
+    else if (key == "viewFromWorld")
+      view = internal::MatrixFromText(rest);
+    else if (key == "clipFromView")
+      clip = internal::MatrixFromText(rest);
     else if (!line.empty()) {
       return InputError(path.string() + ":" + std::to_string(number) + ": '" + line.substr(0, 40) +
                         "' is no line of a .camera file, as blender_scripts/render_guides.py writes it");
     }
   }
   if (!view || !clip) {
-    return InputError(path.string() + " lacks viewFromWorld or clipFromView with 16 numbers: write it with "
+    return InputError(path.string() +
+                      " lacks viewFromWorld or clipFromView with 16 numbers: write it with "
                       "blender_scripts/render_guides.py");
   }
   result.view_from_world = *view;

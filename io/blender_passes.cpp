@@ -29,25 +29,28 @@ bool HasNormal(const GuideSet& guides, std::size_t i) {
 
 bool HasDepth(const GuideSet& guides, std::size_t i) { return guides.Plane(Layer::kDepth)[i] < kBackgroundDepth; }
 
-// Alpha of an opaque film is 1 everywhere, background included.
+// Alpha of an opaque film is 1 everywhere, background included, and 0 outside a render border.
 void FindCoverage(const BlenderMattes& mattes, GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
-  if (!std::all_of(coverage.begin(), coverage.end(), [](float a) { return a >= 0.9999f; })) return;
-  for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
-    const auto found = mattes.find(layer);
-    if (found != mattes.end()) return MatteCoverage(found->second.ranks, coverage);
+  if (std::any_of(coverage.begin(), coverage.end(), [](float a) { return a != 0.0f && !(a >= 0.9999f); })) return;
+  std::vector<float> shown(coverage.size());
+  if (!mattes.empty()) {
+    MatteCoverage(mattes.begin()->second.ranks, shown);
+  } else {
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      shown[i] = (guides.Has(Layer::kDepth) ? HasDepth(guides, i) : HasNormal(guides, i)) ? 1.0f : 0.0f;
+    }
   }
-  for (std::size_t i = 0; i < coverage.size(); ++i) {
-    coverage[i] = (guides.Has(Layer::kDepth) ? HasDepth(guides, i) : HasNormal(guides, i)) ? 1.0f : 0.0f;
-  }
+  for (std::size_t i = 0; i < shown.size(); ++i) coverage[i] = coverage[i] > 0.0f ? shown[i] : 0.0f;
 }
 
 Expected<GuideCamera> FindCamera(const std::string& name, const GuideSet& guides) {
   for (const auto& [layer, pass] : {std::pair{Layer::kPosition, "Position"}, {Layer::kDepth, "Z (Depth)"}}) {
     if (guides.Has(layer)) continue;
-    return InputError(name + " is a Blender render whose header holds no camera, and it lacks the pass " + pass +
-                      ", from which the camera could be found: switch on Position and Z in View Layer > Passes, or give "
-                      "the .camera file that blender_scripts/render_guides.py writes, with --camera FILE");
+    return InputError(
+        name + " is a Blender render whose header holds no camera, and it lacks the pass " + pass +
+        ", from which the camera could be found: switch on Position and Z in View Layer > Passes, or give "
+        "the .camera file that blender_scripts/render_guides.py writes, with --camera FILE");
   }
   SolveCameraInput input;
   input.width = guides.width(), input.height = guides.height();
@@ -102,17 +105,19 @@ Status NameIds(const BlenderMattes& mattes, const std::string& name, GuideSet& g
        {std::pair{Layer::kObject, &guides.object_names}, {Layer::kMaterial, &guides.material_names}}) {
     if (!guides.Has(layer)) continue;
     const auto matte = mattes.find(layer);
-    if (matte == mattes.end()) NameIndices(guides.Plane(layer), *names);
-    else SCUMBLE_RETURN_IF_ERROR(NameMattes(matte->second.ranks, matte->second.manifest, name, guides.Plane(layer), *names));
+    if (matte == mattes.end())
+      NameIndices(guides.Plane(layer), *names);
+    else
+      SCUMBLE_RETURN_IF_ERROR(
+          NameMattes(matte->second.ranks, matte->second.manifest, name, guides.Plane(layer), *names));
   }
   return Ok();
 }
 
 // Steps to the pixels within two of one, nearest first.
-constexpr std::array<std::pair<int, int>, 24> kNearby = {{{0, -1}, {-1, 0},  {1, 0},  {0, 1},   {-1, -1}, {1, -1},
-                                                         {-1, 1}, {1, 1},   {0, -2}, {-2, 0},  {2, 0},   {0, 2},
-                                                         {-1, -2}, {1, -2}, {-2, -1}, {2, -1}, {-2, 1},  {2, 1},
-                                                         {-1, 2}, {1, 2},   {-2, -2}, {2, -2}, {-2, 2},  {2, 2}}};
+constexpr std::array<std::pair<int, int>, 24> kNearby = {
+    {{0, -1},  {-1, 0}, {1, 0},   {0, 1},  {-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, -2},  {-2, 0}, {2, 0},  {0, 2},
+     {-1, -2}, {1, -2}, {-2, -1}, {2, -1}, {-2, 1},  {2, 1},  {-1, 2}, {1, 2}, {-2, -2}, {2, -2}, {-2, 2}, {2, 2}}};
 
 // The nearest pixel that has something, of the same object if there is one; the pixel itself where there is none.
 std::size_t Nearest(const GuideSet& guides, std::size_t i, const std::vector<char>& has) {
@@ -160,7 +165,8 @@ void ClearBackground(GuideSet& guides) {
     for (int c = 0; c < ChannelCount(layer); ++c) {
       const auto plane = guides.Plane(layer, c);
       for (std::size_t i = 0; i < plane.size(); ++i) {
-        if (!(coverage[i] > 0.0f) || (layer == Layer::kDepth && plane[i] >= kBackgroundDepth)) plane[i] = BackgroundValue(layer);
+        if (!(coverage[i] > 0.0f) || (layer == Layer::kDepth && plane[i] >= kBackgroundDepth))
+          plane[i] = BackgroundValue(layer);
       }
     }
   }
@@ -184,11 +190,13 @@ Status ConvertBlenderPasses(const std::optional<GuideCamera>& camera, const Blen
 }
 
 std::string BlenderPassesFor(const LayerSet& missing) {
-  constexpr std::pair<Layer, const char*> kPasses[] = {
-      {Layer::kCoverage, "Combined"},     {Layer::kNormal, "Normal"},
-      {Layer::kDepth, "Z"},               {Layer::kObject, "Cryptomatte Object"},
-      {Layer::kMaterial, "Cryptomatte Material"}, {Layer::kPosition, "Position"},
-      {Layer::kAlbedo, "Diffuse Color"}};
+  constexpr std::pair<Layer, const char*> kPasses[] = {{Layer::kCoverage, "Combined"},
+                                                       {Layer::kNormal, "Normal"},
+                                                       {Layer::kDepth, "Z"},
+                                                       {Layer::kObject, "Cryptomatte Object"},
+                                                       {Layer::kMaterial, "Cryptomatte Material"},
+                                                       {Layer::kPosition, "Position"},
+                                                       {Layer::kAlbedo, "Diffuse Color"}};
   std::string passes;
   LayerSet left = missing;
   for (const auto& [layer, pass] : kPasses) {

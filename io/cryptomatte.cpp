@@ -146,7 +146,8 @@ std::optional<MatteChannel> ParseMatteChannel(std::string_view name) {
   const std::string_view kind = dot == std::string_view::npos ? matte : matte.substr(dot + 1);
   if (kind != "CryptoObject" && kind != "CryptoMaterial") return std::nullopt;
   return MatteChannel{std::string(matte), std::string(dot == std::string_view::npos ? "" : matte.substr(0, dot)),
-                      kind == "CryptoObject" ? Layer::kObject : Layer::kMaterial, 4 * level + static_cast<int>(component)};
+                      kind == "CryptoObject" ? Layer::kObject : Layer::kMaterial,
+                      4 * level + static_cast<int>(component)};
 }
 
 std::uint32_t MatteHash(std::string_view name) {

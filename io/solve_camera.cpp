@@ -13,12 +13,13 @@ namespace {
 
 constexpr std::size_t kMinPixels = 64;
 constexpr std::size_t kMaxSamples = 100000;
-constexpr double kExactPixels = 0.02;    // a render at pixel centres reprojects as well as this
-constexpr double kScatterPixels = 3.0;   // how far slight depth of field, or a pixel filter, may scatter samples
+constexpr double kExactPixels = 0.02;   // a render at pixel centres reprojects as well as this
+constexpr double kScatterPixels = 3.0;  // how far slight depth of field, or a pixel filter, may scatter samples
 constexpr double kScatterRms = 1.0;
 constexpr double kOutliers = 0.001;
 constexpr double kFloatRounding = 0x1.0p-22;  // relative; a renderer's last steps lose two bits
-constexpr const char* kMend = "; give the .camera file that blender_scripts/render_guides.py writes, with --camera FILE";
+constexpr const char* kMend =
+    "; give the .camera file that blender_scripts/render_guides.py writes, with --camera FILE";
 
 // One covered pixel: where it is, from the picture's middle, and what it saw.
 struct Sample {
@@ -104,10 +105,10 @@ struct View {
   glm::dvec3 right, up, back;  // rows of the rotation; the camera looks along −back
   glm::dvec3 centre;           // of the samples, in the world
   glm::dvec3 centre_in_view;
-  double scale = 0.0;          // focal length in pixels, or pixels a metre
+  double scale = 0.0;                   // focal length in pixels, or pixels a metre
   double shift_u = 0.0, shift_v = 0.0;  // of the principal point from the picture's middle, pixels
   bool orthographic = false;
-  double rms = 0.0;            // of the samples, per axis
+  double rms = 0.0;  // of the samples, per axis
 
   glm::dvec3 InView(glm::dvec3 p) const {
     const glm::dvec3 d = p - centre;
@@ -146,8 +147,10 @@ class Solver {
 
   Sample At(std::size_t i) const {
     const double x = static_cast<double>(i % in_.width), y = static_cast<double>(i / in_.width);
-    return {x + 0.5 - 0.5 * in_.width, y + 0.5 - 0.5 * in_.height,
-            {in_.position[0][i], in_.position[1][i], in_.position[2][i]}, in_.depth[i]};
+    return {x + 0.5 - 0.5 * in_.width,
+            y + 0.5 - 0.5 * in_.height,
+            {in_.position[0][i], in_.position[1][i], in_.position[2][i]},
+            in_.depth[i]};
   }
 
   // Which pixels count. Beside the background a scattered sample that counts is one that came to lie inside, which
@@ -223,19 +226,21 @@ class Solver {
     const double rounding = 0.25 * (position_rounding_ + kFloatRounding * std::sqrt(squared_depth / n));
     const double noise = std::max(std::sqrt(squares / n), rounding);
     if (static_cast<double>(off) > kOutliers * n) {
-      return Refusal(name_,
-                     "its depth is not planar in " + Number(100.0 * static_cast<double>(off) / n) +
-                         "% of the pixels, as with a panoramic camera, a shadow catcher, or Position and Depth that "
-                         "are not of one render");
+      return Refusal(
+          name_, "its depth is not planar in " + Number(100.0 * static_cast<double>(off) / n) +
+                     "% of the pixels, as with a panoramic camera, or Position and Depth that are not of one render");
     }
     if (noise > 0.01 * thickness || 4.0 * noise > 1e-4 * thickness * std::sqrt(n)) {
-      return Refusal(name_, "all that is seen lies nearly in one plane (" + Number(thickness) + " m thick, positions are "
-                            "good to " + Number(noise) + " m)" + plane_mend_);
+      return Refusal(name_, "all that is seen lies nearly in one plane (" + Number(thickness) +
+                                " m thick, positions are "
+                                "good to " +
+                                Number(noise) + " m)" + plane_mend_);
     }
     const double length = glm::length(slope);
     if (std::fabs(length - 1.0) > 1e-3) {
-      return Refusal(name_, "its depth grows by " + Number(length, "%.4f") + " m a metre of the way; expected 1, planar "
-                            "depth in the units of Position");
+      return Refusal(name_, "its depth grows by " + Number(length, "%.4f") +
+                                " m a metre of the way; expected 1, planar "
+                                "depth in the units of Position");
     }
     back_ = -slope / length;
     centre_depth_ = fit[3];
@@ -291,8 +296,8 @@ class Solver {
     return view;
   }
 
-  // What a camera with pixels of any shape would make of it: tells why the right one, with an error of `rms`, does not fit.
-  // Nothing where no such camera fits either.
+  // What a camera with pixels of any shape would make of it: tells why the right one, with an error of `rms`, does not
+  // fit. Nothing where no such camera fits either.
   std::string ShapeFault(bool orthographic, double rms) const {
     LeastSquares<4> along_u, along_v;
     const auto row = [&](const Sample& s) {
@@ -356,7 +361,8 @@ class Solver {
     result.error_pixels = std::sqrt(squares / n);
     typical_rounding /= n;
     if (static_cast<double>(off) <= kOutliers * n) return Ok();
-    bool scattered = static_cast<double>(far_off) <= kOutliers * n && result.error_pixels <= kScatterRms + typical_rounding;
+    bool scattered =
+        static_cast<double>(far_off) <= kOutliers * n && result.error_pixels <= kScatterRms + typical_rounding;
     for (const Block& block : blocks) {
       if (block.count < 16.0) continue;
       const double limit = 6.0 * result.error_pixels / std::sqrt(block.count) + kExactPixels;

@@ -25,18 +25,19 @@ struct SolveCameraInput {
 };
 
 struct SolvedCamera {
-  GuideCamera camera;         // named "solved"; near and far planes are half the least and twice the largest depth
+  GuideCamera camera;  // named "solved"; near and far planes are half the least and twice the largest depth
   bool orthographic = false;
   bool jittered = false;      // positions scatter around pixel centres, as under slight depth of field
   double error_pixels = 0.0;  // root mean square of the reprojection, per axis
 };
 
 // Solves, then proves by reprojection: 99.9% of the pixels within 0.02 px, beyond what rounding positions to float
-// explains. Cycles of Blender 3.4 keeps the first sample's position, which lies at the pixel's centre whatever the filter;
-// slight depth of field, or a renderer whose filter moves that sample, scatters it: positions may be up to 3 px off, as
-// long as no part of the picture is off on average. Refuses with ErrorKind::kInput: fewer than 64 pixels, all in one plane,
-// depth that is not planar, pixels that are not square, a mirrored picture, and whatever no camera explains. `name`
-// stands for the file in messages. O(pixels), the fit itself on some 100,000 of them; deterministic; thread-safe.
+// explains. Cycles of Blender 3.4 keeps the first sample's position, which lies at the pixel's centre whatever the
+// filter; slight depth of field, or a renderer whose filter moves that sample, scatters it: positions may be up to 3 px
+// off, as long as no part of the picture is off on average. Refuses with ErrorKind::kInput: fewer than 64 pixels, all
+// in one plane, depth that is not planar, pixels that are not square, a mirrored picture, and whatever no camera
+// explains. `name` stands for the file in messages. O(pixels), the fit itself on some 100,000 of them; deterministic;
+// thread-safe.
 Expected<SolvedCamera> SolveCamera(const SolveCameraInput& input, const std::string& name);
 
 }  // namespace scumble

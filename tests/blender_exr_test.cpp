@@ -37,7 +37,7 @@ void ExpectRefusal(const Expected<T>& result, const std::vector<std::string>& wo
 
 struct TrueCamera {
   int width = 320, height = 180;
-  double scale = 400.0;  // focal length in pixels; pixels a metre where orthographic
+  double scale = 400.0;   // focal length in pixels; pixels a metre where orthographic
   glm::dvec2 shift{0.0};  // of the principal point, pixels right and down
   bool orthographic = false;
   double pixel_width = 1.0;  // times the height
@@ -228,7 +228,9 @@ TEST(SolveCamera, RefusesWhatNoCameraExplains) {
     };
     refuse(wrong, {"distorted"});
     wrong = camera;  // depth of field
-    wrong.jitter = [](int x, int y) { return 12.0 * glm::dvec2(Uniform(1, x * 999 + y) - 0.5, Uniform(2, x * 999 + y) - 0.5); };
+    wrong.jitter = [](int x, int y) {
+      return 12.0 * glm::dvec2(Uniform(1, x * 999 + y) - 0.5, Uniform(2, x * 999 + y) - 0.5);
+    };
     refuse(wrong, {"depth of field"});
     wrong = camera;
     wrong.width = wrong.height = 7;
@@ -250,8 +252,15 @@ TEST(SolveCamera, RefusesDepthThatIsThePathsLength) {
 }
 
 TEST(SolveCamera, SurvivesAnyNumbers) {
-  constexpr float kOdd[] = {0.0f, -1.0f, 1e30f, -1e30f, 1e-30f, std::numeric_limits<float>::infinity(),
-                            std::numeric_limits<float>::quiet_NaN(), 3.0f, 1e8f};
+  constexpr float kOdd[] = {0.0f,
+                            -1.0f,
+                            1e30f,
+                            -1e30f,
+                            1e-30f,
+                            std::numeric_limits<float>::infinity(),
+                            std::numeric_limits<float>::quiet_NaN(),
+                            3.0f,
+                            1e8f};
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     TrueCamera camera;
     camera.width = 24, camera.height = 16;
@@ -276,8 +285,8 @@ TEST(BlenderCamera, ReadsItsTextAndRefusesOthers) {
   const auto camera = ReadBlenderCamera(folder / "a.camera");
   ASSERT_TRUE(camera) << camera.error().message;
   EXPECT_EQ(camera->name, "The one");
-  for (const std::string& wrong : {std::string(), std::string("nonsense\n"), std::string("viewFromWorld 1 2 3\n"),
-                                   text + "object 3 A name\n"}) {
+  for (const std::string& wrong :
+       {std::string(), std::string("nonsense\n"), std::string("viewFromWorld 1 2 3\n"), text + "object 3 A name\n"}) {
     ASSERT_TRUE(WriteFileAtomically(folder / "b.camera", wrong));
     ExpectRefusal(ReadBlenderCamera(folder / "b.camera"), {"b.camera", "render_guides.py"});
   }
@@ -299,8 +308,10 @@ TEST(Cryptomatte, HashesAsBlenderDoes) {
 
 TEST(Cryptomatte, ReadsManifestsAsBlenderWritesThem) {
   // Blender 3.4 escapes nothing: this is what it wrote for a scene with such names.
-  const auto names = ReadManifest("{\"quo\"te\":\"10010381\",\"back\\slash\":\"aa5ce9ed\",\"comma\":\"00000000\",\"y\":"
-                                  "\"64178b6c\",\"Käse 球\":\"9996b136\",\"tab\tline\nend\":\"edfb1575\"}", "a.exr");
+  const auto names = ReadManifest(
+      "{\"quo\"te\":\"10010381\",\"back\\slash\":\"aa5ce9ed\",\"comma\":\"00000000\",\"y\":"
+      "\"64178b6c\",\"Käse 球\":\"9996b136\",\"tab\tline\nend\":\"edfb1575\"}",
+      "a.exr");
   ASSERT_TRUE(names) << names.error().message;
   EXPECT_EQ(names->size(), 5u);
   EXPECT_EQ(names->at(0x10010381), "quo\"te");
@@ -317,12 +328,14 @@ TEST(Cryptomatte, ReadsManifestsInProperJson) {
     return std::string(text);
   };
   const std::string odd = "a\"b\\c/\n\xc3\xa4\xf0\x9f\x8e\xa8";
-  const auto names = ReadManifest(" { \"a\\\"b\\\\c\\/\\n\\u00e4\\ud83c\\udfa8\" : \"" + hex(odd) +
-                                      "\" ,\n \"other hash\": \"0000002a\"} ", "a.exr");
+  const auto names = ReadManifest(
+      " { \"a\\\"b\\\\c\\/\\n\\u00e4\\ud83c\\udfa8\" : \"" + hex(odd) + "\" ,\n \"other hash\": \"0000002a\"} ",
+      "a.exr");
   ASSERT_TRUE(names) << names.error().message;
   EXPECT_EQ(names->at(MatteBits(MatteHash(odd))), odd);
   EXPECT_EQ(names->at(MatteBits(0x2a)), "other hash") << "a hash of another kind is taken at its word";
-  for (const char* empty : {"", " ", "}", "{}", "{ }"}) EXPECT_TRUE(ReadManifest(empty, "a.exr").value().empty()) << empty;
+  for (const char* empty : {"", " ", "}", "{}", "{ }"})
+    EXPECT_TRUE(ReadManifest(empty, "a.exr").value().empty()) << empty;
 }
 
 TEST(Cryptomatte, DamagedManifestsAreRefused) {
@@ -365,7 +378,8 @@ class BlenderFile {
       Channel("Position.Y")[i] = -render.position[2][i];
       Channel("Position.Z")[i] = render.position[1][i];
       const glm::dvec3 n = glm::transpose(camera_.view_from_world) * glm::dvec3(0, 0, 1);  // towards the viewer
-      if (covered) Channel("Normal.X")[i] = float(n.x), Channel("Normal.Y")[i] = float(-n.z), Channel("Normal.Z")[i] = float(n.y);
+      if (covered)
+        Channel("Normal.X")[i] = float(n.x), Channel("Normal.Y")[i] = float(-n.z), Channel("Normal.Z")[i] = float(n.y);
       Channel("IndexOB.X")[i] = covered ? (i % 40 < 20 ? kCube : kBall) : 0.0f;
     }
   }
@@ -378,7 +392,8 @@ class BlenderFile {
   void Drop(const std::string& name) { channels_.erase(name); }
 
   // The two halves as mattes, one rank full; the manifest as given.
-  void AddMatte(const std::string& kind, const std::string& cube, const std::string& ball, const std::string& manifest) {
+  void AddMatte(const std::string& kind, const std::string& cube, const std::string& ball,
+                const std::string& manifest) {
     for (const char* component : {"r", "g", "b", "a"}) Channel(kind + "00." + component);
     for (std::size_t i = 0; i < Pixels(); ++i) {
       if (Channel("Depth.Z")[i] > 1e9f) continue;
@@ -452,8 +467,9 @@ TEST(BlenderFile, ACameraFileWins) {
   BlenderFile file;
   file.Drop("Position.X");
   file.Write(folder / "shot.exr");
-  ASSERT_TRUE(WriteFileAtomically(folder / "shot.camera", "camera Eye\nviewFromWorld 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"
-                                                          "clipFromView 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"));
+  ASSERT_TRUE(WriteFileAtomically(folder / "shot.camera",
+                                  "camera Eye\nviewFromWorld 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"
+                                  "clipFromView 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n"));
   GuideReadOptions options = WithObjects();
   options.blender_camera = folder / "shot.camera";
   const auto guides = ReadGuides(folder / "shot.exr", options);
@@ -487,7 +503,8 @@ TEST(BlenderFile, NamesComeFromCryptomatte) {
     std::snprintf(text, sizeof text, "\"%s\":\"%08x\"", name.c_str(), MatteHash(name));
     return std::string(text);
   };
-  file.AddMatte("CryptoObject", "Cube", "Ball \"2\"", "{" + entry("Ball \"2\"") + "," + entry("Unseen") + "," + entry("Cube") + "}");
+  file.AddMatte("CryptoObject", "Cube", "Ball \"2\"",
+                "{" + entry("Ball \"2\"") + "," + entry("Unseen") + "," + entry("Cube") + "}");
   auto& r = file.Channel("CryptoObject00.r");
   auto& g = file.Channel("CryptoObject00.g");
   r[900] = std::bit_cast<float>(0x3f812345u);  // of no name
@@ -534,10 +551,31 @@ TEST(BlenderFile, AnotherViewLayersCryptomatteIsNotTaken) {
   ExpectRefusal(ReadGuides(folder / "half.exr", WithObjects()), {"half.exr", "half floats", "32-bit"});
 }
 
+TEST(BlenderFile, NothingIsOutsideARenderBorder) {
+  const TemporaryFolder folder;
+  BlenderFile file;
+  for (std::size_t i = 0; i < 600; ++i) {
+    file.Channel("Combined.A")[i] = 0.0f;
+    for (const char* axis : {"X", "Y", "Z"}) {
+      file.Channel(std::string("Normal.") + axis)[i] = file.Channel(std::string("Position.") + axis)[i] = 0.0f;
+    }
+    file.Channel("Depth.Z")[i] = 0.0f;  // Blender writes zeros there
+  }
+  file.Channel("Depth.Z")[1199] = 1e10f;  // background inside the border
+  for (const char* axis : {"X", "Y", "Z"}) file.Channel(std::string("Normal.") + axis)[1199] = 0.0f;
+  file.Write(folder / "shot.exr");
+  const auto guides = ReadGuides(folder / "shot.exr", WithObjects());
+  ASSERT_TRUE(guides) << guides.error().message;
+  for (std::size_t i = 0; i < file.Pixels(); ++i) {
+    ASSERT_EQ(guides->Plane(Layer::kCoverage)[i], i < 600 || i == 1199 ? 0.0f : 1.0f) << i;
+  }
+}
+
 TEST(BlenderFile, ATransparentFilmKeepsItsAlpha) {
   const TemporaryFolder folder;
   BlenderFile file;
-  for (std::size_t i = 0; i < file.Pixels(); ++i) file.Channel("Combined.A")[i] = file.Channel("Depth.Z")[i] < 1e9f ? 0.75f : 0.0f;
+  for (std::size_t i = 0; i < file.Pixels(); ++i)
+    file.Channel("Combined.A")[i] = file.Channel("Depth.Z")[i] < 1e9f ? 0.75f : 0.0f;
   file.Write(folder / "shot.exr");
   const auto guides = ReadGuides(folder / "shot.exr", WithObjects());
   ASSERT_TRUE(guides) << guides.error().message;
@@ -548,7 +586,8 @@ TEST(BlenderFile, ATransparentFilmKeepsItsAlpha) {
 TEST(BlenderFile, EdgesAreCompletedFromTheirNeighbours) {
   const TemporaryFolder folder;
   BlenderFile file;
-  for (std::size_t i = 0; i < file.Pixels(); ++i) file.Channel("Combined.A")[i] = file.Channel("Depth.Z")[i] < 1e9f ? 1.0f : 0.0f;
+  for (std::size_t i = 0; i < file.Pixels(); ++i)
+    file.Channel("Combined.A")[i] = file.Channel("Depth.Z")[i] < 1e9f ? 1.0f : 0.0f;
   const std::size_t missed = 15 * 40 + 30, blank = 20 * 40 + 30, lonely = 0;
   file.Channel("Combined.A")[missed] = 0.25f;
   file.Channel("Depth.Z")[missed] = 1e10f;

@@ -21,9 +21,11 @@ class Shots : public testing::Environment {
     const std::string command =
         "blender -b -noaudio --factory-startup -P " SCUMBLE_SOURCE_DIR "/tests/blender/render_plain.py -- --output " +
         folder_->path().string() +
-        " --shot landscape-opaque-filtered landscape-clear-filtered landscape-clear-sharp portrait-shifted-clear-filtered "
+        " --shot landscape-opaque-filtered landscape-clear-filtered landscape-clear-sharp "
+        "portrait-shifted-clear-filtered "
         "shifted-clear-sharp ortho-shifted-clear-sharp ortho-opaque-filtered far-clear-sharp landscape-slightdof "
-        "landscape-lens landscape-dof landscape-nopos > " + log + " 2>&1";
+        "landscape-lens landscape-dof landscape-nopos > " +
+        log + " 2>&1";
     std::string text;
     if (std::system(command.c_str()) != 0) {
       std::ifstream stream(log);
@@ -56,8 +58,9 @@ glm::dvec2 Project(const GuideSet& guides, const GuideCamera& camera, glm::dvec3
 }
 
 TEST(BlenderRender, TheSolvedCameraIsBlendersOwn) {
-  for (const char* shot : {"landscape-opaque-filtered", "landscape-clear-sharp", "portrait-shifted-clear-filtered",
-                           "shifted-clear-sharp", "ortho-shifted-clear-sharp", "ortho-opaque-filtered", "far-clear-sharp"}) {
+  for (const char* shot :
+       {"landscape-opaque-filtered", "landscape-clear-sharp", "portrait-shifted-clear-filtered", "shifted-clear-sharp",
+        "ortho-shifted-clear-sharp", "ortho-opaque-filtered", "far-clear-sharp"}) {
     const GuideSet solved = Read(shot, false), told = Read(shot, true);
     ASSERT_EQ(solved.pixel_count(), told.pixel_count());
     double angle = 0.0, pixels = 0.0;
@@ -69,7 +72,8 @@ TEST(BlenderRender, TheSolvedCameraIsBlendersOwn) {
       const glm::dvec3 b = glm::normalize(glm::dvec3(told.Vec3(Layer::kNormal, i)));
       angle = std::max(angle, std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 57.29577951308232);
       const glm::dvec3 world(solved.Vec3(Layer::kPosition, i));
-      pixels = std::max(pixels, glm::length(Project(solved, *solved.camera, world) - Project(solved, *told.camera, world)));
+      pixels =
+          std::max(pixels, glm::length(Project(solved, *solved.camera, world) - Project(solved, *told.camera, world)));
     }
     EXPECT_GT(covered, 10000u) << shot;
     EXPECT_LT(angle, 0.01) << shot;
