@@ -149,7 +149,7 @@ struct CheckedScene {
 Expected<CheckedScene> CheckScene(const CrosscheckVerb& verb, const std::string& scene, const Globals& globals) {
   const std::vector<int> counts = SampleCounts(verb.samples);
   SCUMBLE_ASSIGN(BothSides sides, MakeBothSides(verb, scene, counts, globals));
-  const CrosscheckOptions options{2, !verb.html.empty()};
+  const CrosscheckOptions options{2, !verb.html.empty(), std::move(sides.reference.only_shines)};
   std::vector<CrosscheckLight> light;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     light.push_back({counts[i], std::move(sides.reference.light[i]), std::move(sides.ours_light[i])});

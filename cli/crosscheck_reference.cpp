@@ -106,7 +106,7 @@ Expected<Reference> RenderReference(const ReferenceOptions& options, const Globa
   read.required = {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo};
   read.blender_camera = scratch.path() / "cycles.camera";
   SCUMBLE_ASSIGN(reference.data, ReadGuides(picture, read));
-  SCUMBLE_RETURN_IF_ERROR(AddSpecularColor(picture, reference.data));
+  SCUMBLE_ASSIGN(reference.only_shines, CompleteAlbedo(picture, reference.data));
   for (const int count : options.samples) {
     SCUMBLE_ASSIGN(CyclesLight light, ReadCyclesLight(scratch.path() / "cycles", count));
     reference.light.push_back(std::move(light));

@@ -26,6 +26,7 @@ struct ReferenceOptions {
 
 struct Reference {
   GuideSet data;
+  std::vector<std::uint8_t> only_shines;  // by pixel: 1 where the surface has no albedo and shines
   std::vector<CyclesLight> light;        // by sample count
   std::string version;                   // "3.4.1"; empty where Blender did not say
   std::vector<std::string> unsupported;  // what is not rendered as authored, in the script's words

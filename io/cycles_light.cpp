@@ -114,18 +114,26 @@ Expected<CyclesLight> ReadCyclesLight(const std::filesystem::path& stem, int sam
   return light;
 }
 
-Status AddSpecularColor(const std::filesystem::path& file, GuideSet& guides) {
+Expected<std::vector<std::uint8_t>> CompleteAlbedo(const std::filesystem::path& file, GuideSet& guides) {
   SCUMBLE_ASSIGN(const ChannelImage image, ReadChannels(file));
   SCUMBLE_ASSIGN(const ColorPlanes color, FindPass(image, "GlossCol"));
+  SCUMBLE_ASSIGN(const ColorPlanes emit, FindPass(image, "Emit"));
   if (image.width != guides.width() || image.height != guides.height()) {
     return InputError(image.name + " is " + SizeText(image.width, image.height) + ", its guides " +
                       SizeText(guides.width(), guides.height()));
   }
+  std::vector<std::uint8_t> shines(guides.pixel_count(), 0);
   for (std::size_t c = 0; c < 3; ++c) {
     const auto albedo = guides.Plane(Layer::kAlbedo, static_cast<int>(c));
-    for (std::size_t i = 0; i < albedo.size(); ++i) albedo[i] += (*color[c])[i];
+    for (std::size_t i = 0; i < albedo.size(); ++i) {
+      albedo[i] += (*color[c])[i];
+      if ((*emit[c])[i] != 0.0f) shines[i] = 1;
+    }
   }
-  return Ok();
+  for (std::size_t i = 0; i < shines.size(); ++i) {
+    if (guides.Vec3(Layer::kAlbedo, i) != glm::vec3(0.0f)) shines[i] = 0;
+  }
+  return shines;
 }
 
 }  // namespace scumble

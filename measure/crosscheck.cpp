@@ -173,6 +173,15 @@ CrosscheckPictures MakePictures(const LayerMeasure& measure, const GuideSet& a, 
   return pictures;
 }
 
+std::vector<std::size_t> Without(const std::vector<std::uint8_t>& flags, const std::vector<std::size_t>& mask) {
+  if (flags.empty()) return mask;
+  std::vector<std::size_t> rest;
+  for (const std::size_t i : mask) {
+    if (!flags[i]) rest.push_back(i);
+  }
+  return rest;
+}
+
 void AddCoverage(const GuideSet& a, const GuideSet& b, CrosscheckReport& report) {
   std::size_t differing = 0;
   for (std::size_t i = 0; i < a.pixel_count(); ++i) {
@@ -224,12 +233,20 @@ Expected<CrosscheckReport> Crosscheck(const std::string& scene, const GuideSet& 
   report.compared = mask.size();
   if (mask.empty()) return report;
   for (const LayerMeasure& measure : Measures(reference, ours)) {
+    const bool is_albedo = measure.layer == Layer::kAlbedo;
+    const std::vector<std::size_t> places = is_albedo ? Without(options.without_albedo, mask) : mask;
     std::vector<double> differences;
-    differences.reserve(mask.size());
-    for (const std::size_t i : mask) differences.push_back(measure.difference(i));
+    differences.reserve(places.size());
+    for (const std::size_t i : places) differences.push_back(measure.difference(i));
+    if (places.empty()) {
+      CrosscheckFigure none{Info(measure.layer).name, "mean difference", "", 0.0, 0.002, 0, 1e-6};
+      none.note = "every surface only shines";
+      report.figures.push_back(std::move(none));
+      continue;
+    }
     AddFigures(measure, differences, report);
     if (options.make_pictures) {
-      report.pictures.push_back(MakePictures(measure, reference, ours, mask, differences));
+      report.pictures.push_back(MakePictures(measure, reference, ours, places, differences));
     }
   }
   return report;

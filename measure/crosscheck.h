@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -88,6 +89,8 @@ struct CrosscheckReport {
 struct CrosscheckOptions {
   int erode_pixels = 2;  // compared are pixels whose neighbourhood shows one and the same object in both
   bool make_pictures = true;
+  // By pixel: 1 where albedo is not compared, because the reference's surface has none and shines instead. Empty: nowhere.
+  std::vector<std::uint8_t> without_albedo = {};
 };
 
 // Compares coverage over the whole picture, and normal, depth, position, object ids and albedo inside the object masks

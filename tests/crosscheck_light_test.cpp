@@ -178,6 +178,21 @@ TEST(CrosscheckLight, WithoutLightTheVerdictSaysSo) {
   EXPECT_NE(CrosscheckToText(report).find("agrees, data layers alone"), std::string::npos);
 }
 
+TEST(CrosscheckLight, SurfacesThatOnlyShineHaveNoAlbedoToCompare) {
+  GuideSet ours = OneObject();
+  const std::size_t lamp = ours.Index(8, 8);
+  ours.Plane(Layer::kAlbedo, 0)[lamp] = 3.0f * 192.0f;  // a mean difference of 1
+  CrosscheckOptions options{2, true};
+  EXPECT_FALSE(Crosscheck("scene", OneObject(), ours, options)->passed());
+  options.without_albedo.assign(ours.pixel_count(), 0);
+  options.without_albedo[lamp] = 1;
+  EXPECT_TRUE(Crosscheck("scene", OneObject(), ours, options)->passed());
+  options.without_albedo.assign(ours.pixel_count(), 1);
+  const auto report = Crosscheck("scene", OneObject(), ours, options);
+  EXPECT_TRUE(report->passed());
+  EXPECT_EQ(FigureOf(*report, "albedo").note, "every surface only shines");
+}
+
 TEST(CrosscheckLight, SizesMustAgree) {
   CrosscheckLight light = EqualLight(64);
   light.ours = GuideSet(19, 16);

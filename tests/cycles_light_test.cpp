@@ -111,19 +111,30 @@ TEST(CyclesLight, ErrorsNameFileAndPass) {
   expect(ReadCyclesLight(twice.folder / "stem.x", 16), "stem.x.ldde.16.exr", "is 3×2");
 }
 
-TEST(CyclesLight, SpecularColorIsAlbedoToo) {
+TEST(CyclesLight, SpecularColorIsAlbedoTooAndWhatOnlyShinesHasNone) {
   const TemporaryFolder folder;
-  WritePasses(folder / "data.exr", {{"DiffCol", 0.5f}, {"GlossCol", 0.25f}});
-  GuideSet guides(3, 2);
-  guides.Add(Layer::kAlbedo);
-  guides.Plane(Layer::kAlbedo, 1)[4] = 0.125f;
-  ASSERT_TRUE(AddSpecularColor(folder / "data.exr", guides).ok());
+  const auto guides_of = [](float albedo) {
+    GuideSet guides(3, 2);
+    guides.Add(Layer::kAlbedo);
+    guides.Plane(Layer::kAlbedo, 1)[4] = albedo;
+    return guides;
+  };
+  WritePasses(folder / "data.exr", {{"GlossCol", 0.25f}, {"Emit", 0.0f}});
+  GuideSet guides = guides_of(0.125f);
+  const auto glossy = CompleteAlbedo(folder / "data.exr", guides);
+  ASSERT_TRUE(glossy.ok());
   EXPECT_EQ(guides.Vec3(Layer::kAlbedo, 4), glm::vec3(0.25f, 0.625f, 0.75f));
+  EXPECT_EQ(*glossy, std::vector<std::uint8_t>(6, 0));
+  WritePasses(folder / "lamp.exr", {{"GlossCol", 0.0f}, {"Emit", 2.0f}});
+  guides = guides_of(0.125f);
+  const auto lamp = CompleteAlbedo(folder / "lamp.exr", guides);
+  ASSERT_TRUE(lamp.ok());
+  EXPECT_EQ(*lamp, (std::vector<std::uint8_t>{1, 1, 1, 1, 0, 1})) << "the fifth pixel has an albedo as well";
   GuideSet other(2, 2);
   other.Add(Layer::kAlbedo);
-  EXPECT_FALSE(AddSpecularColor(folder / "data.exr", other).ok());
+  EXPECT_FALSE(CompleteAlbedo(folder / "data.exr", other).ok());
   WritePasses(folder / "none.exr", {{"DiffCol", 0.5f}});
-  EXPECT_FALSE(AddSpecularColor(folder / "none.exr", guides).ok());
+  EXPECT_FALSE(CompleteAlbedo(folder / "none.exr", guides).ok());
 }
 
 }  // namespace
