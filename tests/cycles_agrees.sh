@@ -7,7 +7,7 @@ source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$program" crosscheck "$source"/scenes/*.glb --size 480x270 -o "$work/report.html" --quiet
+"$program" crosscheck "$source"/scenes/*.glb --size 480x270 --samples 16 -o "$work/report.html" --quiet
 grep -q 'class="verdict agrees"' "$work/report.html"
 
 blender -b -noaudio --factory-startup -P "$source/blender_scripts/render_guides.py" -- \
