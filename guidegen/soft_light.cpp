@@ -26,15 +26,18 @@ struct Sample {
   SoftLight& sum;
   RayCounts& rays;
 
-  // A point of a light. The other technique never meets meshes here, so their weight is whole.
+  // Whether directions look for a light, too. They never meet meshes here.
+  bool LooksFor(int light) const { return !lights.IsEmitter(light) && lights.IsWideFrom(point.position, light); }
+
+  // A point of a light.
   void TakeLight(const Quad& u) {
-    const LightChoice choice = lights.Choose(point.position, u[2], false);
+    const LightChoice choice = lights.Choose(point, u[2], false);
     if (choice.light < 0) return;
     const LightDraw draw = lights.Draw(choice.light, point.position, u[0], u[1]);
     const double reflected = DiffuseDensity(point, draw.direction);
     const double density = choice.probability * draw.density;
     if (!(reflected > 0.0) || !(density > 0.0) || std::isinf(density)) return;
-    const double other = lights.IsEmitter(choice.light) ? 0.0 : reflected;
+    const double other = LooksFor(choice.light) ? reflected : 0.0;
     const double light = Brightness(draw.radiance) * reflected / (density + other);
     if (!(light > 0.0)) return;
     sum.unoccluded += light;
@@ -55,8 +58,9 @@ struct Sample {
     if (!(reflected > 0.0)) return;
     const auto met_before = [&](double length) {
       double light = std::isinf(length) ? Brightness(lights.world()) : 0.0;
-      lights.VisitLamps(point.position, direction, length, [&](int lamp, const glm::dvec3& radiance, double density) {
-        const double other = density * lights.Probability(point.position, lamp, false);
+      lights.VisitLamps(origin, direction, length, [&](int lamp, const glm::dvec3& radiance, double density) {
+        if (!LooksFor(lamp)) return;
+        const double other = density * lights.Probability(point, lamp, false);
         light += Brightness(radiance) * reflected / (reflected + other);
       });
       return light;
@@ -77,7 +81,7 @@ SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, cons
   SoftLight sum;
   Sample sample{scene, lights, point, ShadowRayOrigin(point), sum, rays};
   const bool by_light = lights.delta_count() < lights.count();
-  const bool by_direction = lights.has_extended_lamps() || lights.has_world();
+  const bool by_direction = lights.has_world() || (lights.has_extended_lamps() && lights.AnyWideFrom(point.position));
   for (int i = 0; i < samples; ++i) {
     if (by_light) sample.TakeLight(sampler.Draw(std::uint32_t(i), 1));
     if (by_direction) sample.TakeDirection(sampler.Draw(std::uint32_t(i), 0));
