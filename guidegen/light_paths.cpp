@@ -13,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Reflections after which roulette begins: before, paths carry most of the light.
-constexpr int kFirstRoulette = 3;
+constexpr int kFirstRoulette = 1;
 constexpr double kLeastSurvival = 0.05;
 // A lobe that is wanted is chosen at least this often, however little of the light it carries.
 constexpr double kLeastLobe = 0.1;
@@ -170,9 +170,9 @@ void LightPathTracer::AddExact(const First& pixel, PathSums& sums, RayCounts& ra
 // Light on a vertex by one light that is chosen.
 void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const Quad& u, bool with_delta,
                                 const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
-  const LightChoice choice = lights_.Choose(vertex.point, u[2], with_delta);
+  const LightChoice choice = lights_.Choose(vertex.point, u[0], with_delta);
   if (choice.light < 0) return;
-  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, u[0], u[1]);
+  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, choice.rest, u[1]);
   AddDraw(vertex, lobes, choice.light, draw, choice.probability, throughput, sums, rays);
 }
 
@@ -191,7 +191,8 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   flight.direct_sampled = bounce > 0;
   if (flight.throughput == glm::dvec3(0.0)) return false;
   if (bounce < kFirstRoulette) return true;
-  const double survival = std::clamp(Largest(flight.throughput), kLeastSurvival, 1.0);
+  // By the root, as in Cycles: what survives is then neither all of one brightness and rare, nor all dim and dear.
+  const double survival = std::clamp(std::sqrt(Largest(flight.throughput)), kLeastSurvival, 1.0);
   flight.throughput /= survival;
   return u[3] < survival;
 }

@@ -5,6 +5,7 @@
 // weighed one by one, and a scene with few lights is a single leaf.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -19,6 +20,9 @@ namespace scumble {
 struct LightChoice {
   int light = -1;  // −1: none can reach the point
   double probability = 0.0;
+  // What is left of the number that chose, stretched to [0, 1): it takes part in drawing a point of the light, so that the
+  // points on each light are spread as evenly as the numbers were.
+  double rest = 0.0;
 };
 
 // A light as the tree sees it: a ball somewhere, or a sun, which is as strong everywhere.
@@ -75,10 +79,11 @@ class LightTree {
     double left = u * total;
     for (int i = 0; i < node->count && total > 0.0; ++i) {
       if (!(weights[i] > 0.0)) continue;
-      choice = {order_[node->begin + i], probability * weights[i] / total};  // rounding may leave a little over for the last
+      choice = {order_[node->begin + i], probability * weights[i] / total, left / weights[i]};
+      if (left < weights[i]) break;
       left -= weights[i];
-      if (left < 0.0) break;
     }
+    choice.rest = std::clamp(choice.rest, 0.0, kBelowOne);  // rounding may leave a little over for the last one
     return choice;
   }
 
@@ -107,6 +112,7 @@ class LightTree {
 
  private:
   static constexpr int kLeafSize = 16;
+  static constexpr double kBelowOne = 1.0 - 0x1.0p-53;
 
   struct Node {
     glm::dvec3 centre{0.0};

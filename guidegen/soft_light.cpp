@@ -31,9 +31,9 @@ struct Sample {
 
   // A point of a light.
   void TakeLight(const Quad& u) {
-    const LightChoice choice = lights.Choose(point, u[2], false);
+    const LightChoice choice = lights.Choose(point, u[0], false);
     if (choice.light < 0) return;
-    const LightDraw draw = lights.Draw(choice.light, point.position, u[0], u[1]);
+    const LightDraw draw = lights.Draw(choice.light, point.position, choice.rest, u[1]);
     const double reflected = DiffuseDensity(point, draw.direction);
     const double density = choice.probability * draw.density;
     if (!(reflected > 0.0) || !(density > 0.0) || std::isinf(density)) return;

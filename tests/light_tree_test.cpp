@@ -114,7 +114,7 @@ TEST(LightTree, RaysMeetTheSameLampsAsWhenEveryOneIsAsked) {
     alone.emplace_back(std::vector<PlacedLight>{lamp}, std::vector<PlacedObject>(), glm::dvec3(0.0));
   }
   std::size_t met = 0;
-  for (int which = 0; which < 300; ++which) {
+  for (int which = 0; which < 600; ++which) {
     const SurfacePoint ray = Somewhere(which);
     std::set<int> by_tree;
     all.VisitLamps(ray.position, ray.normal, 3.0, [&](int light, const glm::dvec3&, double) { by_tree.insert(light); });
