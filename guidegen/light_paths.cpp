@@ -67,8 +67,7 @@ LightPathTracer::Lobes LightPathTracer::LobesAt(const Vertex& vertex, const Path
     lobes.after[i] = follower_.Step(state, kLobeEvents[i]);
     lobes.lit[i] = share[i] > 0.0 && follower_.WantsLight(lobes.after[i]);
     if (!(share[i] > 0.0)) continue;
-    const bool useful =
-        (!last && follower_.WantsMore(lobes.after[i])) || (lobes.lit[i] && MayMeetLight(vertex, i));
+    const bool useful = (!last && follower_.WantsMore(lobes.after[i])) || (lobes.lit[i] && MayMeetLight(vertex, i));
     if (!useful) share[i] = 0.0;
   }
   const double total = share[0] + share[1];
@@ -79,8 +78,8 @@ LightPathTracer::Lobes LightPathTracer::LobesAt(const Vertex& vertex, const Path
   return lobes;
 }
 
-// Whether directions of a lobe look for a light, beside points drawn on it. The same answer is given to both techniques,
-// so that their weights add up to one.
+// Whether directions of a lobe look for a light, beside points drawn on it. The same answer is given to both
+// techniques, so that their weights add up to one.
 bool LightPathTracer::LooksFor(int light, const Vertex& vertex, int lobe) const {
   return lobe == 1 || lights_.IsWideFrom(vertex.point.position, light);
 }
@@ -99,8 +98,7 @@ bool LightPathTracer::IsBlocked(const Vertex& vertex, const LightDraw& draw, Ray
 
 // Next-event estimation. `probability` is that of the light's choice.
 void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, int light, const LightDraw& draw,
-                              double probability, const glm::dvec3& throughput, PathSums& sums,
-                              RayCounts& rays) const {
+                              double probability, const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
   if (draw.radiance == glm::dvec3(0.0)) return;
   const double density = draw.is_delta ? probability : probability * draw.density;
   if (!(density > 0.0) || std::isinf(density)) return;
@@ -125,11 +123,12 @@ void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, int ligh
 void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length,
                              PathSums& sums) const {
   // From where the ray leaves: a lamp in the surface itself is then behind it, however either is rounded.
-  lights_.VisitLamps(vertex.origin, flight.direction, length, [&](int light, const glm::dvec3& radiance, double density) {
-    if (!LooksFor(light, vertex, flight.lobe)) return;
-    const double other = density * lights_.Probability(vertex.point, light, flight.direct_sampled);
-    Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
-  });
+  lights_.VisitLamps(vertex.origin, flight.direction, length,
+                     [&](int light, const glm::dvec3& radiance, double density) {
+                       if (!LooksFor(light, vertex, flight.lobe)) return;
+                       const double other = density * lights_.Probability(vertex.point, light, flight.direct_sampled);
+                       Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
+                     });
   if (std::isinf(length)) Add(state, flight.throughput * lights_.world(), sums);
 }
 
@@ -139,9 +138,8 @@ void LightPathTracer::AddEmission(const Vertex& from, const Vertex& to, const Pa
   if (light < 0 || !LooksFor(light, from, flight.lobe)) return;
   const glm::dvec3 radiance = SurfaceEmission(scene_.objects()[to.object], to.primitive, to.point.barycentric);
   if (radiance == glm::dvec3(0.0)) return;
-  const double other =
-      lights_.EmitterDensity(light, from.point.position, to.point) *
-      lights_.Probability(from.point, light, flight.direct_sampled);
+  const double other = lights_.EmitterDensity(light, from.point.position, to.point) *
+                       lights_.Probability(from.point, light, flight.direct_sampled);
   Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
 }
 

@@ -141,8 +141,8 @@ LightDraw MeetArea(const PlacedLight& lamp, const glm::dvec3& point, const glm::
   return met;
 }
 
-// The most of a spot's intensity that reaches a place from any point of its disc: from the one that is nearest the axis.
-// The attenuation depends on the part along the axis alone.
+// The most of a spot's intensity that reaches a place from any point of its disc: from the one that is nearest the
+// axis. The attenuation depends on the part along the axis alone.
 double MostAttenuation(const PlacedLight& spot, const glm::dvec3& from_centre) {
   const double distance = glm::length(from_centre);
   if (!(distance > spot.radius)) return 1.0;

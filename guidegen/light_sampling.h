@@ -43,8 +43,8 @@ class LightSet {
   bool IsEmitter(int light) const { return light >= int(lamps_.size()); }
   const glm::dvec3& world() const { return world_; }
 
-  // Chooses a light about in proportion to what it may do to a point when nothing is in the way; `with_delta` says whether
-  // delta lights take part.
+  // Chooses a light about in proportion to what it may do to a point when nothing is in the way; `with_delta` says
+  // whether delta lights take part.
   LightChoice Choose(const SurfacePoint& point, double u, bool with_delta) const;
   // The probability with which Choose takes this light.
   double Probability(const SurfacePoint& point, int light, bool with_delta) const;
@@ -89,7 +89,7 @@ class LightSet {
   std::span<const PlacedObject> objects_;
   std::vector<PlacedLight> lamps_;
   std::vector<Emitter> emitters_;
-  std::vector<int> emitter_of_;  // by object
+  std::vector<int> emitter_of_;    // by object
   std::vector<TreeLight> shapes_;  // by light
   LightTree tree_;
   glm::dvec3 world_{0.0};

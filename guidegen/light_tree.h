@@ -20,8 +20,8 @@ namespace scumble {
 struct LightChoice {
   int light = -1;  // −1: none can reach the point
   double probability = 0.0;
-  // What is left of the number that chose, stretched to [0, 1): it takes part in drawing a point of the light, so that the
-  // points on each light are spread as evenly as the numbers were.
+  // What is left of the number that chose, stretched to [0, 1): it takes part in drawing a point of the light, so that
+  // the points on each light are spread as evenly as the numbers were.
   double rest = 0.0;
 };
 
@@ -34,14 +34,14 @@ struct TreeLight {
   bool is_delta = false;
 };
 
-// About the irradiance that lights of this power, all within a ball, can bring to a point; 0 only where none of them can
-// rise above its horizon. The cosine counts as 0.1 at least: highlights do not follow it.
+// About the irradiance that lights of this power, all within a ball, can bring to a point; 0 only where none of them
+// can rise above its horizon. The cosine counts as 0.1 at least: highlights do not follow it.
 double BallWeight(const glm::dvec3& centre, double radius, double power, const SurfacePoint& point);
 // The same for light that comes from one direction.
 double SunWeight(const glm::dvec3& direction, double half_angle, double power, const SurfacePoint& point);
 
-// Whether a light fills so much of the sky that directions of a wide lobe should look for it too. For smaller ones, points
-// drawn on the light are all alike, and such directions would be spent for nothing.
+// Whether a light fills so much of the sky that directions of a wide lobe should look for it too. For smaller ones,
+// points drawn on the light are all alike, and such directions would be spent for nothing.
 inline bool IsWide(const TreeLight& light, const glm::dvec3& point) {
   constexpr double kWideDistance = 4.0;  // radii
   if (light.is_delta) return false;
@@ -56,8 +56,8 @@ class LightTree {
   LightTree() = default;
   explicit LightTree(std::span<const TreeLight> lights);
 
-  // A light by chance, u in [0, 1). `weight(light)` tells the lights of a leaf apart: about the irradiance that each can
-  // bring, 0 where it brings none. `with_delta` says whether lights without extent take part.
+  // A light by chance, u in [0, 1). `weight(light)` tells the lights of a leaf apart: about the irradiance that each
+  // can bring, 0 where it brings none. `with_delta` says whether lights without extent take part.
   template <class Weight>
   LightChoice Choose(const SurfacePoint& point, double u, bool with_delta, const Weight& weight) const {
     LightChoice choice;
@@ -116,11 +116,11 @@ class LightTree {
 
   struct Node {
     glm::dvec3 centre{0.0};
-    double radius = 0.0;              // infinite where a sun is below
-    std::array<double, 2> power{};    // of the lights with extent, and of all
+    double radius = 0.0;            // infinite where a sun is below
+    std::array<double, 2> power{};  // of the lights with extent, and of all
     std::array<std::uint32_t, 2> child{};
-    std::uint32_t begin = 0;          // a leaf's lights, in order_
-    int count = 0;                    // 0: no leaf
+    std::uint32_t begin = 0;  // a leaf's lights, in order_
+    int count = 0;            // 0: no leaf
   };
 
   std::uint32_t Build(std::span<const TreeLight> lights, std::uint32_t begin, std::uint32_t end, std::uint64_t way,
@@ -138,9 +138,9 @@ class LightTree {
   }
   static bool MayMeet(const Node& node, const glm::dvec3& origin, const glm::dvec3& direction);
 
-  std::vector<Node> nodes_;             // the root first
-  std::vector<int> order_;              // lights, leaf by leaf
-  std::vector<std::uint64_t> way_to_;   // by light: bit d says which child is taken at depth d
+  std::vector<Node> nodes_;            // the root first
+  std::vector<int> order_;             // lights, leaf by leaf
+  std::vector<std::uint64_t> way_to_;  // by light: bit d says which child is taken at depth d
 };
 
 }  // namespace scumble

@@ -68,8 +68,8 @@ TEST(Extremes, LayersScaleWithTheLight) {
   }
 }
 
-// A firefly is a pixel in which one path outweighs all others. Noise of 64 samples is a few tenths of a pixel's value, so
-// one that is three times as bright as anything about it in the converged picture, and a good deal brighter than the
+// A firefly is a pixel in which one path outweighs all others. Noise of 64 samples is a few tenths of a pixel's value,
+// so one that is three times as bright as anything about it in the converged picture, and a good deal brighter than the
 // picture's mean on top of that, cannot be noise.
 TEST(Extremes, SmoothSurfacesMakeNoFireflies) {
   constexpr int kSide = 32;
@@ -110,7 +110,8 @@ TEST(Extremes, LampsInTheSurfaceItselfDoNotLightIt) {
     // From the side: the camera's own axes are then not the floor's, and rounding has its chance.
     const auto result = Render(scene, LookingAt({1, -3, 2}, {0, 0, 0}), Paths(32, kAllPaths, 16));
     ExpectFinite(result);
-    // What a float's rounding lifts a floor point above the lamp's plane lets a sliver of light in, near the lamps alone.
+    // What a float's rounding lifts a floor point above the lamp's plane lets a sliver of light in, near the lamps
+    // alone.
     EXPECT_LT(Mean(result, Layer::kLpeFull), 1e-3);
   }
 }
@@ -153,7 +154,8 @@ TEST(Extremes, AnEyeInsideAMeshSeesWhatIsInside) {
 }
 
 TEST(Extremes, OneOfFiveHundredLampsBringsWhatAllBring) {
-  // Light from the floor on the wall and back: one lamp is chosen there. A quarter of the lamps is near, the others are far.
+  // Light from the floor on the wall and back: one lamp is chosen there. A quarter of the lamps is near, the others are
+  // far.
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.8f), 2.0);
   AddObject(scene, "wall", QuadMesh(), glm::rotate(Moved(0, 1, 1), 0.5 * kPi, glm::dvec3(1, 0, 0)));
   for (int i = 0; i < 500; ++i) {

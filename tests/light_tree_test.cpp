@@ -29,7 +29,8 @@ std::vector<PlacedLight> Swarm(int count) {
     if (i % 3 != 0) lamp.radius = lamp.half_angle = 0.2 * Chance(i, 7) + 0.01;
     lamp.half_x = glm::dvec3(0.2, 0.1, 0.0);
     lamp.half_y = glm::dvec3(0.0, 0.0, 0.3);
-    if (lamp.type == LightType::kArea) lamp.axis = glm::normalize(glm::cross(lamp.half_x, lamp.half_y)) * (i % 8 < 4 ? 1.0 : -1.0);
+    if (lamp.type == LightType::kArea)
+      lamp.axis = glm::normalize(glm::cross(lamp.half_x, lamp.half_y)) * (i % 8 < 4 ? 1.0 : -1.0);
     lamps.push_back(lamp);
   }
   return lamps;
@@ -38,7 +39,8 @@ std::vector<PlacedLight> Swarm(int count) {
 SurfacePoint Somewhere(int which) {
   SurfacePoint point;
   point.position = 4.0 * (glm::dvec3(Chance(which, 20), Chance(which, 21), Chance(which, 22)) - 0.5);
-  point.facing = point.normal = glm::normalize(glm::dvec3(Chance(which, 23), Chance(which, 24), Chance(which, 25)) - 0.5);
+  point.facing = point.normal =
+      glm::normalize(glm::dvec3(Chance(which, 23), Chance(which, 24), Chance(which, 25)) - 0.5);
   return point;
 }
 
