@@ -18,6 +18,9 @@ constexpr double kLeastSurvival = 0.05;
 // A lobe that is wanted is chosen at least this often, however little of the light it carries.
 constexpr double kLeastLobe = 0.1;
 
+// The sets of random numbers for points of lights on the first surface; the path's own begin at 0.
+constexpr std::uint32_t kFirstLightSets = 1u << 16;
+
 constexpr PathEvent kLobeEvents[2] = {PathEvent::kDiffuse, PathEvent::kSpecular};
 
 // The balance heuristic: the weight of a technique of density `a` beside one of density `b`.
@@ -126,7 +129,7 @@ void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const
   lights_.VisitLamps(vertex.origin, flight.direction, length,
                      [&](int light, const glm::dvec3& radiance, double density) {
                        if (!LooksFor(light, vertex, flight.lobe)) return;
-                       const double other = density * lights_.Probability(vertex.point, light, flight.direct_sampled);
+                       const double other = density * ChoiceOf(light, vertex, flight);
                        Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
                      });
   if (std::isinf(length)) Add(state, flight.throughput * lights_.world(), sums);
@@ -138,8 +141,7 @@ void LightPathTracer::AddEmission(const Vertex& from, const Vertex& to, const Pa
   if (light < 0 || !LooksFor(light, from, flight.lobe)) return;
   const glm::dvec3 radiance = SurfaceEmission(scene_.objects()[to.object], to.primitive, to.point.barycentric);
   if (radiance == glm::dvec3(0.0)) return;
-  const double other = lights_.EmitterDensity(light, from.point.position, to.point) *
-                       lights_.Probability(from.point, light, flight.direct_sampled);
+  const double other = lights_.EmitterDensity(light, from.point.position, to.point) * ChoiceOf(light, from, flight);
   Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
 }
 
@@ -165,6 +167,23 @@ void LightPathTracer::AddExact(const First& pixel, PathSums& sums, RayCounts& ra
   }
 }
 
+// Light on the first surface by a point of each light with extent: all of its noise is then that of shadows' edges.
+void LightPathTracer::AddEach(const Vertex& vertex, const Lobes& lobes, const Sampler& sampler, std::uint32_t sample,
+                              PathSums& sums, RayCounts& rays) const {
+  for (int light = 0; light < lights_.count(); ++light) {
+    if (lights_.IsDelta(light)) continue;
+    const Quad u = sampler.Draw(sample, kFirstLightSets + std::uint32_t(light));
+    const LightDraw draw = lights_.Draw(light, vertex.point.position, u[0], u[1]);
+    AddDraw(vertex, lobes, light, draw, 1.0, glm::dvec3(1.0), sums, rays);
+  }
+}
+
+// The probability with which a light was sampled at the vertex that a flight has left.
+double LightPathTracer::ChoiceOf(int light, const Vertex& vertex, const Flight& flight) const {
+  if (flight.first && lights_.FewHaveExtent()) return 1.0;
+  return lights_.Probability(vertex.point, light, !flight.first);
+}
+
 // Light on a vertex by one light that is chosen.
 void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const Quad& u, bool with_delta,
                                 const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
@@ -186,7 +205,7 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   flight.direction = way.direction;
   flight.density = way.density * probability;
   flight.widest = std::min(flight.widest, way.density);
-  flight.direct_sampled = bounce > 0;
+  flight.first = bounce == 0;
   if (flight.throughput == glm::dvec3(0.0)) return false;
   if (bounce < kFirstRoulette) return true;
   // By the root, as in Cycles: what survives is then neither all of one brightness and rare, nor all dim and dear.
@@ -224,10 +243,14 @@ void LightPathTracer::AddSample(const First& first, const Sampler& sampler, std:
   std::optional<Vertex> next;
   const Vertex* vertex = &first.vertex;
   for (int bounce = 0;; ++bounce) {
-    const bool with_delta = bounce > 0;
-    if ((lobes.lit[0] || lobes.lit[1]) && (with_delta || lights_.delta_count() < lights_.count())) {
-      const Quad u = sampler.Draw(sample, std::uint32_t(2 * bounce + 1));
-      AddChosen(*vertex, lobes, u, with_delta, flight.throughput, sums, rays);
+    const bool first_surface = bounce == 0;
+    if (lobes.lit[0] || lobes.lit[1]) {
+      if (first_surface && lights_.FewHaveExtent()) {
+        AddEach(*vertex, lobes, sampler, sample, sums, rays);
+      } else {
+        const Quad u = sampler.Draw(sample, std::uint32_t(2 * bounce + 1));
+        AddChosen(*vertex, lobes, u, !first_surface, flight.throughput, sums, rays);
+      }
     }
     if (!(lobes.probability[0] + lobes.probability[1] > 0.0)) return;
     if (!Scatter(*vertex, lobes, sampler.Draw(sample, std::uint32_t(2 * bounce)), bounce, flight)) return;

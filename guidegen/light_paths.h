@@ -2,8 +2,9 @@
 // and Russian roulette (Veach 1997; Kajiya 1986).
 //
 // Each reflection chooses one lobe, so that every path has one string of events, and what it carries goes to exactly
-// the layers whose expression matches. Lamps without extent that light the first surface are summed, not sampled:
-// where nothing else is asked for, no random number is drawn.
+// the layers whose expression matches. On the first surface lamps without extent are summed, not sampled: where nothing
+// else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few; everywhere
+// else one light is chosen.
 //
 // Nothing is clamped. One thing is changed for the sake of less noise, as Cycles does by default ("filter glossy"):
 // after a wide reflection, specular lobes are made rougher. What the eye sees first keeps its roughness.
@@ -77,7 +78,7 @@ class LightPathTracer {
     int lobe = 0;
     double density = 0.0;                                     // of the direction, the choice of the lobe included
     double widest = std::numeric_limits<double>::infinity();  // the smallest density of any direction so far
-    bool direct_sampled = false;  // whether delta lights took part in the choice at the vertex behind
+    bool first = true;                                        // whether it leaves the first surface
   };
 
   Vertex MakeVertex(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric, const ViewRay& ray,
@@ -95,6 +96,9 @@ class LightPathTracer {
   void AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length, PathSums& sums) const;
   void AddEmission(const Vertex& from, const Vertex& to, const PathState& state, const Flight& flight,
                    PathSums& sums) const;
+  void AddEach(const Vertex& vertex, const Lobes& lobes, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
+               RayCounts& rays) const;
+  double ChoiceOf(int light, const Vertex& vertex, const Flight& flight) const;
   bool MayMeetLight(const Vertex& vertex, int lobe) const;
   bool MayMeetLight(const Vertex& vertex, const Flight& flight) const;
   bool LooksFor(int light, const Vertex& vertex, int lobe) const;

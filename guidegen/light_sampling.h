@@ -33,6 +33,8 @@ class LightSet {
   // sampled from a surface's lobes meet it by themselves.
   int count() const { return int(lamps_.size() + emitters_.size()); }
   int delta_count() const { return delta_count_; }
+  // Whether those that are no delta lights are so few that a surface which matters can look at each of them.
+  bool FewHaveExtent() const { return count() - delta_count_ <= 8; }
   bool has_emitters() const { return !emitters_.empty(); }
   bool has_extended_lamps() const { return delta_count_ < int(lamps_.size()); }
   bool has_world() const { return world_ != glm::dvec3(0.0); }
