@@ -69,7 +69,7 @@ class LightTree {
       if (!(first >= 0.0)) return choice;
       const bool second = u >= first;
       const double share = second ? 1.0 - first : first;
-      u = (second ? u - first : u) / share;
+      u = std::min((second ? u - first : u) / share, kBelowOne);
       probability *= share;
       node = &nodes_[node->child[second]];
     }

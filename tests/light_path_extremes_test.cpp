@@ -176,5 +176,40 @@ TEST(Extremes, OneOfFiveHundredLampsBringsWhatAllBring) {
   EXPECT_NEAR(Mean(all, Layer::kLpeLDDE) / sum, 1.0, 0.02);
 }
 
+double Sum(const GuidegenResult& result, Layer layer) {
+  double sum = 0.0;
+  for (const float value : result.guides.Plane(layer)) sum += value;
+  return sum;
+}
+
+// Few lights with extent are each sampled on the first surface, of many one is chosen: both must bring the same.
+TEST(Extremes, ManySoftLampsBringWhatFewOfThemBringTogether) {
+  Scene scene = Floor(Painted(Bsdf::kMetallicRoughness, 0.8f, 0.4f), 2.0);
+  Mesh ball = BallMesh(16);
+  AddObject(scene, "ball", ball, glm::scale(Moved(0, 0, 0.5), glm::dvec3(0.5)));
+  for (int i = 0; i < 24; ++i) {
+    Light lamp = PointLight({1.5 * std::cos(i), 1.5 * std::sin(i), 1.0 + 0.1 * i}, 1.0);
+    lamp.type = LightType(i % 4);
+    lamp.radius = 0.1 + 0.05 * (i % 5);
+    lamp.angle_degrees = 4.0 + i;
+    lamp.size_x = 0.2 + 0.1 * (i % 7);
+    scene.lights.push_back(lamp);
+  }
+  const std::vector<Layer> layers = {Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLuminance};
+  const LayerSet asked = {Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLuminance};
+  const Camera camera = LookingAt({0, -4, 3}, {0, 0, 0.2});
+  const auto many = Render(scene, camera, Paths(12, asked, 1024));
+  std::vector<double> sums(layers.size(), 0.0);
+  for (std::size_t begin = 0; begin < scene.lights.size(); begin += 6) {
+    Scene part = scene;
+    part.lights.assign(scene.lights.begin() + std::ptrdiff_t(begin), scene.lights.begin() + std::ptrdiff_t(begin) + 6);
+    const auto few = Render(part, camera, Paths(12, asked, 256));
+    for (std::size_t i = 0; i < layers.size(); ++i) sums[i] += Sum(few, layers[i]);
+  }
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    EXPECT_NEAR(Sum(many, layers[i]) / sums[i], 1.0, 5e-3) << Info(layers[i]).name;
+  }
+}
+
 }  // namespace
 }  // namespace scumble::testing
