@@ -211,7 +211,7 @@ LAMPS = {
     "area_disc": lambda: lamp("AREA", 400, HIGH, shape="DISK", size=1.2),
     "area_ellipse": lambda: lamp("AREA", 400, KEY, shape="ELLIPSE", size=1.8, size_y=0.7),
 }
-SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 32), "glossy": (glossy_set, ["LSE"], 32),
+SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 32), "glossy": (glossy_set, ["LSE"], 64),
             "textured": (textured_set, ["LDE", "LSE"], 32)}
 
 
@@ -324,7 +324,7 @@ SCENES = {  # builder, layers, size, samples
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):
         SCENES[f"fit_{fit.lower()}_{way}"] = (
-            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), ["full", "LDE"], pixels, 8)
+            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), ["full", "LDE"], pixels, 64)
 for lamp_name, add_lamp in LAMPS.items():
     for surface, (make_set, about, samples) in SURFACES.items():
         if surface == "glossy" and lamp_name in ("point", "spot"):
