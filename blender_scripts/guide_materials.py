@@ -110,29 +110,6 @@ def purify():
             purify_node(tree, node, cutoff)
 
 
-class ShiningColors:
-    """While in use, surfaces that only shine are Diffuse in the colour that they shine in: their base colour in our guides,
-    which Cycles' passes have not."""
-
-    def __enter__(self):
-        self.changed = []
-        for tree, material in list(trees()):
-            output = tree.get_output_node("CYCLES") if material else None
-            links = output.inputs["Surface"].links if output else ()
-            if not links or links[0].from_node.type != "EMISSION":
-                continue
-            shining = links[0].from_socket
-            shader = tree.nodes.new("ShaderNodeBsdfDiffuse")
-            feed(tree, shader.inputs["Color"], shining.node.inputs["Color"])
-            tree.links.new(shader.outputs[0], output.inputs["Surface"])
-            self.changed.append((tree, shader, shining, output))
-
-    def __exit__(self, *problem):
-        for tree, shader, shining, output in self.changed:
-            tree.links.new(shining, output.inputs["Surface"])
-            tree.nodes.remove(shader)
-
-
 def dim(tree, socket, factor):
     """Multiplies an input of numbers by `factor`, an output."""
     if not socket.is_linked:

@@ -4,7 +4,7 @@
             [--camera NAME] [--frame N] [--samples 4,16,64] [--max-bounces N] [--materials authored|pure]
 
 SCENE is a .blend, a .glb or a .gltf. OUTPUT.exr is a multilayer EXR of data: Normal, Depth, Position, DiffCol,
-GlossCol and Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the picture was seen, for
+GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the picture was seen, for
 `scumble transfer --camera` and `scumble crosscheck`.
 
 With --samples there are three renders of the light for each number N of the list, named after OUTPUT without its ending:
@@ -37,7 +37,8 @@ import guide_instances  # noqa: E402
 import guide_materials  # noqa: E402
 from export_scene import EXIT_INPUT, EXIT_VERSION, SUPPORTED, Unsupported, fail  # noqa: E402
 
-DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "cryptomatte_object", "cryptomatte_material"}
+DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit", "cryptomatte_object",
+               "cryptomatte_material"}
 LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", "glossy")
                                        for part in ("direct", "indirect", "color")}
 BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
@@ -202,8 +203,7 @@ def main():
     guide_camera.write(scene, options.output.with_suffix(".camera"))
     choose_passes(layer, DATA_PASSES)
     say("rendering data, 1 sample")
-    with guide_materials.ShiningColors():
-        render_to(scene, options.output, 1, 0)
+    render_to(scene, options.output, 1, 0)
     if options.samples:
         choose_passes(layer, LIGHT_PASSES)
         render_light(scene, options)
