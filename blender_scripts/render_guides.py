@@ -189,8 +189,8 @@ def render_light(scene, options):
 def main():
     options = parse_arguments()
     if bpy.app.version[:2] != SUPPORTED:
-        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because lamps "
-             "shine by other formulas in other versions: name another one with --blender", EXIT_VERSION)
+        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
+             "lamps shine by other formulas in other versions: name another one with --blender", EXIT_VERSION)
     options.output = Path(os.path.abspath(options.output))
     unsupported = Unsupported()
     scene = open_scene(options, unsupported)

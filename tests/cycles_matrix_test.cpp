@@ -1,5 +1,5 @@
-// Every kind of lamp over diffuse, glossy and textured surfaces, and what else a light path may get wrong, against Cycles:
-// `scumble crosscheck` on the scenes of tests/blender/make_matrix.py, by its built-in limits.
+// Every kind of lamp over diffuse, glossy and textured surfaces, and what else a light path may get wrong, against
+// Cycles: `scumble crosscheck` on the scenes of tests/blender/make_matrix.py, by its built-in limits.
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -57,8 +57,8 @@ TEST_F(CyclesMatrixTest, EverySceneAgrees) {
   ASSERT_FALSE(runs.empty()) << "make_matrix.py wrote no matrix.json";
   for (const auto& [setup, names] : runs) {
     // Minutes: longer than the harness lets a command run.
-    std::string command = "cd " + Work().string() + " && " SCUMBLE_BINARY " crosscheck --json --quiet --size " + setup.first +
-                          " --samples " + std::to_string(setup.second);
+    std::string command = "cd " + Work().string() + " && " SCUMBLE_BINARY " crosscheck --json --quiet --size " +
+                          setup.first + " --samples " + std::to_string(setup.second);
     for (const std::string& name : names) command += " " + name + ".blend";
     EXPECT_EQ(std::system((command + " > reports.json 2> message").c_str()), 0) << Bytes("message");
     const nlohmann::json reports = nlohmann::json::parse(std::ifstream(At("reports.json")), nullptr, false);
