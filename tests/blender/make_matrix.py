@@ -213,7 +213,7 @@ LAMPS = {
     "area_ellipse": lambda: lamp("AREA", 400, KEY, shape="ELLIPSE", size=1.8, size_y=0.7),
 }
 SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 32), "glossy": (glossy_set, ["LSE"], 64),
-            "textured": (textured_set, ["LDE", "LSE"], 128)}
+            "textured": (textured_set, ["LDE", "LSE"], 64)}
 
 
 def world(color, strength):
