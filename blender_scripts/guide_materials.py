@@ -102,8 +102,9 @@ def purify_node(tree, node, cutoff):
 
 
 def purify():
-    """Puts a pure Diffuse or a pure Glossy GGX shader in the place of every Principled one, as guidegen does with glTF's
-    metallic-roughness surfaces for a cross-check. Emission and normal maps stay; alpha is cut where guidegen cuts it."""
+    """Puts a pure Diffuse or a pure Glossy GGX shader in the place of every Principled one, as guidegen does with
+    glTF's metallic-roughness surfaces for a cross-check. Emission and normal maps stay; alpha is cut where guidegen
+    cuts it."""
     for tree, material in list(trees()):
         cutoff = material.alpha_threshold if material and material.blend_method == "CLIP" else 0.5
         for node in [node for node in tree.nodes if node.type == "BSDF_PRINCIPLED"]:

@@ -4,17 +4,18 @@
             [--camera NAME] [--frame N] [--samples 4,16,64] [--max-bounces N] [--materials authored|pure]
 
 SCENE is a .blend, a .glb or a .gltf. OUTPUT.exr is a multilayer EXR of data: Normal, Depth, Position, DiffCol,
-GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the picture was seen, for
-`scumble transfer --camera` and `scumble crosscheck`.
+GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the
+picture was seen, for `scumble transfer --camera` and `scumble crosscheck`.
 
-With --samples there are three renders of the light for each number N of the list, named after OUTPUT without its ending:
+With --samples there are three renders of the light for each number N of the list, named after OUTPUT without its
+ending:
 
     OUTPUT.all.N.exr    every path of at most --max-bounces bounces
     OUTPUT.ldde.N.exr   the same without the specular lobes of each path's second surface: DiffCol·DiffInd is L.*DDE
     OUTPUT.ld12e.N.exr  as ldde, of one bounce: DiffCol·(DiffDir + DiffInd) is LD{1,2}E
 
---materials pure puts a Diffuse or a Glossy shader in the place of every Principled one. docs/crosscheck.md says how Cycles
-is set up, and why.
+--materials pure puts a Diffuse or a Glossy shader in the place of every Principled one. docs/crosscheck.md says how
+Cycles is set up, and why.
 
 Lines on stderr: "scumble: rendering …", "scumble: unsupported: …" for what is not rendered as guidegen means it, and
 "scumble: error: …". Exit codes: 0, 2 usage, 3 when the scene cannot be rendered, 5 when this Blender is not supported.
@@ -51,7 +52,8 @@ def parse_arguments():
     parser.add_argument("--size", required=True, type=size, metavar="WIDTHxHEIGHT")
     parser.add_argument("--camera", default="", metavar="NAME", help="left out: the scene's own")
     parser.add_argument("--frame", type=int, metavar="N", help="left out: the one that the .blend was saved at")
-    parser.add_argument("--samples", type=counts, default=[], metavar="LIST", help="renders the light too, e.g. 4,16,64")
+    parser.add_argument("--samples", type=counts, default=[], metavar="LIST",
+                        help="renders the light too, e.g. 4,16,64")
     parser.add_argument("--max-bounces", type=bounces, default=8, metavar="N", help="0: direct light alone")
     parser.add_argument("--materials", choices=("authored", "pure"), default="authored")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
@@ -187,8 +189,8 @@ def render_light(scene, options):
 def main():
     options = parse_arguments()
     if bpy.app.version[:2] != SUPPORTED:
-        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because lamps "
-             "shine by other formulas in other versions: name another one with --blender", EXIT_VERSION)
+        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
+             "lamps shine by other formulas in other versions: name another one with --blender", EXIT_VERSION)
     options.output = Path(os.path.abspath(options.output))
     unsupported = Unsupported()
     scene = open_scene(options, unsupported)
@@ -214,4 +216,4 @@ if __name__ == "__main__":
         main()
     except Exception as problem:  # Blender itself would print the traceback and exit with 0
         traceback.print_exc()
-        fail(str(problem).strip() or type(problem).__name__, EXIT_INPUT)
+        fail(str(problem).strip().removeprefix("Error: ") or type(problem).__name__, EXIT_INPUT)

@@ -1,10 +1,10 @@
-"""Makes the .blend files of cycles_matrix_test.cpp: every kind of lamp over diffuse, glossy and textured surfaces, and one
-scene for each other thing that a lighting pass may get wrong.
+"""Makes the .blend files of cycles_matrix_test.cpp: every kind of lamp over diffuse, glossy and textured surfaces, and
+one scene for each other thing that a lighting pass may get wrong.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_matrix.py -- --output FOLDER [--only NAME,NAME]
 
-FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME the layers that it is about, the picture's size, and
-the samples that its noise asks for.
+FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME the layers that it is about, the picture's size,
+and the samples that its noise asks for.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from mathutils import Euler, Vector
 LANDSCAPE, PORTRAIT = "160x90", "90x160"
 
 
-# ---- Shapes: dense enough that interpolation of normals does not matter, all with UV coordinates -----------------------
+# ---- Shapes: dense enough that interpolation of normals does not matter, all with UV coordinates ---------------------
 
 
 def grid(name, points, material, wrap_rows=False, wrap_columns=False, smooth=True, location=(0, 0, 0)):
@@ -67,7 +67,8 @@ def ball(name, location, radius, material):
 def torus(name, location, ring, tube, material):
     turn, around = (np.linspace(0, 2 * math.pi, count, endpoint=False) for count in (96, 48))
     reach = ring + tube * np.cos(around)[:, None]
-    points = np.stack([reach * np.cos(turn), reach * np.sin(turn), np.repeat(tube * np.sin(around)[:, None], 96, 1)], -1)
+    height = np.repeat(tube * np.sin(around)[:, None], 96, 1)
+    points = np.stack([reach * np.cos(turn), reach * np.sin(turn), height], -1)
     return grid(name, points, material, wrap_rows=True, wrap_columns=True, location=location)
 
 
@@ -211,7 +212,7 @@ LAMPS = {
     "area_disc": lambda: lamp("AREA", 400, HIGH, shape="DISK", size=1.2),
     "area_ellipse": lambda: lamp("AREA", 400, KEY, shape="ELLIPSE", size=1.8, size_y=0.7),
 }
-SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 32), "glossy": (glossy_set, ["LSE"], 128),
+SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 32), "glossy": (glossy_set, ["LSE"], 64),
             "textured": (textured_set, ["LDE", "LSE"], 64)}
 
 
@@ -292,7 +293,8 @@ def principled():
     """What a cross-check renders with pure shaders in the place of Principled ones."""
     waves = picture("Waves")
     materials = {name: material("principled", color, 0.5) for name, color in (
-        ("Floor", (0.8, 0.78, 0.74)), ("Back", (0.75, 0.75, 0.8)), ("Side", (0.8, 0.2, 0.12)), ("Small", (0.9, 0.9, 0.9)))}
+        ("Floor", (0.8, 0.78, 0.74)), ("Back", (0.75, 0.75, 0.8)), ("Side", (0.8, 0.2, 0.12)),
+        ("Small", (0.9, 0.9, 0.9)))}
     materials["Ball"] = material("principled", (0.9, 0.8, 0.5), 0.3)
     materials["Box"] = material("principled", (1, 1, 1), 0.4, waves)
     materials["Ring"] = material("principled", (1, 1, 1), 0.4, waves)
@@ -312,19 +314,19 @@ def camera_scene(**settings):
 
 DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples
-    "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
+    "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 128),
     "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 32),
-    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 256),
+    "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 32),
     "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 32),
-    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
+    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 64),
     "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 32),
     "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 32),
 }
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):
         SCENES[f"fit_{fit.lower()}_{way}"] = (
-            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), ["full", "LDE"], pixels, 8)
+            camera_scene(sensor_fit=fit, sensor_height=30.0, shift_x=0.05), ["full", "LDE"], pixels, 64)
 for lamp_name, add_lamp in LAMPS.items():
     for surface, (make_set, about, samples) in SURFACES.items():
         if surface == "glossy" and lamp_name in ("point", "spot"):
