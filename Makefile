@@ -1,6 +1,6 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo test test-asan bench exemplars scenes gallery format clean
+.PHONY: help build demo test test-asan bench bench-cycles exemplars scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -33,6 +33,10 @@ bench: ## measure speed, with spread; gates nothing
 	@cmake --preset release -DSCUMBLE_BENCH=ON
 	@cmake --build build -j $(JOBS)
 	@for program in build/bench/*_bench; do $$program --benchmark_repetitions=7 --benchmark_report_aggregates_only=true; done
+
+bench-cycles: build ## our speed beside Cycles' on the same scene, into out/bench-cycles/
+	@.ci/install test
+	@/usr/bin/python3 bench/cycles_bench.py --scumble build/scumble $(BENCH_ARGS)
 
 exemplars: ## repaint the bundled styles (libmypaint)
 	@.ci/install test

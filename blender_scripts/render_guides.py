@@ -1,131 +1,219 @@
-"""Renders the data passes of a scene with Cycles: the cross-check of our guides.
+"""Renders a scene with Cycles: the cross-check of our guides.
 
-    blender -b -noaudio --factory-startup -P render_guides.py -- SCENE OUTPUT.exr --size WIDTHxHEIGHT [--camera NAME]
+    blender -b -noaudio --factory-startup -Y -P render_guides.py -- SCENE OUTPUT.exr --size WIDTHxHEIGHT
+            [--camera NAME] [--frame N] [--samples 4,16,64] [--max-bounces N] [--materials authored|pure]
 
-SCENE is a .blend, a .glb or a .gltf. Beside OUTPUT.exr, a multilayer EXR with Normal, Depth, Position, DiffCol and IndexOB, stands
-OUTPUT.camera: text that says how the picture was seen and which object each index is, for `scumble transfer --camera` and
-`scumble crosscheck`. One sample at the pixel's centre (Blackman-Harris, the narrowest width), no light: data is exact,
-and never averaged across an edge.
+SCENE is a .blend, a .glb or a .gltf. OUTPUT.exr is a multilayer EXR of data: Normal, Depth, Position, DiffCol,
+GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the
+picture was seen, for `scumble transfer --camera` and `scumble crosscheck`.
+
+With --samples there are three renders of the light for each number N of the list, named after OUTPUT without its
+ending:
+
+    OUTPUT.all.N.exr    every path of at most --max-bounces bounces
+    OUTPUT.ldde.N.exr   the same without the specular lobes of each path's second surface: DiffCol·DiffInd is L.*DDE
+    OUTPUT.ld12e.N.exr  as ldde, of one bounce: DiffCol·(DiffDir + DiffInd) is LD{1,2}E
+
+--materials pure puts a Diffuse or a Glossy shader in the place of every Principled one. docs/crosscheck.md says how
+Cycles is set up, and why.
+
+Lines on stderr: "scumble: rendering …", "scumble: unsupported: …" for what is not rendered as guidegen means it, and
+"scumble: error: …". Exit codes: 0, 2 usage, 3 when the scene cannot be rendered, 5 when this Blender is not supported.
 """
 
 import argparse
 import os
+import shutil
 import sys
+import traceback
+from pathlib import Path
 
 import bpy
-from mathutils import Matrix
 
-# Blender's axes (+Z up) to glTF's (+Y up): x, z, -y.
-GLTF_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import guide_camera  # noqa: E402  (Blender does not put a script's own folder on the path)
+import guide_import  # noqa: E402
+import guide_instances  # noqa: E402
+import guide_materials  # noqa: E402
+from export_scene import EXIT_INPUT, EXIT_VERSION, SUPPORTED, Unsupported, fail  # noqa: E402
 
-
-def fail(message):
-    print("scumble: error: " + message, file=sys.stderr)
-    sys.exit(1)
+DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit", "cryptomatte_object",
+               "cryptomatte_material"}
+LIGHT_PASSES = {"combined", "emit"} | {f"{lobe}_{part}" for lobe in ("diffuse", "glossy")
+                                       for part in ("direct", "indirect", "color")}
+BOUNCES = ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces")
 
 
 def parse_arguments():
-    arguments = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-    parser = argparse.ArgumentParser(prog="render_guides.py", description=__doc__.split("\n")[0])
+    parser = argparse.ArgumentParser(prog="render_guides.py", description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("scene")
-    parser.add_argument("output")
-    parser.add_argument("--size", required=True, metavar="WIDTHxHEIGHT")
-    parser.add_argument("--camera", default="")
-    return parser.parse_args(arguments)
+    parser.add_argument("output", type=Path)
+    parser.add_argument("--size", required=True, type=size, metavar="WIDTHxHEIGHT")
+    parser.add_argument("--camera", default="", metavar="NAME", help="left out: the scene's own")
+    parser.add_argument("--frame", type=int, metavar="N", help="left out: the one that the .blend was saved at")
+    parser.add_argument("--samples", type=counts, default=[], metavar="LIST",
+                        help="renders the light too, e.g. 4,16,64")
+    parser.add_argument("--max-bounces", type=bounces, default=8, metavar="N", help="0: direct light alone")
+    parser.add_argument("--materials", choices=("authored", "pure"), default="authored")
+    return parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
 
 
-def open_scene(path):
-    if path.endswith(".blend"):
-        bpy.ops.wm.open_mainfile(filepath=path)
-        return
-    # Debian's numpy has dropped an alias that the importer of 3.4 still uses.
-    import numpy
-    if not hasattr(numpy, "bool"):
-        numpy.bool = bool
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.import_scene.gltf(filepath=path)
+def size(text):
+    width, height = (int(side) for side in text.split("x"))
+    if not (1 <= width <= 65536 and 1 <= height <= 65536):
+        raise ValueError
+    return width, height
 
 
-def choose_camera(scene, name):
-    cameras = sorted(o.name for o in scene.objects if o.type == "CAMERA")
-    if name:
-        if name not in cameras:
-            fail("there is no camera %s; there are %s" % (name, ", ".join(cameras) or "none"))
-        scene.camera = scene.objects[name]
-    elif scene.camera is None:
-        if not cameras:
-            fail("the scene has no camera")
-        scene.camera = scene.objects[cameras[0]]
+def counts(text):
+    numbers = [int(number) for number in text.split(",")]
+    if min(numbers) < 1 or max(numbers) > 1 << 24:
+        raise ValueError
+    return numbers
 
 
-def set_up_render(scene, size, output):
+def bounces(text):
+    if not 0 <= int(text) <= 1024:
+        raise ValueError
+    return int(text)
+
+
+def say(text):
+    sys.stdout.flush()
+    print("scumble: " + text, file=sys.stderr, flush=True)
+
+
+def open_scene(options, unsupported):
+    if options.scene.endswith(".blend"):
+        bpy.ops.wm.open_mainfile(filepath=options.scene, load_ui=False, use_scripts=False)
+        scene = bpy.context.scene
+        set_size(scene.render, options.size)
+        scene.frame_set(scene.frame_current if options.frame is None else options.frame)
+        guide_instances.name_apart(scene, choose_layer(scene), unsupported)
+    else:
+        guide_import.load(options.scene, options.size, unsupported)
+        set_size(bpy.context.scene.render, options.size)
+    return bpy.context.scene
+
+
+def set_size(render, pixels):
+    render.resolution_x, render.resolution_y, render.resolution_percentage = *pixels, 100
+    render.pixel_aspect_x = render.pixel_aspect_y = 1
+
+
+def set_up_output(scene):
     render = scene.render
     render.engine = "CYCLES"
-    render.resolution_x, render.resolution_y, render.resolution_percentage = size[0], size[1], 100
-    render.pixel_aspect_x = render.pixel_aspect_y = 1
     render.film_transparent = True
-    render.use_border = False
-    render.use_compositing = render.use_sequencer = False
+    render.use_border = render.use_compositing = render.use_sequencer = render.use_multiview = False
+    render.use_freestyle = render.use_stamp = False
     render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
     render.image_settings.color_depth = "32"
     render.image_settings.exr_codec = "ZIP"
-    render.filepath = output
     render.use_file_extension = False
-    cycles = scene.cycles
-    cycles.samples, cycles.use_adaptive_sampling, cycles.use_denoising = 1, False, False
+    render.use_persistent_data = True  # the same scene is rendered several times
+
+
+def set_up_cycles(scene):
+    """Nothing approximate, nothing clamped, nothing that only one of the two programs has."""
+    render, cycles = scene.render, scene.cycles
+    render.use_simplify = render.use_motion_blur = False
+    cycles.device = "CPU"
     cycles.pixel_filter_type, cycles.filter_width = "BLACKMAN_HARRIS", 0.01
-    cycles.max_bounces = 0
-    layer = scene.view_layers[0]
-    for other in list(scene.view_layers)[1:]:
-        other.use = False
-    layer.use_pass_normal = layer.use_pass_z = layer.use_pass_position = layer.use_pass_object_index = True
-    layer.use_pass_diffuse_color = True
+    cycles.film_exposure = 1.0
+    cycles.seed, cycles.use_animated_seed, cycles.sample_offset = 0, False, 0
+    cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = cycles.use_guiding = False
+    cycles.time_limit = 0.0
+    cycles.use_layer_samples = "IGNORE"
+    cycles.direct_light_sampling_type = "MULTIPLE_IMPORTANCE_SAMPLING"
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0.0
+    cycles.min_light_bounces = cycles.min_transparent_bounces = 0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    cycles.blur_glossy = 1.0  # guidegen makes lobes after a wide reflection rougher by the same rule
+    for camera in bpy.data.cameras:
+        camera.dof.use_dof = False
+    for lamp in bpy.data.lights:
+        lamp.cycles.use_multiple_importance_sampling = True  # without it no mirror shows the lamp
+    for thing in bpy.data.objects:
+        thing.cycles.shadow_terminator_offset = thing.cycles.shadow_terminator_geometry_offset = 0.0
 
 
-def number_objects(scene):
-    """Gives every object an index of its own; returns the names by index."""
-    names = {}
-    for index, obj in enumerate(sorted(scene.objects, key=lambda o: o.name), start=1):
-        obj.pass_index = index
-        if obj.type == "MESH":
-            names[index] = obj.name
-    return names
+def choose_layer(scene):
+    """The first view layer that is rendered, as export_scene.py chooses, alone."""
+    chosen = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+    for layer in scene.view_layers:
+        layer.use = layer == chosen
+    chosen.material_override = None
+    chosen.samples = 0
+    chosen.pass_alpha_threshold = 0.5
+    chosen.pass_cryptomatte_depth = 2
+    return chosen
 
 
-def matrix_text(matrix):
-    """Column by column, every digit."""
-    return " ".join(repr(matrix[row][column]) for column in range(4) for row in range(4))
+def choose_passes(layer, wanted):
+    for prop in layer.bl_rna.properties:
+        if prop.identifier.startswith("use_pass_") and prop.identifier != "use_pass_cryptomatte_accurate":
+            setattr(layer, prop.identifier, prop.identifier[len("use_pass_"):] in wanted)
 
 
-def write_camera(scene, path, names):
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    camera = scene.camera.evaluated_get(depsgraph)
-    rigid = Matrix.LocRotScale(*camera.matrix_world.decompose()[:2], None)
-    world_from_view = GLTF_FROM_BLENDER @ rigid
-    projection = camera.calc_matrix_camera(depsgraph, x=scene.render.resolution_x, y=scene.render.resolution_y)
-    with open(path, "w", encoding="utf-8") as file:
-        file.write("camera %s\n" % scene.camera.name)
-        file.write("viewFromWorld %s\n" % matrix_text(world_from_view.inverted()))
-        file.write("clipFromView %s\n" % matrix_text(projection))
-        for index, name in sorted(names.items()):
-            file.write("object %d %s\n" % (index, name))
+def render_to(scene, path, samples, most_bounces):
+    for name in BOUNCES:
+        setattr(scene.cycles, name, most_bounces)
+    scene.cycles.samples = samples
+    scene.render.filepath = str(path)
+    path.unlink(missing_ok=True)
+    bpy.ops.render.render(write_still=True)
+    if not path.is_file():
+        raise OSError(f"Blender wrote no {path}")
+
+
+def render_light(scene, options):
+    stem = options.output.with_suffix("")
+
+    def render(kind, samples, most_bounces):
+        say(f"rendering {kind}, {samples} sample" + ("s" if samples > 1 else ""))
+        render_to(scene, stem.with_name(f"{stem.name}.{kind}.{samples}.exr"), samples, most_bounces)
+
+    for samples in options.samples:
+        render("all", samples, options.max_bounces)
+    filtered = guide_materials.blacken_second_surface()
+    for samples in options.samples:
+        if filtered:
+            render("ldde", samples, options.max_bounces)
+        else:  # nothing is specular, so the render is that of every path
+            shutil.copyfile(f"{stem}.all.{samples}.exr", f"{stem}.ldde.{samples}.exr")
+        render("ld12e", samples, min(options.max_bounces, 1))
 
 
 def main():
     options = parse_arguments()
+    if bpy.app.version[:2] != SUPPORTED:
+        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
+             "lamps shine by other formulas in other versions: name another one with --blender", EXIT_VERSION)
+    options.output = Path(os.path.abspath(options.output))
+    unsupported = Unsupported()
+    scene = open_scene(options, unsupported)
+    guide_camera.choose(scene, options.camera)
+    if options.materials == "pure":
+        guide_materials.purify()
+    set_up_output(scene)
+    set_up_cycles(scene)
+    layer = choose_layer(scene)
+    for line in unsupported.lines:
+        say("unsupported: " + line)
+    guide_camera.write(scene, options.output.with_suffix(".camera"))
+    choose_passes(layer, DATA_PASSES)
+    say("rendering data, 1 sample")
+    render_to(scene, options.output, 1, 0)
+    if options.samples:
+        choose_passes(layer, LIGHT_PASSES)
+        render_light(scene, options)
+
+
+if __name__ == "__main__":
     try:
-        size = [int(side) for side in options.size.split("x")]
-    except ValueError:
-        fail("--size %s: expected WIDTHxHEIGHT" % options.size)
-    open_scene(options.scene)
-    scene = bpy.context.scene
-    choose_camera(scene, options.camera)
-    set_up_render(scene, size, os.path.abspath(options.output))
-    names = number_objects(scene)
-    write_camera(scene, os.path.splitext(options.output)[0] + ".camera", names)
-    bpy.ops.render.render(write_still=True)
-    if not os.path.exists(options.output):
-        fail("Blender wrote no %s" % options.output)
-
-
-main()
+        main()
+    except Exception as problem:  # Blender itself would print the traceback and exit with 0
+        traceback.print_exc()
+        fail(str(problem).strip().removeprefix("Error: ") or type(problem).__name__, EXIT_INPUT)

@@ -16,16 +16,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Whether transfer can read a Blender render as it is.
+std::string BlenderNote(const GuideFileInfo& info) {
+  const bool solvable = std::all_of(info.layers.begin(), info.layers.end(), [](const auto& entry) {
+    return entry.second.Contains({Layer::kPosition, Layer::kDepth});
+  });
+  return solvable ? "rendered by Blender: transfer finds its camera from Position and Depth, or takes --camera FILE"
+                  : "rendered by Blender, without Position and Depth: transfer needs --camera FILE";
+}
+
 Expected<Json> DescribeGuides(const std::string& path) {
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
   Json json{{"kind", "guides"}, {"width", info.width}, {"height", info.height}, {"channels", info.channels}};
   for (const auto& [view_layer, layers] : info.layers) {
     json[view_layer.empty() ? "layers" : "layers of " + view_layer] = layers.ToString();
   }
-  if (info.from_blender) {
-    json["note"] =
-        "rendered by Blender: transfer reads it with the .camera file that render_guides.py wrote, --camera FILE";
-  }
+  if (info.from_blender) json["note"] = BlenderNote(info);
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
   if (info.header.camera) json["camera"] = info.header.camera->name;

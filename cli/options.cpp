@@ -152,22 +152,38 @@ Expected<Scene> LoadAnyScene(const SceneOptions& options, const Globals& globals
 
 }  // namespace
 
-Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
-                                 const Progress& progress, bool plan_only) {
-  SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
-  SCUMBLE_ASSIGN(const auto view, ParseView(options.view));
-  Stopwatch watch;
-  SceneGuides result;
+Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals) {
   SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, globals));
   for (const std::string& warning : scene.warnings) Warn(options.scene + ": " + warning);
+  return scene;
+}
+
+Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
+                                 const Progress& progress, bool plan_only) {
+  // Mistakes in the options come to light before a large scene is loaded.
+  SCUMBLE_RETURN_IF_ERROR(ParseSize(options.size));
+  SCUMBLE_RETURN_IF_ERROR(ParseView(options.view));
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
+  const double load_ms = watch.Lap();
+  SCUMBLE_ASSIGN(SceneGuides result, MakeGuidesOf(scene, options, layers, globals, progress, plan_only));
+  result.times.insert(result.times.begin(), {"load", load_ms});
+  return result;
+}
+
+Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneOptions& options, const LayerSet& layers,
+                                   const Globals& globals, const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
+  SCUMBLE_ASSIGN(const auto view, ParseView(options.view));
+  SceneGuides result;
   const double aspect = static_cast<double>(size.width) / size.height;
   bool needs_light = layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow);
   for (const Layer layer : {Layer::kLpeFull, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E}) {
     needs_light = needs_light || layers.Has(layer);
   }
+  needs_light = needs_light && options.key_light;
   SCUMBLE_ASSIGN(const PreparedView prepared, PrepareView(scene, options.camera, view, aspect, needs_light));
   for (const std::string& note : prepared.notes) Say(globals, note);
-  result.times.emplace_back("load", watch.Lap());
 
   GuidegenOptions guidegen;
   guidegen.width = size.width, guidegen.height = size.height;

@@ -54,6 +54,7 @@ struct SceneOptions {
   int max_bounces = GuidegenOptions().max_bounces;
   double noise = 0.0;
   double time_budget_seconds = 0.0;
+  bool key_light = true;  // let one shine where the file has no light and a layer needs some
 };
 // For guides with light paths, which no style reads.
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options);
@@ -71,6 +72,13 @@ struct SceneGuides {
   int samples = 0;     // of each pixel, in light-path layers
   double noise = 0.0;  // estimated, where noise or a time budget was asked for
 };
+
+// Loads the scene, a .blend by way of Blender; warns of what the scene asks for in vain.
+Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals);
+
+// Casts the guides of an open scene; the key light, where one is needed, stays in it. Otherwise as MakeGuides.
+Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneOptions& options, const LayerSet& layers,
+                                   const Globals& globals, const Progress& progress, bool plan_only);
 
 // Loads the scene and casts its guides; says camera and light decisions on stderr, warns of what the scene asks for in
 // vain and of a picture that shows nothing. With `plan_only` the guides stay empty.

@@ -63,10 +63,10 @@ Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& global
 
 void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<TransferVerb>();
-  CLI::App* sub = app.add_subcommand("transfer", "guides + style -> picture, from a guide file that guidegen wrote");
+  CLI::App* sub = app.add_subcommand("transfer", "guides + style -> picture, from a guide file of guidegen or a Blender render");
   sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
   sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file")->type_name("NAME");
-  sub->add_option("--camera", verb->camera, "the .camera file of a Blender render, which its header lacks")
+  sub->add_option("--camera", verb->camera, "the .camera file of a Blender render; left out: found from its Position pass")
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
   AddAssignOption(*sub, verb->style);

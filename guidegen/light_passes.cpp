@@ -75,7 +75,7 @@ class LightPasses {
 
  private:
   void Shade(const PathPixel& pixel, int done, int wanted, PathSums& sums, PassStatistics& statistics) {
-    const LightPathTracer::Vertex first = tracer_.FirstVertex(pixel);
+    const LightPathTracer::First first = tracer_.FirstVertex(pixel);
     const Sampler sampler(pixel.index);
     PathSums exact{};
     RayCounts exact_rays;

@@ -13,10 +13,13 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Reflections after which roulette begins: before, paths carry most of the light.
-constexpr int kFirstRoulette = 3;
+constexpr int kFirstRoulette = 1;
 constexpr double kLeastSurvival = 0.05;
 // A lobe that is wanted is chosen at least this often, however little of the light it carries.
 constexpr double kLeastLobe = 0.1;
+
+// The sets of random numbers for points of lights on the first surface; the path's own begin at 0.
+constexpr std::uint32_t kFirstLightSets = 1u << 16;
 
 constexpr PathEvent kLobeEvents[2] = {PathEvent::kDiffuse, PathEvent::kSpecular};
 
@@ -48,9 +51,10 @@ LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::u
   return {point, bsdf, ShadowRayOrigin(point), object, primitive};
 }
 
-LightPathTracer::Vertex LightPathTracer::FirstVertex(const PathPixel& pixel) const {
-  return MakeVertex(pixel.object, pixel.primitive, pixel.barycentric, view_.camera.Through(pixel.at.x, pixel.at.y),
-                    0.0);
+LightPathTracer::First LightPathTracer::FirstVertex(const PathPixel& pixel) const {
+  const ViewRay ray = view_.camera.Through(pixel.at.x, pixel.at.y);
+  const Vertex vertex = MakeVertex(pixel.object, pixel.primitive, pixel.barycentric, ray, 0.0);
+  return {vertex, LobesAt(vertex, follower_.AtEye(), max_bounces_ <= 0)};
 }
 
 void LightPathTracer::Add(const PathState& state, const glm::dvec3& light, PathSums& sums) const {
@@ -65,8 +69,8 @@ LightPathTracer::Lobes LightPathTracer::LobesAt(const Vertex& vertex, const Path
   for (int i = 0; i < 2; ++i) {
     lobes.after[i] = follower_.Step(state, kLobeEvents[i]);
     lobes.lit[i] = share[i] > 0.0 && follower_.WantsLight(lobes.after[i]);
-    const bool useful =
-        (lobes.lit[i] && lights_.CanBeMet()) || (!last && share[i] > 0.0 && follower_.WantsMore(lobes.after[i]));
+    if (!(share[i] > 0.0)) continue;
+    const bool useful = (!last && follower_.WantsMore(lobes.after[i])) || (lobes.lit[i] && MayMeetLight(vertex, i));
     if (!useful) share[i] = 0.0;
   }
   const double total = share[0] + share[1];
@@ -77,6 +81,18 @@ LightPathTracer::Lobes LightPathTracer::LobesAt(const Vertex& vertex, const Path
   return lobes;
 }
 
+// Whether directions of a lobe look for a light, beside points drawn on it. The same answer is given to both
+// techniques, so that their weights add up to one.
+bool LightPathTracer::LooksFor(int light, const Vertex& vertex, int lobe) const {
+  return lobe == 1 || lights_.IsWideFrom(vertex.point.position, light);
+}
+
+// Whether directions of a lobe may meet light that they look for.
+bool LightPathTracer::MayMeetLight(const Vertex& vertex, int lobe) const {
+  if (lobe == 1 || lights_.has_world()) return lights_.CanBeMet();
+  return lights_.CanBeMet() && lights_.AnyWideFrom(vertex.point.position);
+}
+
 bool LightPathTracer::IsBlocked(const Vertex& vertex, const LightDraw& draw, RayCounts& rays) const {
   ++rays.shadow;
   return draw.endless ? scumble::IsBlocked(scene_, vertex.origin, draw.direction, kInfinity)
@@ -84,79 +100,97 @@ bool LightPathTracer::IsBlocked(const Vertex& vertex, const LightDraw& draw, Ray
 }
 
 // Next-event estimation. `probability` is that of the light's choice.
-void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, const LightDraw& draw, double probability,
-                              const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
+void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, int light, const LightDraw& draw,
+                              double probability, const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
   if (draw.radiance == glm::dvec3(0.0)) return;
   const double density = draw.is_delta ? probability : probability * draw.density;
   if (!(density > 0.0) || std::isinf(density)) return;
-  std::array<glm::dvec3, 2> light = {glm::dvec3(0.0), glm::dvec3(0.0)};
+  std::array<glm::dvec3, 2> reflected = {glm::dvec3(0.0), glm::dvec3(0.0)};
   bool any = false;
   for (int i = 0; i < 2; ++i) {
     if (!lobes.lit[i]) continue;
     const SurfaceBsdf::Value value =
         i == 0 ? vertex.bsdf.Diffuse(draw.direction) : vertex.bsdf.Specular(draw.direction);
-    const double other = draw.is_delta ? 0.0 : lobes.probability[i] * value.density;
-    light[i] = throughput * value.value * draw.radiance / (density + other);
-    any = any || light[i] != glm::dvec3(0.0);
+    const bool looked_for = !draw.is_delta && LooksFor(light, vertex, i);
+    const double other = looked_for ? lobes.probability[i] * value.density : 0.0;
+    reflected[i] = throughput * value.value * draw.radiance / (density + other);
+    any = any || reflected[i] != glm::dvec3(0.0);
   }
   if (!any || IsBlocked(vertex, draw, rays)) return;
   for (int i = 0; i < 2; ++i) {
-    if (lobes.lit[i]) Add(lobes.after[i], light[i], sums);
+    if (lobes.lit[i]) Add(lobes.after[i], reflected[i], sums);
   }
 }
 
 // Lamps that a sampled direction meets before `length`, and the world where it meets nothing.
 void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length,
                              PathSums& sums) const {
-  const glm::dvec3& point = vertex.point.position;
-  lights_.VisitLamps(point, flight.direction, length, [&](int light, const glm::dvec3& radiance, double density) {
-    const double other = density * lights_.Probability(point, light, flight.direct_sampled);
-    Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
-  });
+  // From where the ray leaves: a lamp in the surface itself is then behind it, however either is rounded.
+  lights_.VisitLamps(vertex.origin, flight.direction, length,
+                     [&](int light, const glm::dvec3& radiance, double density) {
+                       if (!LooksFor(light, vertex, flight.lobe)) return;
+                       const double other = density * ChoiceOf(light, vertex, flight);
+                       Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
+                     });
   if (std::isinf(length)) Add(state, flight.throughput * lights_.world(), sums);
 }
 
 void LightPathTracer::AddEmission(const Vertex& from, const Vertex& to, const PathState& state, const Flight& flight,
                                   PathSums& sums) const {
   const int light = lights_.EmitterOf(to.object);
-  if (light < 0) return;
+  if (light < 0 || !LooksFor(light, from, flight.lobe)) return;
   const glm::dvec3 radiance = SurfaceEmission(scene_.objects()[to.object], to.primitive, to.point.barycentric);
   if (radiance == glm::dvec3(0.0)) return;
-  const glm::dvec3& point = from.point.position;
-  const double other =
-      lights_.EmitterDensity(light, point, to.point) * lights_.Probability(point, light, flight.direct_sampled);
+  const double other = lights_.EmitterDensity(light, from.point.position, to.point) * ChoiceOf(light, from, flight);
   Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
 }
 
 bool LightPathTracer::MayMeetLight(const Vertex& vertex, const Flight& flight) const {
   if (lights_.has_world() || lights_.has_emitters()) return true;
   bool met = false;
-  lights_.VisitLamps(vertex.point.position, flight.direction, kInfinity,
-                     [&](int, const glm::dvec3&, double) { met = true; });
+  const auto visit = [&](int light, const glm::dvec3&, double) { met = met || LooksFor(light, vertex, flight.lobe); };
+  lights_.VisitLamps(vertex.origin, flight.direction, kInfinity, visit);
   return met;
 }
 
-void LightPathTracer::AddExact(const Vertex& first, PathSums& sums, RayCounts& rays) const {
+void LightPathTracer::AddExact(const First& pixel, PathSums& sums, RayCounts& rays) const {
+  const auto& [first, lobes] = pixel;
   const PathState state = follower_.AtEye();
   if (follower_.WantsLight(state)) {
     Add(state, SurfaceEmission(scene_.objects()[first.object], first.primitive, first.point.barycentric), sums);
   }
   if (lights_.delta_count() == 0) return;
-  const Lobes lobes = LobesAt(first, state, false);
   if (!lobes.lit[0] && (!lobes.lit[1] || first.bsdf.IsMirror())) return;
   for (int light = 0; light < lights_.count(); ++light) {
     if (!lights_.IsDelta(light)) continue;
-    AddDraw(first, lobes, lights_.Draw(light, first.point.position, 0.0, 0.0), 1.0, glm::dvec3(1.0), sums, rays);
+    AddDraw(first, lobes, light, lights_.Draw(light, first.point.position, 0.0, 0.0), 1.0, glm::dvec3(1.0), sums, rays);
   }
+}
+
+// Light on the first surface by a point of each light with extent: all of its noise is then that of shadows' edges.
+void LightPathTracer::AddEach(const Vertex& vertex, const Lobes& lobes, const Sampler& sampler, std::uint32_t sample,
+                              PathSums& sums, RayCounts& rays) const {
+  for (int light = 0; light < lights_.count(); ++light) {
+    if (lights_.IsDelta(light)) continue;
+    const Quad u = sampler.Draw(sample, kFirstLightSets + std::uint32_t(light));
+    const LightDraw draw = lights_.Draw(light, vertex.point.position, u[0], u[1]);
+    AddDraw(vertex, lobes, light, draw, 1.0, glm::dvec3(1.0), sums, rays);
+  }
+}
+
+// The probability with which a light was sampled at the vertex that a flight has left.
+double LightPathTracer::ChoiceOf(int light, const Vertex& vertex, const Flight& flight) const {
+  if (flight.first && lights_.FewHaveExtent()) return 1.0;
+  return lights_.Probability(vertex.point, light, !flight.first);
 }
 
 // Light on a vertex by one light that is chosen.
 void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const Quad& u, bool with_delta,
                                 const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
-  const LightChoice choice = lights_.Choose(vertex.point.position, u[2], with_delta);
+  const LightChoice choice = lights_.Choose(vertex.point, u[0], with_delta);
   if (choice.light < 0) return;
-  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, u[0], u[1]);
-  AddDraw(vertex, lobes, draw, choice.probability, throughput, sums, rays);
+  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, choice.rest, u[1]);
+  AddDraw(vertex, lobes, choice.light, draw, choice.probability, throughput, sums, rays);
 }
 
 // Sends the path on by one of its lobes, roulette included. False where it ends.
@@ -171,10 +205,11 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   flight.direction = way.direction;
   flight.density = way.density * probability;
   flight.widest = std::min(flight.widest, way.density);
-  flight.direct_sampled = bounce > 0;
+  flight.first = bounce == 0;
   if (flight.throughput == glm::dvec3(0.0)) return false;
   if (bounce < kFirstRoulette) return true;
-  const double survival = std::clamp(Largest(flight.throughput), kLeastSurvival, 1.0);
+  // By the root, as in Cycles: what survives is then neither all of one brightness and rare, nor all dim and dear.
+  const double survival = std::clamp(std::sqrt(Largest(flight.throughput)), kLeastSurvival, 1.0);
   flight.throughput /= survival;
   return u[3] < survival;
 }
@@ -201,23 +236,29 @@ std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex
   return goes_on ? std::optional(next) : std::nullopt;
 }
 
-void LightPathTracer::AddSample(const Vertex& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
+void LightPathTracer::AddSample(const First& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
                                 RayCounts& rays) const {
-  PathState state = follower_.AtEye();
   Flight flight;
-  std::optional<Vertex> vertex(first);
-  for (int bounce = 0; vertex; ++bounce) {
-    const bool last = bounce >= max_bounces_;
-    const Lobes lobes = LobesAt(*vertex, state, last);
-    const bool with_delta = bounce > 0;
-    if ((lobes.lit[0] || lobes.lit[1]) && (with_delta || lights_.delta_count() < lights_.count())) {
-      const Quad u = sampler.Draw(sample, std::uint32_t(2 * bounce + 1));
-      AddChosen(*vertex, lobes, u, with_delta, flight.throughput, sums, rays);
+  Lobes lobes = first.lobes;
+  std::optional<Vertex> next;
+  const Vertex* vertex = &first.vertex;
+  for (int bounce = 0;; ++bounce) {
+    const bool first_surface = bounce == 0;
+    if (lobes.lit[0] || lobes.lit[1]) {
+      if (first_surface && lights_.FewHaveExtent()) {
+        AddEach(*vertex, lobes, sampler, sample, sums, rays);
+      } else {
+        const Quad u = sampler.Draw(sample, std::uint32_t(2 * bounce + 1));
+        AddChosen(*vertex, lobes, u, !first_surface, flight.throughput, sums, rays);
+      }
     }
     if (!(lobes.probability[0] + lobes.probability[1] > 0.0)) return;
     if (!Scatter(*vertex, lobes, sampler.Draw(sample, std::uint32_t(2 * bounce)), bounce, flight)) return;
-    state = lobes.after[flight.lobe];
-    vertex = Fly(*vertex, lobes, flight, !last && follower_.WantsMore(state), sums, rays);
+    const PathState state = lobes.after[flight.lobe];
+    next = Fly(*vertex, lobes, flight, bounce < max_bounces_ && follower_.WantsMore(state), sums, rays);
+    if (!next) return;
+    vertex = &*next;
+    lobes = LobesAt(*vertex, state, bounce + 1 >= max_bounces_);
   }
 }
 

@@ -2,8 +2,9 @@
 // and Russian roulette (Veach 1997; Kajiya 1986).
 //
 // Each reflection chooses one lobe, so that every path has one string of events, and what it carries goes to exactly
-// the layers whose expression matches. Lamps without extent that light the first surface are summed, not sampled:
-// where nothing else is asked for, no random number is drawn.
+// the layers whose expression matches. On the first surface lamps without extent are summed, not sampled: where nothing
+// else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few; everywhere
+// else one light is chosen.
 //
 // Nothing is clamped. One thing is changed for the sake of less noise, as Cycles does by default ("filter glossy"):
 // after a wide reflection, specular lobes are made rougher. What the eye sees first keeps its roughness.
@@ -42,7 +43,7 @@ class LightPathTracer {
   // All three outlive the tracer.
   LightPathTracer(const EmbreeScene& scene, const View& view, const PathFollower& follower, int max_bounces);
 
-  // A pixel's first surface, which all its samples share.
+  // A surface on a path.
   struct Vertex {
     SurfacePoint point;
     SurfaceBsdf bsdf;
@@ -50,21 +51,26 @@ class LightPathTracer {
     std::uint32_t object;
     std::uint32_t primitive;
   };
-  Vertex FirstVertex(const PathPixel& pixel) const;
-
-  // What needs no chance: emission that the eye sees, and delta lights on the first surface.
-  void AddExact(const Vertex& first, PathSums& sums, RayCounts& rays) const;
-  // One path and all its light. The mean over the samples 0 … N − 1 and the exact part make the layers.
-  void AddSample(const Vertex& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
-                 RayCounts& rays) const;
-
- private:
   // What can happen at a vertex: index 0 is the diffuse, 1 the specular lobe.
   struct Lobes {
     std::array<PathState, 2> after;          // where the path is with this reflection
     std::array<bool, 2> lit = {};            // light that comes by this lobe belongs to a layer
     std::array<double, 2> probability = {};  // with which the path goes on by this lobe
   };
+  // A pixel's first surface, which all its samples share.
+  struct First {
+    Vertex vertex;
+    Lobes lobes;
+  };
+  First FirstVertex(const PathPixel& pixel) const;
+
+  // What needs no chance: emission that the eye sees, and delta lights on the first surface.
+  void AddExact(const First& first, PathSums& sums, RayCounts& rays) const;
+  // One path and all its light. The mean over the samples 0 … N − 1 and the exact part make the layers.
+  void AddSample(const First& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
+                 RayCounts& rays) const;
+
+ private:
   // The ray that carries a path on, and what it met.
   struct Flight {
     glm::dvec3 throughput{1.0};
@@ -72,7 +78,7 @@ class LightPathTracer {
     int lobe = 0;
     double density = 0.0;                                     // of the direction, the choice of the lobe included
     double widest = std::numeric_limits<double>::infinity();  // the smallest density of any direction so far
-    bool direct_sampled = false;  // whether delta lights took part in the choice at the vertex behind
+    bool first = true;                                        // whether it leaves the first surface
   };
 
   Vertex MakeVertex(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric, const ViewRay& ray,
@@ -80,7 +86,7 @@ class LightPathTracer {
   Lobes LobesAt(const Vertex& vertex, const PathState& state, bool last) const;
   void Add(const PathState& state, const glm::dvec3& light, PathSums& sums) const;
   bool IsBlocked(const Vertex& vertex, const LightDraw& draw, RayCounts& rays) const;
-  void AddDraw(const Vertex& vertex, const Lobes& lobes, const LightDraw& draw, double probability,
+  void AddDraw(const Vertex& vertex, const Lobes& lobes, int light, const LightDraw& draw, double probability,
                const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const;
   void AddChosen(const Vertex& vertex, const Lobes& lobes, const Quad& u, bool with_delta, const glm::dvec3& throughput,
                  PathSums& sums, RayCounts& rays) const;
@@ -90,7 +96,12 @@ class LightPathTracer {
   void AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length, PathSums& sums) const;
   void AddEmission(const Vertex& from, const Vertex& to, const PathState& state, const Flight& flight,
                    PathSums& sums) const;
+  void AddEach(const Vertex& vertex, const Lobes& lobes, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
+               RayCounts& rays) const;
+  double ChoiceOf(int light, const Vertex& vertex, const Flight& flight) const;
+  bool MayMeetLight(const Vertex& vertex, int lobe) const;
   bool MayMeetLight(const Vertex& vertex, const Flight& flight) const;
+  bool LooksFor(int light, const Vertex& vertex, int lobe) const;
 
   const EmbreeScene& scene_;
   const View& view_;

@@ -141,19 +141,27 @@ LightDraw MeetArea(const PlacedLight& lamp, const glm::dvec3& point, const glm::
   return met;
 }
 
-// About the irradiance that a lamp can bring to a point; 0 only where it brings none.
-double LampWeight(const PlacedLight& lamp, const glm::dvec3& point) {
-  const double brightness = std::min(Brightness(lamp.color), kMostIrradiance);
-  if (lamp.type == LightType::kSun) return brightness;
-  const glm::dvec3 way = point - lamp.position;
-  const double square = std::max(glm::dot(way, way), kLeastSquare);
+// The most of a spot's intensity that reaches a place from any point of its disc: from the one that is nearest the
+// axis. The attenuation depends on the part along the axis alone.
+double MostAttenuation(const PlacedLight& spot, const glm::dvec3& from_centre) {
+  const double distance = glm::length(from_centre);
+  if (!(distance > spot.radius)) return 1.0;
+  const double cosine = glm::dot(spot.axis, from_centre) / distance;
+  const double turn = spot.radius / distance;
+  const double straight = std::sqrt(1.0 - turn * turn);
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  return SpotAttenuation(spot, spot.axis * (cosine < straight ? cosine * straight + sine * turn : 1.0));
+}
+
+TreeLight ShapeOf(const PlacedLight& lamp) {
+  TreeLight shape{lamp.position, lamp.radius, std::min(Brightness(lamp.color), kMostIrradiance), false, lamp.IsDelta()};
+  shape.is_sun = lamp.type == LightType::kSun;
+  if (shape.is_sun) shape.radius = lamp.half_angle;
   if (lamp.type == LightType::kArea) {
-    if (!(glm::dot(way, lamp.axis) > 0.0)) return 0.0;
-    const double area = AreaOf(lamp);
-    return brightness * area / std::max(square, area);
+    shape.radius = glm::length(lamp.half_x) + glm::length(lamp.half_y);
+    shape.power *= AreaOf(lamp);
   }
-  if (lamp.IsDelta()) return brightness * SpotAttenuation(lamp, way / std::sqrt(square)) / square;
-  return brightness / std::max(square, lamp.radius * lamp.radius);
+  return shape;
 }
 
 }  // namespace
@@ -163,11 +171,13 @@ LightSet::LightSet(std::span<const PlacedLight> lamps, std::span<const PlacedObj
   for (const PlacedLight& lamp : lamps) {
     if (lamp.color == glm::dvec3(0.0) || (lamp.type == LightType::kArea && !(AreaOf(lamp) > 0.0))) continue;
     lamps_.push_back(lamp);
+    shapes_.push_back(ShapeOf(lamp));
     if (lamp.IsDelta()) ++delta_count_;
   }
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (objects[i].mesh && MayEmit(*objects[i].material)) AddEmitter(std::uint32_t(i));
   }
+  tree_ = LightTree(shapes_);
 }
 
 void LightSet::AddEmitter(std::uint32_t object) {
@@ -191,44 +201,35 @@ void LightSet::AddEmitter(std::uint32_t object) {
     }
   }
   if (!(area > 0.0) || !std::isfinite(area)) return;
-  emitter.centre = 0.5 * (low + high);
-  emitter.radius = 0.5 * glm::length(high - low);
-  emitter.power = Brightness(glm::dvec3(placed.material->emission)) * area;
+  const double power = std::min(Brightness(glm::dvec3(placed.material->emission)), kMostIrradiance) * area;
+  shapes_.push_back({0.5 * (low + high), 0.5 * glm::length(high - low), power, false, false});
   emitter_of_[object] = count();
   emitters_.push_back(std::move(emitter));
 }
 
-double LightSet::Weight(int light, const glm::dvec3& point, bool with_delta) const {
-  if (light < int(lamps_.size())) {
-    const PlacedLight& lamp = lamps_[std::size_t(light)];
-    return with_delta || !lamp.IsDelta() ? LampWeight(lamp, point) : 0.0;
-  }
-  const Emitter& emitter = emitters_[std::size_t(light) - lamps_.size()];
-  const glm::dvec3 way = emitter.centre - point;
-  const double reach = std::max(glm::dot(way, way), emitter.radius * emitter.radius);
-  return emitter.power / std::max(reach, kLeastSquare);
+double LightSet::Weight(int light, const SurfacePoint& point, bool with_delta) const {
+  const TreeLight& shape = shapes_[std::size_t(light)];
+  if (shape.is_delta && !with_delta) return 0.0;
+  if (IsEmitter(light)) return BallWeight(shape.centre, shape.radius, shape.power, point);
+  const PlacedLight& lamp = lamps_[std::size_t(light)];
+  if (shape.is_sun) return SunWeight(-lamp.axis, lamp.half_angle, shape.power, point);
+  const glm::dvec3 way = point.position - lamp.position;
+  if (lamp.type == LightType::kArea && !(glm::dot(way, lamp.axis) > 0.0)) return 0.0;
+  const double weight = BallWeight(shape.centre, shape.radius, shape.power, point);
+  return lamp.type == LightType::kSpot && weight > 0.0 ? weight * MostAttenuation(lamp, way) : weight;
 }
 
-LightChoice LightSet::Choose(const glm::dvec3& point, double u, bool with_delta) const {
-  double total = 0.0;
-  for (int light = 0; light < count(); ++light) total += Weight(light, point, with_delta);
-  LightChoice choice;
-  double left = u * total;
-  for (int light = 0; light < count() && total > 0.0; ++light) {
-    const double weight = Weight(light, point, with_delta);
-    if (!(weight > 0.0)) continue;
-    choice = {light, weight / total};  // rounding may leave a little over for the last one
-    left -= weight;
-    if (left < 0.0) break;
-  }
-  return choice;
+bool LightSet::AnyWideFrom(const glm::dvec3& point) const {
+  return std::any_of(shapes_.begin(), shapes_.end(), [&](const TreeLight& light) { return IsWide(light, point); });
 }
 
-double LightSet::Probability(const glm::dvec3& point, int light, bool with_delta) const {
-  if (count() == 1) return 1.0;
-  double total = 0.0;
-  for (int other = 0; other < count(); ++other) total += Weight(other, point, with_delta);
-  return total > 0.0 ? Weight(light, point, with_delta) / total : 0.0;
+LightChoice LightSet::Choose(const SurfacePoint& point, double u, bool with_delta) const {
+  return tree_.Choose(point, u, with_delta, [&](int light) { return Weight(light, point, with_delta); });
+}
+
+double LightSet::Probability(const SurfacePoint& point, int light, bool with_delta) const {
+  if (!with_delta && IsDelta(light)) return 0.0;
+  return tree_.Probability(point, light, with_delta, [&](int other) { return Weight(other, point, with_delta); });
 }
 
 LightDraw LightSet::Draw(int light, const glm::dvec3& point, double u, double v) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "guidegen/direct_light.h"
+#include "guidegen/light_tree.h"
 #include "guidegen/surface.h"
 
 namespace scumble {
@@ -23,12 +24,6 @@ struct LightDraw {
   double density = 0.0;      // per solid angle, without the choice of the light; of no meaning for delta lights
 };
 
-// Which light to sample.
-struct LightChoice {
-  int light = -1;  // −1: none can reach the point
-  double probability = 0.0;
-};
-
 // The lights of a scene. Borrows the objects, which must outlive it. Immutable; free to use from any thread.
 class LightSet {
  public:
@@ -38,6 +33,8 @@ class LightSet {
   // sampled from a surface's lobes meet it by themselves.
   int count() const { return int(lamps_.size() + emitters_.size()); }
   int delta_count() const { return delta_count_; }
+  // Whether those that are no delta lights are so few that a surface which matters can look at each of them.
+  bool FewHaveExtent() const { return count() - delta_count_ <= 8; }
   bool has_emitters() const { return !emitters_.empty(); }
   bool has_extended_lamps() const { return delta_count_ < int(lamps_.size()); }
   bool has_world() const { return world_ != glm::dvec3(0.0); }
@@ -48,10 +45,15 @@ class LightSet {
   bool IsEmitter(int light) const { return light >= int(lamps_.size()); }
   const glm::dvec3& world() const { return world_; }
 
-  // Chooses a light in proportion to what it may do to a point; `with_delta` says whether delta lights take part.
-  LightChoice Choose(const glm::dvec3& point, double u, bool with_delta) const;
+  // Chooses a light about in proportion to what it may do to a point when nothing is in the way; `with_delta` says
+  // whether delta lights take part.
+  LightChoice Choose(const SurfacePoint& point, double u, bool with_delta) const;
   // The probability with which Choose takes this light.
-  double Probability(const glm::dvec3& point, int light, bool with_delta) const;
+  double Probability(const SurfacePoint& point, int light, bool with_delta) const;
+
+  // Whether a lamp or an emitter is wide from there, and whether any is; see IsWide in light_tree.h.
+  bool IsWideFrom(const glm::dvec3& point, int light) const { return IsWide(shapes_[std::size_t(light)], point); }
+  bool AnyWideFrom(const glm::dvec3& point) const;
 
   // u picks among triangles too and is stretched for it. A draw that cannot reach the point has no radiance.
   LightDraw Draw(int light, const glm::dvec3& point, double u, double v) const;
@@ -61,10 +63,11 @@ class LightSet {
   template <class Visit>
   void VisitLamps(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
     if (!has_extended_lamps()) return;
-    for (int light = 0; light < int(lamps_.size()); ++light) {
+    tree_.VisitAlong(point, direction, [&](int light) {
+      if (IsEmitter(light)) return;
       const LightDraw met = Meet(light, point, direction, length);
       if (met.density > 0.0) visit(light, met.radiance, met.density);
-    }
+    });
   }
 
   // The light that an object is, or −1.
@@ -78,20 +81,19 @@ class LightSet {
     std::uint32_t object = 0;
     std::vector<std::uint32_t> triangles;
     std::vector<double> areas_up_to;  // cumulative; the last is the whole area
-    glm::dvec3 centre{0.0};
-    double radius = 0.0;
-    double power = 0.0;  // luminance × area
   };
 
   LightDraw Meet(int light, const glm::dvec3& point, const glm::dvec3& direction, double length) const;
   LightDraw DrawEmitter(const Emitter& emitter, const glm::dvec3& point, double u, double v) const;
-  double Weight(int light, const glm::dvec3& point, bool with_delta) const;
+  double Weight(int light, const SurfacePoint& point, bool with_delta) const;
   void AddEmitter(std::uint32_t object);
 
   std::span<const PlacedObject> objects_;
   std::vector<PlacedLight> lamps_;
   std::vector<Emitter> emitters_;
-  std::vector<int> emitter_of_;  // by object
+  std::vector<int> emitter_of_;    // by object
+  std::vector<TreeLight> shapes_;  // by light
+  LightTree tree_;
   glm::dvec3 world_{0.0};
   int delta_count_ = 0;
 };

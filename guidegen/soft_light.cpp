@@ -26,15 +26,16 @@ struct Sample {
   SoftLight& sum;
   RayCounts& rays;
 
-  // A point of a light. The other technique never meets meshes here, so their weight is whole.
-  void TakeLight(const Quad& u) {
-    const LightChoice choice = lights.Choose(point.position, u[2], false);
-    if (choice.light < 0) return;
-    const LightDraw draw = lights.Draw(choice.light, point.position, u[0], u[1]);
+  // Whether directions look for a light, too. They never meet meshes here.
+  bool LooksFor(int light) const { return !lights.IsEmitter(light) && lights.IsWideFrom(point.position, light); }
+
+  // A point of a light that was chosen with a probability.
+  void TakeLight(int light_number, double probability, double u, double v) {
+    const LightDraw draw = lights.Draw(light_number, point.position, u, v);
     const double reflected = DiffuseDensity(point, draw.direction);
-    const double density = choice.probability * draw.density;
+    const double density = probability * draw.density;
     if (!(reflected > 0.0) || !(density > 0.0) || std::isinf(density)) return;
-    const double other = lights.IsEmitter(choice.light) ? 0.0 : reflected;
+    const double other = LooksFor(light_number) ? reflected : 0.0;
     const double light = Brightness(draw.radiance) * reflected / (density + other);
     if (!(light > 0.0)) return;
     sum.unoccluded += light;
@@ -42,6 +43,21 @@ struct Sample {
     const bool blocked = draw.endless ? IsBlocked(scene, origin, draw.direction, kInfinity)
                                       : IsBlocked(scene, origin, draw.target - origin, kShadowReach);
     if (!blocked) sum.reached += light;
+  }
+
+  // A point of each light that is no delta light where these are few, or else of one of them.
+  void TakeLights(const Sampler& sampler, std::uint32_t index) {
+    if (!lights.FewHaveExtent()) {
+      const Quad u = sampler.Draw(index, 1);
+      const LightChoice choice = lights.Choose(point, u[0], false);
+      if (choice.light >= 0) TakeLight(choice.light, choice.probability, choice.rest, u[1]);
+      return;
+    }
+    for (int light = 0; light < lights.count(); ++light) {
+      if (lights.IsDelta(light)) continue;
+      const Quad u = sampler.Draw(index, std::uint32_t(light) + 1);
+      TakeLight(light, 1.0, u[0], u[1]);
+    }
   }
 
   // A direction of the surface.
@@ -55,8 +71,10 @@ struct Sample {
     if (!(reflected > 0.0)) return;
     const auto met_before = [&](double length) {
       double light = std::isinf(length) ? Brightness(lights.world()) : 0.0;
-      lights.VisitLamps(point.position, direction, length, [&](int lamp, const glm::dvec3& radiance, double density) {
-        const double other = density * lights.Probability(point.position, lamp, false);
+      lights.VisitLamps(origin, direction, length, [&](int lamp, const glm::dvec3& radiance, double density) {
+        if (!LooksFor(lamp)) return;
+        const double chosen = lights.FewHaveExtent() ? 1.0 : lights.Probability(point, lamp, false);
+        const double other = density * chosen;
         light += Brightness(radiance) * reflected / (reflected + other);
       });
       return light;
@@ -77,9 +95,9 @@ SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, cons
   SoftLight sum;
   Sample sample{scene, lights, point, ShadowRayOrigin(point), sum, rays};
   const bool by_light = lights.delta_count() < lights.count();
-  const bool by_direction = lights.has_extended_lamps() || lights.has_world();
+  const bool by_direction = lights.has_world() || (lights.has_extended_lamps() && lights.AnyWideFrom(point.position));
   for (int i = 0; i < samples; ++i) {
-    if (by_light) sample.TakeLight(sampler.Draw(std::uint32_t(i), 1));
+    if (by_light) sample.TakeLights(sampler, std::uint32_t(i));
     if (by_direction) sample.TakeDirection(sampler.Draw(std::uint32_t(i), 0));
   }
   return {sum.reached / samples, sum.unoccluded / samples};

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "io/blender_camera.h"
+#include "io/blender_passes.h"
 #include "io/guide_header.h"
 #include "io/oiio.h"
 
@@ -98,12 +99,33 @@ struct FoundChannel {
   ChannelMeaning meaning;
 };
 
+// A channel of a Cryptomatte.
+struct FoundMatte {
+  int subimage;
+  int channel;
+  bool is_float;
+  MatteChannel meaning;
+};
+
 struct FileContents {
   OIIO::ImageSpec spec;  // of the first part
   std::vector<FoundChannel> channels;
+  std::vector<FoundMatte> mattes;
+  std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
   std::string all_names;  // for messages
   bool from_blender = false;
 };
+
+// The manifests of a part's header, which stand under cryptomatte/KEY/manifest beside cryptomatte/KEY/name.
+void FindManifests(const OIIO::ImageSpec& spec, FileContents& contents) {
+  constexpr std::string_view kStart = "cryptomatte/", kEnd = "/name";
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string key(value.name());
+    if (value.type() != OIIO::TypeString || !key.starts_with(kStart) || !key.ends_with(kEnd)) continue;
+    const std::string manifest = key.substr(0, key.size() - kEnd.size()) + "/manifest";
+    contents.manifests[std::string(value.get_string())] = std::string(spec.get_string_attribute(manifest));
+  }
+}
 
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
@@ -119,8 +141,13 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
       const std::string& channel = spec.channelnames[c];
       if (++named <= 40) contents.all_names += (contents.all_names.empty() ? "" : ", ") + channel;
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
-      if (auto meaning = ParseChannelName(channel)) contents.channels.push_back({subimage, c, *meaning});
+      if (auto matte = ParseMatteChannel(channel)) {
+        contents.mattes.push_back({subimage, c, spec.channelformat(c) == OIIO::TypeDesc::FLOAT, *matte});
+      } else if (auto meaning = ParseChannelName(channel)) {
+        contents.channels.push_back({subimage, c, *meaning});
+      }
     }
+    FindManifests(spec, contents);
   }
   if (named > 40) contents.all_names += ", …";
   if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
@@ -131,12 +158,16 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
   return contents;
 }
 
-// The view layers of a file: what stands before the names of normals.
+// The view layers of a file: what stands before the names of normals; in a Blender render without any, of Combined.
 std::set<std::string> ViewLayers(const FileContents& contents) {
   std::set<std::string> prefixes;
-  for (const FoundChannel& found : contents.channels) {
-    if (found.meaning.layer == Layer::kNormal && found.meaning.component == 0) prefixes.insert(found.meaning.prefix);
-  }
+  const auto take = [&](Layer layer) {
+    for (const FoundChannel& found : contents.channels) {
+      if (found.meaning.layer == layer && found.meaning.component == 0) prefixes.insert(found.meaning.prefix);
+    }
+  };
+  take(Layer::kNormal);
+  if (prefixes.empty() && contents.from_blender) take(Layer::kCoverage);
   return prefixes;
 }
 
@@ -188,6 +219,13 @@ LayerSet CompleteLayers(const std::vector<FoundChannel>& channels) {
   return complete;
 }
 
+// A channel and the plane of the picture's size that it fills.
+struct PlaneRead {
+  int subimage;
+  int channel;
+  std::span<float> plane;
+};
+
 // A run of channels that one call reads.
 struct ChannelRun {
   int first;
@@ -196,11 +234,11 @@ struct ChannelRun {
 
 // The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which nobody
 // asked for are cheaper to read along than to leave out.
-std::vector<ChannelRun> RunsOf(const std::vector<FoundChannel>& channels, int subimage) {
-  constexpr int kCheapGap = 4;
+std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage) {
+  constexpr int kCheapGap = 16;
   std::set<int> indices;
-  for (const FoundChannel& found : channels) {
-    if (found.subimage == subimage) indices.insert(found.channel);
+  for (const PlaneRead& read : reads) {
+    if (read.subimage == subimage) indices.insert(read.channel);
   }
   std::vector<ChannelRun> runs;
   for (const int index : indices) {
@@ -212,34 +250,68 @@ std::vector<ChannelRun> RunsOf(const std::vector<FoundChannel>& channels, int su
 
 // Copies one channel out of interleaved rows into its plane; what the data window does not cover stays background.
 void Deinterleave(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const ChannelRun& run,
-                  const FoundChannel& found, GuideSet& guides) {
+                  const PlaneRead& read) {
   const std::size_t stride = static_cast<std::size_t>(run.end - run.first);
   const int offset_x = spec.x - spec.full_x, offset_y = spec.y - spec.full_y;
-  const int begin_x = std::max(0, -offset_x), end_x = std::min(spec.width, guides.width() - offset_x);
-  const auto plane = guides.Plane(found.meaning.layer, found.meaning.component);
+  const int begin_x = std::max(0, -offset_x), end_x = std::min(spec.width, spec.full_width - offset_x);
   for (int y = 0; y < spec.height; ++y) {
-    if (y + offset_y < 0 || y + offset_y >= guides.height()) continue;
-    const float* row = pixels.data() + std::size_t(y) * spec.width * stride + (found.channel - run.first);
-    float* out = plane.data() + guides.Index(0, y + offset_y);
+    if (y + offset_y < 0 || y + offset_y >= spec.full_height) continue;
+    const float* row = pixels.data() + std::size_t(y) * spec.width * stride + (read.channel - run.first);
+    float* out = read.plane.data() + std::size_t(y + offset_y) * spec.full_width;
     for (int x = begin_x; x < end_x; ++x) out[x + offset_x] = row[x * stride];
   }
 }
 
-// Reads the selected channels of one part into the set.
-Status ReadPart(OIIO::ImageInput& input, int subimage, const std::vector<FoundChannel>& channels,
-                const std::string& name, GuideSet& guides) {
-  const OIIO::ImageSpec spec = input.spec(subimage);
-  for (const ChannelRun& run : RunsOf(channels, subimage)) {
-    std::vector<float> pixels(std::size_t(run.end - run.first) * spec.width * spec.height);
-    if (!input.read_image(subimage, 0, run.first, run.end, OIIO::TypeDesc::FLOAT, pixels.data()) || input.has_error()) {
-      return internal::ReadFailure(input, name);
-    }
-    for (const FoundChannel& found : channels) {
-      const bool in_run = found.subimage == subimage && found.channel >= run.first && found.channel < run.end;
-      if (in_run && guides.Has(found.meaning.layer)) Deinterleave(spec, pixels, run, found, guides);
+// Fills the planes from all parts of the file.
+Status ReadPlanes(OIIO::ImageInput& input, const std::vector<PlaneRead>& reads, const std::string& name) {
+  std::set<int> parts;
+  for (const PlaneRead& read : reads) parts.insert(read.subimage);
+  for (const int part : parts) {
+    const OIIO::ImageSpec spec = input.spec(part);
+    for (const ChannelRun& run : RunsOf(reads, part)) {
+      std::vector<float> pixels(std::size_t(run.end - run.first) * spec.width * spec.height);
+      if (!input.read_image(part, 0, run.first, run.end, OIIO::TypeDesc::FLOAT, pixels.data()) || input.has_error()) {
+        return internal::ReadFailure(input, name);
+      }
+      for (const PlaneRead& read : reads) {
+        const bool in_run = read.subimage == part && read.channel >= run.first && read.channel < run.end;
+        if (in_run) Deinterleave(spec, pixels, run, read);
+      }
     }
   }
   return Ok();
+}
+
+// The Cryptomattes of a view layer, their planes still to be read.
+Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const std::string& name) {
+  BlenderMattes mattes;
+  for (const FoundMatte& found : contents.mattes) {
+    if (found.meaning.prefix != prefix) continue;
+    if (!found.is_float) {
+      return InputError(name + ": its Cryptomatte " + found.meaning.matte +
+                        " is stored in half floats, which no id survives; write it in 32-bit float");
+    }
+    Matte& matte = mattes[found.meaning.layer];
+    if (matte.ranks.empty()) {
+      const auto manifest = contents.manifests.find(found.meaning.matte);
+      if (manifest != contents.manifests.end()) {
+        SCUMBLE_ASSIGN(matte.manifest, ReadManifest(manifest->second, name));
+      }
+    }
+    const std::size_t index = static_cast<std::size_t>(found.meaning.index);
+    if (matte.ranks.size() <= index) matte.ranks.resize((index / 4 + 1) * 4);
+    matte.ranks[index].resize(std::size_t(contents.spec.full_width) * contents.spec.full_height);
+  }
+  return mattes;
+}
+
+void ReadMattesToo(const FileContents& contents, const std::string& prefix, BlenderMattes& mattes,
+                   std::vector<PlaneRead>& reads) {
+  for (const FoundMatte& found : contents.mattes) {
+    if (found.meaning.prefix != prefix || !mattes.count(found.meaning.layer)) continue;
+    auto& plane = mattes.at(found.meaning.layer).ranks[static_cast<std::size_t>(found.meaning.index)];
+    reads.push_back({found.subimage, found.channel, plane});
+  }
 }
 
 // Normals squeezed into [0, 1] for an 8-bit picture have no negative component anywhere and are rarely of length 1. A few
@@ -315,12 +387,6 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   const std::string name = path.string();
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
-  if (contents.from_blender && options.blender_camera.empty()) {
-    return InputError(name +
-                      " is a Blender render: its normals are in world space and its header holds no camera; give the "
-                      ".camera file that blender_scripts/render_guides.py wrote with it, or make the guides with "
-                      "`scumble guidegen` from the scene exported as .glb");
-  }
   if (!contents.from_blender && !options.blender_camera.empty()) {
     return InputError(name + " is no Blender render: its normals are taken to be in view space, and it needs no " +
                       options.blender_camera.string());
@@ -328,32 +394,48 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, options.view_layer, name));
   LayerSet wanted = options.required;
   wanted.Add(options.optional);
-  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, wanted);
-  const LayerSet complete = CompleteLayers(channels);
+  std::optional<GuideCamera> camera;
+  BlenderMattes mattes;
+  LayerSet read_along = wanted;
+  if (contents.from_blender) {
+    if (!options.blender_camera.empty()) {
+      SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
+    }
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, name));
+    // One Cryptomatte is wanted in any case: it knows the coverage that an opaque film's alpha does not.
+    if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
+    read_along.Add({Layer::kDepth, Layer::kPosition});
+  }
+  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along);
+  LayerSet complete = CompleteLayers(channels);
   LayerSet missing = options.required;
   for (const LayerInfo& info : AllLayers()) {
-    if (complete.Has(info.layer)) missing.Remove(info.layer);
+    if (complete.Has(info.layer) || mattes.count(info.layer)) missing.Remove(info.layer);
   }
   if (!missing.empty()) {
     return InputError(name + " has no layer " + missing.ToString() + "; its channels are " + contents.all_names +
-                      ". Make guides with `scumble guidegen`, or render that pass too" + options.mend);
+                      (contents.from_blender ? BlenderPassesFor(missing)
+                                             : ". Make guides with `scumble guidegen`, or render that pass too") +
+                      options.mend);
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {
-    if (complete.Has(info.layer)) guides.Add(info.layer);
+    const bool from_matte = wanted.Has(info.layer) && mattes.count(info.layer);
+    if (complete.Has(info.layer) || from_matte) guides.Add(info.layer);
   }
-  const int parts = channels.empty() ? 0
-                                     : std::max_element(
-                                           channels.begin(), channels.end(),
-                                           [](auto& a, auto& b) {
-                                             return a.subimage < b.subimage;
-                                           })->subimage +
-                                           1;
-  for (int part = 0; part < parts; ++part) SCUMBLE_RETURN_IF_ERROR(ReadPart(*input, part, channels, name, guides));
+  std::vector<PlaneRead> reads;
+  for (const FoundChannel& found : channels) {
+    if (!complete.Has(found.meaning.layer) || mattes.count(found.meaning.layer)) continue;
+    reads.push_back({found.subimage, found.channel, guides.Plane(found.meaning.layer, found.meaning.component)});
+  }
+  ReadMattesToo(contents, prefix, mattes, reads);
+  SCUMBLE_RETURN_IF_ERROR(ReadPlanes(*input, reads, name));
   ReadHeader(contents.spec, guides);
   if (contents.from_blender) {
-    SCUMBLE_ASSIGN(const BlenderCamera camera, ReadBlenderCamera(options.blender_camera));
-    ConvertBlenderPasses(camera, guides);
+    SCUMBLE_RETURN_IF_ERROR(ConvertBlenderPasses(camera, mattes, name, guides));
+    for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
+      if (!wanted.Has(layer)) guides.Remove(layer);
+    }
   }
   if (guides.Has(Layer::kNormal)) {
     if (guides.Has(Layer::kCoverage) && LookPacked(guides)) {
@@ -372,10 +454,14 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
   GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.from_blender, {}, contents.all_names, {}};
-  for (const std::string& prefix : ViewLayers(contents)) {
+  std::set<std::string> prefixes = ViewLayers(contents);
+  if (prefixes.empty()) prefixes.insert("");
+  for (const std::string& prefix : prefixes) {
     info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
+    for (const FoundMatte& found : contents.mattes) {
+      if (info.from_blender && found.meaning.prefix == prefix) info.layers[prefix].Add(found.meaning.layer);
+    }
   }
-  if (info.layers.empty()) info.layers[""] = CompleteLayers(SelectChannels(contents, "", all));
   ReadHeader(contents.spec, info.header);
   return info;
 }

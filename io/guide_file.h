@@ -28,21 +28,21 @@ struct GuideReadOptions {
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
   std::string mend;                     // how the caller can do without, for the message about missing layers
-  std::filesystem::path blender_camera;  // the .camera file of a Blender render (io/blender_camera.h)
+  std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 
 // Reads only the channels that are asked for; matches them by name (ParseChannelName). The result is validated:
 // normals whose length is off by more than a half float's rounding are normalised, and what GuideSet::Validate
-// refuses is an error. A file that Blender wrote has world-space normals and no
-// camera: without `blender_camera` it is refused with what to do.
+// refuses is an error. What Blender wrote is converted as io/blender_passes.h says: its camera comes from
+// `blender_camera`, or from its Position and Depth passes; names from Cryptomatte.
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
 
 // What a guide file holds, without reading its pixels.
 struct GuideFileInfo {
   int width = 0;
   int height = 0;
-  bool from_blender = false;                // rendered by Blender itself: ReadGuides refuses it
-  std::map<std::string, LayerSet> layers;   // complete layers by view layer; "" where names have nothing before them
+  bool from_blender = false;                // rendered by Blender itself: its passes are to be converted
+  std::map<std::string, LayerSet> layers;   // complete layers by view layer; "" where names have nothing before them; Cryptomatte counts
   std::string channels;                     // all names as they stand in the file
   GuideSet header;                          // names, camera and attributes; 0 × 0 pixels
 };

@@ -1,12 +1,16 @@
 // Our guides against a reference renderer's of the same view: figures, limits, a verdict.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "image/guides.h"
 #include "image/picture.h"
 #include "image/status.h"
+#include "io/cycles_light.h"
 
 namespace scumble {
 
@@ -16,8 +20,18 @@ struct CrosscheckFigure {
   std::string name;   // "99% within"
   std::string unit;   // "degrees"
   double value = 0;
-  double limit = 0;
-  bool kept() const { return value <= limit; }  // NaN keeps no limit
+  double limit = 0;                           // built in
+  double error = 0;                           // standard error of the value; 0 where chance plays no part
+  double floor = 0;                           // the least limit that makes sense in a baseline
+  std::string note = {};                      // "no such light"
+  std::optional<double> baseline_limit = {};  // from a file; can tighten and never loosen
+
+  double LimitInForce() const;
+  bool TightenedByBaseline() const { return baseline_limit && *baseline_limit < limit; }
+  // A value whose error is as large as the limit neither keeps nor breaks it.
+  bool TooNoisy() const;
+  // NaN keeps no limit.
+  bool kept() const { return value <= LimitInForce() && !TooNoisy(); }
 };
 
 // A layer side by side, for people.
@@ -25,35 +39,91 @@ struct CrosscheckPictures {
   std::string layer;
   Picture reference;
   Picture ours;
-  Picture difference;       // black to yellow; full at the figure's limit times `full_scale`
-  std::string full_scale;   // what yellow means, in words
+  Picture difference;
+  std::string look;        // how both are shown, in words; empty where it goes without saying
+  std::string full_scale;  // what the colours of the difference mean, in words
+};
+
+// How far ours and the reference are apart pixel by pixel, at several sample counts.
+struct CrosscheckNoise {
+  std::string layer;
+  std::vector<int> samples;     // ascending
+  std::vector<double> nrmse;    // root mean square difference over the reference's mean, by count; both sides' noise
+  std::optional<double> slope;  // of log NRMSE against log samples, least squares: −1/2 for independent samples
+  bool free_of_noise = false;   // NRMSE below 1e-3 at the largest count: no slope
+  bool no_such_light = false;   // zero in both
+  // The largest difference of a channel at the largest count.
+  double worst = 0;
+  int worst_x = 0;
+  int worst_y = 0;
+  double worst_reference = 0;
+  double worst_ours = 0;
+};
+
+// What was rendered: two reports compare only where these agree.
+struct CrosscheckSetup {
+  int width = 0;
+  int height = 0;
+  int samples = 0;  // of a pixel in the light layers; 0: data layers alone were compared
+  int max_bounces = 0;
+  std::string camera;        // empty: the scene's first
+  std::optional<int> frame;  // of a .blend; empty: the one that it was saved at
+  bool operator==(const CrosscheckSetup&) const = default;
 };
 
 struct CrosscheckReport {
   std::string scene;
-  int width = 0;
-  int height = 0;
+  CrosscheckSetup setup;
   std::size_t compared = 0;  // pixels inside the eroded masks
+  bool glossy = false;       // the reference shows a specular surface
   std::vector<CrosscheckFigure> figures;
+  std::vector<CrosscheckNoise> noise;
   std::vector<CrosscheckPictures> pictures;
-  std::vector<std::string> skipped;  // layers that the reference lacks: they fail the verdict
+  std::vector<std::string> skipped;   // layers that one side lacks: they fail the verdict
+  std::vector<std::string> problems;  // whatever else fails the verdict, one sentence each
+  std::vector<std::string> warnings;  // what is not compared as authored
+  bool KeepsBuiltInLimits() const;    // the verdict without any baseline
   bool passed() const;
 };
 
 struct CrosscheckOptions {
-  int erode_pixels = 2;          // compared are pixels whose neighbourhood shows one and the same object in both
+  int erode_pixels = 2;  // compared are pixels whose neighbourhood shows one and the same object in both
   bool make_pictures = true;
+  // By pixel: 1 where albedo is not compared, because the reference's surface has none and shines instead. Empty: nowhere.
+  std::vector<std::uint8_t> without_albedo = {};
 };
 
 // Compares coverage over the whole picture, and normal, depth, position, object ids and albedo inside the object masks
-// eroded by `erode_pixels`. Limits: normals 99% within 0.01° and 99.9% within 0.1°; depth and position 99.9% within 1e-5
-// relative; coverage equal but for 0.02% of the pixels; ids equal; albedo 0.002 in the mean. Both sets must hold A,
-// normal, depth and object; sizes must agree.
+// eroded by `erode_pixels`. Limits: normals 99% within 0.01° and 99.9% within 0.1°; depth and position 99.9% within
+// 1e-5 relative; coverage equal but for 0.02% of the pixels; ids equal; albedo 0.002 in the mean. Both sets must hold
+// A, normal, depth and object; sizes must agree.
 Expected<CrosscheckReport> Crosscheck(const std::string& scene, const GuideSet& reference, const GuideSet& ours,
                                       const CrosscheckOptions& options = {});
 
+// Light paths of both sides at one sample count.
+struct CrosscheckLight {
+  int samples = 0;
+  CyclesLight reference;
+  GuideSet ours;  // lpe.* layers
+};
+
+// Adds the light layers to the report of the data layers `reference` and `ours`, whose masks they share. `light` is in
+// ascending order of samples; figures and pictures are those of the last. Each layer's figure is the relative
+// difference of the mean, Σ|mean ours − mean reference| / Σ mean reference over the three channels, in percent; its
+// error is the sum of the channels' standard errors, so it holds however the channels' noise hangs together. `indirect`
+// is full − LDE − LSE where the surface itself does not shine. Limits: LDE 0.5%, LSE 2%, the others 1.5% where nothing
+// is glossy and 2% else. Zero in both is "no such light"; zero in one alone breaks. Every value of ours must be finite
+// and not negative. A layer that either side lacks is skipped, and fails the verdict. Errors: sizes differ.
+Status CrosscheckLightLayers(const GuideSet& reference, const GuideSet& ours, const std::vector<CrosscheckLight>& light,
+                             const CrosscheckOptions& options, CrosscheckReport& report);
+
 // A table for a terminal, the verdict last.
 std::string CrosscheckToText(const CrosscheckReport& report);
+// NaN and infinities are the texts "nan", "inf" and "-inf".
 std::string CrosscheckToJson(const std::vector<CrosscheckReport>& reports);
+
+// The verdict's own line, and why it fails, one sentence each.
+std::string CrosscheckVerdict(const CrosscheckReport& report);
+std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report);
 
 }  // namespace scumble

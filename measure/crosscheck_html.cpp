@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstddef>
 
 #include "io/picture_file.h"
+#include "measure/crosscheck_chart.h"
 
 namespace scumble {
 namespace {
@@ -12,11 +14,18 @@ namespace {
 std::string Escape(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
-    if (c == '&') escaped += "&amp;";
-    else if (c == '<') escaped += "&lt;";
-    else if (c == '>') escaped += "&gt;";
-    else if (c == '"') escaped += "&quot;";
-    else escaped += c;
+    if (c == '&')
+      escaped += "&amp;";
+    else if (c == '<')
+      escaped += "&lt;";
+    else if (c == '>')
+      escaped += "&gt;";
+    else if (c == '"')
+      escaped += "&quot;";
+    else if (c == '\'')
+      escaped += "&#39;";
+    else
+      escaped += c;
   }
   return escaped;
 }
@@ -40,41 +49,167 @@ std::string Base64(const std::vector<std::byte>& bytes) {
 
 Expected<std::string> ImageTag(const Picture& picture, const std::string& caption) {
   SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(picture));
-  return fmt::format("<figure><img src=\"data:image/png;base64,{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
-                     Base64(png), Escape(caption), Escape(caption));
+  return fmt::format(
+      "<figure><img loading=\"lazy\" src=\"data:image/png;base64,{}\" "
+      "alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+      Base64(png), Escape(caption), Escape(caption));
 }
 
 constexpr const char* kHead = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>Scumble cross-check</title>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>Scumble cross-check</title>
 <style>
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 75rem; padding: 0 1rem; color: #222; background: #faf8f4; }
-h1 { font-weight: 600; } h2 { margin-top: 2.5rem; border-top: 1px solid #ddd6c8; padding-top: 1rem; }
-table { border-collapse: collapse; margin: 1rem 0; } th, td { text-align: left; padding: .25rem 1.2rem .25rem 0; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; } tr.broken td { color: #b3261e; font-weight: 600; }
-.verdict { display: inline-block; padding: .2rem .8rem; border-radius: 1rem; color: #fff; font-weight: 600; }
-.agrees { background: #2e7d4f; } .differs { background: #b3261e; }
-.row { display: flex; gap: .8rem; flex-wrap: wrap; } figure { margin: 0; flex: 1 1 20rem; }
-img { width: 100%; border-radius: 4px; background: #e9e4da; } figcaption { color: #666; font-size: .85rem; }
-code { background: #efeae0; padding: .1rem .3rem; border-radius: 3px; }
+:root { color-scheme: light dark; --text: #23252b; --soft: #676b75; --ground: #f7f7f8; --card: #fff; --line: #dcdde2;
+  --good: #1f7a4a; --bad: #b3261e; --badground: #fbeae8; }
+@media (prefers-color-scheme: dark) { :root { --text: #e4e5e9; --soft: #9a9eaa; --ground: #17181b; --card: #202226;
+  --line: #35373e; --good: #4dbb82; --bad: #ff8a80; --badground: #3a2221; } }
+body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 80rem; padding: 0 1.2rem; color: var(--text);
+  background: var(--ground); }
+h1 { font-weight: 600; margin-bottom: .3rem; } h2 { margin: 3rem 0 .2rem; font-weight: 600; } h3 { margin: 1.8rem 0 .4rem; font-size: 1rem; }
+p { margin: .3rem 0; } .soft { color: var(--soft); } a { color: inherit; }
+section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: .2rem 1.2rem .8rem; margin: .8rem 0; overflow-x: auto; }
+table { border-collapse: collapse; margin: .6rem 0; } th { font-weight: 600; color: var(--soft); font-size: .85rem; }
+th, td { text-align: left; padding: .28rem 1.4rem .28rem 0; border-bottom: 1px solid var(--line); vertical-align: baseline; }
+tr:last-child td { border-bottom: 0; } th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+tr.broken td { color: var(--bad); font-weight: 600; } td.first { font-weight: 600; } td.again { color: transparent; }
+.verdict { display: inline-block; padding: .1rem .7rem; border-radius: 1rem; font-size: .85em; font-weight: 600; border: 1.5px solid; }
+.agrees { color: var(--good); } .differs { color: var(--bad); }
+.fails { background: var(--badground); border-left: 4px solid var(--bad); padding: .4rem 1rem; margin: .6rem 0; }
+ul { margin: .2rem 0; padding-left: 1.2rem; }
+.row { display: grid; grid-template-columns: repeat(3, 1fr); gap: .8rem; } figure { margin: 0; }
+img { width: 100%; border-radius: 4px; background: repeating-conic-gradient(#8884 0 25%, #8882 0 50%) 0 0 / 16px 16px; display: block; }
+figcaption { color: var(--soft); font-size: .82rem; padding-top: .25rem; }
+code { background: var(--card); border: 1px solid var(--line); padding: .05rem .35rem; border-radius: 3px; overflow-wrap: anywhere; }
+svg { max-width: 44rem; width: 100%; font: 12px system-ui, sans-serif; } svg text { fill: var(--soft); } svg text.label { fill: revert-layer; }
+svg .grid { stroke: var(--line); } svg .guide { stroke: var(--soft); stroke-dasharray: 5 5; stroke-width: 1.4; }
 </style></head><body>
 )";
 
-std::string Verdict(bool passed) {
+std::string Badge(bool passed) {
   return passed ? "<span class=\"verdict agrees\">agrees</span>" : "<span class=\"verdict differs\">differs</span>";
 }
 
-std::string FigureTable(const CrosscheckReport& report) {
-  std::string html = "<table><tr><th>layer</th><th>figure</th><th>measured</th><th>limit</th><th></th></tr>\n";
+std::string Anchor(std::size_t index) { return fmt::format("scene{}", index + 1); }
+
+// The figure nearest to its limit, or farthest beyond it: what a reader of the summary wants to know first.
+const CrosscheckFigure* Tightest(const CrosscheckReport& report) {
+  const CrosscheckFigure* tightest = nullptr;
+  double most = -1.0;
   for (const CrosscheckFigure& figure : report.figures) {
-    html += fmt::format(
-        "<tr{}><td>{}</td><td>{}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{:.3g}</td><td>{}</td></tr>\n",
-        figure.kept() ? "" : " class=\"broken\"", Escape(figure.layer), Escape(figure.name), figure.value, figure.limit,
-        Escape(figure.unit));
+    const double limit = figure.LimitInForce();
+    const double share = !figure.kept() ? HUGE_VAL : limit > 0.0 ? figure.value / limit : 0.0;
+    if (share > most) most = share, tightest = &figure;
   }
-  for (const std::string& layer : report.skipped) {
-    html += fmt::format("<tr class=\"broken\"><td>{}</td><td colspan=\"4\">the reference lacks it</td></tr>\n", Escape(layer));
+  return tightest;
+}
+
+std::string Summary(const std::vector<CrosscheckReport>& reports) {
+  std::string html =
+      "<section><table><tr><th>scene</th><th>verdict</th><th class=\"number\">pixels</th><th class=\"number\">"
+      "samples</th><th>nearest to its limit</th><th class=\"number\">measured</th><th class=\"number\">limit</th>"
+      "<th></th></tr>\n";
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const CrosscheckReport& report = reports[i];
+    html += fmt::format(
+        "<tr><td class=\"first\"><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>"
+        "<td class=\"number\">{}</td>",
+        Anchor(i), Escape(report.scene), Badge(report.passed()), report.compared,
+        report.setup.samples > 0 ? std::to_string(report.setup.samples) : "data only");
+    if (const CrosscheckFigure* figure = Tightest(report)) {
+      html += fmt::format("<td>{} {}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{:.3g}</td><td>{}</td>",
+                          Escape(figure->layer), Escape(figure->name), figure->value, figure->LimitInForce(),
+                          Escape(figure->unit));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table></section>\n";
+}
+
+std::string FigureTable(const CrosscheckReport& report) {
+  std::string html =
+      "<table><tr><th>layer</th><th>figure</th><th class=\"number\">measured</th><th class=\"number\">± error</th>"
+      "<th class=\"number\">limit</th><th></th><th></th></tr>\n";
+  std::string above;
+  for (const CrosscheckFigure& figure : report.figures) {
+    std::string remark = figure.note;
+    const auto add = [&remark](const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; };
+    if (figure.TooNoisy()) add("too noisy: raise --samples");
+    if (figure.TightenedByBaseline()) add(fmt::format("limit from the baseline; built in {:.3g}", figure.limit));
+    html += fmt::format(
+        "<tr{}><td class=\"{}\">{}</td><td>{}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{}</td>"
+        "<td class=\"number\">{:.3g}</td><td>{}</td><td class=\"soft\">{}</td></tr>\n",
+        figure.kept() ? "" : " class=\"broken\"", figure.layer == above ? "again" : "first", Escape(figure.layer),
+        Escape(figure.name), figure.value, figure.error > 0.0 ? fmt::format("{:.2g}", figure.error) : "",
+        figure.LimitInForce(), Escape(figure.unit), Escape(remark));
+    above = figure.layer;
   }
   return html + "</table>\n";
+}
+
+std::string NoiseTable(const std::vector<CrosscheckNoise>& noise) {
+  const CrosscheckNoise* measured = nullptr;
+  for (const CrosscheckNoise& layer : noise) {
+    if (!layer.no_such_light) measured = &layer;
+  }
+  if (!measured) return "";
+  std::string html = "<table><tr><th>layer</th>";
+  for (const int count : measured->samples) html += fmt::format("<th class=\"number\">{} samples</th>", count);
+  html += "<th class=\"number\">slope</th><th>largest difference of a pixel</th></tr>\n";
+  for (const CrosscheckNoise& layer : noise) {
+    html += "<tr><td class=\"first\">" + Escape(layer.layer) + "</td>";
+    if (layer.no_such_light) {
+      html += fmt::format("<td class=\"soft\" colspan=\"{}\">no such light</td></tr>\n", measured->samples.size() + 2);
+      continue;
+    }
+    for (const double value : layer.nrmse) html += fmt::format("<td class=\"number\">{:.3g}</td>", value);
+    html += "<td class=\"number\">" + (layer.slope           ? fmt::format("{:+.2f}", *layer.slope)
+                                       : layer.free_of_noise ? "free of noise"
+                                                             : "–");
+    html += fmt::format("</td><td>{:.3g} at ({}, {}): {:.4g} against {:.4g}</td></tr>\n", layer.worst, layer.worst_x,
+                        layer.worst_y, layer.worst_ours, layer.worst_reference);
+  }
+  return html + "</table>\n";
+}
+
+std::string NoisePart(const CrosscheckReport& report) {
+  const std::string table = NoiseTable(report.noise);
+  if (table.empty()) return "";
+  return "<h3>Noise against samples</h3>\n<p class=\"soft\">Root mean square difference of the pixels over the "
+         "reference's mean: both "
+         "sides' noise, and what they really disagree about, which no sample count takes away. The dashed line falls "
+         "as "
+         "1/√samples.</p>\n<section>" +
+         table + internal::NoiseChart(report.noise) + "</section>\n";
+}
+
+std::string List(const std::vector<std::string>& lines) {
+  std::string html = "<ul>";
+  for (const std::string& line : lines) html += "<li>" + Escape(line) + "</li>";
+  return html + "</ul>\n";
+}
+
+std::string SetupLine(const CrosscheckReport& report) {
+  const CrosscheckSetup& setup = report.setup;
+  std::string line = fmt::format("{}×{} pixels, {} compared", setup.width, setup.height, report.compared);
+  if (!setup.camera.empty()) line += ", camera " + Escape(setup.camera);
+  if (setup.frame) line += fmt::format(", frame {}", *setup.frame);
+  if (setup.samples == 0) return line + "; data layers alone, light was not compared";
+  return line + fmt::format("; light with {} samples and {} bounces, {}", setup.samples, setup.max_bounces,
+                            report.glossy ? "some of it specular" : "nothing specular in view");
+}
+
+Expected<std::string> PictureRows(const CrosscheckReport& report) {
+  std::string html;
+  for (const CrosscheckPictures& pictures : report.pictures) {
+    SCUMBLE_ASSIGN(const std::string reference, ImageTag(pictures.reference, "reference"));
+    SCUMBLE_ASSIGN(const std::string ours, ImageTag(pictures.ours, "ours"));
+    SCUMBLE_ASSIGN(const std::string difference, ImageTag(pictures.difference, "difference; " + pictures.full_scale));
+    html += "<h3>" + Escape(pictures.layer);
+    if (!pictures.look.empty())
+      html += " <span class=\"soft\" style=\"font-weight:400\">" + Escape(pictures.look) + "</span>";
+    html += "</h3>\n<div class=\"row\">\n" + reference + ours + difference + "</div>\n";
+  }
+  return html;
 }
 
 }  // namespace
@@ -83,21 +218,25 @@ Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& repo
   bool passed = !reports.empty();
   for (const CrosscheckReport& report : reports) passed = passed && report.passed();
   std::string html = kHead;
-  html += fmt::format("<h1>Scumble cross-check {}</h1>\n<p>Reference: {}. Repeat with <code>{}</code>.</p>\n", Verdict(passed),
-                      Escape(run.reference), Escape(run.command));
-  html += "<p>Coverage is compared over the whole picture; everything else where a pixel and its neighbours, two to each "
-          "side, show one object in both.</p>\n";
-  for (const CrosscheckReport& report : reports) {
-    html += fmt::format("<h2>{} {}</h2>\n<p>{}×{} pixels, {} compared.</p>\n", Escape(report.scene), Verdict(report.passed()),
-                        report.width, report.height, report.compared);
-    html += FigureTable(report);
-    for (const CrosscheckPictures& pictures : report.pictures) {
-      SCUMBLE_ASSIGN(const std::string reference, ImageTag(pictures.reference, pictures.layer + ", reference"));
-      SCUMBLE_ASSIGN(const std::string ours, ImageTag(pictures.ours, pictures.layer + ", ours"));
-      SCUMBLE_ASSIGN(const std::string difference,
-                     ImageTag(pictures.difference, pictures.layer + ", difference; yellow is " + pictures.full_scale));
-      html += "<div class=\"row\">\n" + reference + ours + difference + "</div>\n";
-    }
+  html += fmt::format("<h1>Scumble cross-check {}</h1>\n<p>Reference: {}. Repeat with <code>{}</code>.{}</p>\n",
+                      Badge(passed), Escape(run.reference), Escape(run.command),
+                      run.baseline.empty() ? "" : " Limits tightened by <code>" + Escape(run.baseline) + "</code>.");
+  html +=
+      "<p class=\"soft\">Coverage is compared over the whole picture; everything else where a pixel and its "
+      "neighbours, two to "
+      "each side, show one object in both. Light layers: relative difference of the mean.</p>\n";
+  html += Summary(reports);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const CrosscheckReport& report = reports[i];
+    html += fmt::format("<h2 id=\"{}\">{} {}</h2>\n<p class=\"soft\">{}.</p>\n", Anchor(i), Escape(report.scene),
+                        Badge(report.passed()), SetupLine(report));
+    const std::vector<std::string> reasons = WhyCrosscheckFails(report);
+    if (!reasons.empty()) html += "<div class=\"fails\"><b>Why it differs</b>" + List(reasons) + "</div>\n";
+    html += "<section>" + FigureTable(report) + "</section>\n";
+    if (!report.warnings.empty()) html += "<h3>Not compared as authored</h3>\n" + List(report.warnings);
+    html += NoisePart(report);
+    SCUMBLE_ASSIGN(const std::string pictures, PictureRows(report));
+    html += pictures;
   }
   return html + "</body></html>\n";
 }

@@ -57,6 +57,7 @@ struct CommandSettings {
   bool close_stdout = false;
   long file_size_limit = 0;  // bytes that a file may grow to, as on a full disk; 0: no limit
   std::string program = SCUMBLE_BINARY;
+  unsigned patience_seconds = 60;  // then the program is taken to hang
 };
 
 class CliTest : public testing::Test {
@@ -209,8 +210,7 @@ class CliTest : public testing::Test {
   // In the child: only calls that are safe between fork and exec.
   [[noreturn]] static void Become(const std::vector<char*>& argv, const std::string& out, const std::string& err,
                                   const std::string& work, const CommandSettings& settings) {
-    constexpr unsigned kPatienceSeconds = 60;
-    ::alarm(kPatienceSeconds);
+    ::alarm(settings.patience_seconds);
     const int in_file = ::open("/dev/null", O_RDONLY);
     const int out_file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
     const int err_file = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);

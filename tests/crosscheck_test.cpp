@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "io/atomic_file.h"
-#include "io/blender_camera.h"
 #include "measure/crosscheck_html.h"
 #include "tests/temporary_folder.h"
 
@@ -107,46 +106,6 @@ TEST(Crosscheck, ThePageIsOneFileAndEscapesNames) {
   EXPECT_EQ(html->find("<b>"), std::string::npos);
   EXPECT_EQ(html->find("http"), std::string::npos) << "nothing is loaded from elsewhere";
   EXPECT_NE(html->find("data:image/png;base64,iVBORw0KGgo"), std::string::npos) << "a PNG's first bytes";
-}
-
-TEST(BlenderPasses, BecomeGuidesInOurSpaces) {
-  GuideSet passes(2, 1);
-  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition}) passes.Add(layer);
-  passes.Plane(Layer::kCoverage)[0] = 1.0f;
-  passes.Plane(Layer::kNormal, 2)[0] = 1.0f;  // up, in Blender's axes
-  passes.Plane(Layer::kDepth)[0] = 3.0f, passes.Plane(Layer::kDepth)[1] = 1e10f;
-  passes.Plane(Layer::kObject)[0] = 12.0f;
-  for (int c = 0; c < 3; ++c) passes.Plane(Layer::kPosition, c)[0] = float(c + 1);  // x 1, y 2, z 3
-  BlenderCamera camera;
-  camera.objects[12] = "Teapot";
-  // The camera looks straight down from above: world +Y is towards the viewer.
-  camera.camera.view_from_world = glm::dmat4(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
-  ConvertBlenderPasses(camera, passes);
-  EXPECT_EQ(passes.Vec3(Layer::kNormal, 0), glm::vec3(0, 0, 1));
-  EXPECT_EQ(passes.Vec3(Layer::kPosition, 0), glm::vec3(1, 3, -2));
-  EXPECT_TRUE(std::isinf(passes.Plane(Layer::kDepth)[1]));
-  const std::string name = "Teapot";
-  EXPECT_EQ(passes.Plane(Layer::kObject)[0], float(IdsForNames(std::span(&name, 1))[0]));
-  EXPECT_EQ(passes.object_names.begin()->second, "Teapot");
-  EXPECT_EQ(passes.Plane(Layer::kObject)[1], 0.0f);
-}
-
-TEST(BlenderCamera, ReadsItsTextAndRefusesOthers) {
-  const TemporaryFolder folder;
-  const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n";
-  ASSERT_TRUE(WriteFileAtomically(folder / "a.camera", "camera The one\nviewFromWorld " + identity + "clipFromView " +
-                                                           identity + "object 3 A name with spaces\n"));
-  const auto camera = ReadBlenderCamera(folder / "a.camera");
-  ASSERT_TRUE(camera.ok()) << camera.error().message;
-  EXPECT_EQ(camera->camera.name, "The one");
-  EXPECT_EQ(camera->objects.at(3), "A name with spaces");
-  for (const std::string text : {"", "nonsense\n", "viewFromWorld 1 2 3\n", "object x y\n", "object 99999999999999999999 y\n"}) {
-    ASSERT_TRUE(WriteFileAtomically(folder / "b.camera", text));
-    const auto refused = ReadBlenderCamera(folder / "b.camera");
-    ASSERT_FALSE(refused.ok()) << text;
-    EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
-    EXPECT_NE(refused.error().message.find("render_guides.py"), std::string::npos);
-  }
 }
 
 }  // namespace

@@ -7,16 +7,15 @@ source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$program" crosscheck "$source"/scenes/*.glb --size 480x270 -o "$work/report.html" --quiet
+"$program" crosscheck "$source"/scenes/*.glb --size 480x270 --samples 16 -o "$work/report.html" --quiet
 grep -q 'class="verdict agrees"' "$work/report.html"
 
 blender -b -noaudio --factory-startup -P "$source/blender_scripts/render_guides.py" -- \
   "$source/scenes/suzanne.glb" "$work/cycles.exr" --size 480x270 > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-if "$program" transfer "$work/cycles.exr" --style oil -o "$work/refused.png" 2> "$work/message"; then
-  echo "a Blender render without its camera was taken"; exit 1
-fi
-grep -q 'camera' "$work/message"
+# Without the .camera file the camera is found from the Position pass.
+"$program" transfer "$work/cycles.exr" --style oil -o "$work/solved.png"
 "$program" transfer "$work/cycles.exr" --camera "$work/cycles.camera" --style oil -o "$work/theirs.png"
 "$program" stylize "$source/scenes/suzanne.glb" --style oil --size 480x270 -o "$work/ours.png"
 # Guides that differ in their last digits settle a few pixels on another chunk.
 "$program" compare "$work/theirs.png" "$work/ours.png" --fail 0.02 --failpercent 2
+"$program" compare "$work/theirs.png" "$work/solved.png" --fail 0.02 --failpercent 2

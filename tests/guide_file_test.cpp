@@ -423,7 +423,7 @@ TEST(GuideFile, PartsOfOneFileBelongTogether) {
   }
 }
 
-TEST(GuideFile, ABlenderFileIsRefusedInWords) {
+TEST(GuideFile, ABlenderFileWithoutPositionsIsRefusedInWords) {
   const TemporaryFolder folder;
   const std::vector<std::string> passes = {"ViewLayer.Combined.R", "ViewLayer.Combined.A", "ViewLayer.Normal.X",
                                            "ViewLayer.Normal.Y",   "ViewLayer.Normal.Z",   "ViewLayer.Depth.Z"};
@@ -434,9 +434,9 @@ TEST(GuideFile, ABlenderFileIsRefusedInWords) {
   WriteExr(folder / "software.exr", spec, kNormalAndA, one);
   for (const char* name : {"combined.exr", "software.exr"}) {
     ExpectRefusal(ReadGuides(folder / name, OnlyNormals()), ErrorKind::kInput,
-                  {name, "Blender", "world space", "camera", "scumble guidegen"});
+                  {name, "Blender", "holds no camera", "the pass Position", "View Layer > Passes", "--camera FILE"});
   }
-  ExpectRefusal(ReadGuides(folder / "combined.exr"), ErrorKind::kInput, {"Blender"});
+  ExpectRefusal(ReadGuides(folder / "combined.exr"), ErrorKind::kInput, {"Cryptomatte Object"});
   EXPECT_TRUE(InspectGuides(folder / "combined.exr")) << "looking at it is no harm";
 }
 

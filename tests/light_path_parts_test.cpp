@@ -297,7 +297,9 @@ TEST(LightSet, ChoicesAddUpToOne) {
   const LightSet set(Placed(lights), {}, glm::dvec3(0.0));
   ASSERT_EQ(set.count(), 3);
   EXPECT_EQ(set.delta_count(), 1);
-  const glm::dvec3 point(0.2, 0.1, 0.0);
+  SurfacePoint point;
+  point.position = {0.2, 0.1, 0.0};
+  point.facing = point.normal = {0, 0, 1};
   for (const bool with_delta : {false, true}) {
     double total = 0.0;
     for (int i = 0; i < set.count(); ++i) total += set.Probability(point, i, with_delta);

@@ -283,7 +283,7 @@ TEST(Interreflection, AGlowingBoxSumsTheGeometricSeries) {
   Scene scene = SceneOf(CubeMesh());
   scene.materials[0] = Painted(Bsdf::kDiffuse, 0.5f);
   scene.materials[0].emission = glm::vec3(1.0f);
-  GuidegenOptions options = Paths(6, kAllPaths, 256);
+  GuidegenOptions options = Paths(6, kAllPaths, 1024);
   options.max_bounces = 40;
   const auto result = Render(scene, FrontCamera(0.3, 70.0), options);
   EXPECT_NEAR(Mean(result, Layer::kLpeFull), 2.0, 5e-3);

@@ -1,0 +1,47 @@
+"""The camera of a Cycles render, chosen and written down: part of render_guides.py."""
+
+import bpy
+from mathutils import Matrix, Vector
+
+# Blender's axes (+Z up) to glTF's (+Y up): x, z, -y.
+GLTF_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+
+
+def choose(scene, name):
+    """Makes the camera of that name the scene's; without a name the scene keeps its own, or takes the first one."""
+    cameras = sorted(thing.name for thing in scene.objects if thing.type == "CAMERA")
+    if name:
+        if name not in cameras:
+            raise LookupError(f"there is no camera '{name}'; there are: " + (", ".join(cameras) or "none"))
+        scene.camera = scene.objects[name]
+    elif scene.camera is None:
+        if not cameras:
+            raise LookupError("the scene has no camera: add one")
+        scene.camera = scene.objects[cameras[0]]
+    if scene.camera.type != "CAMERA" or scene.camera.data.type not in {"PERSP", "ORTHO"}:
+        raise LookupError(f"'{scene.camera.name}' is no perspective or orthographic camera: name another one")
+
+
+def rigid(matrix):
+    """Rotation and translation only, as guidegen straightens cameras and lamps: backward stays, up as far as it can."""
+    backward = matrix.col[2].to_3d().normalized()
+    right = matrix.col[1].to_3d().cross(backward).normalized()
+    up = backward.cross(right)
+    columns = [Vector((*axis, 0.0)) for axis in (right, up, backward)] + [Vector((*matrix.col[3].to_3d(), 1.0))]
+    return Matrix(columns).transposed()
+
+
+def matrix_text(matrix):
+    """Column by column, every digit."""
+    return " ".join(repr(matrix[row][column]) for column in range(4) for row in range(4))
+
+
+def write(scene, path):
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    camera = scene.camera.evaluated_get(depsgraph)
+    world_from_view = GLTF_FROM_BLENDER @ Matrix.LocRotScale(*camera.matrix_world.decompose()[:2], None)
+    projection = camera.calc_matrix_camera(depsgraph, x=scene.render.resolution_x, y=scene.render.resolution_y)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"camera {scene.camera.name}\n")
+        file.write(f"viewFromWorld {matrix_text(world_from_view.inverted())}\n")
+        file.write(f"clipFromView {matrix_text(projection)}\n")

@@ -1,0 +1,54 @@
+// Cryptomatte as Blender writes it: ids with coverage in ranks, and in the header a manifest with their names.
+// Friedman and Jones, "Fully automatic ID mattes with support for motion blur and transparency", SIGGRAPH 2015 posters;
+// the file's form is Psyop's specification 1.2.0.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// What a channel like "ViewLayer.CryptoObject00.r" is. A channel file holds two ranks: r and b are ids, g and a their
+// coverage.
+struct MatteChannel {
+  std::string matte;   // "ViewLayer.CryptoObject", as cryptomatte/KEY/name has it
+  std::string prefix;  // "ViewLayer": the view layer, or empty
+  Layer layer;         // kObject or kMaterial
+  int index;           // 2 · rank, and one more where it is coverage
+};
+
+// Nothing for any other name, CryptoAsset included.
+std::optional<MatteChannel> ParseMatteChannel(std::string_view name);
+
+// The 32-bit MurmurHash3 with seed 0, which makes ids of names.
+std::uint32_t MatteHash(std::string_view name);
+
+// The bits of the float that stands for a hash in the file: exponents of denormal, infinite and NaN numbers are avoided
+// ("uint32_to_float32").
+std::uint32_t MatteBits(std::uint32_t hash);
+
+// Names by the bits of their ids. Reads {"name":"8 hex digits", …}, with JSON's escapes or, as Blender 3.4 writes them,
+// with quotation marks and backslashes of names left as they are: of the ways to read an entry, the one that gives its
+// hash is taken. Empty manifests ("", "}" and "{}") give no names; other text is an error. `name` stands for the file.
+Expected<std::map<std::uint32_t, std::string>> ReadManifest(std::string_view text, const std::string& name);
+
+// Gives each pixel the id of the name that covers most of it, and keeps the names that occur. `ranks` are the planes of
+// MatteChannel::index 0 … 3; planes that the file lacks are empty. An id that the manifest lacks is named "unnamed
+// 1a2b3c4d" by its hash's bits. 0 where nothing covers the pixel. More than 100,000 such ids are no names but noise: an
+// error. `name` stands for the file.
+Status NameMattes(std::span<const std::vector<float>> ranks, const std::map<std::uint32_t, std::string>& manifest,
+                  const std::string& name, std::span<float> ids, std::map<std::uint32_t, std::string>& names);
+
+// How much of each pixel is covered by anything, in [0, 1], from the planes of all ranks. 1 where the last rank is in
+// use: there may be more than the file has room for.
+void MatteCoverage(std::span<const std::vector<float>> ranks, std::span<float> coverage);
+
+}  // namespace scumble

@@ -1,0 +1,18 @@
+// What the files of the cross-check share. Not for other folders.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/picture.h"
+
+namespace scumble::internal {
+
+// Pixels whose whole neighbourhood, `reach` to each side, is covered in both sets and shows one object in each.
+std::vector<std::size_t> ErodedMask(const GuideSet& a, const GuideSet& b, int reach);
+
+// An opaque pixel of that linear colour.
+void PutColor(Picture& picture, std::size_t i, glm::vec3 linear);
+
+}  // namespace scumble::internal

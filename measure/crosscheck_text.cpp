@@ -1,0 +1,166 @@
+// The cross-check for terminals and for machines.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "measure/crosscheck.h"
+
+namespace scumble {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Number(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+std::string SetupText(const CrosscheckSetup& setup) {
+  std::string text = fmt::format("{}×{}", setup.width, setup.height);
+  if (!setup.camera.empty()) text += ", camera " + setup.camera;
+  if (setup.frame) text += fmt::format(", frame {}", *setup.frame);
+  if (setup.samples > 0) text += fmt::format(", {} samples, {} bounces", setup.samples, setup.max_bounces);
+  return text;
+}
+
+// Beyond the limit by more than chance explains.
+bool IsBroken(const CrosscheckFigure& figure) {
+  return !(figure.value - (figure.TooNoisy() ? 2.0 * figure.error : 0.0) <= figure.LimitInForce());
+}
+
+std::string State(const CrosscheckFigure& figure) {
+  if (figure.kept()) return "kept";
+  return IsBroken(figure) ? "BROKEN" : "TOO NOISY";
+}
+
+std::string FigureLine(const CrosscheckFigure& figure) {
+  const std::string error = figure.error > 0.0 ? fmt::format("± {:.2g}", figure.error) : "";
+  std::string line = fmt::format("  {:<9} {:<16} {:>9.3g} {:<9} limit {:<8.3g} {:<12} {}", figure.layer, figure.name,
+                                 figure.value, error, figure.LimitInForce(), figure.unit, State(figure));
+  if (figure.TightenedByBaseline()) line += fmt::format(" (baseline; built in {:.3g})", figure.limit);
+  if (!figure.note.empty()) line += ", " + figure.note;
+  return line + "\n";
+}
+
+std::string NoiseText(const std::vector<CrosscheckNoise>& noise) {
+  if (noise.empty()) return "";
+  std::string text = "  root mean square difference of the pixels over the mean, by samples\n";
+  for (const CrosscheckNoise& layer : noise) {
+    text += fmt::format("  {:<9} ", layer.layer);
+    if (layer.no_such_light) {
+      text += "no such light\n";
+      continue;
+    }
+    for (std::size_t i = 0; i < layer.samples.size(); ++i) {
+      text += fmt::format("{:>5}: {:<8.3g}", layer.samples[i], layer.nrmse[i]);
+    }
+    text += layer.slope ? fmt::format("slope {:+.2f}", *layer.slope) : layer.free_of_noise ? "free of noise" : "";
+    text += fmt::format("  most at ({}, {}): {:.4g} against {:.4g}\n", layer.worst_x, layer.worst_y, layer.worst_ours,
+                        layer.worst_reference);
+  }
+  return text;
+}
+
+Json FigureJson(const CrosscheckFigure& figure) {
+  Json json{{"layer", figure.layer},
+            {"name", figure.name},
+            {"unit", figure.unit},
+            {"value", Number(figure.value)},
+            {"error", Number(figure.error)},
+            {"limit", Number(figure.LimitInForce())},
+            {"built_in_limit", Number(figure.limit)},
+            {"from_baseline", figure.TightenedByBaseline()},
+            {"kept", figure.kept()},
+            {"too_noisy", figure.TooNoisy()}};
+  if (!figure.note.empty()) json["note"] = figure.note;
+  return json;
+}
+
+Json NoiseJson(const CrosscheckNoise& noise) {
+  Json json{{"layer", noise.layer}, {"no_such_light", noise.no_such_light}, {"free_of_noise", noise.free_of_noise}};
+  if (noise.no_such_light) return json;
+  json["samples"] = noise.samples;
+  for (const double value : noise.nrmse) json["nrmse"].push_back(Number(value));
+  json["slope"] = noise.slope ? Number(*noise.slope) : Json();
+  json["worst"] = {{"difference", Number(noise.worst)},
+                   {"x", noise.worst_x},
+                   {"y", noise.worst_y},
+                   {"reference", Number(noise.worst_reference)},
+                   {"ours", Number(noise.worst_ours)}};
+  return json;
+}
+
+Json ReportJson(const CrosscheckReport& report) {
+  Json json{{"scene", report.scene},
+            {"width", report.setup.width},
+            {"height", report.setup.height},
+            {"samples", report.setup.samples},
+            {"max_bounces", report.setup.max_bounces},
+            {"compared", report.compared},
+            {"glossy", report.glossy},
+            {"passed", report.passed()}};
+  if (!report.setup.camera.empty()) json["camera"] = report.setup.camera;
+  if (report.setup.frame) json["frame"] = *report.setup.frame;
+  json["skipped"] = report.skipped;
+  json["problems"] = report.problems;
+  json["warnings"] = report.warnings;
+  json["figures"] = Json::array();
+  for (const CrosscheckFigure& figure : report.figures) json["figures"].push_back(FigureJson(figure));
+  json["noise"] = Json::array();
+  for (const CrosscheckNoise& noise : report.noise) json["noise"].push_back(NoiseJson(noise));
+  return json;
+}
+
+}  // namespace
+
+std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
+  std::vector<std::string> reasons;
+  if (report.compared == 0) {
+    reasons.push_back("nothing to compare: no object is wide enough, or the pictures do not agree at all");
+  }
+  for (const std::string& layer : report.skipped) reasons.push_back(layer + ": one of the two sides lacks it");
+  for (const CrosscheckFigure& figure : report.figures) {
+    if (figure.kept()) continue;
+    const std::string what = figure.layer + " " + figure.name;
+    const std::string limit = fmt::format("the {}limit of {:.3g} {}", figure.TightenedByBaseline() ? "baseline's " : "",
+                                          figure.LimitInForce(), figure.unit);
+    if (figure.TooNoisy()) {
+      reasons.push_back(
+          fmt::format("{}: twice its standard error, {:.3g}, is above {}, so the figure proves nothing: raise "
+                      "--samples",
+                      what, 2.0 * figure.error, limit));
+    }
+    if (IsBroken(figure)) {
+      reasons.push_back(fmt::format("{}: {:.3g} is above {}", what, figure.value, limit) +
+                        (figure.note.empty() ? "" : ", " + figure.note));
+    }
+  }
+  reasons.insert(reasons.end(), report.problems.begin(), report.problems.end());
+  return reasons;
+}
+
+std::string CrosscheckVerdict(const CrosscheckReport& report) {
+  const std::string verdict = report.passed() ? "agrees" : "DIFFERS";
+  return report.setup.samples > 0 ? verdict : verdict + ", data layers alone: light was not compared (--samples 0)";
+}
+
+std::string CrosscheckToText(const CrosscheckReport& report) {
+  std::string text =
+      fmt::format("{}  {}, {} pixels compared\n", report.scene, SetupText(report.setup), report.compared);
+  for (const CrosscheckFigure& figure : report.figures) text += FigureLine(figure);
+  text += NoiseText(report.noise);
+  if (!report.warnings.empty()) text += "  not compared as authored:\n";
+  for (const std::string& warning : report.warnings) text += "    " + warning + "\n";
+  for (const std::string& reason : WhyCrosscheckFails(report)) text += "  ! " + reason + "\n";
+  return text + "  verdict: " + CrosscheckVerdict(report) + "\n";
+}
+
+std::string CrosscheckToJson(const std::vector<CrosscheckReport>& reports) {
+  Json json = Json::array();
+  for (const CrosscheckReport& report : reports) json.push_back(ReportJson(report));
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace scumble
