@@ -1,11 +1,14 @@
 """Exports a .blend scene as the renderer sees it to .glb, with what glTF lacks in `extras`, key "scumble".
 
     blender -b -noaudio --factory-startup -Y scene.blend -P blender_scripts/export_scene.py -- --output scene.glb
-                                                                               [--frame N] [--scene NAME]
+                                                                  [--frame N | --frames 1-24,30] [--scene NAME]
 
 `scumble guidegen scene.blend` and `stylize scene.blend` run it by themselves. Modifiers, shape keys, armatures and
 geometry nodes are applied as for a render; instances share their mesh; what is hidden from render is left out. The
 active camera comes first. docs/blender.md lists what the extras mean.
+
+With --frames, `#` in the output's name stands for the frame's number, and the scene is opened anew for each frame: what
+an export leaves behind, or a simulation that was not baked, cannot make a frame depend on those before it.
 
 Each thing that cannot be expressed is one line "scumble: unsupported: …" on stderr and one in the scene's extras.
 Exit codes: 0, 3 when the scene cannot be exported, 5 when this Blender's version is not supported. The reason is a line
@@ -13,8 +16,11 @@ Exit codes: 0, 3 when the scene cannot be exported, 5 when this Blender's versio
 """
 
 import argparse
+import os
+import re
 import sys
 import tempfile
+import time
 import traceback
 from pathlib import Path
 
@@ -84,22 +90,79 @@ def export(scene, output, unsupported):
     export_glb.write(output, document, binary)
 
 
+def parse_frames(text):
+    """1-24, 3,5-10, 12-24x2 and 10-1x-1, as the command line passes them on."""
+    frames = []
+    for part in text.split(","):
+        match = re.fullmatch(r"(-?\d+)(?:-(-?\d+)(?:x(-?\d+))?)?", part)
+        if not match or match[3] == "0":
+            raise argparse.ArgumentTypeError(f"'{part}' is no range of frames like 1-24 or 12-24x2")
+        first, last = int(match[1]), int(match[2] or match[1])
+        step = abs(int(match[3] or 1))
+        frames += range(first, last + 1, step) if first <= last else range(first, last - 1, -step)
+    return frames
+
+
+def numbered(path, frame):
+    """Blender's rule: the run of # becomes the number, filled up with zeros."""
+    def digits(run):
+        return ("-" if frame < 0 else "") + str(abs(frame)).zfill(len(run[0]))
+    return path.with_name(re.sub("#+", digits, path.name))
+
+
+def wait_for_reader(written, ahead, parent):
+    """Until no more than `ahead` of the files are still there, or the reader is gone."""
+    while sum(path.exists() for path in written[-ahead - 1:]) > ahead:
+        if os.getppid() != parent:
+            fail("the program that reads the frames has ended")
+        time.sleep(0.02)
+
+
+def export_frame(arguments, frame, output, unsupported):
+    scene = choose_scene(arguments.scene)
+    bpy.context.window.scene = scene
+    scene.frame_set(frame if frame is not None else scene.frame_current)
+    export(scene, output, unsupported)
+
+
+def export_range(arguments):
+    parent, written, said = os.getppid(), [], Unsupported()
+    for number, frame in enumerate(arguments.frames):
+        if arguments.ahead:
+            wait_for_reader(written, arguments.ahead, parent)
+        if number > 0:
+            bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath, use_scripts=False)
+        unsupported = Unsupported()
+        output = numbered(arguments.output, frame)
+        export_frame(arguments, frame, output, unsupported)
+        written.append(output)
+        for line in unsupported.lines:
+            said.add(line)
+    return said
+
+
 def main():
     parser = argparse.ArgumentParser(prog="export_scene.py", description="Exports a .blend scene for scumble.")
-    parser.add_argument("--output", required=True, type=Path, help=".glb file to write")
-    parser.add_argument("--frame", type=int, help="frame of the scene; left out: the one it was saved at")
+    parser.add_argument("--output", required=True, type=Path, help=".glb file to write; with --frames, # is the number")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--frame", type=int, help="frame of the scene; left out: the one it was saved at")
+    which.add_argument("--frames", type=parse_frames, help="several frames, as 1-24 or 3,5-10 or 12-24x2")
+    parser.add_argument("--ahead", type=int, default=0,
+                        help="with --frames: wait while more files than this are there; a reader deletes them. 0: never")
     parser.add_argument("--scene", help="scene by name; left out: the one that was open when the file was saved")
     arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+    if arguments.frames is not None and "#" not in arguments.output.name:
+        parser.error("with --frames the output's name needs a #, where the frame's number goes")
     if bpy.app.version[:2] != SUPPORTED:
         fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
              "lamps shine by other formulas in other versions: name another one with --blender, or export to .glb by "
              "hand",
              EXIT_VERSION)
-    scene = choose_scene(arguments.scene)
-    bpy.context.window.scene = scene
-    scene.frame_set(arguments.frame if arguments.frame is not None else scene.frame_current)
     unsupported = Unsupported()
-    export(scene, arguments.output, unsupported)
+    if arguments.frames is not None:
+        unsupported = export_range(arguments)
+    else:
+        export_frame(arguments, arguments.frame, arguments.output, unsupported)
     sys.stdout.flush()
     for line in unsupported.lines:
         print("scumble: unsupported: " + line, file=sys.stderr)

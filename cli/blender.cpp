@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "cli/blender_process.h"
+#include "cli/frames.h"
 #include "cli/options.h"
 #include "guidegen/load_scene.h"
 
@@ -39,6 +43,56 @@ std::string Renamed(std::string text, const std::string& from, const std::string
   return text;
 }
 
+std::string NameOfProgram(const BlenderOptions& options) {
+  return options.program.empty() ? "blender" : options.program;
+}
+
+// What runs export_scene.py on a scene, with the script's own arguments to follow.
+Expected<std::vector<std::string>> ExportCommand(const std::string& path, const BlenderOptions& options,
+                                                 const fs::path& output) {
+  SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", path));
+  if (!output.has_parent_path())
+    return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
+  return std::vector<std::string>{NameOfProgram(options),
+                                  "-b",
+                                  "-noaudio",
+                                  "--factory-startup",
+                                  "-Y",  // the file's own scripts stay asleep
+                                  fs::absolute(path).string(),
+                                  "-P",
+                                  script.string(),
+                                  "--",
+                                  "--output",
+                                  output.string()};
+}
+
+// Why there is no export, from how Blender ended and what it said.
+Error ExplainEnd(const std::string& path, const std::string& program, const ProgramEnd& end, const fs::path& log) {
+  if (end.signal != 0) {
+    return InputError(path + ": " + program + " crashed (" + ::strsignal(end.signal) +
+                      "): open the file in it and look");
+  }
+  if (end.code == kExitVersion) return UnavailableError(path + ": " + ReasonFrom(LinesOf(log)));
+  return InputError(path + ": the export by " + program + " failed: " + ReasonFrom(LinesOf(log)));
+}
+
+Expected<Scene> LoadExport(const fs::path& exported, const std::string& path) {
+  Expected<Scene> scene = LoadScene(exported);
+  if (!scene) return Error{scene.error().kind, Renamed(scene.error().message, exported.string(), path)};
+  scene->name = path;
+  return scene;
+}
+
+// An empty path where no folder could be made.
+fs::path In(const ScratchFolder& scratch, const char* name) {
+  return scratch.path().empty() ? fs::path() : scratch.path() / name;
+}
+
+// With more, a slow disk would still not be felt.
+constexpr int kFramesAhead = 3;
+constexpr const char* kRangeOutput = "scene.#.glb";
+
 }  // namespace
 
 bool IsBlenderScene(const std::string& path) {
@@ -48,42 +102,57 @@ bool IsBlenderScene(const std::string& path) {
 }
 
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals) {
-  SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
-  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", path));
   const ScratchFolder scratch;
-  if (scratch.path().empty())
-    return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
-  const fs::path exported = scratch.path() / "scene.glb", log = scratch.path() / "log";
-  const std::string program = options.program.empty() ? "blender" : options.program;
-  std::vector<std::string> arguments{program,
-                                     "-b",
-                                     "-noaudio",
-                                     "--factory-startup",
-                                     "-Y",  // the file's own scripts stay asleep
-                                     fs::absolute(path).string(),
-                                     "-P",
-                                     script.string(),
-                                     "--",
-                                     "--output",
-                                     exported.string()};
+  const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
+  SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported));
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
-  Say(globals, path + ": " + program + " exports it" +
+  Say(globals, path + ": " + arguments.front() + " exports it" +
                    (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
-  const Expected<ProgramEnd> ended = RunProgram(arguments, log);
-  if (!ended) return Error{ended.error().kind, path + ": " + ended.error().message};
-  const ProgramEnd end = *ended;
+  const Expected<ProgramEnd> end = RunProgram(arguments, log);
+  if (!end) return Error{end.error().kind, path + ": " + end.error().message};
   std::error_code failed;
-  if (end.signal != 0) {
-    return InputError(path + ": " + program + " crashed (" + ::strsignal(end.signal) +
-                      "): open the file in it and look");
+  if (end->code != 0 || !fs::is_regular_file(exported, failed)) {
+    return ExplainEnd(path, arguments.front(), *end, log);
   }
-  if (end.code == kExitVersion) return UnavailableError(path + ": " + ReasonFrom(LinesOf(log)));
-  if (end.code != 0 || !fs::is_regular_file(exported, failed)) {
-    return InputError(path + ": the export by " + program + " failed: " + ReasonFrom(LinesOf(log)));
+  return LoadExport(exported, path);
+}
+
+BlenderRange::BlenderRange() = default;
+
+BlenderRange::~BlenderRange() {
+  program_.reset();  // before the folder that it writes into
+}
+
+Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& path, const BlenderOptions& options,
+                                                            std::span<const int> frames, const Globals& globals) {
+  std::unique_ptr<BlenderRange> range(new BlenderRange);
+  range->path_ = path, range->program_name_ = NameOfProgram(options);
+  range->scratch_ = std::make_unique<ScratchFolder>();
+  SCUMBLE_ASSIGN(std::vector<std::string> arguments,
+                 ExportCommand(path, options, In(*range->scratch_, kRangeOutput)));
+  // With an equals sign: a range that starts at a negative frame would look like an option.
+  arguments.push_back("--frames=" + FramesToText(frames));
+  arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
+  Say(globals, path + ": " + arguments.front() + " exports frames " + FramesToText(frames));
+  auto program = RunningProgram::Start(arguments, In(*range->scratch_, "log"));
+  if (!program) return Error{program.error().kind, path + ": " + program.error().message};
+  range->program_ = std::move(*program);
+  return range;
+}
+
+Expected<Scene> BlenderRange::Load(int frame) {
+  SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(In(*scratch_, kRangeOutput).string()));
+  const fs::path exported = name.At(frame);
+  std::error_code failed;
+  for (;;) {
+    // In this order: a Blender that ends between the two questions has written its last file before.
+    SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, program_->Poll());
+    if (fs::is_regular_file(exported, failed)) break;  // it gets this name when it is whole
+    if (end) return ExplainEnd(path_, program_name_, *end, In(*scratch_, "log"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  Expected<Scene> scene = LoadScene(exported);
-  if (!scene) return Error{scene.error().kind, Renamed(scene.error().message, exported.string(), path)};
-  scene->name = path;
+  Expected<Scene> scene = LoadExport(exported, path_);
+  fs::remove(exported, failed);
   return scene;
 }
 

@@ -1,7 +1,9 @@
 // Scenes of Blender: has Blender export them, then loads what it wrote.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "cli/command.h"
@@ -9,6 +11,9 @@
 #include "image/status.h"
 
 namespace scumble {
+
+class RunningProgram;
+class ScratchFolder;
 
 struct BlenderOptions {
   std::string program;       // a path, or a name looked up in PATH; empty: "blender"
@@ -23,5 +28,27 @@ bool IsBlenderScene(const std::string& path);
 // is not supported, kInput where the export fails, with Blender's reason. What the export cannot express is among the
 // scene's warnings.
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals);
+
+// A range of frames of one .blend, exported by one Blender, which is at work while earlier frames are drawn. It is at most
+// some frames ahead, so that the folder for temporary files holds a few of them, however long the range is.
+class BlenderRange {
+ public:
+  // `frames` as they will be asked for. Otherwise as LoadBlenderScene; options.frame does not count.
+  static Expected<std::unique_ptr<BlenderRange>> Start(const std::string& path, const BlenderOptions& options,
+                                                       std::span<const int> frames, const Globals& globals);
+  ~BlenderRange();  // ends Blender
+  BlenderRange(const BlenderRange&) = delete;
+  BlenderRange& operator=(const BlenderRange&) = delete;
+
+  // Waits for the next frame of the range, loads it and deletes its file.
+  Expected<Scene> Load(int frame);
+
+ private:
+  BlenderRange();
+
+  std::string path_, program_name_;
+  std::unique_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<RunningProgram> program_;
+};
 
 }  // namespace scumble

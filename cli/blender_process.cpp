@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <system_error>
@@ -46,7 +47,8 @@ Expected<fs::path> FindBlenderScript(const std::string& name, const std::string&
   return UnavailableError(scene + ": " + name + " is not found beside this program: install it again, or export to .glb");
 }
 
-Expected<ProgramEnd> RunProgram(const std::vector<std::string>& arguments, const fs::path& log) {
+Expected<std::unique_ptr<RunningProgram>> RunningProgram::Start(const std::vector<std::string>& arguments,
+                                                                const fs::path& log) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -62,12 +64,37 @@ Expected<ProgramEnd> RunProgram(const std::vector<std::string>& arguments, const
     return UnavailableError(arguments.front() + " cannot be run (" + std::strerror(failure) + "): install " +
                             kSupported + ", name it with --blender PATH, or export the scene to .glb by hand");
   }
+  std::unique_ptr<RunningProgram> program(new RunningProgram);
+  program->name_ = arguments.front();
+  program->child_ = child;
+  return program;
+}
+
+RunningProgram::~RunningProgram() {
+  if (end_) return;
+  ::kill(child_, SIGTERM);
+  if (!Wait()) return;  // it is no child of ours any more
+}
+
+Expected<ProgramEnd> RunningProgram::Wait() {
+  SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, Wait(true));
+  return *end;
+}
+
+Expected<std::optional<ProgramEnd>> RunningProgram::Wait(bool patiently) {
+  if (end_) return end_;
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return UnavailableError(arguments.front() + " got lost: " + std::strerror(errno));
+  pid_t ended = 0;
+  while ((ended = ::waitpid(child_, &status, patiently ? 0 : WNOHANG)) < 0) {
+    if (errno != EINTR) return UnavailableError(name_ + " got lost: " + std::strerror(errno));
   }
-  if (WIFSIGNALED(status)) return ProgramEnd{-1, WTERMSIG(status)};
-  return ProgramEnd{WEXITSTATUS(status), 0};
+  if (ended == child_) end_ = WIFSIGNALED(status) ? ProgramEnd{-1, WTERMSIG(status)} : ProgramEnd{WEXITSTATUS(status), 0};
+  return end_;
+}
+
+Expected<ProgramEnd> RunProgram(const std::vector<std::string>& arguments, const fs::path& log) {
+  SCUMBLE_ASSIGN(const auto program, RunningProgram::Start(arguments, log));
+  return program->Wait();
 }
 
 std::vector<std::string> LinesOf(const fs::path& log) {

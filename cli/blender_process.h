@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,29 @@ Expected<std::filesystem::path> FindBlenderScript(const std::string& name, const
 struct ProgramEnd {
   int code = -1;   // exit code
   int signal = 0;  // that ended it, if one did
+};
+
+// A program at work beside this one. Ended and waited for, at the latest, when this goes.
+class RunningProgram {
+ public:
+  // Both its outputs go to `log`. kUnavailable where it cannot be run.
+  static Expected<std::unique_ptr<RunningProgram>> Start(const std::vector<std::string>& arguments,
+                                                         const std::filesystem::path& log);
+  ~RunningProgram();
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+
+  // How it ended, or nothing while it is at work.
+  Expected<std::optional<ProgramEnd>> Poll() { return Wait(false); }
+  Expected<ProgramEnd> Wait();
+
+ private:
+  RunningProgram() = default;
+  Expected<std::optional<ProgramEnd>> Wait(bool patiently);
+
+  std::string name_;
+  int child_ = 0;
+  std::optional<ProgramEnd> end_;
 };
 
 // Runs a program and waits for it; both its outputs go to `log`. kUnavailable where it cannot be run.

@@ -15,7 +15,9 @@ ProgressBar::ProgressBar(std::string label, bool quiet)
       start_(std::chrono::steady_clock::now()),
       last_draw_(start_) {}
 
-ProgressBar::~ProgressBar() {
+ProgressBar::~ProgressBar() { Clear(); }
+
+void ProgressBar::Clear() {
   if (drawn_) std::fputs("\r\033[K", stderr);
 }
 

@@ -19,6 +19,9 @@ class ProgressBar {
   // A callback that reports [from, to] of the bar; valid while the bar lives.
   Progress Part(double from, double to);
 
+  // Takes the bar off the terminal, so that a line can be printed; it comes back with the next report.
+  void Clear();
+
  private:
   void Update(double share);
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "cli/command.h"
+#include "style/style_keyframes.h"
 
 namespace scumble {
 namespace {
@@ -36,9 +37,12 @@ std::string SomeNames(const GuideSet& guides) {
 
 }  // namespace
 
-LayerSet StyleSet::Required() const {
+Expected<LayerSet> StyleSet::Required() const {
   LayerSet layers;
-  for (const Style& style : styles) layers.Add(RequiredLayers(style));
+  for (const Style& style : styles) {
+    SCUMBLE_ASSIGN(const LayerSet read, LayersOverTime(style));
+    layers.Add(read);
+  }
   if (NeedsMap()) layers.Add(Layer::kObject).Add(Layer::kMaterial);
   return layers;
 }

@@ -20,8 +20,8 @@ struct StyleSet {
   std::vector<Assigned> assigned;
 
   const Style& first() const { return styles.front(); }
-  // Everything that any of the styles reads.
-  LayerSet Required() const;
+  // Everything that any of the styles reads, in any frame.
+  Expected<LayerSet> Required() const;
   bool NeedsMap() const { return !assigned.empty(); }
 };
 

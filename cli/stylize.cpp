@@ -1,16 +1,81 @@
 // scumble transfer, scumble stylize.
+#include <fmt/format.h>
+
+#include <functional>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/scene_frames.h"
+#include "cli/sequence.h"
 #include "cli/transfer_run.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
+#include "io/whole_output.h"
 
 namespace scumble {
 namespace {
+
+// The options of one frame of a sequence: its own names, its own number.
+Expected<PictureOptions> OptionsAt(const PictureOptions& options, int frame, const std::string& output) {
+  PictureOptions one = options;
+  one.frame = frame, one.output = output;
+  SCUMBLE_ASSIGN(const FrameName over, FrameName::Parse(options.over));
+  one.over = over.At(frame);
+  return one;
+}
+
+// Where the frames of a sequence get their guides from.
+struct FrameGuides {
+  const GuideSet* guides = nullptr;  // valid until the next call
+  GuideSource source;
+};
+using GuidesAt = std::function<Expected<FrameGuides>(int frame, const Progress& progress)>;
+
+// Styles, options and memory of a sequence of pictures.
+class PictureSequence {
+ public:
+  PictureSequence(StyleSet& styles, const PictureOptions& options, const Globals& globals)
+      : styles_(styles), options_(options), globals_(globals) {}
+
+  // --exposure auto is measured on the first frame of the range, even where that one is kept: a sequence that is resumed
+  // goes on as it began.
+  Status Begin(const Sequence& sequence, const GuidesAt& guides_at, const Progress& progress) {
+    if (!MustLookAhead(sequence)) return Ok();
+    const int first = sequence.frames.front();
+    const Expected<FrameGuides> found = guides_at(first, progress);
+    if (!found) {
+      return Error{found.error().kind, found.error().message + "; frame " + std::to_string(first) +
+                                           " is the one that --exposure auto is measured on: give --exposure STOPS"};
+    }
+    SCUMBLE_ASSIGN(const PictureOptions one, OptionsAt(options_, first, options_.output));
+    SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, globals_, memory_));
+    Warn(fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
+                     "give each --exposure {:.2f}",
+                     first, *memory_.exposure));
+    return Ok();
+  }
+  bool MustLookAhead(const Sequence& sequence) const {
+    return sequence.frames.size() > 1 && MeasuresExposure(styles_, options_);
+  }
+
+  Expected<FrameReport> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
+                             const Progress& progress) {
+    SCUMBLE_ASSIGN(const PictureOptions one, OptionsAt(options_, frame, output));
+    SCUMBLE_ASSIGN(const FrameGuides found, guides_at(frame, Within(progress, 0.0, guides_share)));
+    return TransferFrame(styles_, *found.guides, found.source, one, globals_, Within(progress, guides_share, 1.0),
+                         memory_);
+  }
+
+ private:
+  StyleSet& styles_;
+  const PictureOptions& options_;
+  const Globals& globals_;
+  TransferMemory memory_;
+};
 
 struct TransferVerb {
   std::string guides;
@@ -18,17 +83,71 @@ struct TransferVerb {
   std::string camera;
   StyleOptions style;
   PictureOptions picture;
+  SequenceOptions sequence;
 };
 
-Expected<ExitCode> RunTransferVerb(const TransferVerb& verb, const Globals& globals) {
-  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
-  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(verb.style));
-  Stopwatch watch;
+GuideReadOptions ReadOptions(const TransferVerb& verb, const StyleSet& styles, const LayerSet& required) {
   GuideReadOptions read;
-  read.required = styles.Required();
+  read.required = required;
   read.view_layer = verb.view_layer;
   read.blender_camera = verb.camera;
   if (styles.first().transfer.edge_aware) read.mend = "; --set transfer.edge_aware=false does without depth and object";
+  return read;
+}
+
+Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& sequence, StyleSet& styles,
+                                    const GuideReadOptions& read, const Globals& globals) {
+  SCUMBLE_ASSIGN(const FrameName guides_name, FrameName::Parse(verb.guides));
+  SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(verb.camera));
+  PictureSequence pictures(styles, verb.picture, globals);
+  std::optional<GuideSet> guides;
+  std::string guides_file;  // that `guides` are from
+  const GuidesAt guides_at = [&](int frame, const Progress&) -> Expected<FrameGuides> {
+    const std::string file = guides_name.At(frame);
+    if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}}};
+    guides.reset();
+    GuideReadOptions one = read;
+    one.blender_camera = camera.At(frame);
+    Stopwatch watch;
+    SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
+    guides_file = file;
+    return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}}};
+  };
+  SequenceWork work;
+  work.check = [&](int frame, const std::string& output) -> Status {
+    PictureShape shape{0, 0, PictureChannels(output)};
+    // Guides that are gone cannot say how large their picture was to be.
+    if (const auto info = InspectGuides(guides_name.At(frame))) shape.width = info->width, shape.height = info->height;
+    return CheckWholePicture(output, shape);
+  };
+  work.begin = [&](std::span<const int>, const Progress& progress) { return pictures.Begin(sequence, guides_at, progress); };
+  work.make = [&](int frame, const std::string& output, const Progress& progress) {
+    return pictures.Make(frame, output, guides_at, 0.1, progress);
+  };
+  ProgressBar bar("transfer", globals.quiet);
+  return RunSequence(sequence, work, bar, globals);
+}
+
+// Fills places for a frame's number in the names of a single picture.
+Status NameOne(PictureOptions& picture) {
+  SCUMBLE_ASSIGN(picture.output, NameOfOne(picture.output, picture.frame));
+  SCUMBLE_ASSIGN(picture.over, NameOfOne(picture.over, picture.frame));
+  return Ok();
+}
+
+Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
+  SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.picture.frame, verb.picture.output));
+  if (!sequence) {
+    SCUMBLE_RETURN_IF_ERROR(NameOne(verb.picture));
+    SCUMBLE_ASSIGN(verb.guides, NameOfOne(verb.guides, verb.picture.frame));
+    SCUMBLE_ASSIGN(verb.camera, NameOfOne(verb.camera, verb.picture.frame));
+  }
+  SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
+  SCUMBLE_ASSIGN(const LayerSet required, styles.Required());
+  const GuideReadOptions read = ReadOptions(verb, styles, required);
+  if (sequence) return TransferSequence(verb, *sequence, styles, read, globals);
+  Stopwatch watch;
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
@@ -39,18 +158,59 @@ struct StylizeVerb {
   SceneOptions scene;
   StyleOptions style;
   PictureOptions picture;
+  SequenceOptions sequence;
 };
 
-Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& globals) {
+Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequence, StyleSet& styles,
+                                   const LayerSet& required, const Globals& globals) {
+  SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
+  SceneFrames scene(verb.scene, required, globals);
+  PictureSequence pictures(styles, verb.picture, globals);
+  const auto source = [&](const SceneGuides& made) -> FrameGuides {
+    GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>()};
+    for (const Style& style : styles.styles) NameStyleInPlan(from.plan, style);
+    return {&made.guides, std::move(from)};
+  };
+  const GuidesAt guides_at = [&](int frame, const Progress& progress) -> Expected<FrameGuides> {
+    SCUMBLE_ASSIGN(const SceneGuides* const made, scene.At(frame, progress));
+    return source(*made);
+  };
+  const GuidesAt guides_ahead = [&](int frame, const Progress& progress) -> Expected<FrameGuides> {
+    SCUMBLE_ASSIGN(const SceneGuides* const made, scene.Ahead(frame, progress));
+    return source(*made);
+  };
+  SequenceWork work;
+  work.check = [&](int, const std::string& output) {
+    return CheckWholePicture(output, {size.width, size.height, PictureChannels(output)});
+  };
+  work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
+    std::vector<int> wanted(frames.begin(), frames.end());
+    if (pictures.MustLookAhead(sequence) && wanted.front() != sequence.frames.front()) {
+      wanted.insert(wanted.begin(), sequence.frames.front());
+    }
+    SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
+    return pictures.Begin(sequence, guides_ahead, {});
+  };
+  work.make = [&](int frame, const std::string& output, const Progress& progress) {
+    return pictures.Make(frame, output, guides_at, 0.5, progress);
+  };
+  ProgressBar bar("stylize", globals.quiet);
+  return RunSequence(sequence, work, bar, globals);
+}
+
+Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
+  SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.picture.frame, verb.picture.output));
+  if (!sequence) SCUMBLE_RETURN_IF_ERROR(NameOne(verb.picture));
   Stopwatch watch;
-  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(verb.style));
+  SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
+  SCUMBLE_ASSIGN(const LayerSet required, styles.Required());
   const double style_ms = watch.Lap();
+  if (sequence) return StylizeSequence(verb, *sequence, styles, required, globals);
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
   scene.blender.frame = verb.picture.frame;
-  SCUMBLE_ASSIGN(SceneGuides made,
-                 MakeGuides(scene, styles.Required(), globals, bar.Part(0.0, 0.5), false));
+  SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(scene, required, globals, bar.Part(0.0, 0.5), false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
@@ -71,6 +231,7 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddStyleOptions(*sub, verb->style, true);
   AddAssignOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
+  AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTransferVerb(*verb, globals); }; });
 }
@@ -82,6 +243,7 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddStyleOptions(*sub, verb->style, true);
   AddAssignOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
+  AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunStylizeVerb(*verb, globals); }; });
 }

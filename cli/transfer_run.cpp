@@ -7,10 +7,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "cli/json_text.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
+#include "style/style_keyframes.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -69,7 +71,7 @@ std::string StepsToText(const Steps& steps, int repeat) {
   return text + fmt::format(", total {:.1f} ms", total);
 }
 
-std::string ToJson(const Style& style, const PreparedStyle& prepared, const SourceField& field, double exposure,
+nlohmann::ordered_json ToJson(const Style& style, const PreparedStyle& prepared, const SourceField& field, double exposure,
                    const PictureOptions& options, const std::vector<PlanItem>& plan, const Steps& steps) {
   nlohmann::ordered_json json;
   json["output"] = options.output;
@@ -92,7 +94,7 @@ std::string ToJson(const Style& style, const PreparedStyle& prepared, const Sour
   for (const auto& [name, spread] : steps) {
     json["ms"][name] = {{"median", spread.median}, {"min", spread.least}, {"max", spread.most}};
   }
-  return JsonText(json);
+  return json;
 }
 
 // The picture underneath, if one is asked for.
@@ -124,8 +126,8 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
   verb.add_option("--frame", options.frame,
-                  "frame number, for transfer.jitter_fps and of a .blend scene; left out: 0, and the frame that the "
-                  "scene was saved at")
+                  "frame number, for transfer.jitter_fps, for keys of the style that change over time, and of a .blend "
+                  "scene; left out: 0, and the frame that the scene was saved at")
       ->type_name("N");
   verb.add_option("--fps", options.fps, "frames a second, for transfer.jitter_fps, as 24 or 24000/1001")
       ->type_name("RATE")
@@ -177,14 +179,63 @@ Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int heig
   return prepared;
 }
 
-Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+namespace {
+
+// What a transfer reads from the settings themselves, frame by frame: when nothing else changes, exemplars stay prepared.
+bool IsReadEachFrame(const std::string& key) {
+  static const std::set<std::string> kKeys = {"transfer.threshold", "transfer.threshold_metric", "transfer.jitter",
+                                              "transfer.jitter_fps", "transfer.variety"};
+  return kKeys.count(key) > 0;
+}
+
+}  // namespace
+
+Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptions& options, const Globals& globals,
+                    TransferMemory& memory) {
+  const bool all = memory.prepared.empty() || memory.prepared.front().output_height != guides.height();
+  for (std::size_t i = 0; i < styles.styles.size(); ++i) {
+    SCUMBLE_ASSIGN(const auto changed, SetStyleFrame(styles.styles[i], options.frame.value_or(0)));
+    if (all || changed.empty()) continue;
+    if (std::all_of(changed.begin(), changed.end(), IsReadEachFrame)) {
+      memory.prepared[i].settings = styles.styles[i].transfer;
+      memory.prepared[i].required = RequiredLayers(styles.styles[i]);
+      continue;
+    }
+    SCUMBLE_ASSIGN(std::vector<PreparedStyle> one, PrepareAll({{styles.styles[i]}, {}}, guides.height()));
+    memory.prepared[i] = std::move(one.front());
+  }
+  if (all) {
+    SCUMBLE_ASSIGN(memory.prepared, PrepareAll(styles, guides.height()));
+  }
+  if (!memory.exposure) {
+    SCUMBLE_ASSIGN(memory.exposure, ExposureFor(memory.prepared, guides, options, globals));
+  }
+  return Ok();
+}
+
+bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
+  return options.exposure == "auto" && std::any_of(styles.styles.begin(), styles.styles.end(),
+                                                   [](const Style& style) { return style.exemplars.size() > 1; });
+}
+
+Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                const PictureOptions& options, const Globals& globals, const Progress& progress) {
+  TransferMemory memory;
+  SCUMBLE_ASSIGN(const FrameReport report, TransferFrame(styles, guides, source, options, globals, progress, memory));
+  Print(globals.json ? JsonText(report.json) : report.text);
+  return ExitCode::kOk;
+}
+
+Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+                                    const PictureOptions& options, const Globals& globals, const Progress& progress,
+                                    TransferMemory& memory) {
   SCUMBLE_ASSIGN(const FrameRate fps, ParseFps(options.fps));
   StepTimes times = source.times;
   Stopwatch watch;
   SCUMBLE_ASSIGN(const std::optional<Picture> over, ReadOver(options, guides, source.name));
   if (over) times.emplace_back("over", watch.Lap());
-  SCUMBLE_ASSIGN(const std::vector<PreparedStyle> prepared, PrepareAll(styles, guides.height()));
+  SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles, guides, options, globals, memory));
+  const std::vector<PreparedStyle>& prepared = memory.prepared;
   std::vector<const PreparedStyle*> pointers;
   for (const PreparedStyle& one : prepared) pointers.push_back(&one);
   StyleMap map;
@@ -197,10 +248,10 @@ Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, c
   transfer.seed = options.seed;
   transfer.frame = options.frame.value_or(0);
   transfer.fps_numerator = fps.numerator, transfer.fps_denominator = fps.denominator;
-  SCUMBLE_ASSIGN(transfer.exposure, ExposureFor(prepared, guides, options, globals));
+  transfer.exposure = *memory.exposure;
   transfer.threads = globals.threads;
   transfer.over = over ? &*over : nullptr;
-  TransferScratch scratch;
+  TransferScratch& scratch = memory.scratch;
   Picture picture;
   std::vector<double> match, vote, compose;
   for (int run = 0; run < options.repeat; ++run) {
@@ -223,13 +274,11 @@ Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, c
   steps.emplace_back("compose", SpreadOf(compose));
   const double write_ms = watch.Lap();
   steps.emplace_back("write", Spread{write_ms, write_ms, write_ms});
-  if (globals.json) {
-    Print(ToJson(styles.first(), prepared.front(), scratch.field, transfer.exposure, options, source.plan, steps));
-  } else {
-    if (!source.plan.empty()) Print(PlanToText(source.plan));
-    Print(fmt::format("{}  {}\n", options.output, StepsToText(steps, options.repeat)));
-  }
-  return ExitCode::kOk;
+  FrameReport report;
+  report.json = ToJson(styles.first(), prepared.front(), scratch.field, transfer.exposure, options, source.plan, steps);
+  if (!source.plan.empty()) report.text = PlanToText(source.plan);
+  report.text += fmt::format("{}  {}\n", options.output, StepsToText(steps, options.repeat));
+  return report;
 }
 
 }  // namespace scumble

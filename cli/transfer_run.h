@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "cli/sequence.h"
 #include "cli/style_set.h"
 #include "image/guides.h"
+#include "transfer/transfer.h"
 
 namespace scumble {
 
@@ -33,9 +35,29 @@ struct GuideSource {
   std::vector<PlanItem> plan;  // printed as part of the result, unless it is empty
 };
 
-// Prepares, transfers `repeat` times, writes the picture and prints its path with the time of each step. Under --json
-// the steps, coherence and sizes as an object.
-Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+// What a sequence keeps from frame to frame.
+struct TransferMemory {
+  std::vector<PreparedStyle> prepared;  // by style; empty: not yet
+  std::optional<double> exposure;       // stops, once given or measured
+  TransferScratch scratch;
+};
+
+// Brings the styles to options.frame and prepares what has changed since the last call; sets the exposure if
+// it is not set. TransferFrame does it by itself.
+Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptions& options, const Globals& globals,
+                    TransferMemory& memory);
+
+// Prepares, transfers `repeat` times and writes the picture; reports its path with the time of each step, and as JSON
+// the steps, coherence and sizes.
+Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+                                    const PictureOptions& options, const Globals& globals, const Progress& progress,
+                                    TransferMemory& memory);
+
+// Whether the exposure is measured, and by some style is looked at.
+bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options);
+
+// One picture: makes it and prints the report.
+Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                const PictureOptions& options, const Globals& globals, const Progress& progress);
 
 }  // namespace scumble

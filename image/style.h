@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "image/layers.h"
@@ -71,12 +73,28 @@ struct Paper {
   std::optional<Picture> picture;                     // tiled
 };
 
+// A key of style.toml that changes over time; style/style_keyframes.h says what it means. Without tracks a style is the
+// same in every frame.
+struct StyleTrack {
+  using Value = std::variant<bool, std::int64_t, double, std::string>;
+  struct Key {
+    std::int64_t frame = 0;
+    Value value;
+  };
+  std::string name;                    // "transfer.threshold"
+  std::vector<Key> keys;               // by rising frame, never empty
+  bool straight = false;               // on a straight line between keys; otherwise each holds until the next
+  std::filesystem::path folder;        // that files named by values are in
+  Value current;                       // what is in the style now
+};
+
 struct Style {
   std::string name;
   std::string licence;
   TransferSettings transfer;
   std::vector<Exemplar> exemplars;  // one, or up to kMaxExemplars lighting conditions of the same style
   Paper paper;                      // neither set: transparent
+  std::vector<StyleTrack> tracks;
 };
 
 // The layers that a transfer with this style reads: what `guidegen` is asked for, and no more.

@@ -10,6 +10,7 @@
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 #include "style/sphere_kit.h"
+#include "style/style_keyframes.h"
 #include "style/style_keys.h"
 
 namespace scumble {
@@ -71,6 +72,27 @@ std::string KnownKeys(const std::string& section) {
   return names;
 }
 
+// [[frame, value], …]
+Status SetTrack(Style& style, const StyleKey& key, const toml::array& pairs, const std::string& where,
+                const fs::path& folder) {
+  StyleTrack track;
+  track.folder = folder;
+  for (const auto& item : pairs) {
+    const auto* pair = item.as_array();
+    const auto* frame = pair && pair->size() == 2 ? pair->get(0)->as_integer() : nullptr;
+    const auto value = frame ? ValueOf(*pair->get(1)) : std::nullopt;
+    if (!value) {
+      return UsageError(where + ": " + key.name + ": expected a plain value, or frames with their values as " +
+                        "[[1, 0.1], [24, 0.3]]");
+    }
+    track.keys.push_back({frame->get(), *value});
+  }
+  if (auto done = AddTrack(style, key, std::move(track)); !done) {
+    return Error{done.error().kind, where + ": " + done.error().message};
+  }
+  return Ok();
+}
+
 // `where` is the file and line, or the option, that the value stands in. What is wrong about key or value is kUsage.
 Status SetKey(Style& style, const std::string& name, const toml::node& node, const std::string& where,
               const fs::path& folder) {
@@ -83,8 +105,10 @@ Status SetKey(Style& style, const std::string& name, const toml::node& node, con
     return UsageError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
                       (section.empty() ? ", [transfer] and [[exemplar]]" : ""));
   }
+  if (const auto* pairs = node.as_array()) return SetTrack(style, *key, *pairs, where, folder);
   const auto value = ValueOf(node);
   if (!value) return UsageError(where + ": " + name + " must be a plain value");
+  RemoveTrack(style, name);
   if (auto done = key->set(style, *value, folder); !done) return Explain(done.error(), where, name, *value);
   return Ok();
 }
@@ -201,7 +225,7 @@ Status ApplyOverride(Style& style, const std::string& text) {
   const std::string name = text.substr(0, equals), value_text = text.substr(equals + 1);
   auto parsed = ParseToml("value = " + value_text, "--set");
   toml::table table = parsed ? std::move(*parsed) : toml::table();
-  if (table.size() != 1 || !ValueOf(*table.get("value"))) {
+  if (table.size() != 1 || !(ValueOf(*table.get("value")) || table.get("value")->is_array())) {
     table.clear();
     table.insert("value", value_text);
   }

@@ -14,6 +14,9 @@ namespace scumble {
 // writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Every key is honoured, or
 // refused by name: unknown ones with the list of what there is, features still to come as kUnavailable.
 //
+// A key of [transfer] may also have one value for each of several frames: threshold = [[1, 0.1], [24, 0.3]]; see
+// style_keyframes.h. The style that is returned is that of frame 0.
+//
 // A picture beside a style.toml that names it stands for that style.
 //
 // An [[exemplar]] picture is a square that the sphere fills. With `guides` naming the guides.exr that `scumble sphere`

@@ -412,6 +412,39 @@ TEST_F(BlenderVerbs, StylizeToo) {
   EXPECT_TRUE(Exists("p.png"));
 }
 
+// One Blender for the range; more frames than it may be ahead, backwards and with a stop in between.
+TEST_F(BlenderVerbs, ARangeIsItsFramesByteForByte) {
+  const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30"};
+  const CommandResult range = RunHere(With(guidegen, {"--frames", "6-1,-2", "-o", "range.##.exr"}));
+  ASSERT_EQ(range.code, 0) << range.err;
+  EXPECT_THAT(range.err, HasSubstr("objects.blend: blender exports frames 6-1,-2"));
+  EXPECT_EQ(range.err.find("'Strands'"), range.err.rfind("'Strands'")) << "a warning is given once\n" << range.err;
+  for (const std::string frame : {"6", "2", "-2"}) {
+    const CommandResult one = RunHere(With(guidegen, {"--frame", frame, "-o", "one.exr"}));
+    ASSERT_EQ(one.code, 0) << one.err;
+    const std::string name = frame == "-2" ? "range.-02.exr" : "range.0" + frame + ".exr";
+    EXPECT_EQ(Bytes(name), Bytes("one.exr")) << frame;
+  }
+  EXPECT_NE(Bytes("range.06.exr"), Bytes("range.02.exr")) << "nothing moves";
+  // With nothing to make there is no Blender to miss.
+  const Arguments again = With(guidegen, {"--frames", "1-6", "-o", "range.##.exr", "--resume", "--blender", "no/blender"});
+  const CommandResult kept = RunHere(again);
+  EXPECT_EQ(kept.code, 0) << kept.err;
+  EXPECT_THAT(kept.out, HasSubstr("0 made, 6 kept"));
+
+  WriteStyle("style");
+  const Arguments stylize = {"stylize", Blend("objects"), "--size", "64x36", "--view", "20,30", "--style", "style"};
+  ASSERT_EQ(RunHere(With(stylize, {"--frames", "5-6", "-o", "p#.png"})).code, 0);
+  RunOk({"transfer", "range.##.exr", "--style", "style", "--frame", "6", "-o", "two.png"});
+  EXPECT_EQ(Bytes("p6.png"), Bytes("two.png"));
+
+  WriteProgram("stops", "echo 'scumble: error: the export stopped' >&2; exit 3");
+  const CommandResult stopped = RunHere(With(guidegen, {"--frames", "1-3", "-o", "s#.exr", "--blender", "./stops"}));
+  EXPECT_EQ(stopped.code, 3);
+  EXPECT_THAT(stopped.Error(), AllOf(HasSubstr("3 of 3 frames were not made: 1-3"), HasSubstr("the export stopped")));
+  ExpectErrorHere(With(guidegen, {"--frames", "1-3", "-o", "s#.exr", "--blender", "no/blender"}), 5, {"no/blender"});
+}
+
 TEST_F(BlenderVerbs, FailuresAreReadable) {
   const Arguments tail = {"--size", "32", "-o", "g.exr"};
   WriteText("bad.blend", "no scene at all");

@@ -1,0 +1,163 @@
+#include "cli/sequence.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "cli/json_text.h"
+#include "image/stopwatch.h"
+
+namespace scumble {
+
+void AddSequenceOptions(CLI::App& verb, SequenceOptions& options) {
+  verb.add_option("--frames", options.frames,
+                  "several frames: 1-24; 3,5-10; 12-24x2, every second; 10-1, backwards; -5--1. #### or %04d in the "
+                  "names of files stands for the frame's number")
+      ->type_name("RANGE");
+  verb.add_flag("--resume", options.resume,
+                "with --frames: keep frames whose output is there and whole; empty and truncated files are made again");
+}
+
+Expected<std::optional<Sequence>> PlanSequence(const SequenceOptions& options, std::optional<int> frame,
+                                               const std::string& output) {
+  if (options.frames.empty()) {
+    if (options.resume) return UsageError("--resume goes with --frames: say which frames are wanted");
+    return std::optional<Sequence>();
+  }
+  if (frame) return UsageError("--frame and --frames exclude each other: leave one out");
+  Sequence sequence;
+  sequence.resume = options.resume;
+  SCUMBLE_ASSIGN(sequence.frames, ParseFrames(options.frames));
+  SCUMBLE_ASSIGN(sequence.output, FrameName::Parse(output));
+  if (sequence.frames.size() > 1 && !sequence.output.has_place() && !output.empty()) {
+    const std::size_t dot = output.rfind('.');
+    return UsageError(fmt::format("-o {} is one file for {} frames: write #### where the frame's number goes, as in "
+                                  "{}.####{}",
+                                  output, sequence.frames.size(), output.substr(0, dot),
+                                  dot == std::string::npos ? "" : output.substr(dot)));
+  }
+  return std::optional(std::move(sequence));
+}
+
+Expected<std::string> NameOfOne(const std::string& name, std::optional<int> frame) {
+  SCUMBLE_ASSIGN(const FrameName parsed, FrameName::Parse(name));
+  if (frame) return parsed.At(*frame);
+  if (parsed.must_have_frame()) {
+    return UsageError(name + " has a place for a frame's number: say which with --frames 1-24, or --frame 7 for one");
+  }
+  return name;
+}
+
+Progress Within(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [progress, from, to](double share) { return progress(from + (to - from) * share); };
+}
+
+namespace {
+
+// What became of the frames so far.
+class Tally {
+ public:
+  Tally(const Sequence& sequence, ProgressBar& bar, const Globals& globals)
+      : sequence_(sequence), bar_(bar), globals_(globals) {}
+
+  void Made(int frame, FrameReport report) {
+    nlohmann::ordered_json json = Entry(frame, "made");
+    json.update(report.json);
+    Add(std::move(json), report.text);
+    ++made_;
+  }
+  void Kept(int frame) {
+    Add(Entry(frame, "kept"), sequence_.output.At(frame) + "  kept\n");
+    ++kept_;
+  }
+  void Failed(int frame, const std::string& reason) {
+    nlohmann::ordered_json json = Entry(frame, "failed");
+    json["error"] = reason;
+    Add(std::move(json), "");
+    // One reason for many frames, as when Blender crashed, is said once.
+    if (failed_.empty() || reason != last_reason_) Warn(fmt::format("frame {}: {}", frame, reason));
+    if (failed_.empty()) first_reason_ = reason;
+    last_reason_ = reason;
+    failed_.push_back(frame);
+  }
+
+  void PrintTotals(double total_ms) {
+    bar_.Clear();
+    const std::size_t all = sequence_.frames.size();
+    if (globals_.json) {
+      Print(JsonText(nlohmann::ordered_json{{"frames", std::move(entries_)},
+                                            {"made", made_},
+                                            {"kept", kept_},
+                                            {"failed", failed_.size()},
+                                            {"total_ms", total_ms}}));
+      return;
+    }
+    std::string text = fmt::format("{} frame{}: {} made", all, all == 1 ? "" : "s", made_);
+    if (sequence_.resume) text += fmt::format(", {} kept", kept_);
+    if (!failed_.empty()) text += fmt::format(", {} not made", failed_.size());
+    Print(text + fmt::format("; {:.1f} s\n", total_ms / 1000.0));
+  }
+
+  Expected<ExitCode> Result() const {
+    if (failed_.empty()) return ExitCode::kOk;
+    return InputError(fmt::format("{} of {} frames were not made: {}; the first because {}", failed_.size(),
+                                  sequence_.frames.size(), FramesToText(failed_), first_reason_));
+  }
+
+ private:
+  nlohmann::ordered_json Entry(int frame, const char* state) const {
+    return {{"frame", frame}, {"state", state}, {"output", sequence_.output.At(frame)}};
+  }
+  void Add(nlohmann::ordered_json json, const std::string& text) {
+    bar_.Clear();
+    if (globals_.json) {
+      entries_.push_back(std::move(json));
+    } else {
+      Print(text);
+      std::fflush(stdout);  // a farm's log shows how far it came; what goes wrong here is found when the program ends
+    }
+  }
+
+  const Sequence& sequence_;
+  ProgressBar& bar_;
+  const Globals& globals_;
+  nlohmann::ordered_json entries_ = nlohmann::ordered_json::array();
+  std::vector<int> failed_;
+  std::string first_reason_, last_reason_;
+  int made_ = 0, kept_ = 0;
+};
+
+}  // namespace
+
+Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& work, ProgressBar& bar,
+                               const Globals& globals) {
+  Stopwatch watch;
+  Tally tally(sequence, bar, globals);
+  std::vector<int> frames;
+  for (const int frame : sequence.frames) {
+    if (sequence.resume && work.check(frame, sequence.output.At(frame))) {
+      tally.Kept(frame);
+    } else {
+      frames.push_back(frame);
+    }
+  }
+  const double steps = static_cast<double>(frames.size() + 1);
+  if (!frames.empty()) SCUMBLE_RETURN_IF_ERROR(work.begin(frames, bar.Part(0.0, 1.0 / steps)));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double done = static_cast<double>(i + 1);
+    Expected<FrameReport> report =
+        work.make(frames[i], sequence.output.At(frames[i]), bar.Part(done / steps, (done + 1.0) / steps));
+    if (report) {
+      tally.Made(frames[i], std::move(*report));
+    } else if (report.error().kind == ErrorKind::kInput) {
+      tally.Failed(frames[i], report.error().message);
+    } else {
+      return Error{report.error().kind, fmt::format("frame {}: {}", frames[i], report.error().message)};
+    }
+  }
+  tally.PrintTotals(watch.Lap());
+  return tally.Result();
+}
+
+}  // namespace scumble

@@ -1,0 +1,66 @@
+// A range of frames: what to make, what to keep, what is missing, and how the whole is reported.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/frames.h"
+#include "cli/progress_bar.h"
+#include "image/progress.h"
+#include "image/status.h"
+
+namespace scumble {
+
+struct SequenceOptions {
+  std::string frames;  // as ParseFrames takes them; empty: one picture, no sequence
+  bool resume = false;
+};
+void AddSequenceOptions(CLI::App& verb, SequenceOptions& options);
+
+// What one frame's work has to tell.
+struct FrameReport {
+  nlohmann::ordered_json json;
+  std::string text;  // one line or more, each ended
+};
+
+struct Sequence {
+  std::vector<int> frames;  // never empty
+  FrameName output;
+  bool resume = false;
+};
+
+// The sequence that was asked for; nothing where it is one picture. `frame` is --frame's. A usage error where several
+// frames would have one name, or the options exclude each other.
+Expected<std::optional<Sequence>> PlanSequence(const SequenceOptions& options, std::optional<int> frame,
+                                               const std::string& output);
+
+// The name of one picture: a place for the frame's number is filled. A usage error where there is such a place and no
+// number.
+Expected<std::string> NameOfOne(const std::string& name, std::optional<int> frame);
+
+struct SequenceWork {
+  // Ok where the frame's output is there and whole.
+  std::function<Status(int frame, const std::string& output)> check;
+  // Called once, with the frames that are left to make, unless there are none. An error ends the sequence.
+  std::function<Status(std::span<const int> frames, const Progress& progress)> begin;
+  // Makes the frame and writes it.
+  std::function<Expected<FrameReport>(int frame, const std::string& output, const Progress& progress)> make;
+};
+
+// Makes the frames one after the other and prints a line for each and one for all; under --json one object with an
+// array `frames`. With `resume` those that `check` accepts are left as they are. A frame whose input is missing or
+// broken (kInput) does not stop the others: the error at the end names all of them. Any other error would come again
+// in every frame, and ends the sequence at once.
+Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& work, ProgressBar& bar,
+                               const Globals& globals);
+
+// The part [from, to] of a progress.
+Progress Within(const Progress& progress, double from, double to);
+
+}  // namespace scumble

@@ -1,0 +1,104 @@
+#include "style/style_keyframes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+namespace scumble {
+namespace {
+
+std::optional<double> AsNumber(const KeyValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  return std::nullopt;
+}
+
+// Whether all values between two of the track's are ones that the key takes: whole numbers, flags and words have none.
+bool TakesFractions(const StyleKey& key, const StyleTrack& track) {
+  if (key.name == "transfer.jitter_fps") return false;
+  Style scratch;
+  for (const auto& [frame, value] : track.keys) {
+    const auto number = AsNumber(value);
+    if (!number || !key.set(scratch, KeyValue(*number), {})) return false;
+  }
+  return true;
+}
+
+Status Set(Style& style, const StyleKey& key, StyleTrack& track, const KeyValue& value) {
+  if (auto done = key.set(style, value, track.folder); !done) {
+    return Error{done.error().kind, key.name + " = " + ToText(value) + ": " + done.error().message};
+  }
+  track.current = value;
+  return Ok();
+}
+
+}  // namespace
+
+Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
+  if (key.name.rfind("transfer.", 0) != 0) return UsageError(key.name + " cannot change over time");
+  if (track.keys.empty()) return UsageError(key.name + " = []: expected a value, or pairs of frame and value");
+  Style scratch;
+  const std::int64_t* before = nullptr;
+  for (const auto& [frame, value] : track.keys) {
+    if (before && *before >= frame) {
+      return UsageError(key.name + ": frame " + std::to_string(frame) + " comes after frame " + std::to_string(*before) +
+                        ": name each frame once, in rising order");
+    }
+    before = &frame;
+    if (auto done = key.set(scratch, value, track.folder); !done) {
+      return Error{done.error().kind, key.name + " at frame " + std::to_string(frame) + " = " + ToText(value) + ": " +
+                                          done.error().message};
+    }
+  }
+  track.name = key.name;
+  track.straight = TakesFractions(key, track);
+  SCUMBLE_RETURN_IF_ERROR(Set(style, key, track, ValueAt(track, 0)));
+  RemoveTrack(style, key.name);
+  style.tracks.push_back(std::move(track));
+  return Ok();
+}
+
+void RemoveTrack(Style& style, const std::string& name) {
+  std::erase_if(style.tracks, [&](const StyleTrack& track) { return track.name == name; });
+}
+
+KeyValue ValueAt(const StyleTrack& track, std::int64_t frame) {
+  const auto next = std::find_if(track.keys.begin(), track.keys.end(), [&](const auto& key) { return key.frame > frame; });
+  if (next == track.keys.begin()) return next->value;
+  const auto& [from, value] = *std::prev(next);
+  if (next == track.keys.end() || from == frame || !track.straight) return value;
+  const double low = *AsNumber(value), high = *AsNumber(next->value);
+  if (std::isinf(low) || std::isinf(high)) return value;
+  const double share = static_cast<double>(frame - from) / static_cast<double>(next->frame - from);
+  // Rounding must not lead out of the range that both ends keep.
+  return std::clamp(low + share * (high - low), std::min(low, high), std::max(low, high));
+}
+
+Expected<std::vector<std::string>> SetStyleFrame(Style& style, std::int64_t frame) {
+  std::vector<std::string> changed;
+  for (std::size_t i = 0; i < style.tracks.size(); ++i) {
+    const KeyValue value = ValueAt(style.tracks[i], frame);
+    if (value == style.tracks[i].current) continue;
+    SCUMBLE_RETURN_IF_ERROR(Set(style, *FindStyleKey(style.tracks[i].name), style.tracks[i], value));
+    changed.push_back(style.tracks[i].name);
+  }
+  return changed;
+}
+
+Expected<LayerSet> LayersOverTime(const Style& style) {
+  LayerSet layers = RequiredLayers(style);
+  Style moving = style;
+  for (const StyleTrack& track : style.tracks) {
+    for (const auto& key : track.keys) {
+      // Between two frames that are named a key is on only where it is at one of them.
+      for (const std::int64_t frame : {key.frame, key.frame + 1}) {
+        if (auto set = SetStyleFrame(moving, frame); !set) return set.error();
+        layers.Add(RequiredLayers(moving));
+      }
+    }
+  }
+  return layers;
+}
+
+}  // namespace scumble

@@ -1,0 +1,35 @@
+// Keys of style.toml that change over time: threshold = [[1, 0.1], [24, 0.3]] is 0.1 up to frame 1, 0.3 from frame 24
+// on, and in between on the straight line.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "image/layers.h"
+#include "image/status.h"
+#include "image/style.h"
+#include "style/style_keys.h"
+
+namespace scumble {
+
+// Checks the track's keys and gives it to the style, in place of an earlier one of that name; the style gets the values
+// of frame 0. Frames must rise, and every value must be one that the key takes alone: kUsage says which is not. Keys of
+// [transfer] only.
+Status AddTrack(Style& style, const StyleKey& key, StyleTrack track);
+
+// Forgets the track of that name, if there is one.
+void RemoveTrack(Style& style, const std::string& name);
+
+// The value at a frame. Keys that take fractions move on a straight line, but for jitter_fps, whose every change
+// renews the whole pattern; all others, and infinities, hold their value until the next frame that is named.
+KeyValue ValueAt(const StyleTrack& track, std::int64_t frame);
+
+// Puts the values of that frame into the style. Returns the names of the keys whose values are not what they were.
+// Fails where a value names a file that cannot be read.
+Expected<std::vector<std::string>> SetStyleFrame(Style& style, std::int64_t frame);
+
+// The layers that the style reads at one frame or another.
+Expected<LayerSet> LayersOverTime(const Style& style);
+
+}  // namespace scumble
