@@ -1,5 +1,6 @@
 #include "guidegen/single_ray.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace scumble {
@@ -26,11 +27,22 @@ CastContext SingleRays() {
 
 }  // namespace
 
-bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& way, double length) {
+bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& way, double length,
+               const ShadowTarget& target) {
   CastContext context = SingleRays();
+  context.target = target;
   RTCRay ray = MakeRay(origin, way, length);
   rtcOccluded1(scene.handle(), &context.embree, &ray);
   return ray.tfar < 0.0f;
+}
+
+bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw) {
+  if (draw.endless) return IsBlocked(scene, origin, draw.direction, std::numeric_limits<double>::infinity());
+  const glm::dvec3 way = draw.target - origin;
+  if (draw.object == LightDraw::kNoObject) return IsBlocked(scene, origin, way, kShadowReach);
+  const double near_end = std::clamp(1.0 - draw.rounding / glm::length(way), 0.0, kShadowReach);
+  const ShadowTarget target{&scene.objects()[draw.object], draw.primitive, float(near_end)};
+  return IsBlocked(scene, origin, way, kShadowReach, target);
 }
 
 RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {

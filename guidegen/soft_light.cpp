@@ -40,9 +40,7 @@ struct Sample {
     if (!(light > 0.0)) return;
     sum.unoccluded += light;
     ++rays.shadow;
-    const bool blocked = draw.endless ? IsBlocked(scene, origin, draw.direction, kInfinity)
-                                      : IsBlocked(scene, origin, draw.target - origin, kShadowReach);
-    if (!blocked) sum.reached += light;
+    if (!IsBlocked(scene, origin, draw)) sum.reached += light;
   }
 
   // A point of each light that is no delta light where these are few, or else of one of them.
