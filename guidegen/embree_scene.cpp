@@ -128,6 +128,13 @@ RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
   return geometry;
 }
 
+// Robust: no cracks between neighbours, and nothing thin is lost.
+RTCScene NewScene(RTCDevice device) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  return scene;
+}
+
 }  // namespace
 
 Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa) {
@@ -157,9 +164,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
 }
 
 Status EmbreeScene::Commit() {
-  scene_.reset(rtcNewScene(device_.get()));
-  // Robust: no cracks between neighbours, and nothing thin is lost.
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  scene_.reset(NewScene(device_.get()));
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
     if (object.mesh && object.mesh->triangles.empty()) continue;
@@ -167,9 +172,14 @@ Status EmbreeScene::Commit() {
     rtcSetGeometryUserData(geometry, &object);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
+    if (object.mesh && MayEmit(*object.material)) {
+      if (!emitters_) emitters_.reset(NewScene(device_.get()));
+      rtcAttachGeometryByID(emitters_.get(), geometry, static_cast<unsigned>(i));
+    }
     rtcReleaseGeometry(geometry);
   }
   rtcCommitScene(scene_.get());
+  if (emitters_) rtcCommitScene(emitters_.get());
   const RTCError error = rtcGetDeviceError(device_.get());
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
     return InputError("the scene does not fit into memory: give it fewer triangles or instances");

@@ -44,6 +44,7 @@ class EmbreeScene {
   static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa);
 
   RTCScene handle() const { return scene_.get(); }
+  RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none do
   const std::string& isa() const { return isa_; }                         // what is in use, never empty
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 
@@ -64,6 +65,7 @@ class EmbreeScene {
   std::unique_ptr<std::vector<PlacedObject>> objects_;
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
   std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+  std::unique_ptr<RTCSceneTy, ReleaseScene> emitters_;
   std::string isa_;
 };
 

@@ -76,6 +76,15 @@ class LightSet {
     });
   }
 
+  // Calls visit(emitter) for each mesh that emits and that the ray may meet; for others near its way, too.
+  template <class Visit>
+  void VisitEmitters(const glm::dvec3& point, const glm::dvec3& direction, const Visit& visit) const {
+    if (!has_emitters()) return;
+    tree_.VisitAlong(point, direction, [&](int light) {
+      if (IsEmitter(light)) visit(light);
+    });
+  }
+
   // The light that an object is, or −1.
   int EmitterOf(std::uint32_t object) const { return emitter_of_[object]; }
   // With which density Draw takes the direction to this point of an emitter.

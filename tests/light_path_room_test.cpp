@@ -1,6 +1,7 @@
 // Light-path layers of a room with everything in it: what they cost, that they repeat, converge and stay finite.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -178,6 +179,58 @@ TEST(LightPaths, LampsThatTouchASurfaceMakeNoFireflies) {
   const auto result = Render(scene, FrontCamera(4.0), Paths(48, {Layer::kLpeLDE}, 32));
   // No direct light can be brighter than a sky of the lamp's radiance would be.
   for (const float value : result.guides.Plane(Layer::kLpeLDE)) EXPECT_LE(value, 0.8f * 1.01f);
+}
+
+// One panel, and ten of which one is chosen.
+TEST(LightPaths, EmissiveMeshesThatTouchASurfaceMakeNoFireflies) {
+  for (const int count : {1, 10}) {
+    Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f), 2.0);
+    Material glow = Painted(Bsdf::kEmission, 1.0f);
+    glow.emission = glm::vec3(1.0f);
+    Mesh quad = QuadMesh();
+    quad.material = AddMaterial(scene, glow);
+    for (int i = 0; i < count; ++i) {
+      const double width = 0.5 / count;
+      AddObject(scene, "panel" + std::to_string(i), quad,
+                glm::scale(glm::rotate(Moved((2 * i + 1 - count) * 2.0 * width, 0, 0.5), 0.5 * kPi, {1, 0, 0}),
+                           glm::dvec3(width, 0.5, 1.0)));
+    }
+    const LayerSet layers = {Layer::kLpeLDE, Layer::kLuminance, Layer::kShadow};
+    const Camera camera = LookingAt({0, -4, 3}, {0, 0, 0}, 34.0);
+    const auto result = Render(scene, camera, Paths(96, layers, 64));
+    ExpectFinite(result);
+    // A panel that stands on the floor fills half of its sky at most; the rest is the noise of 64 samples.
+    const float most = count == 1 ? 0.75f : 1.0f;
+    double luminance = 0.0, diffuse = 0.0, worst = 0.0;
+    for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
+      if (result.guides.Vec3(Layer::kLpeLDE, i).g == 0.0f && result.guides.Plane(Layer::kLuminance)[i] == 0.0f) continue;
+      luminance += result.guides.Plane(Layer::kLuminance)[i];
+      diffuse += result.guides.Plane(Layer::kLpeLDE, 1)[i];
+      EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 0.0f) << i;
+      worst = std::max(worst, double(result.guides.Plane(Layer::kLuminance)[i]));
+    }
+    EXPECT_LE(worst, most) << count;
+    EXPECT_NEAR(luminance / diffuse, 1.0, 0.01) << count;
+  }
+}
+
+// The back of a ball of light is hidden by its own front, and that is no shadow; a lid over the floor is.
+TEST(LightPaths, OnlyWhatDoesNotShineCastsShadowsInTheLightOfMeshes) {
+  Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f), 2.0);
+  Material glow = Painted(Bsdf::kEmission, 1.0f);
+  glow.emission = glm::vec3(1.0f);
+  Mesh ball = BallMesh(16);
+  ball.material = AddMaterial(scene, glow);
+  AddObject(scene, "ball", ball, glm::scale(Moved(0, 0, 1.5), glm::dvec3(0.5)));
+  const LayerSet layers = {Layer::kLuminance, Layer::kShadow};
+  const auto free = Render(scene, SlantedSpot(), Paths(1, layers, 1024));
+  EXPECT_EQ(free.guides.Plane(Layer::kShadow)[0], 0.0f);
+  // A ball of radius r and radiance 1, d above: (r/d)².
+  EXPECT_NEAR(free.guides.Plane(Layer::kLuminance)[0], 1.0 / 9.0, 2e-3);
+  // Half of the ball is behind a lid whose edge is right above the point; the camera looks in from the other side.
+  AddObject(scene, "lid", QuadMesh(), glm::scale(Moved(0, 1, 0.3), glm::dvec3(2.0, 1.0, 1.0)));
+  const auto half = Render(scene, SlantedSpot(), Paths(1, layers, 4096));
+  EXPECT_NEAR(half.guides.Plane(Layer::kShadow)[0], 0.5, 5e-3);
 }
 
 TEST(LightPaths, BadLightIsRefusedByName) {

@@ -210,7 +210,7 @@ TEST(DirectLight, EmissiveMeshesDoNotShadeThemselvesHoweverFarTheCamera) {
       }
       EXPECT_EQ(worst_shadow, 0.0) << height << " m, camera at " << distance << " m";
       EXPECT_NEAR(light / (0.8 * expected), 1.0, 4e-3) << height << " m, camera at " << distance << " m";
-      EXPECT_NEAR(luminance / expected, 1.0, 0.02) << height << " m, camera at " << distance << " m";
+      EXPECT_NEAR(luminance / expected, 1.0, 4e-3) << height << " m, camera at " << distance << " m";
     }
   }
 }
