@@ -23,6 +23,9 @@ struct GuidegenVerb {
   std::string output;
 };
 
+// Whether the noise or the clock says how many samples are taken.
+bool IsOpenEnded(const SceneOptions& scene) { return scene.noise > 0.0 || scene.time_budget_seconds > 0.0; }
+
 void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Globals& globals) {
   if (globals.json) {
     nlohmann::ordered_json json;
@@ -35,7 +38,7 @@ void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Global
                       {"coverage", made.rays.coverage},
                       {"shadow", made.rays.shadow},
                       {"bounce", made.rays.bounce}};
-      if (made.samples > 0) json["samples"] = made.samples;
+      if (made.samples > 0 || IsOpenEnded(verb.scene)) json["samples"] = made.samples;
       if (made.noise > 0.0) json["noise"] = made.noise;
     }
     json["plan"] = PlanToJson(made.plan);
@@ -48,7 +51,10 @@ void PrintResult(const GuidegenVerb& verb, const SceneGuides& made, const Global
   std::string steps;
   for (const auto& [name, ms] : made.times) steps += fmt::format("{}{} {:.1f}", steps.empty() ? "" : ", ", name, ms);
   std::string samples;
-  if (made.noise > 0.0) samples = fmt::format("; noise {:.3g}, repeat with --samples {}", made.noise, made.samples);
+  if (made.noise > 0.0) samples = fmt::format("; noise {:.3g}", made.noise);
+  if (IsOpenEnded(verb.scene)) {
+    samples += made.samples > 0 ? fmt::format("; repeat with --samples {}", made.samples) : "; free of noise, no samples";
+  }
   Print(fmt::format("{}  {}; {} ms{}\n", verb.output, made.guides.layers().ToString(), steps, samples));
 }
 

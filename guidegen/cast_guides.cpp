@@ -103,6 +103,9 @@ Status CheckSampling(const GuidegenOptions& options) {
   if (options.samples < 1 || options.samples > kMaxSamples) {
     return refuse("samples " + std::to_string(options.samples), "1 to " + std::to_string(kMaxSamples));
   }
+  if (options.max_samples < 1 || options.max_samples > kMaxSamples) {
+    return refuse("max_samples " + std::to_string(options.max_samples), "1 to " + std::to_string(kMaxSamples));
+  }
   if (options.max_bounces < 0 || options.max_bounces > kMaxBounces) {
     return refuse("max_bounces " + std::to_string(options.max_bounces), "0 to " + std::to_string(kMaxBounces));
   }

@@ -356,5 +356,37 @@ TEST_F(CliVerbs, StyleCheckWarnsOfFlatAndHoledPaint) {
   EXPECT_TRUE(Contains(RunOk({"styles", "check", "holed.png"}).Warning(), "is transparent"));
 }
 
+// A dark triangle and, a metre before it, one that shines on it.
+std::string GlowGltf() {
+  return R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}],
+      "buffers": [{"byteLength": 36, "uri": "glow.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "materials": [{"doubleSided": true, "emissiveFactor": [1, 1, 1]}, {"doubleSided": true}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]},
+                 {"primitives": [{"attributes": {"POSITION": 0}, "material": 1}]}],
+      "nodes": [{"name": "glow", "mesh": 0, "translation": [0, 0, 1]}, {"name": "dark", "mesh": 1}]})";
+}
+
+std::string GlowCorners() {
+  const float corners[] = {0, 0, 0, 2, 0, 0, 0, 2, 0};
+  return std::string(reinterpret_cast<const char*>(corners), sizeof(corners));
+}
+
+TEST_F(CliVerbs, ATimeBudgetSaysWhatRepeatsIt) {
+  WriteText("glow.gltf", GlowGltf());
+  WriteText("glow.bin", GlowCorners());
+  const Arguments guidegen = {"guidegen", "glow.gltf", "--view", "60,10", "--size", "16", "-o", "g.exr"};
+  const Arguments hasty = With(guidegen, {"--layers", "lpe.full", "--time-budget", "1e-9"});
+  EXPECT_TRUE(Contains(RunOk(hasty).out, "; repeat with --samples 1\n"));
+  EXPECT_EQ(RunOk(With(hasty, {"--json"})).Json()["samples"], 1);
+  const std::string noisy = RunOk(With(guidegen, {"--layers", "lpe.full", "--noise", "10"})).out;
+  EXPECT_TRUE(Contains(noisy, "; noise 0.")) << noisy;
+  EXPECT_TRUE(Contains(noisy, "; repeat with --samples 16\n")) << noisy;
+  const std::string exact = RunOk(With(guidegen, {"--layers", "lpe.LSE", "--max-bounces", "0", "--noise", "1"})).out;
+  EXPECT_TRUE(Contains(exact, "--samples")) << exact;
+  const std::string none = RunOk(With(guidegen, {"--noise", "1"})).out;
+  EXPECT_TRUE(Contains(none, "; free of noise, no samples\n")) << none;
+}
+
 }  // namespace
 }  // namespace scumble

@@ -127,6 +127,24 @@ TEST(LightPaths, ATimeBudgetSaysWhatRepeatsIt) {
   EXPECT_EQ(Values(budgeted), Values(repeated));
 }
 
+TEST(LightPaths, ATimeBudgetThatIsOverAtOnceTakesOneSample) {
+  GuidegenOptions options = Paths(16, {Layer::kLpeFull});
+  options.time_budget_seconds = 1e-9;
+  const auto hasty = Render(Room(), kRoomCamera, options);
+  EXPECT_EQ(hasty.samples, 1);
+  EXPECT_EQ(Values(hasty), Values(Render(Room(), kRoomCamera, Paths(16, {Layer::kLpeFull}, 1))));
+}
+
+TEST(LightPaths, ATimeBudgetMayBeLeftWhenTheErrorIsBelowTheLimit) {
+  GuidegenOptions options = Paths(16, kAllPaths);
+  options.time_budget_seconds = 1e6;
+  options.noise = 0.5;
+  const auto early = Render(Room(), kRoomCamera, options);
+  EXPECT_EQ(early.samples, 16);
+  EXPECT_LE(early.noise, 0.5);
+  EXPECT_EQ(Values(early), Values(Render(Room(), kRoomCamera, Paths(16, kAllPaths, 16))));
+}
+
 TEST(LightPaths, SmallMaxBouncesTakeAwayAndNeverAdd) {
   GuidegenOptions options = Paths(12, {Layer::kLpeFull}, 64);
   double last = 0.0;
