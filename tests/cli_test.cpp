@@ -382,6 +382,12 @@ TEST_F(CliVerbs, ATimeBudgetSaysWhatRepeatsIt) {
   const std::string noisy = RunOk(With(guidegen, {"--layers", "lpe.full", "--noise", "10"})).out;
   EXPECT_TRUE(Contains(noisy, "; noise 0.")) << noisy;
   EXPECT_TRUE(Contains(noisy, "; repeat with --samples 16\n")) << noisy;
+  const std::string capped = RunOk(With(guidegen, {"--layers", "lpe.full", "--noise", "1e-6", "--samples", "4"})).out;
+  EXPECT_TRUE(Contains(capped, "; repeat with --samples 4\n")) << capped;
+  for (const char* option : {"--noise", "--time-budget"}) {
+    ExpectError(With(guidegen, {"--layers", "shadow", option, "1"}), 2,
+                {"is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples"});
+  }
   const std::string exact = RunOk(With(guidegen, {"--layers", "lpe.LSE", "--max-bounces", "0", "--noise", "1"})).out;
   EXPECT_TRUE(Contains(exact, "--samples")) << exact;
   const std::string none = RunOk(With(guidegen, {"--noise", "1"})).out;

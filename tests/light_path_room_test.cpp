@@ -278,6 +278,31 @@ TEST(LightPaths, BadLightIsRefusedByName) {
   refuse(scene, "paint");
 }
 
+TEST(LightPaths, NoMoreSamplesThanAllowedHoweverLargeTheError) {
+  for (const int most : {1, 4, 20}) {
+    GuidegenOptions options = Paths(16, {Layer::kLpeFull});
+    options.noise = 1e-9;
+    options.max_samples = most;
+    const auto capped = Render(Room(), kRoomCamera, options);
+    EXPECT_EQ(capped.samples, most);
+    EXPECT_EQ(capped.noise > 0.0, most > 1);
+    EXPECT_EQ(Values(capped), Values(Render(Room(), kRoomCamera, Paths(16, {Layer::kLpeFull}, most))));
+  }
+}
+
+TEST(LightPaths, LuminanceTakesNoLimitOfTheNoise) {
+  GuidegenOptions options = Paths(8, {Layer::kLuminance});
+  options.noise = 0.1;
+  const auto refused = RenderGuides(Room(), kRoomCamera, options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message.find("--samples"), std::string::npos) << refused.error().message;
+  // Under lamps without extent there is no noise, and nothing to refuse.
+  Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.5f));
+  scene.lights = {PointLight({0, 0, 2}, 1.0)};
+  EXPECT_GT(Render(scene, FrontCamera(3.0), options).guides.Plane(Layer::kLuminance)[0], 0.0f);
+}
+
 TEST(LightPaths, OptionsOutOfRangeAreRefused) {
   const auto refuse = [](const GuidegenOptions& options, const std::string& what) {
     const auto result = RenderGuides(Room(), kRoomCamera, options);
