@@ -109,6 +109,10 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
 }
 
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
+  verb.add_option("--seed", options.seed, "another seed, other noise of the same size; the same seed, the same bytes")
+      ->type_name("N")
+      ->check(RefuseNegative)
+      ->capture_default_str();
   verb.add_option("--samples", options.samples,
                   "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most "
                   "there may be")
@@ -199,6 +203,7 @@ Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneOptions& options, co
   guidegen.samples = options.samples;
   guidegen.max_bounces = options.max_bounces;
   guidegen.noise = options.noise;
+  guidegen.seed = options.seed;
   guidegen.time_budget_seconds = options.time_budget_seconds;
   if (options.samples_given) guidegen.max_samples = options.samples;
   result.plan = PlanGuides(scene, guidegen);

@@ -55,6 +55,7 @@ struct SceneOptions {
   int max_bounces = GuidegenOptions().max_bounces;
   double noise = 0.0;
   double time_budget_seconds = 0.0;
+  std::uint64_t seed = 0;
   bool key_light = true;  // let one shine where the file has no light and a layer needs some
 };
 // For guides with light paths, which no style reads.

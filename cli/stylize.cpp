@@ -49,6 +49,7 @@ Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& global
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
   scene.blender.frame = verb.picture.frame;
+  scene.seed = verb.picture.seed;
   SCUMBLE_ASSIGN(SceneGuides made,
                  MakeGuides(scene, RequiredLayers(style.transfer), globals, bar.Part(0.0, 0.5), false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));

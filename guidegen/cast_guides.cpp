@@ -92,6 +92,7 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   result.guides.attributes["scumble:generator"] = "guidegen " SCUMBLE_VERSION;
   result.guides.attributes["scumble:isa"] = scene.isa();
   if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);
+  if (options.seed != 0) result.guides.attributes["scumble:seed"] = std::to_string(options.seed);
   result.guides.attributes["scumble:normal_frame"] = options.normal_frame == NormalFrame::kEye ? "eye" : "camera";
   return result;
 }

@@ -1,6 +1,7 @@
 // Guides by ray casting: scene + camera + layers → GuideSet. The manual of this library.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct GuidegenOptions {
   // decides, so the picture may differ from run to run; GuidegenResult::samples repeats it.
   double time_budget_seconds = 0.0;
   int max_samples = kMaxSamples;  // that `noise` and the time budget may take, 1 … kMaxSamples
+  std::uint64_t seed = 0;         // another one, other noise of the same size; in attributes["scumble:seed"] unless 0
   // Luminance and shadow always take `samples`: where they need any, `noise` and the time budget are a kUsage error.
 };
 

@@ -32,9 +32,9 @@ struct PassStatistics {
 class LightPasses {
  public:
   LightPasses(const LightPathTracer& tracer, const PathFollower& follower,
-              const std::vector<std::vector<PathPixel>>& pixels, GuideSet& guides)
+              const std::vector<std::vector<PathPixel>>& pixels, std::uint64_t seed, GuideSet& guides)
       : tracer_(tracer), follower_(follower), pixels_(pixels), guides_(guides),
-        layers_(follower.layers().size()), statistics_(pixels.size()) {}
+        seed_(seed), layers_(follower.layers().size()), statistics_(pixels.size()) {}
 
   // Keeps what was sampled, so that a next pass can go on.
   void KeepSums() {
@@ -82,7 +82,7 @@ class LightPasses {
  private:
   void Shade(const PathPixel& pixel, int done, int wanted, PathSums& sums, PassStatistics& statistics) {
     const LightPathTracer::First first = tracer_.FirstVertex(pixel);
-    const Sampler sampler(pixel.index);
+    const Sampler sampler(pixel.index, 0, seed_);
     PathSums exact{};
     RayCounts exact_rays;
     tracer_.AddExact(first, exact, exact_rays);
@@ -114,6 +114,7 @@ class LightPasses {
   const PathFollower& follower_;
   const std::vector<std::vector<PathPixel>>& pixels_;
   GuideSet& guides_;
+  const std::uint64_t seed_;
   const std::size_t layers_;
   std::vector<std::vector<glm::dvec3>> kept_;  // by list; of each pixel its layers' sums
   std::vector<PassStatistics> statistics_;  // by list, so that sums do not depend on the order of work
@@ -141,7 +142,7 @@ int NextSamples(int done, double seconds, const GuidegenOptions& options) {
 LightPassResult TraceLightPaths(const LightPathTracer& tracer, const PathFollower& follower,
                                 const std::vector<std::vector<PathPixel>>& pixels, const GuidegenOptions& options,
                                 double progress_begin, GuideSet& guides) {
-  LightPasses passes(tracer, follower, pixels, guides);
+  LightPasses passes(tracer, follower, pixels, options.seed, guides);
   LightPassResult result;
   const bool open_ended = follower.NeedsSamples() && (options.noise > 0.0 || options.time_budget_seconds > 0.0);
   if (!open_ended) {

@@ -394,5 +394,32 @@ TEST_F(CliVerbs, ATimeBudgetSaysWhatRepeatsIt) {
   EXPECT_TRUE(Contains(none, "; free of noise, no samples\n")) << none;
 }
 
+TEST_F(CliVerbs, SeedsOfGuidesDecideAndRepeat) {
+  WriteText("glow.gltf", GlowGltf());
+  WriteText("glow.bin", GlowCorners());
+  const Arguments scene = {"glow.gltf", "--view", "60,10", "--size", "64"};
+  const auto guides = [&](const Arguments& more) {
+    const Arguments what = {"--layers", "luminance", "--compression", "none", "-o", "g.exr"};
+    RunOk(With(With(With({"guidegen"}, scene), what), more));
+    return Bytes("g.exr");
+  };
+  const std::string zero = guides({"--samples", "4"}), five = guides({"--samples", "4", "--seed", "5"});
+  EXPECT_EQ(guides({"--samples", "4", "--seed", "0"}), zero);
+  EXPECT_EQ(guides({"--samples", "4", "--seed", "5"}), five);
+  EXPECT_NE(five, zero);
+  EXPECT_EQ(RunOk({"info", "g.exr", "--json"}).Json()["scumble:seed"], "5");
+  ExpectError(With({"guidegen"}, {"glow.gltf", "--seed", "-1", "-o", "g.exr"}), 2, {"--seed: -1 is negative"});
+  // One number feeds both steps of stylize.
+  WritePainted("style/lit.png", 64, 64);
+  WriteText("style/style.toml",
+            "name = \"test\"\n[transfer]\nreference_height = 0\nlevels = 4\n[[exemplar]]\nimage = \"lit.png\"\n"
+            "luminance = 0.2\n[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.05\n");
+  const Arguments rest = {"--style", "style", "--seed", "5"};
+  RunOk(With(With(With({"stylize"}, scene), rest), {"-o", "once.png"}));
+  RunOk(With(With(With({"guidegen"}, scene), rest), {"-o", "g.exr"}));
+  RunOk(With(With({"transfer", "g.exr"}, rest), {"-o", "twice.png"}));
+  EXPECT_EQ(Bytes("once.png"), Bytes("twice.png"));
+}
+
 }  // namespace
 }  // namespace scumble

@@ -118,6 +118,36 @@ TEST(LightPaths, TracedUntilTheErrorIsBelowTheLimit) {
   EXPECT_EQ(Values(adaptive), Values(repeated));
 }
 
+TEST(LightPaths, AnotherSeedGivesOtherNoiseOfTheEstimatedSize) {
+  double last = 0.0;
+  for (const int samples : {16, 256}) {
+    GuidegenOptions options = Paths(32, {Layer::kLpeFull});
+    options.noise = 1e-9;
+    options.max_samples = samples;
+    const auto zero = Render(Room(), kRoomCamera, options);
+    EXPECT_EQ(zero.guides.attributes.count("scumble:seed"), 0u);
+    options.seed = 7;
+    const auto one = Render(Room(), kRoomCamera, options);
+    EXPECT_EQ(one.guides.attributes.at("scumble:seed"), "7");
+    options.seed = std::uint64_t(7) << 40;
+    const auto two = Render(Room(), kRoomCamera, options);
+    EXPECT_NE(Values(zero), Values(one));
+    EXPECT_NE(Values(one), Values(two));
+    EXPECT_EQ(Values(one), Values(Render(Room(), kRoomCamera, [&] { options.seed = 7; return options; }())));
+    // The difference of two pictures has the error of both.
+    const double mean = Mean(zero, Layer::kLpeFull);
+    const double error = RootMeanSquare(one, two, Layer::kLpeFull) / std::sqrt(2.0) / mean;
+    EXPECT_NEAR(error / one.noise, 1.0, 0.3) << samples;
+    EXPECT_NEAR(Mean(one, Layer::kLpeFull) / mean, 1.0, 4.0 * one.noise / 32.0);
+    if (last > 0.0) EXPECT_LT(error, last / 3.5);
+    last = error;
+  }
+  GuidegenOptions soft = Paths(16, {Layer::kLuminance}, 4);
+  const auto zero = Render(Room(), kRoomCamera, soft);
+  soft.seed = 7;
+  EXPECT_NE(Values(zero), Values(Render(Room(), kRoomCamera, soft)));
+}
+
 TEST(LightPaths, ATimeBudgetSaysWhatRepeatsIt) {
   GuidegenOptions options = Paths(16, {Layer::kLpeFull});
   options.time_budget_seconds = 0.2;
