@@ -4,6 +4,8 @@ import math
 
 from export_materials import constant, previous
 
+MOST_BOUNCES = 1024  # of a lamp: Cycles' default, which limits nothing
+
 
 def emission_of(lamp, complain):
     """Colour and strength that a lamp's nodes multiply into it; ones where it has none."""
@@ -60,6 +62,11 @@ def describe_lamp(placed, unsupported):
             extras["energy"] = 0.0
     if not lamp.cycles.cast_shadow:
         complain("casts no shadows, which is ignored")
+    for kind in ("diffuse", "glossy"):
+        if not getattr(placed.source, "visible_" + kind):
+            complain(f"does not shine on {kind} surfaces, which is ignored")
+    if lamp.cycles.max_bounces < MOST_BOUNCES:
+        complain(f"its light ends after {lamp.cycles.max_bounces} bounces, which is ignored")
     return extras
 
 
@@ -77,8 +84,12 @@ def describe_camera(placed, scene):
 def world_radiance(scene, unsupported):
     """Colour times strength of the world's background."""
     world = scene.world
-    if world is None:
+    layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+    if world is None or not layer.use_sky:
         return [0.0, 0.0, 0.0]
+    for kind in ("diffuse", "glossy"):
+        if not getattr(world.cycles_visibility, kind):
+            unsupported.add(f"world '{world.name}': does not shine on {kind} surfaces, which is ignored")
     if not world.use_nodes or not world.node_tree:
         return list(world.color)
     output = world.node_tree.get_output_node("CYCLES")

@@ -125,6 +125,8 @@ def set_up_cycles(scene):
     cycles.seed, cycles.use_animated_seed, cycles.sample_offset = 0, False, 0
     cycles.use_adaptive_sampling = cycles.use_denoising = cycles.use_fast_gi = cycles.use_guiding = False
     cycles.time_limit = 0.0
+    cycles.sampling_pattern = "PROGRESSIVE_MULTI_JITTER"
+    cycles.scrambling_distance, cycles.auto_scrambling_distance = 1.0, False  # pixels' noise must not hang together
     cycles.use_layer_samples = "IGNORE"
     cycles.direct_light_sampling_type = "MULTIPLE_IMPORTANCE_SAMPLING"
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.light_sampling_threshold = 0.0

@@ -29,6 +29,9 @@ struct GuidegenVerb {
   SequenceOptions sequence;
 };
 
+// Whether the noise or the clock says how many samples are taken.
+bool IsOpenEnded(const SceneOptions& scene) { return scene.noise > 0.0 || scene.time_budget_seconds > 0.0; }
+
 // `guides` apart from the rest, so that nobody copies them.
 FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const GuideSet& guides,
                      const SceneGuides& made) {
@@ -43,7 +46,7 @@ FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const 
                     {"coverage", made.rays.coverage},
                     {"shadow", made.rays.shadow},
                     {"bounce", made.rays.bounce}};
-    if (made.samples > 0) json["samples"] = made.samples;
+    if (made.samples > 0 || IsOpenEnded(verb.scene)) json["samples"] = made.samples;
     if (made.noise > 0.0) json["noise"] = made.noise;
   }
   if (!made.plan.empty()) json["plan"] = PlanToJson(made.plan);
@@ -54,7 +57,10 @@ FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const 
   std::string steps;
   for (const auto& [name, ms] : made.times) steps += fmt::format("{}{} {:.1f}", steps.empty() ? "" : ", ", name, ms);
   std::string samples;
-  if (made.noise > 0.0) samples = fmt::format("; noise {:.3g}, repeat with --samples {}", made.noise, made.samples);
+  if (made.noise > 0.0) samples = fmt::format("; noise {:.3g}", made.noise);
+  if (IsOpenEnded(verb.scene)) {
+    samples += made.samples > 0 ? fmt::format("; repeat with --samples {}", made.samples) : "; free of noise, no samples";
+  }
   report.text += fmt::format("{}  {}; {} ms{}\n", output, guides.layers().ToString(), steps, samples);
   return report;
 }

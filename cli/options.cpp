@@ -109,19 +109,26 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
 }
 
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("--samples", options.samples, "paths a pixel, for lpe.* layers and under lights with extent")
+  verb.add_option("--seed", options.seed, "another seed, other noise of the same size; the same seed, the same bytes")
+      ->type_name("N")
+      ->check(RefuseNegative)
+      ->capture_default_str();
+  verb.add_option("--samples", options.samples,
+                  "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most "
+                  "there may be")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxSamples))
+      ->each([&options](const std::string&) { options.samples_given = true; })
       ->capture_default_str();
   verb.add_option("--max-bounces", options.max_bounces, "reflections after the first surface's; 0: direct light alone")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxBounces))
       ->capture_default_str();
-  verb.add_option("--noise", options.noise, "sample lpe.* layers until the estimated error, RMS over mean, is below this")
+  verb.add_option("--noise", options.noise, "sample lpe.* layers, 16 times or more, until the estimated error, RMS over mean, is below this")
       ->type_name("X")
       ->check(CLI::PositiveNumber);
   verb.add_option("--time-budget", options.time_budget_seconds,
-                  "sample lpe.* layers for about so many seconds; the samples that repeat it are printed")
+                  "sample lpe.* layers for so many seconds, once at least; the samples that repeat it are printed")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
 }
@@ -196,7 +203,9 @@ Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneOptions& options, co
   guidegen.samples = options.samples;
   guidegen.max_bounces = options.max_bounces;
   guidegen.noise = options.noise;
+  guidegen.seed = options.seed;
   guidegen.time_budget_seconds = options.time_budget_seconds;
+  if (options.samples_given) guidegen.max_samples = options.samples;
   result.plan = PlanGuides(scene, guidegen);
   if (plan_only) return result;
 

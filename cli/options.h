@@ -51,9 +51,11 @@ struct SceneOptions {
   BlenderOptions blender;  // for .blend scenes
   // Light-path layers, as in GuidegenOptions.
   int samples = GuidegenOptions().samples;
+  bool samples_given = false;  // then they are the most that noise or a time budget may take
   int max_bounces = GuidegenOptions().max_bounces;
   double noise = 0.0;
   double time_budget_seconds = 0.0;
+  std::uint64_t seed = 0;
   bool key_light = true;  // let one shine where the file has no light and a layer needs some
 };
 // For guides with light paths, which no style reads.

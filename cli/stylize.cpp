@@ -164,7 +164,9 @@ struct StylizeVerb {
 Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequence, StyleSet& styles,
                                    const LayerSet& required, const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
-  SceneFrames scene(verb.scene, required, globals);
+  SceneOptions options = verb.scene;
+  options.seed = verb.picture.seed;
+  SceneFrames scene(options, required, globals);
   PictureSequence pictures(styles, verb.picture, globals);
   const auto source = [&](const SceneGuides& made) -> FrameGuides {
     GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>()};
@@ -210,6 +212,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
   scene.blender.frame = verb.picture.frame;
+  scene.seed = verb.picture.seed;
   SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(scene, required, globals, bar.Part(0.0, 0.5), false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});

@@ -92,6 +92,7 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   result.guides.attributes["scumble:generator"] = "guidegen " SCUMBLE_VERSION;
   result.guides.attributes["scumble:isa"] = scene.isa();
   if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);
+  if (options.seed != 0) result.guides.attributes["scumble:seed"] = std::to_string(options.seed);
   result.guides.attributes["scumble:normal_frame"] = options.normal_frame == NormalFrame::kEye ? "eye" : "camera";
   return result;
 }
@@ -102,6 +103,9 @@ Status CheckSampling(const GuidegenOptions& options) {
   };
   if (options.samples < 1 || options.samples > kMaxSamples) {
     return refuse("samples " + std::to_string(options.samples), "1 to " + std::to_string(kMaxSamples));
+  }
+  if (options.max_samples < 1 || options.max_samples > kMaxSamples) {
+    return refuse("max_samples " + std::to_string(options.max_samples), "1 to " + std::to_string(kMaxSamples));
   }
   if (options.max_bounces < 0 || options.max_bounces > kMaxBounces) {
     return refuse("max_bounces " + std::to_string(options.max_bounces), "0 to " + std::to_string(kMaxBounces));

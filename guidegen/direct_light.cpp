@@ -11,9 +11,6 @@
 namespace scumble {
 namespace {
 
-// Corners are rounded to 2⁻²⁴ of their largest coordinate, and the intersection loses a few more bits.
-constexpr double kOffsetPerCoordinate = 0x1.0p-20;
-
 // Metres or radians below which a light has no extent: its radiance would leave a double's range.
 constexpr double kLeastExtent = 1e-9;
 
@@ -147,7 +144,7 @@ LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
 }
 
 glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {
-  return point.position + point.facing * (point.largest_coordinate * kOffsetPerCoordinate);
+  return point.position + point.facing * (point.largest_coordinate * kRoundingPerCoordinate);
 }
 
 }  // namespace scumble

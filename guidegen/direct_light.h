@@ -50,8 +50,13 @@ struct LightSample {
 // viewer's side of the geometric surface as well as of the shading normal. Finite as a float, too.
 LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point);
 
-// How far a shadow ray towards a lamp goes: just not to the lamp, where only the lamp itself would be.
+// How far a shadow ray goes: just not to the light, where only the light itself would be. Lamps have no body; that an
+// emissive mesh does not shade itself is ShadowTarget's to see to, whatever the rounding.
 inline constexpr double kShadowReach = 1.0 - 1e-5;
+
+// How far Embree's floats may be from a surface, for each metre of its largest coordinate: corners are rounded to 2⁻²⁴
+// of theirs, and the intersection loses a few more bits.
+inline constexpr double kRoundingPerCoordinate = 0x1.0p-20;
 
 // Where a shadow ray starts: off the surface, on the viewer's side, by more than Embree's floats can be wrong.
 glm::dvec3 ShadowRayOrigin(const SurfacePoint& point);

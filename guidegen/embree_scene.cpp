@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "guidegen/bsdf.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -62,11 +63,18 @@ std::string AvailableIsas() {
 
 void FilterHits(const RTCFilterFunctionNArguments* args) {
   const PlacedObject& object = *static_cast<const PlacedObject*>(args->geometryUserPtr);
-  const bool camera_rays = reinterpret_cast<const CastContext*>(args->context)->camera_rays;
-  const bool cull = camera_rays && !object.material->double_sided;
+  const CastContext& context = *reinterpret_cast<const CastContext*>(args->context);
+  const bool cull = context.camera_rays && !object.material->double_sided;
+  const bool may_be_target = context.target.object && MayEmit(*object.material);
   const unsigned count = args->N;
   for (unsigned i = 0; i < count; ++i) {
     if (args->valid[i] == 0) continue;
+    if (may_be_target &&
+        (RTCRayN_tfar(args->ray, count, i) >= context.target.near_end ||
+         (context.target.object == &object && RTCHitN_primID(args->hit, count, i) == context.target.primitive))) {
+      args->valid[i] = 0;
+      continue;
+    }
     if (cull) {
       const double along = double(RTCHitN_Ng_x(args->hit, count, i)) * RTCRayN_dir_x(args->ray, count, i) +
                            double(RTCHitN_Ng_y(args->hit, count, i)) * RTCRayN_dir_y(args->ray, count, i) +
@@ -102,7 +110,7 @@ RTCGeometry MakeMesh(RTCDevice device, const PlacedObject& object) {
   const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                              sizeof(glm::uvec3), triangles.size());
-  if (!object.material->double_sided || MayHaveHoles(*object.material)) {
+  if (!object.material->double_sided || MayHaveHoles(*object.material) || MayEmit(*object.material)) {
     rtcSetGeometryIntersectFilterFunction(geometry, FilterHits);
     rtcSetGeometryOccludedFilterFunction(geometry, FilterHits);
   }
@@ -118,6 +126,13 @@ RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
   for (int axis = 0; axis < 3; ++axis) sphere[axis] = centre[axis];
   sphere[3] = 1.0f;
   return geometry;
+}
+
+// Robust: no cracks between neighbours, and nothing thin is lost.
+RTCScene NewScene(RTCDevice device) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  return scene;
 }
 
 }  // namespace
@@ -149,9 +164,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
 }
 
 Status EmbreeScene::Commit() {
-  scene_.reset(rtcNewScene(device_.get()));
-  // Robust: no cracks between neighbours, and nothing thin is lost.
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  scene_.reset(NewScene(device_.get()));
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
     if (object.mesh && object.mesh->triangles.empty()) continue;
@@ -159,9 +172,14 @@ Status EmbreeScene::Commit() {
     rtcSetGeometryUserData(geometry, &object);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
+    if (object.mesh && MayEmit(*object.material)) {
+      if (!emitters_) emitters_.reset(NewScene(device_.get()));
+      rtcAttachGeometryByID(emitters_.get(), geometry, static_cast<unsigned>(i));
+    }
     rtcReleaseGeometry(geometry);
   }
   rtcCommitScene(scene_.get());
+  if (emitters_) rtcCommitScene(emitters_.get());
   const RTCError error = rtcGetDeviceError(device_.get());
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
     return InputError("the scene does not fit into memory: give it fewer triangles or instances");

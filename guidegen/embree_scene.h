@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,15 @@
 #include "image/status.h"
 
 namespace scumble {
+
+// The place on an emissive mesh that a shadow ray goes to. It does not shade itself: neither the triangle that was
+// aimed at counts, wherever Embree's floats put it, nor what shines so near the end that it may be the same place: the
+// next triangle, or the next piece of a light that was cut in pieces.
+struct ShadowTarget {
+  const PlacedObject* object = nullptr;
+  std::uint32_t primitive = 0;
+  float near_end = 1.0f;  // in lengths of the ray's direction
+};
 
 // What Embree hands to filter functions. Camera rays do not see the back of single-sided surfaces; shadow rays do,
 // because a wall keeps its shadow when it is cut away for the viewer.
@@ -21,6 +31,7 @@ struct CastContext {
   }
   RTCIntersectContext embree;  // first: Embree passes its address on
   bool camera_rays;
+  ShadowTarget target;
 };
 
 // Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.
@@ -33,6 +44,7 @@ class EmbreeScene {
   static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa);
 
   RTCScene handle() const { return scene_.get(); }
+  RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none do
   const std::string& isa() const { return isa_; }                         // what is in use, never empty
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 
@@ -53,6 +65,7 @@ class EmbreeScene {
   std::unique_ptr<std::vector<PlacedObject>> objects_;
   std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
   std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+  std::unique_ptr<RTCSceneTy, ReleaseScene> emitters_;
   std::string isa_;
 };
 

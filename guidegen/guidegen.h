@@ -1,6 +1,7 @@
 // Guides by ray casting: scene + camera + layers → GuideSet. The manual of this library.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,12 +38,16 @@ struct GuidegenOptions {
   int samples = 64;
   // Reflections after the first surface's, 0 … kMaxBounces; 0 is direct light alone, as in Cycles.
   int max_bounces = 8;
-  // Light-path layers only. Above 0: samples are doubled until the estimated error, root mean square over mean, of each
-  // layer's luminance is not larger than this; `samples` does not count then.
+  // Light-path layers only. Above 0: samples are doubled, to 16 at least, until the estimated error, root mean square
+  // over mean, of each layer's luminance is not larger than this; `samples` does not count then.
   double noise = 0.0;
-  // Light-path layers only. Above 0: samples are taken until about this time is over, or `noise` is reached. The clock
+  // Light-path layers only. Above 0: samples are taken until this time is over, or `noise` is reached. One sample is the
+  // least there is, however long it takes; no pass is begun that would last longer at the speed so far. The clock
   // decides, so the picture may differ from run to run; GuidegenResult::samples repeats it.
   double time_budget_seconds = 0.0;
+  int max_samples = kMaxSamples;  // that `noise` and the time budget may take, 1 … kMaxSamples
+  std::uint64_t seed = 0;         // another one, other noise of the same size; in attributes["scumble:seed"] unless 0
+  // Luminance and shadow always take `samples`: where they need any, `noise` and the time budget are a kUsage error.
 };
 
 // One line of the plan: what is computed, why, and what it costs.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "guidegen/bsdf.h"
 #include "guidegen/progress_gate.h"
@@ -13,7 +14,8 @@
 namespace scumble {
 namespace {
 
-constexpr int kFirstSamples = 8;
+// Before so many samples an estimated error is chance itself, and does not end the sampling.
+constexpr int kLeastSamplesForNoise = 16;
 
 void AddRays(const RayCounts& from, RayCounts& to) {
   to.shadow += from.shadow;
@@ -30,13 +32,14 @@ struct PassStatistics {
 class LightPasses {
  public:
   LightPasses(const LightPathTracer& tracer, const PathFollower& follower,
-              const std::vector<std::vector<PathPixel>>& pixels, GuideSet& guides)
-      : tracer_(tracer), follower_(follower), pixels_(pixels), guides_(guides), statistics_(pixels.size()) {}
+              const std::vector<std::vector<PathPixel>>& pixels, std::uint64_t seed, GuideSet& guides)
+      : tracer_(tracer), follower_(follower), pixels_(pixels), guides_(guides),
+        seed_(seed), layers_(follower.layers().size()), statistics_(pixels.size()) {}
 
   // Keeps what was sampled, so that a next pass can go on.
   void KeepSums() {
     kept_.resize(pixels_.size());
-    for (std::size_t i = 0; i < pixels_.size(); ++i) kept_[i].assign(pixels_[i].size(), PathSums{});
+    for (std::size_t i = 0; i < pixels_.size(); ++i) kept_[i].assign(pixels_[i].size() * layers_, glm::dvec3(0.0));
   }
 
   // Brings every pixel from `done` samples to `wanted`, and writes the layers. False where the caller asked to stop.
@@ -45,8 +48,11 @@ class LightPasses {
       if (gate.cancelled()) return;
       PassStatistics& statistics = statistics_[list] = {};
       for (std::size_t i = 0; i < pixels_[list].size(); ++i) {
-        PathSums fresh{};
-        Shade(pixels_[list][i], done, wanted, kept_.empty() ? fresh : kept_[list][i], statistics);
+        PathSums sums{};
+        const auto kept = kept_.empty() ? std::span<glm::dvec3>() : std::span(kept_[list]).subspan(i * layers_, layers_);
+        std::copy(kept.begin(), kept.end(), sums.begin());
+        Shade(pixels_[list][i], done, wanted, sums, statistics);
+        std::copy_n(sums.begin(), kept.size(), kept.begin());
       }
       gate.TileDone();
     });
@@ -76,7 +82,7 @@ class LightPasses {
  private:
   void Shade(const PathPixel& pixel, int done, int wanted, PathSums& sums, PassStatistics& statistics) {
     const LightPathTracer::First first = tracer_.FirstVertex(pixel);
-    const Sampler sampler(pixel.index);
+    const Sampler sampler(pixel.index, 0, seed_);
     PathSums exact{};
     RayCounts exact_rays;
     tracer_.AddExact(first, exact, exact_rays);
@@ -108,15 +114,22 @@ class LightPasses {
   const PathFollower& follower_;
   const std::vector<std::vector<PathPixel>>& pixels_;
   GuideSet& guides_;
-  std::vector<std::vector<PathSums>> kept_;
+  const std::uint64_t seed_;
+  const std::size_t layers_;
+  std::vector<std::vector<glm::dvec3>> kept_;  // by list; of each pixel its layers' sums
   std::vector<PassStatistics> statistics_;  // by list, so that sums do not depend on the order of work
   RayCounts rays_;
 };
 
 // How far the samples go next: doubled, or as many as the time allows at the speed so far. No further: `done`.
 int NextSamples(int done, double seconds, const GuidegenOptions& options) {
-  if (done == 0) return kFirstSamples;
-  int more = std::min(done, kMaxSamples - done);
+  // Nobody knows what a sample costs before there is one. Without a clock the first pass is half of the least that
+  // tells the error, or of all there may be.
+  if (done == 0) {
+    if (options.time_budget_seconds > 0.0) return 1;
+    return std::clamp(options.max_samples / 2, 1, kLeastSamplesForNoise / 2);
+  }
+  int more = std::min(done, options.max_samples - done);
   if (options.time_budget_seconds > 0.0) {
     const double left = options.time_budget_seconds - seconds;
     more = int(std::clamp(left / std::max(seconds, 1e-9) * done, 0.0, double(more)));
@@ -129,7 +142,7 @@ int NextSamples(int done, double seconds, const GuidegenOptions& options) {
 LightPassResult TraceLightPaths(const LightPathTracer& tracer, const PathFollower& follower,
                                 const std::vector<std::vector<PathPixel>>& pixels, const GuidegenOptions& options,
                                 double progress_begin, GuideSet& guides) {
-  LightPasses passes(tracer, follower, pixels, guides);
+  LightPasses passes(tracer, follower, pixels, options.seed, guides);
   LightPassResult result;
   const bool open_ended = follower.NeedsSamples() && (options.noise > 0.0 || options.time_budget_seconds > 0.0);
   if (!open_ended) {
@@ -153,7 +166,7 @@ LightPassResult TraceLightPaths(const LightPathTracer& tracer, const PathFollowe
     seconds += watch.Lap() * 1e-3;
     if (!told) continue;
     result.noise = passes.Noise();
-    if (options.noise > 0.0 && result.noise <= options.noise) break;
+    if (result.samples >= kLeastSamplesForNoise && options.noise > 0.0 && result.noise <= options.noise) break;
   }
   result.rays = passes.rays();
   return result;

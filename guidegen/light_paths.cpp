@@ -95,8 +95,7 @@ bool LightPathTracer::MayMeetLight(const Vertex& vertex, int lobe) const {
 
 bool LightPathTracer::IsBlocked(const Vertex& vertex, const LightDraw& draw, RayCounts& rays) const {
   ++rays.shadow;
-  return draw.endless ? scumble::IsBlocked(scene_, vertex.origin, draw.direction, kInfinity)
-                      : scumble::IsBlocked(scene_, vertex.origin, draw.target - vertex.origin, kShadowReach);
+  return scumble::IsBlocked(scene_, vertex.origin, draw);
 }
 
 // Next-event estimation. `probability` is that of the light's choice.

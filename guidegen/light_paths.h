@@ -6,8 +6,10 @@
 // else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few; everywhere
 // else one light is chosen.
 //
-// Nothing is clamped. One thing is changed for the sake of less noise, as Cycles does by default ("filter glossy"):
-// after a wide reflection, specular lobes are made rougher. What the eye sees first keeps its roughness.
+// No path's light is clamped. The result is biased all the same, as Cycles' is by default ("filter glossy" at 1): after a
+// wide reflection, specular lobes are made rougher. Caustics, light that a mirror or a smooth metal throws on a diffuse
+// surface, are blurred by it, and so is what a diffuse surface's light sees in them; no number of samples makes them
+// sharp. What the eye sees first keeps its roughness.
 #pragma once
 
 #include <array>

@@ -17,6 +17,10 @@ constexpr double kLeastSquare = 1e-30;
 // Irradiance beyond this does not fit a float once it is reflected, and could become infinite on its way.
 constexpr double kMostIrradiance = std::numeric_limits<float>::max();
 
+double LargestCoordinate(const glm::dvec3& p) {
+  return std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z)));
+}
+
 double AreaOf(const PlacedLight& lamp) {
   const double sides = glm::length(lamp.half_x) * glm::length(lamp.half_y);
   return lamp.ellipse ? kPi * sides : 4.0 * sides;
@@ -270,10 +274,16 @@ LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point,
   if (!(square > kLeastSquare)) return draw;
   draw.direction = way / std::sqrt(square);
   const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
-  draw.density = PerSolidAngle(area, square, std::abs(glm::dot(normal, draw.direction)));
+  const double cosine = std::abs(glm::dot(normal, draw.direction));
+  draw.density = PerSolidAngle(area, square, cosine);
   if (draw.density > 0.0 && !IsHole(object, primitive, barycentric)) {
     draw.radiance = SurfaceEmission(object, primitive, barycentric);
   }
+  draw.object = emitter.object;
+  draw.primitive = primitive;
+  double largest = LargestCoordinate(point);
+  for (const glm::dvec3& corner : triangle.corner) largest = std::max(largest, LargestCoordinate(corner));
+  draw.rounding = largest * kRoundingPerCoordinate / cosine;
   return draw;
 }
 

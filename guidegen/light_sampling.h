@@ -22,6 +22,12 @@ struct LightDraw {
   bool is_delta = false;
   glm::dvec3 radiance{0.0};  // of delta lights: the irradiance of a surface that faces them
   double density = 0.0;      // per solid angle, without the choice of the light; of no meaning for delta lights
+  // Of meshes that emit: the triangle that the target is on, and how far from it, in metres along the way, Embree's
+  // floats may find the mesh.
+  static constexpr std::uint32_t kNoObject = ~0u;
+  std::uint32_t object = kNoObject;
+  std::uint32_t primitive = 0;
+  double rounding = 0.0;
 };
 
 // The lights of a scene. Borrows the objects, which must outlive it. Immutable; free to use from any thread.
@@ -67,6 +73,15 @@ class LightSet {
       if (IsEmitter(light)) return;
       const LightDraw met = Meet(light, point, direction, length);
       if (met.density > 0.0) visit(light, met.radiance, met.density);
+    });
+  }
+
+  // Calls visit(emitter) for each mesh that emits and that the ray may meet; for others near its way, too.
+  template <class Visit>
+  void VisitEmitters(const glm::dvec3& point, const glm::dvec3& direction, const Visit& visit) const {
+    if (!has_emitters()) return;
+    tree_.VisitAlong(point, direction, [&](int light) {
+      if (IsEmitter(light)) visit(light);
     });
   }
 

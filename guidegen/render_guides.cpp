@@ -41,6 +41,15 @@ bool NeedsLight(const LayerSet& layers) {
   return false;
 }
 
+// Luminance and shadow are cast in one go with a fixed number of samples.
+Status CheckOpenEnd(const GuidegenOptions& options, const PathSupply& supply) {
+  const bool soft = supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
+  if (!soft || (options.noise <= 0.0 && options.time_budget_seconds <= 0.0)) return Ok();
+  return UsageError(std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
+                    " is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples: "
+                    "make these two in a run of their own with --samples");
+}
+
 Status CheckRadiance(const std::string& who, const glm::vec3& radiance) {
   for (int i = 0; i < 3; ++i) {
     if (radiance[i] >= 0.0f && std::isfinite(radiance[i])) continue;
@@ -92,6 +101,7 @@ Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, 
     SCUMBLE_RETURN_IF_ERROR(CheckEmission(scene));
     view.world_radiance = scene.world_radiance;
     view.supply = SupplyOf(scene);
+    SCUMBLE_RETURN_IF_ERROR(CheckOpenEnd(options, view.supply));
   }
   const std::vector<std::string> object_names = ObjectNames(scene);
   const std::vector<std::string> material_names = MaterialNames(scene);

@@ -92,7 +92,8 @@ std::uint32_t Sobol(std::uint32_t index, int dimension) {
   return ReverseBits(ReversedSobol(ReverseBits(index))[std::size_t(dimension)]);
 }
 
-Sampler::Sampler(std::uint32_t pixel, std::uint32_t seed) : key_(Hash(seed, pixel)) {}
+Sampler::Sampler(std::uint32_t pixel, std::uint32_t stream, std::uint64_t seed)
+    : key_(seed == 0 ? Hash(stream, pixel) : Hash(stream, pixel, seed)) {}
 
 Quad Sampler::Draw(std::uint32_t index, std::uint32_t set) const {
   const std::uint64_t key = Mix64(key_ ^ Mix64(set));

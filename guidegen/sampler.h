@@ -13,10 +13,11 @@ namespace scumble {
 // Four numbers in [0, 1).
 using Quad = std::array<double, 4>;
 
-// The samples of one pixel. The same (seed, pixel, index, set) gives the same numbers on every machine.
+// The samples of one pixel. The same (seed, stream, pixel, index, set) gives the same numbers on every machine. Streams
+// are for purposes that must not share their numbers, seeds for whoever wants the same picture with other noise.
 class Sampler {
  public:
-  Sampler(std::uint32_t pixel, std::uint32_t seed = 0);
+  explicit Sampler(std::uint32_t pixel, std::uint32_t stream = 0, std::uint64_t seed = 0);
 
   Quad Draw(std::uint32_t index, std::uint32_t set) const;
 

@@ -1,5 +1,6 @@
 #include "guidegen/single_ray.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace scumble {
@@ -24,21 +25,42 @@ CastContext SingleRays() {
   return context;
 }
 
-}  // namespace
-
-bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& way, double length) {
+bool Occluded(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& way, double length,
+              const ShadowTarget& target) {
   CastContext context = SingleRays();
+  context.target = target;
   RTCRay ray = MakeRay(origin, way, length);
-  rtcOccluded1(scene.handle(), &context.embree, &ray);
+  rtcOccluded1(scene, &context.embree, &ray);
   return ray.tfar < 0.0f;
 }
 
-RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {
+RTCRayHit Cast(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direction) {
   CastContext context = SingleRays();
   RTCRayHit hit = {MakeRay(origin, direction, std::numeric_limits<double>::infinity()), {}};
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene.handle(), &context.embree, &hit);
+  if (scene) rtcIntersect1(scene, &context.embree, &hit);
   return hit;
+}
+
+}  // namespace
+
+bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw, Blockers blockers) {
+  const RTCScene among = blockers == Blockers::kAll ? scene.handle() : scene.emitters();
+  if (!among) return false;
+  if (draw.endless) return Occluded(among, origin, draw.direction, std::numeric_limits<double>::infinity(), {});
+  const glm::dvec3 way = draw.target - origin;
+  if (draw.object == LightDraw::kNoObject) return Occluded(among, origin, way, kShadowReach, {});
+  const double near_end = std::clamp(1.0 - draw.rounding / glm::length(way), 0.0, kShadowReach);
+  return Occluded(among, origin, way, kShadowReach,
+                  {&scene.objects()[draw.object], draw.primitive, float(near_end)});
+}
+
+RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {
+  return Cast(scene.handle(), origin, direction);
+}
+
+RTCRayHit CastAmongEmitters(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {
+  return Cast(scene.emitters(), origin, direction);
 }
 
 }  // namespace scumble

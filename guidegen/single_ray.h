@@ -5,13 +5,19 @@
 #include <glm/glm.hpp>
 
 #include "guidegen/embree_scene.h"
+#include "guidegen/light_sampling.h"
 
 namespace scumble {
 
-// Whether anything lies within `length` lengths of `way`.
-bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& way, double length);
+// Whether anything lies between a surface and the light that was drawn from it. With kEmitters nothing but meshes that
+// emit can be in the way.
+enum class Blockers { kAll, kEmitters };
+bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw,
+               Blockers blockers = Blockers::kAll);
 
 // The nearest hit in a direction; its geomID is RTC_INVALID_GEOMETRY_ID where there is none.
 RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction);
+// The same with nothing but the meshes that emit.
+RTCRayHit CastAmongEmitters(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction);
 
 }  // namespace scumble

@@ -26,8 +26,14 @@ struct Sample {
   SoftLight& sum;
   RayCounts& rays;
 
-  // Whether directions look for a light, too. They never meet meshes here.
-  bool LooksFor(int light) const { return !lights.IsEmitter(light) && lights.IsWideFrom(point.position, light); }
+  // Whether directions look for a light, too.
+  bool LooksFor(int light) const { return lights.IsWideFrom(point.position, light); }
+
+  // What a direction brings of a light that drawing a point of it has `density` to find; the balance heuristic.
+  double Weighed(int light, const glm::dvec3& radiance, double density, double reflected) const {
+    const double chosen = lights.FewHaveExtent() ? 1.0 : lights.Probability(point, light, false);
+    return Brightness(radiance) * reflected / (reflected + density * chosen);
+  }
 
   // A point of a light that was chosen with a probability.
   void TakeLight(int light_number, double probability, double u, double v) {
@@ -38,11 +44,14 @@ struct Sample {
     const double other = LooksFor(light_number) ? reflected : 0.0;
     const double light = Brightness(draw.radiance) * reflected / (density + other);
     if (!(light > 0.0)) return;
-    sum.unoccluded += light;
     ++rays.shadow;
-    const bool blocked = draw.endless ? IsBlocked(scene, origin, draw.direction, kInfinity)
-                                      : IsBlocked(scene, origin, draw.target - origin, kShadowReach);
+    const bool blocked = IsBlocked(scene, origin, draw);
     if (!blocked) sum.reached += light;
+    if (blocked && lights.IsEmitter(light_number)) {
+      ++rays.shadow;
+      if (IsBlocked(scene, origin, draw, Blockers::kEmitters)) return;
+    }
+    sum.unoccluded += light;
   }
 
   // A point of each light that is no delta light where these are few, or else of one of them.
@@ -72,19 +81,36 @@ struct Sample {
     const auto met_before = [&](double length) {
       double light = std::isinf(length) ? Brightness(lights.world()) : 0.0;
       lights.VisitLamps(origin, direction, length, [&](int lamp, const glm::dvec3& radiance, double density) {
-        if (!LooksFor(lamp)) return;
-        const double chosen = lights.FewHaveExtent() ? 1.0 : lights.Probability(point, lamp, false);
-        const double other = density * chosen;
-        light += Brightness(radiance) * reflected / (reflected + other);
+        if (LooksFor(lamp)) light += Weighed(lamp, radiance, density, reflected);
       });
       return light;
     };
-    const double unoccluded = met_before(kInfinity);
+    bool near_emitter = false;
+    lights.VisitEmitters(origin, direction, [&](int light) { near_emitter = near_emitter || LooksFor(light); });
+    if (near_emitter) ++rays.shadow;
+    const double emitted = near_emitter ? Emitted(CastAmongEmitters(scene, origin, direction), direction, reflected) : 0.0;
+    const double unoccluded = met_before(kInfinity) + emitted;
     if (!(unoccluded > 0.0)) return;
     sum.unoccluded += unoccluded;
     ++rays.shadow;
     const RTCRayHit hit = CastSingleRay(scene, origin, direction);
-    sum.reached += hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? unoccluded : met_before(double(hit.ray.tfar));
+    if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+      sum.reached += met_before(kInfinity);
+    } else {
+      sum.reached += met_before(double(hit.ray.tfar)) + (emitted > 0.0 ? Emitted(hit, direction, reflected) : 0.0);
+    }
+  }
+
+  // Light of the mesh that a direction has met.
+  double Emitted(const RTCRayHit& hit, const glm::dvec3& direction, double reflected) const {
+    if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return 0.0;
+    const int light = lights.EmitterOf(hit.hit.geomID);
+    if (light < 0 || !LooksFor(light)) return 0.0;
+    const PlacedObject& object = scene.objects()[hit.hit.geomID];
+    const SurfacePoint met =
+        FindSurfacePoint(object, hit.hit.primID, {hit.hit.u, hit.hit.v}, {origin, direction});
+    const glm::dvec3 radiance = SurfaceEmission(object, hit.hit.primID, met.barycentric);
+    return Weighed(light, radiance, lights.EmitterDensity(light, point.position, met), reflected);
   }
 };
 
@@ -95,7 +121,7 @@ SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, cons
   SoftLight sum;
   Sample sample{scene, lights, point, ShadowRayOrigin(point), sum, rays};
   const bool by_light = lights.delta_count() < lights.count();
-  const bool by_direction = lights.has_world() || (lights.has_extended_lamps() && lights.AnyWideFrom(point.position));
+  const bool by_direction = lights.has_world() || lights.AnyWideFrom(point.position);
   for (int i = 0; i < samples; ++i) {
     if (by_light) sample.TakeLights(sampler, std::uint32_t(i));
     if (by_direction) sample.TakeDirection(sampler.Draw(std::uint32_t(i), 0));

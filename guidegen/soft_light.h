@@ -9,7 +9,8 @@
 
 namespace scumble {
 
-// Reflected luminance, irradiance/π, with and without what stands in the way.
+// Reflected luminance, irradiance/π, with and without what stands in the way. What shines does not count as standing in
+// the way of other shining meshes, nor the front of one as standing before its back: a ball of light casts no shadow.
 struct SoftLight {
   double reached = 0.0;
   double unoccluded = 0.0;

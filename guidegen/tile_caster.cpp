@@ -101,8 +101,8 @@ std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSe
   return scene.objects();
 }
 
-// The sampler's seed for luminance and shadow: not the light paths' own.
-constexpr std::uint32_t kSoftSeed = 1;
+// The sampler's stream for luminance and shadow: not the light paths' own.
+constexpr std::uint32_t kSoftStream = 1;
 
 }  // namespace
 
@@ -304,7 +304,7 @@ void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<Sur
     if (hits[pixel].object == kNothing) continue;
     const std::size_t index = Index(tile, pixel);
     if (lights_.CanBeMet()) {
-      const Sampler sampler(std::uint32_t(index), kSoftSeed);
+      const Sampler sampler(std::uint32_t(index), kSoftStream, options_.seed);
       const SoftLight soft = SampleSoftLight(scene_, lights_, points[pixel], sampler, options_.samples, counts);
       reached[pixel] += soft.reached;
       unoccluded[pixel] += soft.unoccluded;

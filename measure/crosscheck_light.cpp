@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 #include "image/color.h"
 #include "measure/crosscheck.h"
@@ -19,6 +20,7 @@ using internal::PutColor;
 constexpr Layer kLightLayers[] = {Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E, Layer::kLpeFull};
 constexpr double kNoiseFree = 1e-3;      // NRMSE below which a layer holds no noise worth a slope
 constexpr double kBaselineFloor = 0.01;  // percent
+constexpr double kTileLimit = 5.0;       // percent
 
 // A layer, or what is computed from several, in both sets.
 struct LightMeasure {
@@ -99,23 +101,95 @@ void ForgetRounding(const LightMeasure& measure, const CrosscheckLight& light, L
   sums.ours_zero = std::fabs(Total(sums.ours)) <= kRounding * full_ours;
 }
 
-CrosscheckFigure MeanFigure(const LightMeasure& measure, const LightSums& sums) {
+// What the noise adds to the square of each masked pixel's difference, by channel, in the mask's order. A pixel's mean of
+// N samples holds those of M samples before, so the two differ by noise alone, whose variance is σ²(1/M − 1/N); that of
+// the pixel itself is σ²/N. What both sides really disagree about does not change and drops out.
+std::vector<glm::dvec3> NoiseVariances(const LightMeasure& measure, const std::vector<CrosscheckLight>& light) {
+  std::vector<glm::dvec3> variances;
+  variances.reserve(measure.mask.size());
+  const CrosscheckLight& last = light.back();
+  const auto difference = [&](const CrosscheckLight& count, std::size_t i) {
+    return measure.value(count.ours, i) - measure.value(count.reference.guides, i);
+  };
+  if (light.size() > 1) {
+    const CrosscheckLight& before = light[light.size() - 2];
+    const double ratio = static_cast<double>(last.samples) / before.samples;
+    for (const std::size_t i : measure.mask) {
+      const glm::dvec3 change = difference(last, i) - difference(before, i);
+      variances.push_back(change * change / (ratio - 1.0));
+    }
+    return variances;
+  }
+  glm::dvec3 sum{0.0}, squares{0.0};
+  for (const std::size_t i : measure.mask) {
+    const glm::dvec3 d = difference(last, i);
+    sum += d, squares += d * d;
+  }
+  const double count = static_cast<double>(measure.mask.size());
+  variances.assign(measure.mask.size(), glm::max(squares / count - (sum / count) * (sum / count), 0.0));
+  return variances;
+}
+
+CrosscheckFigure MeanFigure(const LightMeasure& measure, const LightSums& sums,
+                            const std::vector<glm::dvec3>& variances) {
   CrosscheckFigure figure{measure.name, "mean difference", "%", 0.0, measure.limit, 0.0, kBaselineFloor};
   if (measure.mask.empty() || (sums.reference_zero && sums.ours_zero)) {
     figure.note = measure.mask.empty() ? "every surface shines by itself" : "no such light";
     return figure;
   }
-  if (sums.reference_zero || sums.ours_zero) {
+  const double total = Total(sums.reference);
+  if (sums.reference_zero || sums.ours_zero || total <= 0.0) {
     figure.value = std::numeric_limits<double>::infinity();
     figure.note = sums.ours_zero ? "zero in ours, not in the reference" : "zero in the reference, not in ours";
     return figure;
   }
-  const double count = static_cast<double>(measure.mask.size()), total = Total(sums.reference);
-  const glm::dvec3 variance =
-      glm::max(sums.difference_squared / count - (sums.difference / count) * (sums.difference / count), 0.0);
+  glm::dvec3 variance{0.0};
+  for (const glm::dvec3& one : variances) variance += one;
   figure.value = 100.0 * Total(glm::abs(sums.difference)) / total;
-  // The mean's error is σ/√n; the total is n means.
-  figure.error = 100.0 * Total(glm::sqrt(variance / count)) * count / total;
+  figure.error = 100.0 * Total(glm::sqrt(variance)) / total;
+  return figure;
+}
+
+// Light in the wrong place: what is left of the differences of tiles' means when the noise's share is taken off.
+CrosscheckFigure TileFigure(const LightMeasure& measure, const LightSums& sums, const CrosscheckLight& light,
+                            const std::vector<glm::dvec3>& variances) {
+  constexpr int kTile = 8;
+  struct Tile {
+    glm::dvec3 difference{0.0}, variance{0.0};
+    double pixels = 0;
+  };
+  const int width = light.ours.width(), columns = (width + kTile - 1) / kTile;
+  std::map<int, Tile> tiles;
+  for (std::size_t m = 0; m < measure.mask.size(); ++m) {
+    const int x = static_cast<int>(measure.mask[m]) % width, y = static_cast<int>(measure.mask[m]) / width;
+    Tile& tile = tiles[y / kTile * columns + x / kTile];
+    const std::size_t i = measure.mask[m];
+    tile.difference += measure.value(light.ours, i) - measure.value(light.reference.guides, i);
+    tile.variance += variances[m];
+    tile.pixels += 1.0;
+  }
+  // Σ weight · (mean² − noise) over Σ weight, weight the tile's pixels; and the error of that mean from its spread.
+  const double all = static_cast<double>(measure.mask.size());
+  double sum = 0.0;
+  for (const auto& [index, tile] : tiles) {
+    sum += Total(tile.difference * tile.difference - tile.variance) / tile.pixels;
+  }
+  const double mean = sum / all;
+  double spread = 0.0;
+  for (const auto& [index, tile] : tiles) {
+    const double off = Total(tile.difference * tile.difference - tile.variance) / tile.pixels - mean * tile.pixels;
+    spread += off * off;
+  }
+  const double error = std::sqrt(spread) / all;
+  const double scale = 100.0 / (Total(sums.reference) / all / std::sqrt(3.0));
+  CrosscheckFigure figure{measure.name, "8x8 tiles", "%", 0.0, kTileLimit, 0.0, kBaselineFloor};
+  figure.must_prove = false;
+  figure.value = scale * std::sqrt(std::max(mean, 0.0));
+  // Twice the figure's error reaches from it to the root of the least that the square may be; where that is below 0, or
+  // the noise hides everything, to the most.
+  const double least = scale * std::sqrt(std::max(mean - 2.0 * error, 0.0));
+  figure.error = 0.5 * (mean > 0.0 ? figure.value - least : scale * std::sqrt(2.0 * error));
+  if (std::isnan(mean)) figure.value = mean;
   return figure;
 }
 
@@ -259,7 +333,9 @@ Status CrosscheckLightLayers(const GuideSet& reference, const GuideSet& ours, co
   for (const LightMeasure& measure : LightMeasures(mask, last, there)) {
     LightSums sums = SumUp(measure, last);
     ForgetRounding(measure, last, sums);
-    report.figures.push_back(MeanFigure(measure, sums));
+    const std::vector<glm::dvec3> variances = NoiseVariances(measure, light);
+    const CrosscheckFigure mean = MeanFigure(measure, sums, variances);
+    report.figures.push_back(mean);
     if (measure.mask.empty()) continue;
     if (sums.reference_zero && sums.ours_zero) {
       CrosscheckNoise none;
@@ -267,6 +343,7 @@ Status CrosscheckLightLayers(const GuideSet& reference, const GuideSet& ours, co
       report.noise.push_back(std::move(none));
       continue;
     }
+    if (!std::isinf(mean.value)) report.figures.push_back(TileFigure(measure, sums, last, variances));
     report.noise.push_back(NoiseOf(measure, light));
     if (options.make_pictures) report.pictures.push_back(LightPictures(measure, reference, last));
   }

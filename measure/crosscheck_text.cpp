@@ -25,14 +25,9 @@ std::string SetupText(const CrosscheckSetup& setup) {
   return text;
 }
 
-// Beyond the limit by more than chance explains.
-bool IsBroken(const CrosscheckFigure& figure) {
-  return !(figure.value - (figure.TooNoisy() ? 2.0 * figure.error : 0.0) <= figure.LimitInForce());
-}
-
 std::string State(const CrosscheckFigure& figure) {
   if (figure.kept()) return "kept";
-  return IsBroken(figure) ? "BROKEN" : "TOO NOISY";
+  return figure.Broken() ? "BROKEN" : "TOO NOISY";
 }
 
 std::string FigureLine(const CrosscheckFigure& figure) {
@@ -98,6 +93,7 @@ Json ReportJson(const CrosscheckReport& report) {
             {"height", report.setup.height},
             {"samples", report.setup.samples},
             {"max_bounces", report.setup.max_bounces},
+            {"covered", report.covered},
             {"compared", report.compared},
             {"glossy", report.glossy},
             {"passed", report.passed()}};
@@ -119,6 +115,9 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
   std::vector<std::string> reasons;
   if (report.compared == 0) {
     reasons.push_back("nothing to compare: no object is wide enough, or the pictures do not agree at all");
+  } else if (report.compared < kLeastCompared) {
+    reasons.push_back(fmt::format("only {} pixels to compare, at least {} are needed: raise --size", report.compared,
+                                  kLeastCompared));
   }
   for (const std::string& layer : report.skipped) reasons.push_back(layer + ": one of the two sides lacks it");
   for (const CrosscheckFigure& figure : report.figures) {
@@ -127,12 +126,10 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
     const std::string limit = fmt::format("the {}limit of {:.3g} {}", figure.TightenedByBaseline() ? "baseline's " : "",
                                           figure.LimitInForce(), figure.unit);
     if (figure.TooNoisy()) {
-      reasons.push_back(
-          fmt::format("{}: twice its standard error, {:.3g}, is above {}, so the figure proves nothing: raise "
-                      "--samples",
-                      what, 2.0 * figure.error, limit));
+      reasons.push_back(fmt::format("{}: {:.3g} give or take {:.3g} does not show whether {} is kept: raise --samples", what,
+                                    figure.value, 2.0 * figure.error, limit));
     }
-    if (IsBroken(figure)) {
+    if (figure.Broken()) {
       reasons.push_back(fmt::format("{}: {:.3g} is above {}", what, figure.value, limit) +
                         (figure.note.empty() ? "" : ", " + figure.note));
     }
@@ -143,12 +140,14 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
 
 std::string CrosscheckVerdict(const CrosscheckReport& report) {
   const std::string verdict = report.passed() ? "agrees" : "DIFFERS";
-  return report.setup.samples > 0 ? verdict : verdict + ", data layers alone: light was not compared (--samples 0)";
+  if (report.setup.samples == 0) return verdict + ", data layers alone: light was not compared (--samples 0)";
+  return report.setup.max_bounces > 0 ? verdict : verdict + ", direct light alone (--max-bounces 0)";
 }
 
 std::string CrosscheckToText(const CrosscheckReport& report) {
   std::string text =
-      fmt::format("{}  {}, {} pixels compared\n", report.scene, SetupText(report.setup), report.compared);
+      fmt::format("{}  {}, {} of {} covered pixels compared\n", report.scene, SetupText(report.setup),
+                  report.compared, report.covered);
   for (const CrosscheckFigure& figure : report.figures) text += FigureLine(figure);
   text += NoiseText(report.noise);
   if (!report.warnings.empty()) text += "  not compared as authored:\n";

@@ -145,8 +145,11 @@ TEST(BlenderLamps, AreasOfEveryShape) {
 TEST(BlenderLamps, TheWorldAndWhatIsLeftOut) {
   const Scene scene = Loaded("lamps");
   ExpectColor(scene.world_radiance, {0.5f, 1.0f, 2.0f}, "world");
-  EXPECT_EQ(scene.lights.size(), 11u) << "all but the hidden one";
-  EXPECT_THAT(scene.warnings, testing::ElementsAre(AllOf(HasSubstr("OddPoint"), HasSubstr("TEX_NOISE"))));
+  EXPECT_EQ(scene.lights.size(), 12u) << "all but the hidden one";
+  EXPECT_THAT(scene.warnings, testing::UnorderedElementsAre(AllOf(HasSubstr("OddPoint"), HasSubstr("TEX_NOISE")),
+                                                            AllOf(HasSubstr("'Shy'"), HasSubstr("glossy surfaces")),
+                                                            AllOf(HasSubstr("'Shy'"), HasSubstr("after 0 bounces")),
+                                                            AllOf(HasSubstr("'World'"), HasSubstr("diffuse surfaces"))));
 }
 
 TEST(BlenderMaterials, PureShaders) {

@@ -356,5 +356,70 @@ TEST_F(CliVerbs, StyleCheckWarnsOfFlatAndHoledPaint) {
   EXPECT_TRUE(Contains(RunOk({"styles", "check", "holed.png"}).Warning(), "is transparent"));
 }
 
+// A dark triangle and, a metre before it, one that shines on it.
+std::string GlowGltf() {
+  return R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}],
+      "buffers": [{"byteLength": 36, "uri": "glow.bin"}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "materials": [{"doubleSided": true, "emissiveFactor": [1, 1, 1]}, {"doubleSided": true}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]},
+                 {"primitives": [{"attributes": {"POSITION": 0}, "material": 1}]}],
+      "nodes": [{"name": "glow", "mesh": 0, "translation": [0, 0, 1]}, {"name": "dark", "mesh": 1}]})";
+}
+
+std::string GlowCorners() {
+  const float corners[] = {0, 0, 0, 2, 0, 0, 0, 2, 0};
+  return std::string(reinterpret_cast<const char*>(corners), sizeof(corners));
+}
+
+TEST_F(CliVerbs, ATimeBudgetSaysWhatRepeatsIt) {
+  WriteText("glow.gltf", GlowGltf());
+  WriteText("glow.bin", GlowCorners());
+  const Arguments guidegen = {"guidegen", "glow.gltf", "--view", "60,10", "--size", "16", "-o", "g.exr"};
+  const Arguments hasty = With(guidegen, {"--layers", "lpe.full", "--time-budget", "1e-9"});
+  EXPECT_TRUE(Contains(RunOk(hasty).out, "; repeat with --samples 1\n"));
+  EXPECT_EQ(RunOk(With(hasty, {"--json"})).Json()["samples"], 1);
+  const std::string noisy = RunOk(With(guidegen, {"--layers", "lpe.full", "--noise", "10"})).out;
+  EXPECT_TRUE(Contains(noisy, "; noise 0.")) << noisy;
+  EXPECT_TRUE(Contains(noisy, "; repeat with --samples 16\n")) << noisy;
+  const std::string capped = RunOk(With(guidegen, {"--layers", "lpe.full", "--noise", "1e-6", "--samples", "4"})).out;
+  EXPECT_TRUE(Contains(capped, "; repeat with --samples 4\n")) << capped;
+  for (const char* option : {"--noise", "--time-budget"}) {
+    ExpectError(With(guidegen, {"--layers", "shadow", option, "1"}), 2,
+                {"is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples"});
+  }
+  const std::string exact = RunOk(With(guidegen, {"--layers", "lpe.LSE", "--max-bounces", "0", "--noise", "1"})).out;
+  EXPECT_TRUE(Contains(exact, "--samples")) << exact;
+  const std::string none = RunOk(With(guidegen, {"--noise", "1"})).out;
+  EXPECT_TRUE(Contains(none, "; free of noise, no samples\n")) << none;
+}
+
+TEST_F(CliVerbs, SeedsOfGuidesDecideAndRepeat) {
+  WriteText("glow.gltf", GlowGltf());
+  WriteText("glow.bin", GlowCorners());
+  const Arguments scene = {"glow.gltf", "--view", "60,10", "--size", "64"};
+  const auto guides = [&](const Arguments& more) {
+    const Arguments what = {"--layers", "luminance", "--compression", "none", "-o", "g.exr"};
+    RunOk(With(With(With({"guidegen"}, scene), what), more));
+    return Bytes("g.exr");
+  };
+  const std::string zero = guides({"--samples", "4"}), five = guides({"--samples", "4", "--seed", "5"});
+  EXPECT_EQ(guides({"--samples", "4", "--seed", "0"}), zero);
+  EXPECT_EQ(guides({"--samples", "4", "--seed", "5"}), five);
+  EXPECT_NE(five, zero);
+  EXPECT_EQ(RunOk({"info", "g.exr", "--json"}).Json()["scumble:seed"], "5");
+  ExpectError(With({"guidegen"}, {"glow.gltf", "--seed", "-1", "-o", "g.exr"}), 2, {"--seed: -1 is negative"});
+  // One number feeds both steps of stylize.
+  WritePainted("style/lit.png", 64, 64);
+  WriteText("style/style.toml",
+            "name = \"test\"\n[transfer]\nreference_height = 0\nlevels = 4\n[[exemplar]]\nimage = \"lit.png\"\n"
+            "luminance = 0.2\n[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.05\n");
+  const Arguments rest = {"--style", "style", "--seed", "5"};
+  RunOk(With(With(With({"stylize"}, scene), rest), {"-o", "once.png"}));
+  RunOk(With(With(With({"guidegen"}, scene), rest), {"-o", "g.exr"}));
+  RunOk(With(With({"transfer", "g.exr"}, rest), {"-o", "twice.png"}));
+  EXPECT_EQ(Bytes("once.png"), Bytes("twice.png"));
+}
+
 }  // namespace
 }  // namespace scumble

@@ -55,6 +55,7 @@ inline CrosscheckReport CheckLight(const std::vector<CrosscheckLight>& light,
                                    const CrosscheckOptions& options = {2, false}) {
   auto report = Crosscheck("scene", OneObject(), OneObject(), options);
   EXPECT_TRUE(report.ok());
+  report->setup.max_bounces = 8;
   const Status status = CrosscheckLightLayers(OneObject(), OneObject(), light, options, *report);
   EXPECT_TRUE(status.ok());
   return *report;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "image/hash.h"
 #include "measure/crosscheck_html.h"
 #include "tests/crosscheck_fixtures.h"
 
@@ -80,6 +81,63 @@ TEST(CrosscheckLight, AFigureThatIsTooNoisyProvesNothing) {
   EXPECT_TRUE(Says(WhyCrosscheckFails(report), "raise --samples"));
   EXPECT_NE(CrosscheckToText(report).find("TOO NOISY"), std::string::npos);
   EXPECT_NEAR(NoiseOf(report, "lpe.LDDE").nrmse.back(), 0.2 / 0.5, 1e-5);
+}
+
+TEST(CrosscheckLight, AFigureIsKeptOnlyIfItsErrorLeavesNoDoubt) {
+  CrosscheckFigure figure{"lpe.full", "mean difference", "%", 1.45, 1.5, 0.02, 0.0};
+  EXPECT_TRUE(figure.kept());
+  figure.error = 0.03;  // 1.51 is possible
+  EXPECT_FALSE(figure.kept());
+  EXPECT_TRUE(figure.TooNoisy());
+  EXPECT_FALSE(figure.Broken());
+  figure.value = 1.6, figure.error = 0.04;
+  EXPECT_TRUE(figure.Broken());
+  EXPECT_FALSE(figure.TooNoisy());
+  figure.must_prove = false, figure.error = 0.1;
+  EXPECT_TRUE(figure.kept()) << "1.4 is possible";
+  figure.value = std::nan("");
+  EXPECT_FALSE(figure.kept());
+}
+
+// A lamp on the other side: the left half is brighter by a fifth and the right one darker, at every sample count.
+TEST(CrosscheckLight, LightInTheWrongPlaceBreaksThoughTheMeanIsRight) {
+  std::vector<CrosscheckLight> light{EqualLight(16), EqualLight(64)};
+  for (CrosscheckLight& count : light) {
+    for (int y = 0; y < count.ours.height(); ++y) {
+      for (int x = 0; x < count.ours.width(); ++x) {
+        const float factor = 2 * x < count.ours.width() ? 1.2f : 0.8f;
+        for (int c = 0; c < 3; ++c) count.ours.Plane(Layer::kLpeLDE, c)[count.ours.Index(x, y)] *= factor;
+      }
+    }
+  }
+  const CrosscheckReport report = CheckLight(light);
+  EXPECT_TRUE(FigureOf(report, "lpe.LDE").kept()) << "the mean is right";
+  EXPECT_NEAR(FigureOf(report, "lpe.LDE").error, 0.0, 1e-9) << "nothing of it is noise";
+  EXPECT_TRUE(FigureOf(report, "lpe.LDE", "8x8 tiles").Broken());
+  EXPECT_FALSE(report.passed());
+}
+
+// Noise of the same size, of its own at every count, breaks nothing: it is told apart by what changes with the samples.
+TEST(CrosscheckLight, NoiseIsNotTakenForLightInTheWrongPlace) {
+  std::vector<CrosscheckLight> light{EqualLight(16), EqualLight(64)};
+  for (CrosscheckLight& count : light) {
+    for (std::size_t i = 0; i < count.ours.pixel_count(); ++i) {
+      const float noise = UnitFloat(Hash(i, count.samples)) - 0.5f;
+      for (int c = 0; c < 3; ++c) count.ours.Plane(Layer::kLpeLDE, c)[i] *= 1.0f + noise * 4.0f / std::sqrt(float(count.samples));
+    }
+  }
+  const CrosscheckReport report = CheckLight(light);
+  EXPECT_TRUE(FigureOf(report, "lpe.LDE", "8x8 tiles").kept());
+  EXPECT_LT(FigureOf(report, "lpe.LDE", "8x8 tiles").value, 5.0);
+  EXPECT_GT(FigureOf(report, "lpe.LDE").error, 0.1);
+}
+
+TEST(CrosscheckLight, AFewPixelsProveNothing) {
+  CrosscheckReport report = CheckLight({EqualLight(64)});
+  EXPECT_EQ(report.covered, 20u * 16u);
+  report.compared = 99;
+  EXPECT_FALSE(report.passed());
+  EXPECT_TRUE(Says(WhyCrosscheckFails(report), "raise --size"));
 }
 
 TEST(CrosscheckLight, LightOnOneSideAloneBreaks) {

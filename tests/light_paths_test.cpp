@@ -1,6 +1,7 @@
 // Light-path layers against light that is known: furnaces, form factors, exact lamps, integrals.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -162,6 +163,56 @@ TEST(DirectLight, EmissiveMeshesLightLikeLampsOfTheirShape) {
   const auto seen = Render(scene, LookingAt({0, -3, 3}, {0, 0, 1.5}, 1e-3), Paths(1, kAllPaths));
   EXPECT_EQ(Center(seen, Layer::kLpeFull), 2.0);
   EXPECT_EQ(Center(seen, Layer::kLpeLDE), 0.0);
+}
+
+// What white Lambert reflects of a polygon of radiance 1, all of it above the horizon: Lambert's sum over its edges.
+double PolygonLight(const std::vector<glm::dvec3>& corners, const glm::dvec3& point, const glm::dvec3& normal) {
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 a = glm::normalize(corners[i] - point);
+    const glm::dvec3 b = glm::normalize(corners[(i + 1) % corners.size()] - point);
+    const glm::dvec3 across = glm::cross(a, b);
+    sum += glm::normalize(across) * std::atan2(glm::length(across), glm::dot(a, b));
+  }
+  return std::abs(glm::dot(sum, normal)) / (2.0 * kPi);
+}
+
+// The farther the camera, the coarser Embree's floats: the panel must not be found before itself.
+TEST(DirectLight, EmissiveMeshesDoNotShadeThemselvesHoweverFarTheCamera) {
+  for (const double height : {0.05, 0.6}) {
+    // A strip that is tilted a little, so that its corners are rounded each by itself.
+    const std::vector<glm::dvec3> corners = {{-0.8, -0.503, height},
+                                             {0.8, -0.507, height + 0.011},
+                                             {0.8, -0.45, height + 0.013},
+                                             {-0.8, -0.45, height + 0.003}};
+    Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.8f), 2.0);
+    Material glow = Painted(Bsdf::kEmission, 1.0f);
+    glow.emission = glm::vec3(1.0f);
+    Mesh strip;
+    for (const glm::dvec3& corner : corners) strip.positions.push_back(corner);
+    strip.triangles = {{0, 1, 2}, {0, 2, 3}};
+    strip.material = AddMaterial(scene, glow);
+    AddObject(scene, "strip", strip, glm::dmat4(1.0));
+    for (const double distance : {5.0, 50.0, 500.0}) {
+      const double k = distance / 5.0;
+      const Camera camera =
+          LookingAt({1.3 * k, -4.0 * k, 3.1 * k}, {0, 0, 0}, glm::degrees(2.0 * std::atan(std::tan(0.15) / k)));
+      const auto result =
+          Render(scene, camera, Paths(24, {Layer::kLpeLDE, Layer::kLuminance, Layer::kShadow, Layer::kPosition}, 1024));
+      double light = 0.0, luminance = 0.0, expected = 0.0, worst_shadow = 0.0;
+      for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
+        const glm::dvec3 point = result.guides.Vec3(Layer::kPosition, i);
+        if (result.guides.Plane(Layer::kCoverage)[i] == 0.0f || point.z > 0.5 * height) continue;
+        expected += PolygonLight(corners, point, {0, 0, 1});
+        light += result.guides.Plane(Layer::kLpeLDE, 1)[i];
+        luminance += result.guides.Plane(Layer::kLuminance)[i];
+        worst_shadow = std::max(worst_shadow, double(result.guides.Plane(Layer::kShadow)[i]));
+      }
+      EXPECT_EQ(worst_shadow, 0.0) << height << " m, camera at " << distance << " m";
+      EXPECT_NEAR(light / (0.8 * expected), 1.0, 4e-3) << height << " m, camera at " << distance << " m";
+      EXPECT_NEAR(luminance / expected, 1.0, 4e-3) << height << " m, camera at " << distance << " m";
+    }
+  }
 }
 
 TEST(DirectLight, WorldUnderAnOverhang) {

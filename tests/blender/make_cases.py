@@ -85,8 +85,11 @@ def lamps():
     texture = body.node_tree.nodes.new("ShaderNodeTexNoise")
     body.node_tree.links.new(texture.outputs["Color"], node.inputs["Color"])
     lamp("HiddenPoint", "POINT", 10.0).hide_render = True
+    shy = lamp("Shy", "POINT", 10.0)
+    shy.visible_glossy, shy.data.cycles.max_bounces = False, 0
     world = bpy.data.worlds.new("World")
     bpy.context.scene.world = world
+    world.cycles_visibility.diffuse = False
     world.use_nodes = True
     background = world.node_tree.nodes["Background"]
     background.inputs["Color"].default_value = (0.25, 0.5, 1.0, 1.0)

@@ -212,7 +212,7 @@ LAMPS = {
     "area_disc": lambda: lamp("AREA", 400, HIGH, shape="DISK", size=1.2),
     "area_ellipse": lambda: lamp("AREA", 400, KEY, shape="ELLIPSE", size=1.8, size_y=0.7),
 }
-SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 32), "glossy": (glossy_set, ["LSE"], 64),
+SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 128), "glossy": (glossy_set, ["LSE"], 64),
             "textured": (textured_set, ["LDE", "LSE"], 64)}
 
 
@@ -314,14 +314,14 @@ def camera_scene(**settings):
 
 DIFFUSE_LAYERS = ["full", "LDE", "LDDE", "LD12E"]
 SCENES = {  # builder, layers, size, samples
-    "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 128),
-    "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 32),
+    "emissive": (emissive, DIFFUSE_LAYERS, LANDSCAPE, 256),
+    "world": (world_only, DIFFUSE_LAYERS, LANDSCAPE, 128),
     "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
-    "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 32),
-    "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 32),
+    "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),
+    "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 64),
     "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 64),
-    "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 32),
-    "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 32),
+    "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 64),
+    "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 64),
 }
 for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
     for way, pixels in (("landscape", LANDSCAPE), ("portrait", PORTRAIT)):
