@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/cache.h"
 #include "cli/json_text.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
@@ -169,9 +170,12 @@ Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const G
 }
 
 Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int height) {
+  FileCache cache = UserCache();
+  PrepareOptions options;
+  options.cache = &cache;
   std::vector<PreparedStyle> prepared;
   for (const Style& style : styles.styles) {
-    SCUMBLE_ASSIGN(PreparedStyle one, Prepare(style, height));
+    SCUMBLE_ASSIGN(PreparedStyle one, Prepare(style, height, options));
     prepared.push_back(std::move(one));
   }
   return prepared;
