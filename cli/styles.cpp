@@ -116,6 +116,7 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
   FileCache cache = UserCache();
   PrepareOptions options;
   options.cache = &cache;
+  options.threads = globals.threads;
   SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, 1080, options));
   const PreparedExemplar& exemplar = *prepared.exemplar;
   const PaintReport paint = LookAtPaint(exemplar, 0);

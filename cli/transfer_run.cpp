@@ -169,10 +169,11 @@ Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const G
   return stops;
 }
 
-Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int height) {
+Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int height, int threads) {
   FileCache cache = UserCache();
   PrepareOptions options;
   options.cache = &cache;
+  options.threads = threads;
   std::vector<PreparedStyle> prepared;
   for (const Style& style : styles.styles) {
     SCUMBLE_ASSIGN(PreparedStyle one, Prepare(style, height, options));
@@ -188,7 +189,7 @@ Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, c
   Stopwatch watch;
   SCUMBLE_ASSIGN(const std::optional<Picture> over, ReadOver(options, guides, source.name));
   if (over) times.emplace_back("over", watch.Lap());
-  SCUMBLE_ASSIGN(const std::vector<PreparedStyle> prepared, PrepareAll(styles, guides.height()));
+  SCUMBLE_ASSIGN(const std::vector<PreparedStyle> prepared, PrepareAll(styles, guides.height(), globals.threads));
   std::vector<const PreparedStyle*> pointers;
   for (const PreparedStyle& one : prepared) pointers.push_back(&one);
   StyleMap map;

@@ -72,7 +72,7 @@ struct Exemplar {
   Picture picture;
   std::optional<double> luminance;  // of the light it is painted for, 0 or more; none: the mean of the guides'
                                     // luminance layer, without one that of the paint
-  std::optional<GuideSet> guides;   // of what is painted, the picture's size; A and normal at least
+  std::optional<GuideSet> guides = {};  // of what is painted, the picture's size; A and normal at least
   bool is_sphere = true;            // the geometry is the sphere that fills the picture, whatever the guides say;
                                     // false needs guides
 };

@@ -1,3 +1,5 @@
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -162,9 +164,7 @@ Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& s
   return std::shared_ptr<const PreparedExemplar>(std::move(prepared));
 }
 
-}  // namespace
-
-Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options) {
+Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, const PrepareOptions& options) {
   const TransferSettings& settings = style.transfer;
   SCUMBLE_RETURN_IF_ERROR(CheckSettings(settings));
   if (options.table_resolution < 1 || options.table_resolution > kMaxTableResolution) {
@@ -191,6 +191,13 @@ Expected<PreparedStyle> Prepare(const Style& style, int output_height, const Pre
     prepared.paper.picture = ScaledPaper(*style.paper.picture, settings.reference_height, output_height);
   }
   return prepared;
+}
+
+}  // namespace
+
+Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options) {
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return PrepareInArena(style, output_height, options); });
 }
 
 std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,

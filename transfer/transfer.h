@@ -40,6 +40,7 @@ struct PreparedStyle {
 struct PrepareOptions {
   int table_resolution = LookUpTable::kResolution;  // cells a side of look-up tables, 1 … 16384
   TableCache* cache = nullptr;                      // where they are kept; null: nowhere
+  int threads = 0;                                  // 0: all
 };
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
