@@ -1,5 +1,5 @@
-// The user's cache folder: look-up tables of exemplars, kept between runs. Style folders may be read-only and shared, so
-// nothing is ever kept there.
+// The user's cache folder: look-up tables of exemplars, kept between runs. Style folders may be read-only and shared,
+// so nothing is ever kept there.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@ namespace scumble {
 // ignored, as its specification says.
 std::optional<std::filesystem::path> CacheFolder();
 
-// One file a key, written whole or not at all, with a checksum. A file that is missing, cut short or altered is as if it
-// were not there; a folder that cannot be written keeps nothing, and neither is an error. Beyond kMostFiles the oldest
-// files are removed.
+// One file a key, written whole or not at all, with a checksum. A file that is missing, cut short or altered is as if
+// it were not there; a folder that cannot be written keeps nothing, and neither is an error. Beyond kMostFiles the
+// oldest files are removed.
 class FileCache : public TableCache {
  public:
   static constexpr std::size_t kMostFiles = 256;

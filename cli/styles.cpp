@@ -50,8 +50,8 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
     text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, help);
   }
   text += fmt::format("{:<26} {:<12} {}\n", "exemplar.image", "", "picture of the painted sphere, required");
-  text +=
-      fmt::format("{:<26} {:<12} {}\n", "exemplar.guides", "\"\"", "guides of what is painted; empty: a sphere fills the square");
+  text += fmt::format("{:<26} {:<12} {}\n", "exemplar.guides", "\"\"",
+                      "guides of what is painted; empty: a sphere fills the square");
   text += fmt::format("{:<26} {:<12} {}\n", "exemplar.luminance", "", "of its light; left out: measured");
   Print(globals.json ? JsonText(json) : text);
   return ExitCode::kOk;
@@ -82,26 +82,29 @@ PaintReport LookAtPaint(const PreparedExemplar& exemplar, int index) {
 void WarnOfPaint(const std::string& name, bool is_sphere, const PaintReport& paint) {
   constexpr double kLeastRange = 25.0;
   if (paint.hole_percent > 0.0) {
-    Warn(fmt::format("{}: {:.2f}% of the {} is transparent and will be so in pictures; fill the holes if that is not wanted",
-                     name, paint.hole_percent, is_sphere ? "sphere" : "painting"));
+    Warn(fmt::format(
+        "{}: {:.2f}% of the {} is transparent and will be so in pictures; fill the holes if that is not wanted", name,
+        paint.hole_percent, is_sphere ? "sphere" : "painting"));
   }
   if (paint.range_percent < kLeastRange) {
     Warn(fmt::format(
-        "{}: light and dark differ by {:.0f}% only, shapes will look flat; paint lights lighter and shades darker", name,
-        paint.range_percent));
+        "{}: light and dark differ by {:.0f}% only, shapes will look flat; paint lights lighter and shades darker",
+        name, paint.range_percent));
   }
 }
 
 void WarnOfAmbiguity(const std::string& name, const AmbiguityReport& report) {
   constexpr double kLeastCovered = 50.0, kMostFlat = 50.0;
   if (report.flat_percent > kMostFlat) {
-    Warn(fmt::format("{}: {:.0f}% of the painting shows flat faces: {} of {} directions, the fullest on {} pixels; curved "
-                     "surfaces will be flat patches; use a rounded shape",
-                     name, report.flat_percent, report.cells_shown, report.cells, report.most_repeats));
+    Warn(fmt::format(
+        "{}: {:.0f}% of the painting shows flat faces: {} of {} directions, the fullest on {} pixels; curved "
+        "surfaces will be flat patches; use a rounded shape",
+        name, report.flat_percent, report.cells_shown, report.cells, report.most_repeats));
   } else if (report.covered_percent < kLeastCovered) {
-    Warn(fmt::format("{}: the painting shows {:.0f}% of the directions that face the viewer; surfaces that face elsewhere "
-                     "take paint that is up to {:.0f}° off; paint a rounder shape, or a larger picture of it",
-                     name, report.covered_percent, report.largest_error_degrees));
+    Warn(fmt::format(
+        "{}: the painting shows {:.0f}% of the directions that face the viewer; surfaces that face elsewhere "
+        "take paint that is up to {:.0f}° off; paint a rounder shape, or a larger picture of it",
+        name, report.covered_percent, report.largest_error_degrees));
   }
 }
 
@@ -147,12 +150,14 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
                           {"flat_percent", report.flat_percent}};
     Print(JsonText(json));
   } else {
-    Print(fmt::format("{}: {} pixels, tonal range {:.0f}%, transparent {:.2f}%: usable\n", style.name, SizeText(picture),
-                      paint.range_percent, paint.hole_percent));
+    Print(fmt::format("{}: {} pixels, tonal range {:.0f}%, transparent {:.2f}%: usable\n", style.name,
+                      SizeText(picture), paint.range_percent, paint.hole_percent));
     Print(fmt::format("directions: {:.1f}% covered within {:.0f}°; error {:.2f}° on average, {:.1f}° at most\n",
-                      report.covered_percent, kCoveredDegrees, report.mean_error_degrees, report.largest_error_degrees));
-    Print(fmt::format("repeats: {} of {} directions shown, each by {:.1f} pixels on average, {} at most; {:.0f}% flat\n",
-                      report.cells_shown, report.cells, report.mean_repeats, report.most_repeats, report.flat_percent));
+                      report.covered_percent, kCoveredDegrees, report.mean_error_degrees,
+                      report.largest_error_degrees));
+    Print(
+        fmt::format("repeats: {} of {} directions shown, each by {:.1f} pixels on average, {} at most; {:.0f}% flat\n",
+                    report.cells_shown, report.cells, report.mean_repeats, report.most_repeats, report.flat_percent));
   }
   return ExitCode::kOk;
 }

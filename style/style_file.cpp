@@ -130,8 +130,8 @@ Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar
   }
   const Picture& picture = exemplar.picture;
   if (picture.width != info.width || picture.height != info.height) {
-    return InputError(exemplar.name + " is " + SizeText(picture.width, picture.height) + ", its guides " + path.string() +
-                      " are " + SizeText(info.width, info.height) +
+    return InputError(exemplar.name + " is " + SizeText(picture.width, picture.height) + ", its guides " +
+                      path.string() + " are " + SizeText(info.width, info.height) +
                       ": paint over a picture of the scene that has the guides' size");
   }
   options.required.Remove(Layer::kDepth).Remove(Layer::kObject).Remove(Layer::kMaterial);
@@ -142,7 +142,8 @@ Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar
 }
 
 // `several`: the style has more than one exemplar, so that their luminances matter.
-Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder, bool several) {
+Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder,
+                                bool several) {
   std::string image, guides;
   std::optional<double> luminance;
   for (const auto& [key, node] : table) {

@@ -1,4 +1,5 @@
 // Exemplars with guides of their own, from the command line: painting scenes, the cache of tables, styles check.
+#include <chrono>
 #include <filesystem>
 #include <vector>
 
@@ -78,6 +79,22 @@ TEST_F(CliExemplar, ACacheThatCannotBeWrittenIsNoError) {
   EXPECT_EQ(Paint("fifth.png"), first);
 }
 
+TEST_F(CliExemplar, TheCacheDoesNotGrowForEver) {
+  fs::create_directory(At("style"));
+  WriteSceneStyle();
+  for (int i = 0; i < 300; ++i) {
+    WriteText("../cache/scumble/" + std::to_string(i) + ".table", "old");
+    fs::last_write_time(Cache() / "scumble" / (std::to_string(i) + ".table"),
+                        fs::file_time_type::clock::now() - std::chrono::hours(1000 - i));
+  }
+  WriteText("../cache/scumble/notes.txt", "not ours to remove");
+  Paint("first.png");
+  EXPECT_EQ(Tables().size(), 257u) << "256 tables and the notes";
+  EXPECT_TRUE(fs::exists(Cache() / "scumble/notes.txt"));
+  EXPECT_FALSE(fs::exists(Cache() / "scumble/44.table")) << "the 45 oldest are gone";
+  EXPECT_TRUE(fs::exists(Cache() / "scumble/45.table"));
+}
+
 TEST_F(CliExemplar, SpheresNeedNoTable) {
   WriteStyle("style");
   Paint("first.png");
@@ -101,7 +118,8 @@ TEST_F(CliExemplar, CheckReportsDirectionsAndRepeats) {
   GuideSet wedge = Ball(64);
   for (int i = 0; i < 64 * 64; ++i) {
     const float values[3] = {i % 64 < 32 ? -0.6f : 0.6f, 0.0f, 0.8f};
-    for (int c = 0; c < 3; ++c) wedge.Plane(Layer::kNormal, c)[i] = wedge.Plane(Layer::kCoverage)[i] > 0 ? values[c] : 0.0f;
+    for (int c = 0; c < 3; ++c)
+      wedge.Plane(Layer::kNormal, c)[i] = wedge.Plane(Layer::kCoverage)[i] > 0 ? values[c] : 0.0f;
   }
   fs::create_directory(At("wedge"));
   WriteGuideFile("wedge/wedge.exr", wedge);
@@ -112,8 +130,8 @@ TEST_F(CliExemplar, CheckReportsDirectionsAndRepeats) {
   EXPECT_NE(flat.Warning().find("use a rounded shape"), std::string::npos) << flat.err;
   EXPECT_EQ(RunOk({"styles", "check", "wedge", "--json"}).Json()["directions"]["shown"], 2);
   EXPECT_EQ(RunOk({"styles", "check", "wedge", "--json"}).out, RunOk({"styles", "check", "wedge", "--json"}).out);
-  ExpectError({"transfer", "wedge/wedge.exr", "--style", "wedge", "--set", "transfer.nearest=analytic", "-o", "x.png"}, 2,
-              {"transfer.nearest", "spheres"});
+  ExpectError({"transfer", "wedge/wedge.exr", "--style", "wedge", "--set", "transfer.nearest=analytic", "-o", "x.png"},
+              2, {"transfer.nearest", "spheres"});
 }
 
 }  // namespace

@@ -280,7 +280,8 @@ GuideSet BallGuides(int width, int height, float luminance) {
   GuideSet guides(width, height);
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance}) guides.Add(layer);
   for (int i = 0; i < width * height; ++i) {
-    const float u = (2.0f * float(i % width) + 1) / float(width) - 1, v = 1 - (2.0f * float(i / width) + 1) / float(height);
+    const float u = (2.0f * float(i % width) + 1) / float(width) - 1,
+                v = 1 - (2.0f * float(i / width) + 1) / float(height);
     if (u * u + v * v >= 1.0f) continue;
     guides.Plane(Layer::kCoverage)[i] = 1.0f;
     const float values[3] = {u, v, std::sqrt(1.0f - u * u - v * v)};
@@ -300,7 +301,8 @@ TEST_F(StyleFile, GuidesOfAnySceneOfThePicturesSize) {
   EXPECT_FALSE(exemplar.is_sphere);
   ASSERT_TRUE(exemplar.guides);
   EXPECT_EQ(exemplar.guides->width(), 24);
-  EXPECT_EQ(exemplar.guides->layers(), (LayerSet{Layer::kCoverage, Layer::kNormal})) << "one exemplar: light is not read";
+  EXPECT_EQ(exemplar.guides->layers(), (LayerSet{Layer::kCoverage, Layer::kNormal}))
+      << "one exemplar: light is not read";
   const std::size_t middle = exemplar.guides->Index(12, 8);
   EXPECT_EQ(exemplar.guides->Vec3(Layer::kNormal, middle), BallGuides(24, 16, 0.5f).Vec3(Layer::kNormal, middle));
   EXPECT_EQ(exemplar.picture.rgba, RandomPicture(24, 16).rgba);
@@ -309,7 +311,8 @@ TEST_F(StyleFile, GuidesOfAnySceneOfThePicturesSize) {
   EXPECT_TRUE(several->exemplars[0].guides->Has(Layer::kLuminance)) << "its luminance is to be measured";
   EXPECT_FALSE(several->exemplars[1].guides->Has(Layer::kLuminance)) << "known";
   ExpectRefusal(Load(wide), ErrorKind::kInput, {"wide.png", "24×16", "square", "guides"});
-  ExpectRefusal(Load("[[exemplar]]\nimage = 'lit.png'\n" + guides), ErrorKind::kInput, {"lit.png is 8×8", "wide.exr are 24×16"});
+  ExpectRefusal(Load("[[exemplar]]\nimage = 'lit.png'\n" + guides), ErrorKind::kInput,
+                {"lit.png is 8×8", "wide.exr are 24×16"});
   GuideSet flat = BallGuides(24, 16, 0.5f);
   flat.Remove(Layer::kNormal);
   flat.Add(Layer::kDepth);

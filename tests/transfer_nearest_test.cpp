@@ -1,4 +1,5 @@
-// Nearest neighbours beyond the sphere: trees against brute force, tables within their bound, painted scenes, ambiguity.
+// Nearest neighbours beyond the sphere: trees against brute force, tables within their bound, painted scenes,
+// ambiguity.
 #include <cstring>
 #include <limits>
 #include <map>
@@ -15,7 +16,8 @@ namespace {
 
 using namespace testing;
 
-// ---- trees -----------------------------------------------------------------------------------------------------------
+// ---- trees
+// -----------------------------------------------------------------------------------------------------------
 
 double SquaredDistance(const float* a, const float* b, int dimensions) {
   double sum = 0.0;
@@ -37,7 +39,8 @@ std::uint32_t BruteForce(const std::vector<float>& points, const float* query, i
 void ExpectExact(const std::vector<float>& points, int dimensions, const std::vector<float>& queries) {
   const PointTree tree(dimensions, points);
   for (std::size_t q = 0; q + dimensions <= queries.size(); q += dimensions) {
-    ASSERT_EQ(tree.Nearest({queries.data() + q, std::size_t(dimensions)}), BruteForce(points, queries.data() + q, dimensions))
+    ASSERT_EQ(tree.Nearest({queries.data() + q, std::size_t(dimensions)}),
+              BruteForce(points, queries.data() + q, dimensions))
         << dimensions << " dimensions, query " << q / dimensions;
   }
 }
@@ -93,7 +96,8 @@ TEST(GuideTree, WeighsLayersAndEqualsBruteForce) {
     guides.Add(layer);
     for (int c = 0; c < ChannelCount(layer); ++c) {
       auto plane = guides.Plane(layer, c);
-      for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = std::floor(8.0f * UnitFloat(Hash(int(layer), c, i))) / 4.0f;
+      for (std::size_t i = 0; i < plane.size(); ++i)
+        plane[i] = std::floor(8.0f * UnitFloat(Hash(int(layer), c, i))) / 4.0f;
     }
   }
   GuideSet target = guides;
@@ -158,7 +162,8 @@ TEST(GuideTree, RefusesWhatHasNoDistance) {
   EXPECT_EQ(tree->Nearest(target, 5), tree->Nearest(zero, 5));
 }
 
-// ---- masks -----------------------------------------------------------------------------------------------------------
+// ---- masks
+// -----------------------------------------------------------------------------------------------------------
 
 // Blobs, holes and single pixels.
 GuideSet Blobs(int width, int height, std::uint64_t seed) {
@@ -184,7 +189,8 @@ TEST(UsableMask, EqualsBruteForce) {
             const double dx = i % width - j % width, dy = i / width - j / width;
             if (!(coverage[j] > 0.0f) && dx * dx + dy * dy < rim * rim) usable = false;
           }
-          ASSERT_EQ(mask[i], usable) << width << "×" << height << " rim " << rim << " at " << i % width << ", " << i / width;
+          ASSERT_EQ(mask[i], usable) << width << "×" << height << " rim " << rim << " at " << i % width << ", "
+                                     << i / width;
         }
       }
     }
@@ -204,14 +210,17 @@ TEST(UsableMask, PaintIsExtendedFromTheNearestUsablePixel) {
       if (!mask[j]) continue;
       const int dx = i % 48 - j % 48, dy = i / 48 - j / 48, distance = dx * dx + dy * dy;
       const bool same = std::memcmp(texel, picture.At(j % 48, j / 48), 8) == 0;
-      if (distance < nearest) nearest = distance, found = same;
-      else if (distance == nearest) found |= same;
+      if (distance < nearest)
+        nearest = distance, found = same;
+      else if (distance == nearest)
+        found |= same;
     }
     ASSERT_TRUE(found) << i % 48 << ", " << i / 48;
   }
 }
 
-// ---- tables ----------------------------------------------------------------------------------------------------------
+// ---- tables
+// ----------------------------------------------------------------------------------------------------------
 
 Style SceneStyle(Picture picture, GuideSet guides) {
   Style style = PlainStyle(std::move(picture));
@@ -242,7 +251,8 @@ TEST(FacingDirection, TurnsWhateverComesIntoADirection) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   EXPECT_EQ(FacingDirection({0, 0, -1}), glm::vec3(0, 1, 0));
   EXPECT_EQ(FacingDirection({3, -4, -1}), glm::vec3(0.6f, -0.8f, 0));
-  for (const glm::vec3 odd : {glm::vec3(0), glm::vec3(nan, 0, 1), glm::vec3(0, inf, 1), glm::vec3(0, 0, nan), glm::vec3(1e30f)}) {
+  for (const glm::vec3 odd :
+       {glm::vec3(0), glm::vec3(nan, 0, 1), glm::vec3(0, inf, 1), glm::vec3(0, 0, nan), glm::vec3(1e30f)}) {
     EXPECT_EQ(FacingDirection(odd), glm::vec3(0, 0, 1));
   }
   for (int i = 0; i < 1000; ++i) {
@@ -305,8 +315,8 @@ TEST(LookUpTable, TreeIsExactOnScenes) {
   }
 }
 
-// Where the sphere turns away by more than 72°, a pixel across is many degrees and one along the rim few: there the exact
-// search goes some pixels along the rim to save a fraction of one across, and the formula does not.
+// Where the sphere turns away by more than 72°, a pixel across is many degrees and one along the rim few: there the
+// exact search goes some pixels along the rim to save a fraction of one across, and the formula does not.
 TEST(LookUpTable, AnalyticAgreesWithTheTreeWithinOnePixelInsideTheRim) {
   for (const int size : {16, 17, 64, 255, 512, 1024}) {
     Style style = PlainStyle(PositionPicture(size));
@@ -381,10 +391,12 @@ TEST(LookUpTable, IsKeptByWhatItDependsOn) {
   EXPECT_EQ(stores_more(style, options), 1);
   for (auto& [key, bytes] : cache.kept) std::fill(bytes.begin(), bytes.end(), std::byte{0x7f});
   EXPECT_EQ(stores_more(style, options), 1);
-  EXPECT_EQ(MustPrepare(style, options)->NearestNeighbour({0.1f, 0.2f, 0.97f}), first->NearestNeighbour({0.1f, 0.2f, 0.97f}));
+  EXPECT_EQ(MustPrepare(style, options)->NearestNeighbour({0.1f, 0.2f, 0.97f}),
+            first->NearestNeighbour({0.1f, 0.2f, 0.97f}));
 }
 
-// ---- painted scenes --------------------------------------------------------------------------------------------------
+// ---- painted scenes
+// --------------------------------------------------------------------------------------------------
 
 // Sphere guides given as those of any scene give what the formula gives, but for the rim's staircase.
 TEST(SceneExemplar, ASpherePaintedAsASceneIsASphere) {
@@ -514,9 +526,10 @@ TEST(SceneExemplar, TheLargestSides) {
   for (const auto& [width, height] : {std::pair{16384, 3}, {3, 16384}}) {
     const int longer = std::max(width, height);
     Style style = SceneStyle(WideNoise(width, height), MakeGuides(width, height, [longer](int x, int y) {
-      const float u = 1.98f * (static_cast<float>(std::max(x, y)) / static_cast<float>(longer) - 0.5f);
-      return glm::vec3(u, 0.0f, std::sqrt(1.0f - u * u));
-    }));
+                               const float u =
+                                   1.98f * (static_cast<float>(std::max(x, y)) / static_cast<float>(longer) - 0.5f);
+                               return glm::vec3(u, 0.0f, std::sqrt(1.0f - u * u));
+                             }));
     style.transfer.rim = 0.0;
     const auto exemplar = MustPrepare(style);
     const Source last = exemplar->NearestNeighbour({0.985f, 0.0f, 0.17f});
@@ -530,7 +543,8 @@ TEST(SceneExemplar, TheLargestSides) {
 
 TEST(SceneExemplar, TheSmallestSizes) {
   for (const int size : {1, 2, 16}) {
-    Style style = SceneStyle(WideNoise(size, size), MakeGuides(size, size, [](int, int) { return glm::vec3(0, 0, 1); }));
+    Style style =
+        SceneStyle(WideNoise(size, size), MakeGuides(size, size, [](int, int) { return glm::vec3(0, 0, 1); }));
     const auto exemplar = MustPrepare(style);
     EXPECT_EQ(exemplar->UsablePixels().size(), std::size_t(size) * size) << "no edge is in sight, so there is no rim";
     EXPECT_EQ(exemplar->NearestNeighbour({0.6f, 0.0f, 0.8f}), (Source{0, 0}));
@@ -539,16 +553,19 @@ TEST(SceneExemplar, TheSmallestSizes) {
   }
 }
 
-// ---- ambiguity -------------------------------------------------------------------------------------------------------
+// ---- ambiguity
+// -------------------------------------------------------------------------------------------------------
 
 // A cube seen along its diagonal, orthographic: three faces.
 GuideSet CubeGuides(int size) {
   const double third = 1.0 / std::sqrt(3.0), up = std::sqrt(2.0 / 3.0), side = std::sqrt(0.5);
-  const glm::vec3 faces[3] = {glm::vec3(0, up, third), glm::vec3(-side, -0.5 * up, third), glm::vec3(side, -0.5 * up, third)};
+  const glm::vec3 faces[3] = {glm::vec3(0, up, third), glm::vec3(-side, -0.5 * up, third),
+                              glm::vec3(side, -0.5 * up, third)};
   return MakeGuides(size, size, [=](int x, int y) {
     const double u = (2.0 * x + 1) / size - 1.0, v = 1.0 - (2.0 * y + 1) / size;
     const double angle = std::fmod(std::atan2(v, u) * 180.0 / std::numbers::pi + 360.0 + 30.0, 60.0) - 30.0;
-    if (std::hypot(u, v) * std::cos(angle * std::numbers::pi / 180.0) > 0.8 * std::cos(std::numbers::pi / 6)) return glm::vec3(0.0f);
+    if (std::hypot(u, v) * std::cos(angle * std::numbers::pi / 180.0) > 0.8 * std::cos(std::numbers::pi / 6))
+      return glm::vec3(0.0f);
     const double turned = std::fmod(std::atan2(v, u) * 180.0 / std::numbers::pi + 360.0 - 30.0, 360.0);
     return faces[turned < 120.0 ? 0 : turned < 240.0 ? 1 : 2];
   });

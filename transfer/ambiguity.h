@@ -1,5 +1,5 @@
-// How well an exemplar covers the directions that surfaces can have, and how often it repeats itself: why a cube makes a
-// bad exemplar (Isaiev, "Example-based stylization of 3D renderings", figures 5 and 6, for guides of normals).
+// How well an exemplar covers the directions that surfaces can have, and how often it repeats itself: why a cube makes
+// a bad exemplar (Isaiev, "Example-based stylization of 3D renderings", figures 5 and 6, for guides of normals).
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@ struct AmbiguityReport {
   double largest_error_degrees = 0;
   // The hemisphere in cells of equal area, each about kCellDegrees across:
   int cells = 0;
-  int cells_shown = 0;             // that hold the normal of some usable pixel
+  int cells_shown = 0;  // that hold the normal of some usable pixel
   std::size_t usable_pixels = 0;
-  std::size_t most_repeats = 0;    // pixels of the fullest cell
-  double mean_repeats = 0;         // pixels a shown cell
-  // Usable pixels in cells that are four times as full as the fullest of a sphere of as many pixels: they show flat faces,
-  // where one direction has many sources and the neighbouring ones have none.
+  std::size_t most_repeats = 0;  // pixels of the fullest cell
+  double mean_repeats = 0;       // pixels a shown cell
+  // Usable pixels in cells that are four times as full as the fullest of a sphere of as many pixels: they show flat
+  // faces, where one direction has many sources and the neighbouring ones have none.
   double flat_percent = 0;
 };
 

@@ -44,8 +44,8 @@ struct SquaredDistance {
   double accum_dist(double a, double b, std::size_t) const { return (a - b) * (a - b); }
 };
 
-// nanoflann compares with `<` before it offers a point, which loses ties, and prunes by sums that are rounded in another
-// order than the distance itself. Asking for a hair more than the best loses neither.
+// nanoflann compares with `<` before it offers a point, which loses ties, and prunes by sums that are rounded in
+// another order than the distance itself. Asking for a hair more than the best loses neither.
 class LowestOfNearest {
  public:
   double worstDist() const { return best_distance_ * (1.0 + 1e-9) + std::numeric_limits<double>::min(); }
@@ -132,8 +132,10 @@ PointTree::PointTree(int dimensions, std::vector<float> coordinates) : dimension
   std::vector<std::uint32_t> first = RemoveRepeats(coordinates, size);
   distinct_ = first.size();
   Points points{std::move(coordinates), size};
-  if (dimensions == 3) search_ = std::make_unique<SearchOf<3>>(std::move(points), std::move(first));
-  else search_ = std::make_unique<SearchOf<-1>>(std::move(points), std::move(first));
+  if (dimensions == 3)
+    search_ = std::make_unique<SearchOf<3>>(std::move(points), std::move(first));
+  else
+    search_ = std::make_unique<SearchOf<-1>>(std::move(points), std::move(first));
 }
 
 PointTree::~PointTree() = default;
@@ -180,7 +182,8 @@ Expected<GuideTree> GuideTree::Build(const GuideSet& guides, std::span<const Wei
           const float value = guides.Plane(each.layer, c)[i] * each.weight;
           if (!std::isfinite(value)) {
             return InputError(name + ": layer " + Info(each.layer).name + " is NaN or infinite at (" +
-                              std::to_string(x) + ", " + std::to_string(y) + "): write finite values, or set A to 0 there");
+                              std::to_string(x) + ", " + std::to_string(y) +
+                              "): write finite values, or set A to 0 there");
           }
           coordinates.push_back(value);
         }

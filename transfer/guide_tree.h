@@ -16,8 +16,8 @@
 namespace scumble {
 
 // Points of `dimensions` finite floats each. Equal points count once, as the first of them, so that a flat face of ten
-// thousand pixels costs what one pixel does. Building is O(n log n) on one thread; about 30 bytes a distinct point beside
-// the floats. Immutable; any number of threads may ask at once.
+// thousand pixels costs what one pixel does. Building is O(n log n) on one thread; about 30 bytes a distinct point
+// beside the floats. Immutable; any number of threads may ask at once.
 class PointTree {
  public:
   // `coordinates` holds the points one after the other; at least one.
@@ -29,8 +29,9 @@ class PointTree {
   int dimensions() const { return dimensions_; }
   std::size_t distinct() const { return distinct_; }
 
-  // The index, in the order given, of the point with the least Euclidean distance to `query`, squares summed in double in
-  // the order of the dimensions; ties to the lowest index. `query` has as many finite values as there are dimensions.
+  // The index, in the order given, of the point with the least Euclidean distance to `query`, squares summed in double
+  // in the order of the dimensions; ties to the lowest index. `query` has as many finite values as there are
+  // dimensions.
   std::uint32_t Nearest(std::span<const float> query) const;
 
  private:
@@ -49,13 +50,13 @@ struct WeightedLayer {
   float weight = 1.0f;  // 0 or more, finite
 };
 
-// Which pixel of an exemplar's guides is most like a pixel of the scene's, in several layers at once: normals, luminance,
-// light paths. Immutable; any number of threads may ask at once.
+// Which pixel of an exemplar's guides is most like a pixel of the scene's, in several layers at once: normals,
+// luminance, light paths. Immutable; any number of threads may ask at once.
 class GuideTree {
  public:
-  // Over the usable pixels of `guides` (`usable` has one value a pixel, 1 for yes; empty: all covered ones), in row order.
-  // Refuses layers that are missing, ids (they have no distances), values that are NaN or infinite, weights below 0, and
-  // sets without a usable pixel. `name` stands for the guides in messages.
+  // Over the usable pixels of `guides` (`usable` has one value a pixel, 1 for yes; empty: all covered ones), in row
+  // order. Refuses layers that are missing, ids (they have no distances), values that are NaN or infinite, weights
+  // below 0, and sets without a usable pixel. `name` stands for the guides in messages.
   static Expected<GuideTree> Build(const GuideSet& guides, std::span<const WeightedLayer> layers,
                                    std::span<const std::uint8_t> usable, const std::string& name);
 

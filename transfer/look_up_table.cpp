@@ -39,8 +39,7 @@ LookUpTable::LookUpTable(const PointTree& normals, std::span<const Source> sourc
   SCUMBLE_CHECK_LE(1, resolution);
   tbb::parallel_for(0, resolution, [&](int j) {
     for (int i = 0; i < resolution; ++i) {
-      const glm::vec3 direction =
-          DirectionAt((2.0 * i + 1.0) / resolution - 1.0, 1.0 - (2.0 * j + 1.0) / resolution);
+      const glm::vec3 direction = DirectionAt((2.0 * i + 1.0) / resolution - 1.0, 1.0 - (2.0 * j + 1.0) / resolution);
       const float query[3] = {direction.x, direction.y, direction.z};
       cells_[std::size_t(j) * resolution + i] = sources[normals.Nearest(query)];
     }
@@ -72,7 +71,9 @@ std::vector<std::byte> LookUpTable::ToBytes() const {
 std::optional<LookUpTable> LookUpTable::FromBytes(std::span<const std::byte> bytes, int resolution) {
   LookUpTable table(resolution);
   if (bytes.size() != 4 * table.cells_.size()) return std::nullopt;
-  const auto value = [&](std::size_t at) { return std::to_integer<int>(bytes[at]) | std::to_integer<int>(bytes[at + 1]) << 8; };
+  const auto value = [&](std::size_t at) {
+    return std::to_integer<int>(bytes[at]) | std::to_integer<int>(bytes[at + 1]) << 8;
+  };
   for (std::size_t i = 0; i < table.cells_.size(); ++i) table.cells_[i] = {value(4 * i), value(4 * i + 2)};
   return table;
 }

@@ -13,17 +13,19 @@
 
 namespace scumble {
 
-// The direction that a normal is looked up by, always of length 1 and facing the viewer: one that faces away looks at the
-// rim along its (x, y), (0, 0, -1) at the rim at +Y; NaN, infinity and the zero vector look straight at the viewer.
+// The direction that a normal is looked up by, always of length 1 and facing the viewer: one that faces away looks at
+// the rim along its (x, y), (0, 0, -1) at the rim at +Y; NaN, infinity and the zero vector look straight at the viewer.
 glm::vec3 FacingDirection(glm::vec3 normal);
 
-// Lambert's azimuthal equal-area projection of the hemisphere that faces the viewer onto the unit disc: (x, y) / √(1 + z).
+// Lambert's azimuthal equal-area projection of the hemisphere that faces the viewer onto the unit disc,
+// (x, y) / √(1 + z).
 glm::vec2 ProjectDirection(glm::vec3 facing);
 // Its inverse; a point outside the disc is taken to its edge.
 glm::vec3 DirectionAt(double px, double py);
 
-// The hemisphere of directions that face the viewer, laid out on [-1, 1]² by ProjectDirection and cut into R × R cells; each holds the source nearest to the direction at its centre. Equal areas,
-// because a table over plain (x, y) is ten times as coarse at the rim as in the middle. Immutable; any thread may ask.
+// The hemisphere of directions that face the viewer, laid out on [-1, 1]² by ProjectDirection and cut into R × R cells;
+// each holds the source nearest to the direction at its centre. Equal areas, because a table over plain (x, y) is ten
+// times as coarse at the rim as in the middle. Immutable; any thread may ask.
 class LookUpTable {
  public:
   static constexpr int kResolution = 512;

@@ -60,7 +60,8 @@ Picture ScaledPaper(const Picture& paper, int reference_height, int output_heigh
 Status CheckSameScene(const Exemplar& first, const Exemplar& other) {
   const std::string both = first.name + " and " + other.name;
   if (first.is_sphere != other.is_sphere) {
-    return InputError(both + ": one is a sphere and the other has guides of another scene; the exemplars of a style show "
+    return InputError(both +
+                      ": one is a sphere and the other has guides of another scene; the exemplars of a style show "
                       "one scene in different light");
   }
   if (first.is_sphere) return Ok();
@@ -98,7 +99,8 @@ Status CheckExemplar(const Exemplar& exemplar) {
     return InputError(is + ": an exemplar is a square that its sphere fills, or has guides that say what it shows");
   }
   if (std::max(picture.width, picture.height) > kMaxExemplarSize) {
-    return InputError(is + ": exemplars have at most " + std::to_string(kMaxExemplarSize) + " pixels a side; shrink it");
+    return InputError(is + ": exemplars have at most " + std::to_string(kMaxExemplarSize) +
+                      " pixels a side; shrink it");
   }
   SCUMBLE_CHECK(exemplar.is_sphere || exemplar.guides);
   if (!exemplar.guides) return Ok();
@@ -156,8 +158,8 @@ Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& s
     prepared = std::make_shared<PreparedExemplar>(pictures, settings.rim, scaled(longer));
   } else {
     const int width = scaled(first.picture.width), height = scaled(first.picture.height);
-    SCUMBLE_ASSIGN(PreparedExemplar scene, PreparedExemplar::OfScene(pictures, *first.guides, settings.rim, width, height,
-                                                                     first.name));
+    SCUMBLE_ASSIGN(PreparedExemplar scene,
+                   PreparedExemplar::OfScene(pictures, *first.guides, settings.rim, width, height, first.name));
     prepared = std::make_shared<PreparedExemplar>(std::move(scene));
   }
   SCUMBLE_RETURN_IF_ERROR(prepared->SearchBy(settings.nearest, options.table_resolution, options.cache));

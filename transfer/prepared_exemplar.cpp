@@ -18,7 +18,7 @@ namespace scumble {
 class ExemplarSearch {
  public:
   std::optional<LookUpTable> table;
-  std::vector<Source> sources;      // of the tree's points
+  std::vector<Source> sources;  // of the tree's points
   std::optional<PointTree> normals;
 
   Source Find(glm::vec3 direction) const {
@@ -49,8 +49,10 @@ Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
       const double length = std::sqrt(static_cast<double>(dx * dx + dy * dy));
       // Steps inward until the pixel is usable: rounding to pixels may need one or two beyond the exact radius.
       for (double r = radius;; r -= 1.0) {
-        const int sx = std::clamp(static_cast<int>(std::floor((dx / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
-        const int sy = std::clamp(static_cast<int>(std::floor((dy / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
+        const int sx =
+            std::clamp(static_cast<int>(std::floor((dx / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
+        const int sy =
+            std::clamp(static_cast<int>(std::floor((dy / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
         const std::int64_t ex = 2 * sx + 1 - size, ey = 2 * sy + 1 - size;
         if (ex * ex + ey * ey > limit && r > 0.0) continue;
         std::copy_n(picture.At(sx, sy), 4, extended.At(x, y));
@@ -129,7 +131,7 @@ std::vector<Source> PreparedExemplar::UsablePixels() const {
   return sources;
 }
 
-// Everything that a table depends on, in 128 bits: two directions may not meet by chance in any folder of tables.
+// Everything that a table depends on, in 128 bits: no two exemplars meet in them by chance.
 std::string PreparedExemplar::TableKey(std::span<const Source> sources, int resolution) const {
   constexpr int kFormat = 1;
   std::uint64_t a = Hash(kFormat, resolution, width(), height()), b = ~a;
@@ -154,8 +156,9 @@ Status PreparedExemplar::SearchBy(NearestSearch search, int resolution, TableCac
   if (search == NearestSearch::kAuto) search = is_sphere() ? NearestSearch::kAnalytic : NearestSearch::kTable;
   if (search == NearestSearch::kAnalytic) {
     if (!is_sphere()) {
-      return UsageError("transfer.nearest = \"analytic\" is for spheres; this exemplar has guides of its own: leave it "
-                        "at \"auto\", or take \"table\" or \"tree\"");
+      return UsageError(
+          "transfer.nearest = \"analytic\" is for spheres; this exemplar has guides of its own: leave it "
+          "at \"auto\", or take \"table\" or \"tree\"");
     }
     search_.reset();
     return Ok();

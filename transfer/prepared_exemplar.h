@@ -1,5 +1,5 @@
-// An exemplar made ready: resized, its paint extended past the rim, with the guides of what is painted on it, and the way
-// to find the nearest of them.
+// An exemplar made ready: resized, its paint extended past the rim, with the guides of what is painted on it, and the
+// way to find the nearest of them.
 #pragma once
 
 #include <cmath>
@@ -22,8 +22,8 @@ namespace scumble {
 class ExemplarSearch;
 
 // Either the sphere that fills the N × N picture (centre N/2, radius N/2), whose positions inside radius 1 - rim are
-// usable; or any scene with guides of its own, in a picture of any shape, where the guides' coverage less the rim is. All
-// other positions are never shown. Immutable once made; concurrent reads are safe.
+// usable; or any scene with guides of its own, in a picture of any shape, where the guides' coverage less the rim is.
+// All other positions are never shown. Immutable once made; concurrent reads are safe.
 class PreparedExemplar {
  public:
   // A sphere. One picture or several, the same sphere under different light; all are resized to N = `size`, 1 … 32767.
@@ -33,11 +33,11 @@ class PreparedExemplar {
   PreparedExemplar(const Picture& picture, double rim, int size)
       : PreparedExemplar(std::vector<const Picture*>{&picture}, rim, size) {}
 
-  // A painted scene: pictures of the size of its guides, resized to width × height, 1 … 32767 each. Guides are sampled at
-  // pixel centres, never averaged. The guides must pass Validate. SearchBy must be called before NearestNeighbour. Fails
-  // where no pixel is left that is usable; `name` is the exemplar's in that message.
-  static Expected<PreparedExemplar> OfScene(std::span<const Picture* const> pictures, const GuideSet& guides, double rim,
-                                            int width, int height, const std::string& name);
+  // A painted scene: pictures of the size of its guides, resized to width × height, 1 … 32767 each. Guides are sampled
+  // at pixel centres, never averaged. The guides must pass Validate. SearchBy must be called before NearestNeighbour.
+  // Fails where no pixel is left that is usable; `name` is the exemplar's in that message.
+  static Expected<PreparedExemplar> OfScene(std::span<const Picture* const> pictures, const GuideSet& guides,
+                                            double rim, int width, int height, const std::string& name);
 
   // How NearestNeighbour searches from now on, before the exemplar is shared: kAuto is the formula for a sphere and a
   // table for a scene. kAnalytic is a kUsage error for a scene. Tables have `resolution`² cells and are looked for in

@@ -45,7 +45,8 @@ struct PrepareOptions {
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
 // Fails where an exemplar is empty; where a sphere's picture is not square; where guides do not fit their picture, or
-// those of one style's exemplars are not of one scene; or where a setting is outside the range that image/style.h states.
+// those of one style's exemplars are not of one scene; or where a setting is outside the range that image/style.h
+// states.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
 struct TransferOptions {

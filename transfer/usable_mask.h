@@ -10,8 +10,8 @@
 
 namespace scumble::internal {
 
-// 1 on covered pixels whose centre is `rim` pixels or more from the centre of every uncovered one. The picture's own edge
-// is no painted edge: where the scene runs on beyond it, pixels are usable up to it. O(pixels).
+// 1 on covered pixels whose centre is `rim` pixels or more from the centre of every uncovered one. The picture's own
+// edge is no painted edge: where the scene runs on beyond it, pixels are usable up to it. O(pixels).
 std::vector<std::uint8_t> UsableMask(const GuideSet& guides, double rim);
 
 // Replaces the paint of every pixel outside the mask by that of the nearest one inside, so that a filter which reaches
