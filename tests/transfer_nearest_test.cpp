@@ -16,8 +16,7 @@ namespace {
 
 using namespace testing;
 
-// ---- trees
-// -----------------------------------------------------------------------------------------------------------
+// ---- trees ---------------------------------------------------------------------------------------------------------
 
 double SquaredDistance(const float* a, const float* b, int dimensions) {
   double sum = 0.0;
@@ -162,8 +161,7 @@ TEST(GuideTree, RefusesWhatHasNoDistance) {
   EXPECT_EQ(tree->Nearest(target, 5), tree->Nearest(zero, 5));
 }
 
-// ---- masks
-// -----------------------------------------------------------------------------------------------------------
+// ---- masks ---------------------------------------------------------------------------------------------------------
 
 // Blobs, holes and single pixels.
 GuideSet Blobs(int width, int height, std::uint64_t seed) {
@@ -219,8 +217,7 @@ TEST(UsableMask, PaintIsExtendedFromTheNearestUsablePixel) {
   }
 }
 
-// ---- tables
-// ----------------------------------------------------------------------------------------------------------
+// ---- tables --------------------------------------------------------------------------------------------------------
 
 Style SceneStyle(Picture picture, GuideSet guides) {
   Style style = PlainStyle(std::move(picture));
@@ -395,8 +392,22 @@ TEST(LookUpTable, IsKeptByWhatItDependsOn) {
             first->NearestNeighbour({0.1f, 0.2f, 0.97f}));
 }
 
-// ---- painted scenes
-// --------------------------------------------------------------------------------------------------
+TEST(LookUpTable, IsTheSameOnAnyNumberOfThreads) {
+  const Style style = SceneStyle(WideNoise(90, 60), HillGuides(90, 60));
+  std::vector<std::vector<std::byte>> made;
+  for (const int threads : {1, 2, 5}) {
+    CountingCache cache;
+    PrepareOptions options;
+    options.cache = &cache, options.threads = threads, options.table_resolution = 200;
+    MustPrepare(style, options);
+    ASSERT_EQ(cache.kept.size(), 1u);
+    made.push_back(cache.kept.begin()->second);
+  }
+  EXPECT_EQ(made[0], made[1]);
+  EXPECT_EQ(made[0], made[2]);
+}
+
+// ---- painted scenes ------------------------------------------------------------------------------------------------
 
 // Sphere guides given as those of any scene give what the formula gives, but for the rim's staircase.
 TEST(SceneExemplar, ASpherePaintedAsASceneIsASphere) {
@@ -553,8 +564,7 @@ TEST(SceneExemplar, TheSmallestSizes) {
   }
 }
 
-// ---- ambiguity
-// -------------------------------------------------------------------------------------------------------
+// ---- ambiguity -----------------------------------------------------------------------------------------------------
 
 // A cube seen along its diagonal, orthographic: three faces.
 GuideSet CubeGuides(int size) {
