@@ -1,13 +1,16 @@
 // scumble styles.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "cli/cache.h"
 #include "cli/command.h"
 #include "cli/json_text.h"
 #include "cli/options.h"
 #include "style/style_file.h"
 #include "style/style_keys.h"
+#include "transfer/ambiguity.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -25,7 +28,7 @@ Expected<ExitCode> ListStyles(const Globals& globals) {
         code = ExitCodeFor(style.error().kind);
         continue;
       }
-      const int size = style->exemplars.front().picture.width;
+      const int size = std::max(style->exemplars.front().picture.width, style->exemplars.front().picture.height);
       json.push_back({{"name", folder.filename().string()},
                       {"folder", folder.string()},
                       {"size", size},
@@ -47,48 +50,114 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
     text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, help);
   }
   text += fmt::format("{:<26} {:<12} {}\n", "exemplar.image", "", "picture of the painted sphere, required");
-  text +=
-      fmt::format("{:<26} {:<12} {}\n", "exemplar.guides", "\"\"", "the sphere's guides; empty: it fills the square");
+  text += fmt::format("{:<26} {:<12} {}\n", "exemplar.guides", "\"\"",
+                      "guides of what is painted; empty: a sphere fills the square");
+  text += fmt::format("{:<26} {:<12} {}\n", "exemplar.luminance", "", "of its light; left out: measured");
   Print(globals.json ? JsonText(json) : text);
   return ExitCode::kOk;
 }
 
-// Loads and prepares the style as a transfer would, and looks for what a painter overlooks.
-Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
-  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
-  SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, 1080));
-  const PreparedExemplar& exemplar = *prepared.exemplar;
+// Of one painting's usable pixels.
+struct PaintReport {
+  double hole_percent = 0;   // not opaque
+  double range_percent = 0;  // from the darkest to the brightest
+};
+
+PaintReport LookAtPaint(const PreparedExemplar& exemplar, int index) {
   std::size_t usable = 0, transparent = 0;
   std::uint16_t darkest = 65535, brightest = 0;
-  for (int y = 0; y < exemplar.size(); ++y) {
-    for (int x = 0; x < exemplar.size(); ++x) {
+  for (int y = 0; y < exemplar.height(); ++y) {
+    for (int x = 0; x < exemplar.width(); ++x) {
       if (!exemplar.Usable(x, y)) continue;
-      const std::uint16_t* texel = exemplar.picture().At(x, y);
+      const std::uint16_t* texel = exemplar.picture(index).At(x, y);
       ++usable;
       transparent += texel[3] < 65535;
       darkest = std::min(darkest, texel[1]), brightest = std::max(brightest, texel[1]);
     }
   }
-  const double hole_percent = 100.0 * static_cast<double>(transparent) / static_cast<double>(usable);
-  const double range_percent = 100.0 * (brightest - darkest) / 65535.0;
-  if (transparent > 0) {
+  return {100.0 * static_cast<double>(transparent) / static_cast<double>(usable),
+          100.0 * (brightest - darkest) / 65535.0};
+}
+
+void WarnOfPaint(const std::string& name, bool is_sphere, const PaintReport& paint) {
+  constexpr double kLeastRange = 25.0;
+  if (paint.hole_percent > 0.0) {
     Warn(fmt::format(
-        "{}: {:.2f}% of the sphere is transparent and will be so in pictures; fill the holes if that is not wanted",
-        path, hole_percent));
+        "{}: {:.2f}% of the {} is transparent and will be so in pictures; fill the holes if that is not wanted", name,
+        paint.hole_percent, is_sphere ? "sphere" : "painting"));
   }
-  if (range_percent < 25.0) {
+  if (paint.range_percent < kLeastRange) {
     Warn(fmt::format(
         "{}: light and dark differ by {:.0f}% only, shapes will look flat; paint lights lighter and shades darker",
-        path, range_percent));
+        name, paint.range_percent));
   }
+}
+
+void WarnOfAmbiguity(const std::string& name, const AmbiguityReport& report) {
+  constexpr double kLeastCovered = 50.0, kMostFlat = 50.0;
+  if (report.flat_percent > kMostFlat) {
+    Warn(fmt::format(
+        "{}: {:.0f}% of the painting shows flat faces: {} of {} directions, the fullest on {} pixels; curved "
+        "surfaces will be flat patches; use a rounded shape",
+        name, report.flat_percent, report.cells_shown, report.cells, report.most_repeats));
+  } else if (report.covered_percent < kLeastCovered) {
+    Warn(fmt::format(
+        "{}: the painting shows {:.0f}% of the directions that face the viewer; surfaces that face elsewhere "
+        "take paint that is up to {:.0f}° off; paint a rounder shape, or a larger picture of it",
+        name, report.covered_percent, report.largest_error_degrees));
+  }
+}
+
+std::string SizeText(const Picture& picture) {
+  return picture.width == picture.height ? fmt::format("{}²", picture.width)
+                                         : fmt::format("{}×{}", picture.width, picture.height);
+}
+
+// Loads and prepares the style as a transfer would, and looks for what a painter overlooks.
+Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
+  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
+  FileCache cache = UserCache();
+  PrepareOptions options;
+  options.cache = &cache;
+  options.threads = globals.threads;
+  SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, 1080, options));
+  const PreparedExemplar& exemplar = *prepared.exemplar;
+  const PaintReport paint = LookAtPaint(exemplar, 0);
+  WarnOfPaint(path, exemplar.is_sphere(), paint);
+  for (int k = 1; k < exemplar.count(); ++k) {
+    WarnOfPaint(style.exemplars[std::size_t(k)].name, exemplar.is_sphere(), LookAtPaint(exemplar, k));
+  }
+  const AmbiguityReport report = MeasureAmbiguity(exemplar);
+  WarnOfAmbiguity(path, report);
+  const Picture& picture = style.exemplars.front().picture;
   if (globals.json) {
-    Print(JsonText(nlohmann::ordered_json{{"name", style.name},
-                                          {"size", style.exemplars.front().picture.width},
-                                          {"transparent_percent", hole_percent},
-                                          {"range_percent", range_percent}}));
+    nlohmann::ordered_json json{{"name", style.name},
+                                {"size", std::max(picture.width, picture.height)},
+                                {"width", picture.width},
+                                {"height", picture.height},
+                                {"shape", exemplar.is_sphere() ? "sphere" : "scene"},
+                                {"transparent_percent", paint.hole_percent},
+                                {"range_percent", paint.range_percent}};
+    if (exemplar.count() > 1) json["luminances"] = prepared.illumination.luminances();
+    json["directions"] = {{"covered_percent", report.covered_percent},
+                          {"covered_within_degrees", kCoveredDegrees},
+                          {"mean_error_degrees", report.mean_error_degrees},
+                          {"largest_error_degrees", report.largest_error_degrees},
+                          {"shown", report.cells_shown},
+                          {"of", report.cells},
+                          {"mean_repeats", report.mean_repeats},
+                          {"most_repeats", report.most_repeats},
+                          {"flat_percent", report.flat_percent}};
+    Print(JsonText(json));
   } else {
-    Print(fmt::format("{}: {}² pixels, tonal range {:.0f}%, transparent {:.2f}%: usable\n", style.name,
-                      style.exemplars.front().picture.width, range_percent, hole_percent));
+    Print(fmt::format("{}: {} pixels, tonal range {:.0f}%, transparent {:.2f}%: usable\n", style.name,
+                      SizeText(picture), paint.range_percent, paint.hole_percent));
+    Print(fmt::format("directions: {:.1f}% covered within {:.0f}°; error {:.2f}° on average, {:.1f}° at most\n",
+                      report.covered_percent, kCoveredDegrees, report.mean_error_degrees,
+                      report.largest_error_degrees));
+    Print(
+        fmt::format("repeats: {} of {} directions shown, each by {:.1f} pixels on average, {} at most; {:.0f}% flat\n",
+                    report.cells_shown, report.cells, report.mean_repeats, report.most_repeats, report.flat_percent));
   }
   return ExitCode::kOk;
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "cli/cache.h"
 #include "cli/json_text.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
@@ -170,10 +171,14 @@ Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const G
   return stops;
 }
 
-Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int height) {
+Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int height, int threads) {
+  FileCache cache = UserCache();
+  PrepareOptions options;
+  options.cache = &cache;
+  options.threads = threads;
   std::vector<PreparedStyle> prepared;
   for (const Style& style : styles.styles) {
-    SCUMBLE_ASSIGN(PreparedStyle one, Prepare(style, height));
+    SCUMBLE_ASSIGN(PreparedStyle one, Prepare(style, height, options));
     prepared.push_back(std::move(one));
   }
   return prepared;
@@ -201,11 +206,11 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
       memory.prepared[i].required = RequiredLayers(styles.styles[i]);
       continue;
     }
-    SCUMBLE_ASSIGN(std::vector<PreparedStyle> one, PrepareAll({{styles.styles[i]}, {}}, guides.height()));
+    SCUMBLE_ASSIGN(std::vector<PreparedStyle> one, PrepareAll({{styles.styles[i]}, {}}, guides.height(), globals.threads));
     memory.prepared[i] = std::move(one.front());
   }
   if (all) {
-    SCUMBLE_ASSIGN(memory.prepared, PrepareAll(styles, guides.height()));
+    SCUMBLE_ASSIGN(memory.prepared, PrepareAll(styles, guides.height(), globals.threads));
   }
   if (!memory.exposure) {
     SCUMBLE_ASSIGN(memory.exposure, ExposureFor(memory.prepared, guides, options, globals));

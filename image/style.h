@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "image/guides.h"
 #include "image/layers.h"
 #include "image/picture.h"
 
@@ -19,6 +20,14 @@ enum class Method {
   kLitSphere,   // every pixel takes its own nearest neighbour (Sloan et al. 2001): the fast floor
   kStyleBlit,   // chunks from a hierarchy of seeds (Sýkora et al. 2019, parallel form)
   kBruteForce,  // chunks grown from one anchor after the other (Sýkora et al. 2019, algorithm 1): the oracle, slow
+};
+
+// How the nearest neighbour of a normal is found in an exemplar.
+enum class NearestSearch {
+  kAuto,      // the formula for a sphere, a table for an exemplar with guides of its own
+  kAnalytic,  // the sphere's formula
+  kTable,     // a look-up table over all directions that face the viewer
+  kTree,      // a kd-tree: exact, and slow because every pixel asks it
 };
 
 enum class ThresholdMetric {
@@ -41,6 +50,7 @@ enum class ColorizeMode {
 // Lengths are pixels at `reference_height` and follow the output's height.
 struct TransferSettings {
   Method method = Method::kStyleBlit;
+  NearestSearch nearest = NearestSearch::kAuto;
   float threshold = 0.125f;  // largest guide distance inside a chunk, at least 0, infinity allowed; the test is strict
   ThresholdMetric threshold_metric = ThresholdMetric::kL2;
   int levels = 7;            // seed grids of 2^(levels-1) … 1 pixels, 1 … 16
@@ -58,11 +68,15 @@ struct TransferSettings {
   int reference_height = 1080;  // 0: lengths are plain pixels
 };
 
-// A painted sphere: a square picture that the sphere fills exactly.
+// A painted sphere, which fills a square picture exactly; or any painted scene with its guides.
 struct Exemplar {
   std::string name;  // for messages
   Picture picture;
-  std::optional<double> luminance;  // of the light it is painted for, 0 or more; none: measured from the paint
+  std::optional<double> luminance;  // of the light it is painted for, 0 or more; none: the mean of the guides'
+                                    // luminance layer, without one that of the paint
+  std::optional<GuideSet> guides = {};  // of what is painted, the picture's size; A and normal at least
+  bool is_sphere = true;            // the geometry is the sphere that fills the picture, whatever the guides say;
+                                    // false needs guides
 };
 
 inline constexpr int kMaxExemplars = 4;

@@ -120,29 +120,54 @@ Status SetKeyInFile(Style& style, const std::string& name, const toml::node& nod
   return InputError(done.error().message);
 }
 
-// Cuts the template's margin off a picture painted over it.
-Expected<Picture> FitToGuides(Picture picture, const std::string& picture_name, const fs::path& guides_path) {
-  SCUMBLE_ASSIGN(const GuideFileInfo guides, InspectGuides(guides_path));
-  const auto margin = guides.width == guides.height ? SphereMargin(guides.header) : std::nullopt;
-  if (!margin) {
-    return UnavailableError(guides_path.string() +
-                            " was not written by `scumble sphere`: guides of other exemplar scenes are not built "
-                            "into this version");
-  }
-  const int size = guides.width, with_margin = size + 2 * *margin;
-  if (picture.width == size && picture.height == size) return picture;
+std::string SizeText(int width, int height) { return std::to_string(width) + "×" + std::to_string(height); }
+
+// A sphere of `scumble sphere`, by its size and margin: cuts the template's margin off a picture painted over it.
+Status FitToSphere(int size, int margin, const fs::path& guides, Exemplar& exemplar) {
+  Picture& picture = exemplar.picture;
+  const int with_margin = size + 2 * margin;
+  if (picture.width == size && picture.height == size) return Ok();
   if (picture.width != with_margin || picture.height != with_margin) {
-    const auto square = [](int side) { return std::to_string(side) + "×" + std::to_string(side); };
-    return InputError(picture_name + " is " + std::to_string(picture.width) + "×" + std::to_string(picture.height) +
-                      ", its guides " + guides_path.string() + " are " + square(size) + ": paint at " +
-                      square(with_margin) + " (the whole template) or " + square(size) + " (the sphere alone)");
+    return InputError(exemplar.name + " is " + SizeText(picture.width, picture.height) + ", its guides " +
+                      guides.string() + " are " + SizeText(size, size) + ": paint at " +
+                      SizeText(with_margin, with_margin) + " (the whole template) or " + SizeText(size, size) +
+                      " (the sphere alone)");
   }
   Picture cut(size, size);
-  for (int y = 0; y < size; ++y) std::copy_n(picture.At(*margin, y + *margin), 4 * size, cut.At(0, y));
-  return cut;
+  for (int y = 0; y < size; ++y) std::copy_n(picture.At(margin, y + margin), 4 * size, cut.At(0, y));
+  picture = std::move(cut);
+  return Ok();
 }
 
-Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder) {
+// Gives the exemplar its guides. `measure` says whether its luminance is wanted and not known.
+Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar) {
+  SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
+  GuideReadOptions options;
+  if (const auto margin = info.width == info.height ? SphereMargin(info.header) : std::nullopt) {
+    // The sphere's normals are known by a formula: the file is read only for its light.
+    SCUMBLE_RETURN_IF_ERROR(FitToSphere(info.width, *margin, path, exemplar));
+    const auto layers = info.layers.find("");
+    if (!measure || layers == info.layers.end() || !layers->second.Has(Layer::kLuminance)) return Ok();
+    options.required.Remove(Layer::kDepth).Remove(Layer::kObject).Remove(Layer::kMaterial).Add(Layer::kLuminance);
+    SCUMBLE_ASSIGN(exemplar.guides, ReadGuides(path, options));
+    return Ok();
+  }
+  const Picture& picture = exemplar.picture;
+  if (picture.width != info.width || picture.height != info.height) {
+    return InputError(exemplar.name + " is " + SizeText(picture.width, picture.height) + ", its guides " +
+                      path.string() + " are " + SizeText(info.width, info.height) +
+                      ": paint over a picture of the scene that has the guides' size");
+  }
+  options.required.Remove(Layer::kDepth).Remove(Layer::kObject).Remove(Layer::kMaterial);
+  if (measure) options.optional.Add(Layer::kLuminance);
+  SCUMBLE_ASSIGN(exemplar.guides, ReadGuides(path, options));
+  exemplar.is_sphere = false;
+  return Ok();
+}
+
+// `several`: the style has more than one exemplar, so that their luminances matter.
+Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder,
+                                bool several) {
   std::string image, guides;
   std::optional<double> luminance;
   for (const auto& [key, node] : table) {
@@ -168,11 +193,14 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& fil
     return InputError(image_path.string() + " is not there yet: paint over " + (folder / "template.png").string() +
                       " and save it under that name");
   }
-  SCUMBLE_ASSIGN(Picture picture, ReadPicture(image_path));
+  Exemplar exemplar;
+  exemplar.name = image_path.string();
+  exemplar.luminance = luminance;
+  SCUMBLE_ASSIGN(exemplar.picture, ReadPicture(image_path));
   if (!guides.empty()) {
-    SCUMBLE_ASSIGN(picture, FitToGuides(std::move(picture), image_path.string(), folder / guides));
+    SCUMBLE_RETURN_IF_ERROR(ReadExemplarGuides(folder / guides, several && !luminance, exemplar));
   }
-  return Exemplar{image_path.string(), std::move(picture), luminance};
+  return exemplar;
 }
 
 Status ReadExemplars(const toml::node& node, const std::string& file, const fs::path& folder, Style& style) {
@@ -185,7 +213,7 @@ Status ReadExemplars(const toml::node& node, const std::string& file, const fs::
   for (const auto& item : *array) {
     const auto* table = item.as_table();
     if (!table) return InputError(Where(file, item) + ": write [[exemplar]] with two brackets");
-    SCUMBLE_ASSIGN(Exemplar exemplar, ReadExemplar(*table, file, folder));
+    SCUMBLE_ASSIGN(Exemplar exemplar, ReadExemplar(*table, file, folder, array->size() > 1));
     style.exemplars.push_back(std::move(exemplar));
   }
   return Ok();
@@ -247,7 +275,9 @@ Expected<Style> ReadPictureStyle(const fs::path& path) {
                       "`scumble sphere` wrote as the style, or crop the picture to the sphere");
   }
   Style style;
-  style.exemplars.push_back({path.string(), std::move(picture), std::nullopt});
+  Exemplar exemplar;
+  exemplar.name = path.string(), exemplar.picture = std::move(picture);
+  style.exemplars.push_back(std::move(exemplar));
   return style;
 }
 
@@ -270,9 +300,10 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
   for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
   for (const Exemplar& exemplar : style.exemplars) {
     const Picture& picture = exemplar.picture;
-    if (picture.width == picture.height) continue;
-    return InputError(exemplar.name + " is " + std::to_string(picture.width) + "×" + std::to_string(picture.height) +
-                      ": an exemplar is a square that its sphere fills; crop it to the sphere");
+    if (!exemplar.is_sphere || picture.width == picture.height) continue;
+    return InputError(exemplar.name + " is " + SizeText(picture.width, picture.height) +
+                      ": an exemplar is a square that its sphere fills; crop it to the sphere, or give the guides of "
+                      "the scene that it shows");
   }
   return style;
 }

@@ -20,7 +20,8 @@ namespace scumble {
 // A picture beside a style.toml that names it stands for that style.
 //
 // An [[exemplar]] picture is a square that the sphere fills. With `guides` naming the guides.exr that `scumble sphere`
-// wrote, the picture may also be the whole painted template: its margin is cut off.
+// wrote, the picture may also be the whole painted template: its margin is cut off. Any other guides with A and normal,
+// of the picture's size, make it a painting of that scene, of any shape.
 Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
 // The folders under `root` that hold a style.toml, sorted by name.

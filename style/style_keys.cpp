@@ -76,6 +76,15 @@ Status SetMethod(Style& style, const KeyValue& value, const std::filesystem::pat
   return UsageError("expected \"litsphere\", \"styleblit\" or \"bruteforce\"");
 }
 
+Status SetNearest(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "auto") return style.transfer.nearest = NearestSearch::kAuto, Ok();
+  if (text && *text == "analytic") return style.transfer.nearest = NearestSearch::kAnalytic, Ok();
+  if (text && *text == "table") return style.transfer.nearest = NearestSearch::kTable, Ok();
+  if (text && *text == "tree") return style.transfer.nearest = NearestSearch::kTree, Ok();
+  return UsageError("expected \"auto\", \"analytic\", \"table\" or \"tree\"");
+}
+
 Status SetMetric(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto* text = std::get_if<std::string>(&value);
   if (text && *text == "l2") return style.transfer.threshold_metric = ThresholdMetric::kL2, Ok();
@@ -143,6 +152,8 @@ std::vector<StyleKey> MakeKeys() {
       {"name", "\"\"", "what the style is called", true, Text(&Style::name)},
       {"licence", "\"\"", "SPDX name of the licence", true, Text(&Style::licence)},
       {"transfer.method", "\"styleblit\"", "litsphere, styleblit or bruteforce", true, SetMethod},
+      {"transfer.nearest", "\"auto\"", "how sources are found: analytic (spheres), table, or tree: exact and slow",
+       true, SetNearest},
       {"transfer.threshold", "0.125", "largest guide distance inside a chunk, between unit normals", true,
        Number(&T::threshold, 0.0, kInfinity)},
       {"transfer.threshold_metric", "\"l2\"", "l2, or l1: the authors' own test", true, SetMetric},

@@ -64,7 +64,12 @@ class CliTest : public testing::Test {
  protected:
   using Arguments = std::vector<std::string>;
 
-  CliTest() { std::filesystem::create_directory(Work()); }
+  CliTest() {
+    std::filesystem::create_directory(Work());
+    ::setenv("XDG_CACHE_HOME", Cache().c_str(), 1);  // commands leave nothing in the user's own
+  }
+
+  std::filesystem::path Cache() const { return folder_ / "cache"; }
 
   // The folder that commands run in; what they print is kept outside it.
   std::filesystem::path Work() const { return folder_ / "work"; }
@@ -201,12 +206,12 @@ class CliTest : public testing::Test {
     return arguments;
   }
 
- private:
   static std::string ReadAll(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
+ private:
   // In the child: only calls that are safe between fork and exec.
   [[noreturn]] static void Become(const std::vector<char*>& argv, const std::string& out, const std::string& err,
                                   const std::string& work, const CommandSettings& settings) {

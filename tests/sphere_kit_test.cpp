@@ -203,12 +203,16 @@ TEST(SphereKit, TheMarginIsInTheGuides) {
   }
 }
 
-TEST(SphereKit, GuidesOfAnotherProgramAreRefusedInWords) {
+TEST(SphereKit, GuidesOfAnotherProgramAreASceneOfTheirOwn) {
   const TemporaryFolder folder;
   ASSERT_TRUE(WritePicture(folder / "lit.png", RandomPicture(16, 16)));
   ASSERT_TRUE(WriteGuides(folder / "other.exr", SphereGuides(16)));
   ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", "[[exemplar]]\nimage = 'lit.png'\nguides = 'other.exr'\n"));
-  ExpectRefusal(LoadStyle(folder.path()), ErrorKind::kUnavailable, {"other.exr", "not written by `scumble sphere`"});
+  const auto style = LoadStyle(folder.path());
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_FALSE(style->exemplars[0].is_sphere);
+  ASSERT_TRUE(style->exemplars[0].guides);
+  EXPECT_EQ(style->exemplars[0].guides->width(), 16);
 }
 
 TEST(SphereKit, AnUnwritableFolderIsAnOutputError) {

@@ -12,6 +12,7 @@
 
 #include "image/hash.h"
 #include "io/atomic_file.h"
+#include "io/guide_file.h"
 #include "io/picture_file.h"
 #include "style/style_file.h"
 #include "style/style_keys.h"
@@ -44,6 +45,7 @@ void ExpectRefusal(const Expected<T>& result, ErrorKind kind, const std::vector<
 
 void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {
   EXPECT_EQ(a.method, b.method);
+  EXPECT_EQ(a.nearest, b.nearest);
   EXPECT_EQ(a.threshold, b.threshold);
   EXPECT_EQ(a.threshold_metric, b.threshold_metric);
   EXPECT_EQ(a.levels, b.levels);
@@ -269,9 +271,91 @@ TEST_F(StyleFile, WhatAnExemplarNeeds) {
     ExpectRefusal(Load(e + "luminance = " + bad + "\n"), ErrorKind::kInput, {"style.toml:3", "exemplar.luminance"});
   }
   ExpectRefusal(Load(e + "guides = 'no.exr'\n"), ErrorKind::kInput, {"no.exr", "no such file"});
-  ExpectRefusal(Load(e + "guides = 'lit.png'\n"), ErrorKind::kUnavailable, {"lit.png", "scumble sphere"});
+  ExpectRefusal(Load(e + "guides = 'lit.png'\n"), ErrorKind::kInput, {"lit.png", "no layer"});
   ASSERT_TRUE(WritePicture(folder_ / "lit.png", RandomPicture(8, 6)));
   ExpectRefusal(Load(e), ErrorKind::kInput, {"lit.png", "8×6", "square"});
+}
+
+GuideSet BallGuides(int width, int height, float luminance) {
+  GuideSet guides(width, height);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance}) guides.Add(layer);
+  for (int i = 0; i < width * height; ++i) {
+    const float u = (2.0f * float(i % width) + 1) / float(width) - 1,
+                v = 1 - (2.0f * float(i / width) + 1) / float(height);
+    if (u * u + v * v >= 1.0f) continue;
+    guides.Plane(Layer::kCoverage)[i] = 1.0f;
+    const float values[3] = {u, v, std::sqrt(1.0f - u * u - v * v)};
+    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = values[c];
+    guides.Plane(Layer::kLuminance)[i] = luminance;
+  }
+  return guides;
+}
+
+TEST_F(StyleFile, GuidesOfAnySceneOfThePicturesSize) {
+  ASSERT_TRUE(WritePicture(folder_ / "wide.png", RandomPicture(24, 16)));
+  ASSERT_TRUE(WriteGuides(folder_ / "wide.exr", BallGuides(24, 16, 0.5f)));
+  const std::string wide = "[[exemplar]]\nimage = 'wide.png'\n", guides = "guides = 'wide.exr'\n";
+  const auto style = Load(wide + guides);
+  ASSERT_TRUE(style) << style.error().message;
+  const Exemplar& exemplar = style->exemplars[0];
+  EXPECT_FALSE(exemplar.is_sphere);
+  ASSERT_TRUE(exemplar.guides);
+  EXPECT_EQ(exemplar.guides->width(), 24);
+  EXPECT_EQ(exemplar.guides->layers(), (LayerSet{Layer::kCoverage, Layer::kNormal}))
+      << "one exemplar: light is not read";
+  const std::size_t middle = exemplar.guides->Index(12, 8);
+  EXPECT_EQ(exemplar.guides->Vec3(Layer::kNormal, middle), BallGuides(24, 16, 0.5f).Vec3(Layer::kNormal, middle));
+  EXPECT_EQ(exemplar.picture.rgba, RandomPicture(24, 16).rgba);
+  const auto several = Load(wide + guides + wide + guides + "luminance = 0.1\n");
+  ASSERT_TRUE(several) << several.error().message;
+  EXPECT_TRUE(several->exemplars[0].guides->Has(Layer::kLuminance)) << "its luminance is to be measured";
+  EXPECT_FALSE(several->exemplars[1].guides->Has(Layer::kLuminance)) << "known";
+  ExpectRefusal(Load(wide), ErrorKind::kInput, {"wide.png", "24×16", "square", "guides"});
+  ExpectRefusal(Load("[[exemplar]]\nimage = 'lit.png'\n" + guides), ErrorKind::kInput,
+                {"lit.png is 8×8", "wide.exr are 24×16"});
+  GuideSet flat = BallGuides(24, 16, 0.5f);
+  flat.Remove(Layer::kNormal);
+  flat.Add(Layer::kDepth);
+  ASSERT_TRUE(WriteGuides(folder_ / "wide.exr", flat));
+  ExpectRefusal(Load(wide + guides), ErrorKind::kInput, {"wide.exr", "normal"});
+}
+
+TEST_F(StyleFile, GuidesOfTheSphereKitAreReadForTheirLightOnly) {
+  GuideSet kit = BallGuides(8, 8, 0.25f);
+  kit.attributes["scumble:sphereMargin"] = "2";
+  ASSERT_TRUE(WriteGuides(folder_ / "guides.exr", kit));
+  const std::string one = std::string(kExemplar) + "guides = 'guides.exr'\n";
+  auto style = Load(one);
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_TRUE(style->exemplars[0].is_sphere);
+  EXPECT_FALSE(style->exemplars[0].guides);
+  style = Load(one + one + "luminance = 0.9\n");
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_TRUE(style->exemplars[0].is_sphere);
+  ASSERT_TRUE(style->exemplars[0].guides);
+  EXPECT_TRUE(style->exemplars[0].guides->Has(Layer::kLuminance));
+  EXPECT_FALSE(style->exemplars[1].guides);
+  // The whole painted template: its margin is cut off.
+  ASSERT_TRUE(WritePicture(folder_ / "lit.png", RandomPicture(12, 12)));
+  style = Load(one);
+  ASSERT_TRUE(style) << style.error().message;
+  EXPECT_EQ(style->exemplars[0].picture.width, 8);
+  const Picture whole = RandomPicture(12, 12), &cut = style->exemplars[0].picture;
+  EXPECT_EQ(std::vector<int>(cut.At(0, 0), cut.At(0, 0) + 32), std::vector<int>(whole.At(2, 2), whole.At(2, 2) + 32));
+}
+
+TEST_F(StyleFile, WaysToFindSources) {
+  const std::pair<const char*, NearestSearch> cases[] = {{"auto", NearestSearch::kAuto},
+                                                         {"analytic", NearestSearch::kAnalytic},
+                                                         {"table", NearestSearch::kTable},
+                                                         {"tree", NearestSearch::kTree}};
+  for (const auto& [name, search] : cases) {
+    const auto style = LoadLine("nearest = '" + std::string(name) + "'");
+    ASSERT_TRUE(style) << style.error().message;
+    EXPECT_EQ(style->transfer.nearest, search);
+  }
+  ExpectRefusal(LoadLine("nearest = 'magic'"), ErrorKind::kInput, {"style.toml:2", "transfer.nearest", "analytic"});
+  ExpectRefusal(LoadLine("nearest = 1"), ErrorKind::kInput, {"transfer.nearest", "tree"});
 }
 
 TEST_F(StyleFile, UpToFourLightingConditions) {

@@ -31,16 +31,24 @@ float Illumination::Error(float luminance, int chosen) const {
 
 double MeasuredLuminance(const Picture& picture, double rim) {
   const double radius = 0.5 * picture.width - rim;
-  double sum = 0.0, weight = 0.0;
+  std::vector<std::uint8_t> disc(std::size_t(picture.width) * picture.height);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const double dx = x + 0.5 - 0.5 * picture.width, dy = y + 0.5 - 0.5 * picture.height;
-      if (dx * dx + dy * dy > radius * radius) continue;
-      const std::uint16_t* texel = picture.At(x, y);
-      sum += static_cast<double>(texel[3]) *
-             Luminance(Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2]));
-      weight += texel[3];
+      disc[std::size_t(y) * picture.width + x] = dx * dx + dy * dy <= radius * radius;
     }
+  }
+  return MeasuredLuminance(picture, disc);
+}
+
+double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> mask) {
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (!mask[i]) continue;
+    const std::uint16_t* texel = picture.rgba.data() + 4 * i;
+    sum += static_cast<double>(texel[3]) *
+           Luminance(Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2]));
+    weight += texel[3];
   }
   return weight > 0.0 ? sum / weight : 0.0;
 }

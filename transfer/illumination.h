@@ -36,6 +36,9 @@ class Illumination {
 // Mean luminance, linear, of the paint inside the disc of a square picture, weighted by its alpha.
 double MeasuredLuminance(const Picture& picture, double rim);
 
+// The same over the pixels of a mask, which has one value for each, 1 for yes.
+double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> mask);
+
 // The exposure, in stops to the hundredth, that maps the 90th percentile of the luminance of covered pixels to the
 // brightest exemplar's. 0 where nothing is lit. The guides must hold luminance.
 double MeasureExposure(const GuideSet& guides, std::span<const float> luminances);

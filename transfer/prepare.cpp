@@ -1,14 +1,19 @@
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "image/check.h"
 #include "transfer/colorize.h"
 #include "transfer/resample.h"
 #include "transfer/transfer.h"
+#include "transfer/usable_mask.h"
 
 namespace scumble {
 namespace {
 
 constexpr int kMaxExemplarSize = 16384;
+constexpr int kMaxTableResolution = 16384;
 
 // Lengths follow the height; the seed grids are powers of two, so levels follow in whole steps, to the nearest octave.
 // In integers: height / reference ≥ √2 is one level more, ≥ 2√2 two, < 1/√2 one less.
@@ -51,6 +56,61 @@ Picture ScaledPaper(const Picture& paper, int reference_height, int output_heigh
   return Resample(paper, scaled(paper.width), scaled(paper.height));
 }
 
+// What is painted must be one scene: the exemplars of a style differ in light and paint only.
+Status CheckSameScene(const Exemplar& first, const Exemplar& other) {
+  const std::string both = first.name + " and " + other.name;
+  if (first.is_sphere != other.is_sphere) {
+    return InputError(both +
+                      ": one is a sphere and the other has guides of another scene; the exemplars of a style show "
+                      "one scene in different light");
+  }
+  if (first.is_sphere) return Ok();
+  const GuideSet &a = *first.guides, &b = *other.guides;
+  if (a.width() != b.width() || a.height() != b.height()) {
+    return InputError("the guides of " + both + " are " + std::to_string(a.width()) + "×" + std::to_string(a.height()) +
+                      " and " + std::to_string(b.width()) + "×" + std::to_string(b.height()) +
+                      ": the exemplars of a style show one scene in different light; render them with one camera");
+  }
+  constexpr float kSame = 1e-3f;  // half floats and other renderers round
+  for (std::size_t i = 0; i < a.pixel_count(); ++i) {
+    const bool covered = a.Plane(Layer::kCoverage)[i] > 0.0f;
+    bool same = covered == (b.Plane(Layer::kCoverage)[i] > 0.0f);
+    if (same && covered) {
+      const glm::vec3 d = glm::abs(a.Vec3(Layer::kNormal, i) - b.Vec3(Layer::kNormal, i));
+      same = d.x <= kSame && d.y <= kSame && d.z <= kSame;
+    }
+    if (same) continue;
+    const auto width = static_cast<std::size_t>(a.width());
+    return InputError("the guides of " + both + " differ at (" + std::to_string(i % width) + ", " +
+                      std::to_string(i / width) +
+                      "): the exemplars of a style show one scene in different light; move lights only");
+  }
+  return Ok();
+}
+
+Status CheckExemplar(const Exemplar& exemplar) {
+  const auto size = [](int width, int height) { return std::to_string(width) + "×" + std::to_string(height); };
+  const Picture& picture = exemplar.picture;
+  const std::string is = exemplar.name + " is " + size(picture.width, picture.height);
+  if (exemplar.luminance && !(*exemplar.luminance >= 0.0 && std::isfinite(*exemplar.luminance))) {
+    return UsageError(exemplar.name + ": exemplar.luminance must be 0 or more");
+  }
+  if (picture.empty() || (exemplar.is_sphere && picture.width != picture.height)) {
+    return InputError(is + ": an exemplar is a square that its sphere fills, or has guides that say what it shows");
+  }
+  if (std::max(picture.width, picture.height) > kMaxExemplarSize) {
+    return InputError(is + ": exemplars have at most " + std::to_string(kMaxExemplarSize) +
+                      " pixels a side; shrink it");
+  }
+  SCUMBLE_CHECK(exemplar.is_sphere || exemplar.guides);
+  if (!exemplar.guides) return Ok();
+  const GuideSet& guides = *exemplar.guides;
+  if (guides.width() != picture.width || guides.height() != picture.height) {
+    return InputError(is + ", its guides are " + size(guides.width(), guides.height()) + ": both must have one size");
+  }
+  return guides.Validate("the guides of " + exemplar.name);
+}
+
 Status CheckExemplars(const Style& style) {
   if (style.exemplars.empty() || style.exemplars.size() > std::size_t(kMaxExemplars)) {
     return InputError("style " + style.name + " has " + std::to_string(style.exemplars.size()) +
@@ -58,43 +118,70 @@ Status CheckExemplars(const Style& style) {
                       " for different light");
   }
   for (const Exemplar& exemplar : style.exemplars) {
-    if (exemplar.picture.empty() || exemplar.picture.width != exemplar.picture.height) {
-      return InputError(exemplar.name + " is " + std::to_string(exemplar.picture.width) + "×" +
-                        std::to_string(exemplar.picture.height) + ": an exemplar is a square that its sphere fills");
-    }
-    if (exemplar.luminance && !(*exemplar.luminance >= 0.0 && std::isfinite(*exemplar.luminance))) {
-      return UsageError(exemplar.name + ": exemplar.luminance must be 0 or more");
-    }
+    SCUMBLE_RETURN_IF_ERROR(CheckExemplar(exemplar));
+    SCUMBLE_RETURN_IF_ERROR(CheckSameScene(style.exemplars.front(), exemplar));
   }
   return Ok();
 }
 
-}  // namespace
+// What the style says, else what the guides were lit by, else what the paint shows.
+double LuminanceOf(const Exemplar& exemplar, double rim) {
+  if (exemplar.luminance) return *exemplar.luminance;
+  if (!exemplar.guides) return MeasuredLuminance(exemplar.picture, rim);
+  const std::vector<std::uint8_t> mask = internal::UsableMask(*exemplar.guides, rim);
+  if (!exemplar.guides->Has(Layer::kLuminance)) return MeasuredLuminance(exemplar.picture, mask);
+  const auto luminance = exemplar.guides->Plane(Layer::kLuminance);
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i]) sum += std::max(0.0, static_cast<double>(luminance[i])), count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
 
-Expected<PreparedStyle> Prepare(const Style& style, int output_height) {
+Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& style, int output_height,
+                                                                  const PrepareOptions& options) {
   const TransferSettings& settings = style.transfer;
-  SCUMBLE_RETURN_IF_ERROR(CheckSettings(settings));
-  SCUMBLE_RETURN_IF_ERROR(CheckExemplars(style));
   const Exemplar& first = style.exemplars.front();
-  const int size = ScaledSize(first.picture.width, settings.scale, settings.reference_height, output_height);
-  if (size > kMaxExemplarSize) {
-    return UsageError(first.name + " would be resized from " + std::to_string(first.picture.width) + " to " +
-                      std::to_string(size) + " pixels by transfer.scale and the output's height: at most " +
+  const auto scaled = [&](int side) {
+    return ScaledSize(side, settings.scale, settings.reference_height, output_height);
+  };
+  const int longer = std::max(first.picture.width, first.picture.height);
+  if (scaled(longer) > kMaxExemplarSize) {
+    return UsageError(first.name + " would be resized from " + std::to_string(longer) + " to " +
+                      std::to_string(scaled(longer)) + " pixels by transfer.scale and the output's height: at most " +
                       std::to_string(kMaxExemplarSize) + " are possible; lower transfer.scale");
   }
   std::vector<const Picture*> pictures;
-  std::vector<double> luminances;
-  for (const Exemplar& exemplar : style.exemplars) {
-    pictures.push_back(&exemplar.picture);
-    luminances.push_back(exemplar.luminance ? *exemplar.luminance : MeasuredLuminance(exemplar.picture, settings.rim));
+  for (const Exemplar& exemplar : style.exemplars) pictures.push_back(&exemplar.picture);
+  std::shared_ptr<PreparedExemplar> prepared;
+  if (first.is_sphere) {
+    prepared = std::make_shared<PreparedExemplar>(pictures, settings.rim, scaled(longer));
+  } else {
+    const int width = scaled(first.picture.width), height = scaled(first.picture.height);
+    SCUMBLE_ASSIGN(PreparedExemplar scene,
+                   PreparedExemplar::OfScene(pictures, *first.guides, settings.rim, width, height, first.name));
+    prepared = std::make_shared<PreparedExemplar>(std::move(scene));
   }
+  SCUMBLE_RETURN_IF_ERROR(prepared->SearchBy(settings.nearest, options.table_resolution, options.cache));
+  return std::shared_ptr<const PreparedExemplar>(std::move(prepared));
+}
+
+Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, const PrepareOptions& options) {
+  const TransferSettings& settings = style.transfer;
+  SCUMBLE_RETURN_IF_ERROR(CheckSettings(settings));
+  if (options.table_resolution < 1 || options.table_resolution > kMaxTableResolution) {
+    return UsageError("a look-up table has 1 to " + std::to_string(kMaxTableResolution) + " cells a side");
+  }
+  SCUMBLE_RETURN_IF_ERROR(CheckExemplars(style));
+  std::vector<double> luminances;
+  for (const Exemplar& exemplar : style.exemplars) luminances.push_back(LuminanceOf(exemplar, settings.rim));
   PreparedStyle prepared;
   prepared.settings = settings;
   prepared.required = RequiredLayers(style);
   prepared.output_height = output_height;
   prepared.levels = ScaledLevels(settings.levels, settings.reference_height, output_height);
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
-  prepared.exemplar = std::make_shared<PreparedExemplar>(pictures, settings.rim, size);
+  SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
   prepared.illumination = Illumination(luminances, settings.luminance_weight, settings.luminance_error);
   if (settings.colorize > 0.0 && settings.colorize_mode == ColorizeMode::kOklab) {
     for (int k = 0; k < prepared.exemplar->count(); ++k) {
@@ -106,6 +193,13 @@ Expected<PreparedStyle> Prepare(const Style& style, int output_height) {
     prepared.paper.picture = ScaledPaper(*style.paper.picture, settings.reference_height, output_height);
   }
   return prepared;
+}
+
+}  // namespace
+
+Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options) {
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return PrepareInArena(style, output_height, options); });
 }
 
 std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,

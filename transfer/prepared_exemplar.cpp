@@ -1,12 +1,33 @@
 #include "transfer/prepared_exemplar.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
+#include <optional>
 
 #include "image/check.h"
+#include "image/hash.h"
+#include "transfer/guide_tree.h"
+#include "transfer/look_up_table.h"
 #include "transfer/resample.h"
+#include "transfer/usable_mask.h"
 
 namespace scumble {
+
+// A table or a tree over the normals of the usable pixels.
+class ExemplarSearch {
+ public:
+  std::optional<LookUpTable> table;
+  std::vector<Source> sources;  // of the tree's points
+  std::optional<PointTree> normals;
+
+  Source Find(glm::vec3 direction) const {
+    if (table) return table->Find(direction);
+    const float query[3] = {direction.x, direction.y, direction.z};
+    return sources[normals->Nearest(query)];
+  }
+};
+
 namespace {
 
 // (N · usable fraction)² in half pixels, but never without the pixels at the centre.
@@ -28,8 +49,10 @@ Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
       const double length = std::sqrt(static_cast<double>(dx * dx + dy * dy));
       // Steps inward until the pixel is usable: rounding to pixels may need one or two beyond the exact radius.
       for (double r = radius;; r -= 1.0) {
-        const int sx = std::clamp(static_cast<int>(std::floor((dx / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
-        const int sy = std::clamp(static_cast<int>(std::floor((dy / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
+        const int sx =
+            std::clamp(static_cast<int>(std::floor((dx / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
+        const int sy =
+            std::clamp(static_cast<int>(std::floor((dy / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
         const std::int64_t ex = 2 * sx + 1 - size, ey = 2 * sy + 1 - size;
         if (ex * ex + ey * ey > limit && r > 0.0) continue;
         std::copy_n(picture.At(sx, sy), 4, extended.At(x, y));
@@ -58,7 +81,123 @@ PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, dou
   }
 }
 
-Source PreparedExemplar::NearestNeighbour(glm::vec3 normal) const {
+Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* const> pictures, const GuideSet& guides,
+                                                     double rim, int width, int height, const std::string& name) {
+  SCUMBLE_CHECK(!pictures.empty() && width >= 1 && width <= 32767 && height >= 1 && height <= 32767);
+  const std::vector<std::uint8_t> mask = internal::UsableMask(guides, rim);
+  if (std::find(mask.begin(), mask.end(), 1) == mask.end()) {
+    const auto coverage = guides.Plane(Layer::kCoverage);
+    if (std::none_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; })) {
+      return InputError("the guides of " + name + " cover nothing: A is 0 everywhere");
+    }
+    return UsageError(name + ": no painted pixel is " + std::to_string(rim) +
+                      " pixels or more from the edge; lower transfer.rim");
+  }
+  auto scene = std::make_shared<Scene>();
+  scene->width = width, scene->height = height;
+  scene->normal.resize(std::size_t(width) * height);
+  scene->usable.resize(scene->normal.size());
+  for (int y = 0; y < height; ++y) {
+    const int v = static_cast<int>((2 * std::int64_t(y) + 1) * guides.height() / (2 * std::int64_t(height)));
+    for (int x = 0; x < width; ++x) {
+      const int u = static_cast<int>((2 * std::int64_t(x) + 1) * guides.width() / (2 * std::int64_t(width)));
+      const std::size_t from = guides.Index(u, v), to = std::size_t(y) * width + x;
+      scene->usable[to] = mask[from];
+      if (mask[from]) scene->normal[to] = guides.Vec3(Layer::kNormal, from);
+    }
+  }
+  if (std::find(scene->usable.begin(), scene->usable.end(), 1) == scene->usable.end()) {
+    return UsageError(name + ": nothing of what is painted is left at " + std::to_string(width) + "×" +
+                      std::to_string(height) + " pixels; raise transfer.scale");
+  }
+  PreparedExemplar exemplar;
+  exemplar.size_ = std::max(width, height);
+  for (const Picture* picture : pictures) {
+    SCUMBLE_CHECK_EQ(picture->width, guides.width());
+    SCUMBLE_CHECK_EQ(picture->height, guides.height());
+    exemplar.pictures_.push_back(Resample(internal::ExtendPaint(*picture, mask), width, height));
+  }
+  exemplar.scene_ = std::move(scene);
+  return exemplar;
+}
+
+std::vector<Source> PreparedExemplar::UsablePixels() const {
+  std::vector<Source> sources;
+  for (int y = 0; y < height(); ++y) {
+    for (int x = 0; x < width(); ++x) {
+      if (Usable(x, y)) sources.push_back({x, y});
+    }
+  }
+  return sources;
+}
+
+// Everything that a table depends on, in 128 bits: no two exemplars meet in them by chance.
+std::string PreparedExemplar::TableKey(std::span<const Source> sources, int resolution) const {
+  constexpr int kFormat = 1;
+  std::uint64_t a = Hash(kFormat, resolution, width(), height()), b = ~a;
+  for (const Source& source : sources) {
+    const glm::vec3 normal = Normal(source.x, source.y);
+    std::uint32_t bits[3];
+    std::memcpy(bits, &normal, sizeof bits);
+    const std::uint64_t place = std::uint64_t(source.y) << 32 | std::uint32_t(source.x);
+    const std::uint64_t word = std::uint64_t(bits[0]) << 32 | bits[1];
+    a = Mix64(Mix64(a ^ place) ^ word) + bits[2];
+    b = Mix64(b + word) ^ (Mix64(place) + bits[2]);
+  }
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string key;
+  for (const std::uint64_t half : {Mix64(a), Mix64(b)}) {
+    for (int shift = 60; shift >= 0; shift -= 4) key += kDigits[half >> shift & 15];
+  }
+  return key;
+}
+
+Status PreparedExemplar::SearchBy(NearestSearch search, int resolution, TableCache* cache) {
+  if (search == NearestSearch::kAuto) search = is_sphere() ? NearestSearch::kAnalytic : NearestSearch::kTable;
+  if (search == NearestSearch::kAnalytic) {
+    if (!is_sphere()) {
+      return UsageError(
+          "transfer.nearest = \"analytic\" is for spheres; this exemplar has guides of its own: leave it "
+          "at \"auto\", or take \"table\" or \"tree\"");
+    }
+    search_.reset();
+    return Ok();
+  }
+  auto found = std::make_shared<ExemplarSearch>();
+  found->sources = UsablePixels();
+  std::string key;
+  if (search == NearestSearch::kTable && cache) {
+    key = TableKey(found->sources, resolution);
+    if (const auto bytes = cache->Load(key)) found->table = LookUpTable::FromBytes(*bytes, resolution);
+    const auto usable = [&](const Source& cell) { return Usable(cell.x, cell.y); };
+    if (found->table && std::all_of(found->table->cells().begin(), found->table->cells().end(), usable)) {
+      found->sources = {};
+      search_ = std::move(found);
+      return Ok();
+    }
+    found->table.reset();
+  }
+  std::vector<float> coordinates;
+  coordinates.reserve(3 * found->sources.size());
+  for (const Source& source : found->sources) {
+    const glm::vec3 normal = Normal(source.x, source.y);
+    coordinates.insert(coordinates.end(), {normal.x, normal.y, normal.z});
+  }
+  found->normals.emplace(3, std::move(coordinates));
+  if (search == NearestSearch::kTable) {
+    found->table.emplace(*found->normals, found->sources, resolution);
+    if (cache) cache->Store(key, found->table->ToBytes());
+    found->normals.reset();
+    found->sources = {};
+  }
+  search_ = std::move(found);
+  return Ok();
+}
+
+Source PreparedExemplar::Searched(glm::vec3 normal) const { return search_->Find(FacingDirection(normal)); }
+
+Source PreparedExemplar::Analytic(glm::vec3 normal) const {
+  SCUMBLE_DCHECK(is_sphere());
   float nx = normal.x, ny = normal.y;
   float length = std::sqrt(nx * nx + ny * ny);
   if (!(length <= 3.0e38f)) nx = 0.0f, ny = 0.0f, length = 0.0f;  // NaN and infinity look at the centre

@@ -1,66 +1,109 @@
-// An exemplar made ready: resized, its paint extended past the rim, with the guides of the sphere that fills it.
+// An exemplar made ready: resized, its paint extended past the rim, with the guides of what is painted on it, and the
+// way to find the nearest of them.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "image/guides.h"
 #include "image/picture.h"
+#include "image/status.h"
+#include "image/style.h"
+#include "transfer/source.h"
+#include "transfer/table_cache.h"
 
 namespace scumble {
 
-// A pixel of the exemplar.
-struct Source {
-  int x = 0;
-  int y = 0;
-  bool operator==(const Source&) const = default;
-};
+class ExemplarSearch;
 
-// The sphere fills the N × N picture: centre N/2, radius N/2. Positions inside radius 1 - rim are usable; all others
-// are never shown. Immutable once made; concurrent reads are safe.
+// Either the sphere that fills the N × N picture (centre N/2, radius N/2), whose positions inside radius 1 - rim are
+// usable; or any scene with guides of its own, in a picture of any shape, where the guides' coverage less the rim is.
+// All other positions are never shown. Immutable once made; concurrent reads are safe.
 class PreparedExemplar {
  public:
-  // One picture or several, the same sphere under different light; all are resized to N = `size`, 1 … 32767. `rim` is in
-  // pixels of each picture; all must be square. Paint is extended outward from the rim before resizing, so nothing from
-  // outside the painted disc reaches a usable texel.
+  // A sphere. One picture or several, the same sphere under different light; all are resized to N = `size`, 1 … 32767.
+  // `rim` is in pixels of each picture; all must be square. Paint is extended outward from the rim before resizing, so
+  // nothing from outside the painted disc reaches a usable texel.
   PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size);
   PreparedExemplar(const Picture& picture, double rim, int size)
       : PreparedExemplar(std::vector<const Picture*>{&picture}, rim, size) {}
 
-  int size() const { return size_; }
+  // A painted scene: pictures of the size of its guides, resized to width × height, 1 … 32767 each. Guides are sampled
+  // at pixel centres, never averaged. The guides must pass Validate. SearchBy must be called before NearestNeighbour.
+  // Fails where no pixel is left that is usable; `name` is the exemplar's in that message.
+  static Expected<PreparedExemplar> OfScene(std::span<const Picture* const> pictures, const GuideSet& guides,
+                                            double rim, int width, int height, const std::string& name);
+
+  // How NearestNeighbour searches from now on, before the exemplar is shared: kAuto is the formula for a sphere and a
+  // table for a scene. kAnalytic is a kUsage error for a scene. Tables have `resolution`² cells and are looked for in
+  // `cache` first, which may be null. O(usable pixels · log) where something is built.
+  Status SearchBy(NearestSearch search, int resolution, TableCache* cache);
+
+  bool is_sphere() const { return !scene_; }
+  int width() const { return scene_ ? scene_->width : size_; }
+  int height() const { return scene_ ? scene_->height : size_; }
+  int size() const { return size_; }  // the longer side
   int count() const { return static_cast<int>(pictures_.size()); }
   const Picture& picture(int index = 0) const { return pictures_[std::size_t(index)]; }
 
   bool Usable(int x, int y) const {
+    if (scene_) return scene_->Usable(x, y);
     if (static_cast<unsigned>(x) >= static_cast<unsigned>(size_)) return false;
     if (static_cast<unsigned>(y) >= static_cast<unsigned>(size_)) return false;
     const std::int64_t dx = 2 * x + 1 - size_, dy = 2 * y + 1 - size_;
     return dx * dx + dy * dy <= limit_;
   }
 
-  // The sphere's view-space normal at the centre of a usable pixel.
+  // The view-space normal at the centre of a usable pixel.
   glm::vec3 Normal(int x, int y) const {
+    if (scene_) return scene_->normal[std::size_t(y) * scene_->width + x];
     const float nx = coordinate_[x], ny = -coordinate_[y];
     return {nx, ny, std::sqrt(std::fmax(0.0f, 1.0f - nx * nx - ny * ny))};
   }
 
-  // The analytic nearest neighbour u* = argmin ‖normal - Normal(u)‖ over usable pixels, within one pixel of the exact
-  // one; ties to the lowest (y, x). A normal beyond the rim, or with z < 0, takes the usable pixel nearest to the point
-  // of the rim along its (x, y), and (0, 0, -1) that at +Y. (The exact argmin would jump along the rim's staircase of
-  // pixels there, by many at once, for no gain that anyone can see.) Any finite or NaN input gives a usable pixel.
-  Source NearestNeighbour(glm::vec3 normal) const;
+  // The nearest neighbour u* = argmin ‖normal - Normal(u)‖ over usable pixels, by the search that was chosen:
+  // - analytic: within one pixel of the exact one; ties to the lowest (y, x). A normal beyond the rim, or with z < 0,
+  //   takes the usable pixel nearest to the point of the rim along its (x, y), and (0, 0, -1) that at +Y. (The exact
+  //   argmin would jump along the rim's staircase of pixels there, by many at once, for no gain that anyone can see.)
+  // - tree: exact for FacingDirection(normal); ties to the lowest (y, x).
+  // - table: at most LookUpTable::Quantisation further away than the tree's.
+  // Any finite or NaN input gives a usable pixel.
+  Source NearestNeighbour(glm::vec3 normal) const { return search_ ? Searched(normal) : Analytic(normal); }
+
+  // The usable pixels in row order.
+  std::vector<Source> UsablePixels() const;
 
  private:
+  struct Scene {
+    int width = 0, height = 0;
+    std::vector<glm::vec3> normal;
+    std::vector<std::uint8_t> usable;
+    bool Usable(int x, int y) const {
+      if (static_cast<unsigned>(x) >= static_cast<unsigned>(width)) return false;
+      if (static_cast<unsigned>(y) >= static_cast<unsigned>(height)) return false;
+      return usable[std::size_t(y) * width + x] != 0;
+    }
+  };
+
+  PreparedExemplar() = default;
+  Source Analytic(glm::vec3 normal) const;
+  Source Searched(glm::vec3 normal) const;
   // The usable pixel nearest to (nx, ny) of the unit disc, near pixel (x, y).
   Source NearestUsable(float nx, float ny, int x, int y) const;
+  std::string TableKey(std::span<const Source> sources, int resolution) const;
 
-  int size_;
-  std::int64_t limit_;              // squared usable radius in half pixels
-  float usable_radius_;             // the same as a fraction of the sphere's
-  std::vector<float> coordinate_;   // pixel index → [-1, 1]
+  int size_ = 0;
+  std::int64_t limit_ = 0;         // squared usable radius in half pixels
+  float usable_radius_ = 0;        // the same as a fraction of the sphere's
+  std::vector<float> coordinate_;  // pixel index → [-1, 1]
   std::vector<Picture> pictures_;
+  std::shared_ptr<const Scene> scene_;            // null: the sphere
+  std::shared_ptr<const ExemplarSearch> search_;  // null: analytic
 };
 
 // N for a picture of `size` pixels at `scale`, for an output of `output_height` pixels; `reference_height` 0 means that

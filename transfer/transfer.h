@@ -16,6 +16,7 @@
 #include "image/status.h"
 #include "image/style.h"
 #include "transfer/illumination.h"
+#include "transfer/look_up_table.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/region.h"
 #include "transfer/source_field.h"
@@ -36,9 +37,17 @@ struct PreparedStyle {
   int blend_radius = 0;  // settings.blend_radius at the output's height
 };
 
+struct PrepareOptions {
+  int table_resolution = LookUpTable::kResolution;  // cells a side of look-up tables, 1 … 16384
+  TableCache* cache = nullptr;                      // where they are kept; null: nowhere
+  int threads = 0;                                  // 0: all
+};
+
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
-// Fails where an exemplar is empty or not square, or where a setting is outside the range that image/style.h states.
-Expected<PreparedStyle> Prepare(const Style& style, int output_height);
+// Fails where an exemplar is empty; where a sphere's picture is not square; where guides do not fit their picture, or
+// those of one style's exemplars are not of one scene; or where a setting is outside the range that image/style.h
+// states.
+Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
 struct TransferOptions {
   std::uint64_t seed = 0;

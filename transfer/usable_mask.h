@@ -1,0 +1,21 @@
+// Which pixels of an exemplar may be shown, where its guides and not a circle say what is painted.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/picture.h"
+
+namespace scumble::internal {
+
+// 1 on covered pixels whose centre is `rim` pixels or more from the centre of every uncovered one. The picture's own
+// edge is no painted edge: where the scene runs on beyond it, pixels are usable up to it. O(pixels).
+std::vector<std::uint8_t> UsableMask(const GuideSet& guides, double rim);
+
+// Replaces the paint of every pixel outside the mask by that of the nearest one inside, so that a filter which reaches
+// over the rim meets paint and not what lies around the object. The mask holds at least one pixel.
+Picture ExtendPaint(const Picture& picture, std::span<const std::uint8_t> mask);
+
+}  // namespace scumble::internal
