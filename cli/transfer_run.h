@@ -23,6 +23,7 @@ struct PictureOptions {
   std::string exposure = "auto";
   std::uint64_t seed = 0;
   int repeat = 1;
+  std::string show;  // an explanation's name; empty: the result itself
 };
 void AddPictureOptions(CLI::App& verb, PictureOptions& options);
 
@@ -33,7 +34,7 @@ struct GuideSource {
   std::vector<PlanItem> plan;  // printed as part of the result, unless it is empty
 };
 
-// Prepares, transfers `repeat` times, writes the picture and prints its path with the time of each step. Under --json
+// Prepares, transfers `repeat` times, writes the picture, or the one that explains it, and prints its path with the time of each step. Under --json
 // the steps, coherence and sizes as an object.
 Expected<ExitCode> RunTransfer(const StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                const PictureOptions& options, const Globals& globals, const Progress& progress);
