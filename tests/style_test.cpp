@@ -51,6 +51,8 @@ void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {
   EXPECT_EQ(a.jitter_fps, b.jitter_fps);
   EXPECT_EQ(a.blend_radius, b.blend_radius);
   EXPECT_EQ(a.edge_aware, b.edge_aware);
+  EXPECT_EQ(a.crease, b.crease);
+  EXPECT_EQ(a.depth_tolerance, b.depth_tolerance);
   EXPECT_EQ(a.scale, b.scale);
   EXPECT_EQ(a.rim, b.rim);
   EXPECT_EQ(a.reference_height, b.reference_height);
@@ -113,6 +115,8 @@ TEST_F(StyleFile, ValuesUpToTheirBoundariesAreTaken) {
   const auto height = [](const T& t) { return double(t.reference_height); };
   const auto method = [](const T& t) { return double(t.method); };
   const auto metric = [](const T& t) { return double(t.threshold_metric); };
+  const auto crease = [](const T& t) { return t.crease; };
+  const auto tolerance = [](const T& t) { return t.depth_tolerance; };
   const auto edges = [](const T& t) { return double(t.edge_aware); };
   const Valid cases[] = {
       {"method = 'litsphere'", method, double(Method::kLitSphere)},
@@ -134,6 +138,10 @@ TEST_F(StyleFile, ValuesUpToTheirBoundariesAreTaken) {
       {"blend_radius = 0", blend, 0},
       {"blend_radius = 64", blend, 64},
       {"edge_aware = false", edges, 0},
+      {"crease = 0", crease, 0},
+      {"crease = 180", crease, 180},
+      {"depth_tolerance = 0", tolerance, 0},
+      {"depth_tolerance = 1", tolerance, 1},
       {"scale = 0.001", scale, 0.001},
       {"scale = 64", scale, 64},
       {"rim = 0", rim, 0},
@@ -171,6 +179,11 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
                                                                   {"blend_radius = -1", "0 to 64"},
                                                                   {"blend_radius = 65", "0 to 64"},
                                                                   {"edge_aware = 1", "true or false"},
+                                                                  {"crease = -1", "0 to 180"},
+                                                                  {"crease = 181", "0 to 180"},
+                                                                  {"depth_tolerance = -0.001", "0 to 1"},
+                                                                  {"depth_tolerance = 1.5", "0 to 1"},
+                                                                  {"depth_tolerance = nan", "0 to 1"},
                                                                   {"scale = 0", "0.001 to 64"},
                                                                   {"scale = -1", "0.001 to 64"},
                                                                   {"scale = 65", "0.001 to 64"},

@@ -35,6 +35,10 @@ Status CheckSettings(const TransferSettings& settings) {
   if (settings.blend_radius < 0 || settings.blend_radius > 64) {
     return UsageError("transfer.blend_radius must be 0 to 64");
   }
+  if (!(settings.crease >= 0.0 && settings.crease <= 180.0)) return UsageError("transfer.crease must be 0 to 180 degrees");
+  if (!(settings.depth_tolerance >= 0.0 && settings.depth_tolerance <= 1.0)) {
+    return UsageError("transfer.depth_tolerance must be 0 to 1");
+  }
   if (!(settings.luminance_weight >= 0.0f)) return UsageError("transfer.luminance_weight must be 0 or more");
   if (!(settings.colorize >= 0.0 && settings.colorize <= 1.0)) return UsageError("transfer.colorize must be 0 to 1");
   if (!(settings.variety >= 0.0 && settings.variety <= 90.0)) return UsageError("transfer.variety must be 0 to 90 degrees");

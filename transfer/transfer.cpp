@@ -155,11 +155,15 @@ class Run {
     if (!Match(settings.method, input, match_progress)) return CancelledError();
     scratch_.times.match_ms += watch.Lap();
 
-    const internal::EdgeTest* edges = nullptr;
-    if (settings.edge_aware && style.blend_radius > 0) edges = edges_ ? &*edges_ : &edges_.emplace(guides_);
+    std::optional<internal::EdgeTest> edges;
+    if (settings.edge_aware && style.blend_radius > 0) {
+      if (!slopes_) slopes_.emplace(guides_);
+      edges.emplace(guides_, *slopes_, settings.crease, settings.depth_tolerance);
+    }
     const int rows = painted.y1 - painted.y0;
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
-    const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, edges, painted};
+    const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
+                                     edges ? &*edges : nullptr, painted};
     if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     scratch_.times.vote_ms += watch.Lap();
 
@@ -193,7 +197,7 @@ class Run {
   Picture& out_;
   Region region_;
   std::vector<float> luminance_;
-  std::optional<internal::EdgeTest> edges_;
+  std::optional<internal::DepthSlopes> slopes_;
 };
 
 Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
