@@ -31,6 +31,11 @@ enum class LuminanceError {
   kPublished,  // |L_p - L_e|
 };
 
+enum class EdgeMode {
+  kExact,     // the silhouette is the guides' coverage
+  kExemplar,  // the exemplar's own painted edge goes on along it
+};
+
 enum class ColorizeMode {
   kMultiply,  // paint times the scene's base colour
   kOklab,     // lightness varies as the paint's does, hue and chroma are the scene's
@@ -55,6 +60,7 @@ struct TransferSettings {
   double variety = 0.0;      // 0 … 90 degrees: how far from its own normal a seed on a flat surface may take its paint
   double scale = 1.0;        // exemplar size, above 0
   double rim = 2.0;          // exemplar pixels at the painted edge that are never used
+  EdgeMode edge = EdgeMode::kExact;
   int reference_height = 1080;  // 0: lengths are plain pixels
 };
 

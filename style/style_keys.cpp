@@ -97,6 +97,13 @@ Status SetColorizeMode(Style& style, const KeyValue& value, const std::filesyste
   return UsageError("expected \"multiply\" or \"oklab\"");
 }
 
+Status SetEdge(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "exact") return style.transfer.edge = EdgeMode::kExact, Ok();
+  if (text && *text == "exemplar") return style.transfer.edge = EdgeMode::kExemplar, Ok();
+  return UsageError("expected \"exact\" or \"exemplar\"");
+}
+
 Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto number = AsNumber(value);
   if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= 1000.0))) {
@@ -170,7 +177,7 @@ std::vector<StyleKey> MakeKeys() {
        Number(&T::rim, 0.0, 16384.0)},
       {"transfer.reference_height", "1080", "lengths are pixels at this output height; 0: plain pixels", true,
        Whole(&T::reference_height, 0, 32768)},
-      ToCome("edge", std::string("exact"), "silhouette: exact coverage"),
+      {"transfer.edge", "\"exact\"", "silhouettes: exact, or exemplar: its painted edge goes on along them", true, SetEdge},
       {"transfer.paper", "\"\"", "picture or colour behind; empty: transparent", true, SetPaper},
   };
 }

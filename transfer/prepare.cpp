@@ -105,6 +105,11 @@ Expected<PreparedStyle> Prepare(const Style& style, int output_height) {
       prepared.mean_lightness.push_back(internal::MeanLightness(*prepared.exemplar, k));
     }
   }
+  if (settings.edge == EdgeMode::kExemplar) {
+    for (const Exemplar& exemplar : style.exemplars) prepared.rims.emplace_back(exemplar.picture, style.paper, size);
+    const auto has_edge = [](const RimPaint& rim) { return rim.HasEdge(); };
+    if (!std::all_of(prepared.rims.begin(), prepared.rims.end(), has_edge)) prepared.rims.clear();
+  }
   prepared.paper = style.paper;
   if (style.paper.picture) {
     prepared.paper.picture = ScaledPaper(*style.paper.picture, settings.reference_height, output_height);

@@ -79,23 +79,34 @@ class Run {
   }
 
   Status Paint(const PreparedStyle& style, int index, const Region& extent, double from, double to) {
-    const Region painted = Intersection(region_, extent);
-    if (painted.empty()) return Ok();
+    Region painted = Intersection(region_, extent);
+    int reach = style.blend_radius;  // the pixels around whose sources decide what is painted
+    // A painted edge may stand in the region while its object does not.
+    for (const RimPaint& rim : style.rims) reach = std::max(reach, rim.band());
+    const Region near = Intersection(extent, region_.GrownBy(reach, guides_.width(), guides_.height()));
+    if (painted.empty() && (style.rims.empty() || near.empty())) return Ok();
+    if (painted.empty()) painted = {};
     // Chunks of the brute force depend on every pixel above them, so it always runs over all of them.
-    const Region matched = style.settings.method == Method::kBruteForce
-                               ? extent
-                               : Intersection(extent, painted.GrownBy(style.blend_radius, guides_.width(), guides_.height()));
+    const Region matched = style.settings.method == Method::kBruteForce ? extent : near;
     Activate(index, extent);
     const Status done = MatchAndVote(style, matched, painted, from, to);
     Deactivate(extent);
     return done;
   }
 
-  Status Finish(const Paper& paper) {
+  Status Finish(std::span<const PreparedStyle* const> styles) {
     Stopwatch watch;
-    internal::RowProgress progress(options_.progress, 1.0 - kComposeShare, 1.0, std::max(1, region_.y1 - region_.y0));
-    const internal::Background background{paper, options_.over};
-    if (!internal::Compose(guides_, background, region_, out_, progress)) return CancelledError();
+    std::span<const float> coverage = guides_.Plane(Layer::kCoverage);
+    std::vector<float> edged;
+    if (std::any_of(styles.begin(), styles.end(), [](const PreparedStyle* style) { return !style->rims.empty(); })) {
+      edged.assign(coverage.begin(), coverage.end());
+      SCUMBLE_RETURN_IF_ERROR(PaintEdges(styles, edged));
+      coverage = edged;
+    }
+    const double from = 1.0 - (edged.empty() ? kComposeShare : kComposeShare / 2);
+    internal::RowProgress progress(options_.progress, from, 1.0, std::max(1, region_.y1 - region_.y0));
+    const internal::Background background{styles.front()->paper, options_.over};
+    if (!internal::Compose(coverage, background, region_, out_, progress)) return CancelledError();
     scratch_.times.compose_ms += watch.Lap();
     return Ok();
   }
@@ -103,6 +114,23 @@ class Run {
  private:
   static Region Intersection(const Region& a, const Region& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+  }
+
+  Status PaintEdges(std::span<const PreparedStyle* const> styles, std::vector<float>& coverage) {
+    std::vector<internal::EdgePaint> paints;
+    for (const PreparedStyle* style : styles) paints.push_back({style->rims, SeedsOf(*style)});
+    internal::RowProgress progress(options_.progress, 1.0 - kComposeShare, 1.0 - kComposeShare / 2,
+                                   std::max(1, region_.y1 - region_.y0));
+    const std::span<const std::uint16_t> map = map_ ? std::span<const std::uint16_t>(map_->style)
+                                                    : std::span<const std::uint16_t>();
+    const internal::PaintedEdgeInput input{guides_, map, paints, scratch_.field, region_};
+    return internal::PaintEdges(input, coverage, out_, progress) ? Ok() : CancelledError();
+  }
+
+  SeedRules SeedsOf(const PreparedStyle& style) const {
+    const std::int64_t step =
+        JitterStep(style.settings.jitter_fps, options_.frame, options_.fps_numerator, options_.fps_denominator);
+    return {options_.seed, step, style.settings.jitter, style.settings.levels - style.levels};
   }
 
   void Activate(int index, const Region& extent) {
@@ -135,8 +163,6 @@ class Run {
 
   Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from, double to) {
     const TransferSettings& settings = style.settings;
-    const std::int64_t step =
-        JitterStep(settings.jitter_fps, options_.frame, options_.fps_numerator, options_.fps_denominator);
     const internal::MatchInput input{
         guides_,
         scratch_.active,
@@ -144,7 +170,7 @@ class Run {
         style.illumination,
         style.illumination.active() ? ExposedLuminance() : std::span<const float>(),
         GuideTest(settings.threshold, settings.threshold_metric),
-        SeedRules{options_.seed, step, settings.jitter, settings.levels - style.levels},
+        SeedsOf(style),
         style.levels,
         settings.variety,
         kFlatReach,
@@ -209,7 +235,7 @@ Status TransferInArena(std::span<const PreparedStyle* const> styles, const Style
     const double from = share * static_cast<double>(s);
     SCUMBLE_RETURN_IF_ERROR(run.Paint(*styles[s], static_cast<int>(s), extents[s], from, from + share));
   }
-  return run.Finish(styles.front()->paper);
+  return run.Finish(styles);
 }
 
 Status TransferAll(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,

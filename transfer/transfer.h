@@ -16,6 +16,7 @@
 #include "image/status.h"
 #include "image/style.h"
 #include "transfer/illumination.h"
+#include "transfer/painted_edge.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/region.h"
 #include "transfer/source_field.h"
@@ -31,6 +32,8 @@ struct PreparedStyle {
   Illumination illumination;
   std::vector<float> mean_lightness;  // Oklab's, by exemplar; only where the style tints in Oklab
   Paper paper;
+  // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
+  std::vector<RimPaint> rims;
   int output_height = 0;
   int levels = 1;        // settings.levels at the output's height
   int blend_radius = 0;  // settings.blend_radius at the output's height
