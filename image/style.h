@@ -36,6 +36,11 @@ enum class EdgeMode {
   kExemplar,  // the exemplar's own painted edge goes on along it
 };
 
+enum class ShadowMode {
+  kNone,   // what catches shadows shows nothing
+  kPaint,  // the style's darkest paint where the shadow layer says so
+};
+
 enum class ColorizeMode {
   kMultiply,  // paint times the scene's base colour
   kOklab,     // lightness varies as the paint's does, hue and chroma are the scene's
@@ -61,6 +66,7 @@ struct TransferSettings {
   double scale = 1.0;        // exemplar size, above 0
   double rim = 2.0;          // exemplar pixels at the painted edge that are never used
   EdgeMode edge = EdgeMode::kExact;
+  ShadowMode shadow = ShadowMode::kNone;  // on the pixels that a style map says catch them
   int reference_height = 1080;  // 0: lengths are plain pixels
 };
 

@@ -104,6 +104,13 @@ Status SetEdge(Style& style, const KeyValue& value, const std::filesystem::path&
   return UsageError("expected \"exact\" or \"exemplar\"");
 }
 
+Status SetShadow(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "none") return style.transfer.shadow = ShadowMode::kNone, Ok();
+  if (text && *text == "paint") return style.transfer.shadow = ShadowMode::kPaint, Ok();
+  return UsageError("expected \"none\" or \"paint\"");
+}
+
 Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto number = AsNumber(value);
   if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= 1000.0))) {
@@ -178,6 +185,7 @@ std::vector<StyleKey> MakeKeys() {
       {"transfer.reference_height", "1080", "lengths are pixels at this output height; 0: plain pixels", true,
        Whole(&T::reference_height, 0, 32768)},
       {"transfer.edge", "\"exact\"", "silhouettes: exact, or exemplar: its painted edge goes on along them", true, SetEdge},
+      {"transfer.shadow", "\"none\"", "none, or paint: shadows on what --assign NAME=catcher names", true, SetShadow},
       {"transfer.paper", "\"\"", "picture or colour behind; empty: transparent", true, SetPaper},
   };
 }

@@ -52,6 +52,7 @@ void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {
   EXPECT_EQ(a.blend_radius, b.blend_radius);
   EXPECT_EQ(a.edge_aware, b.edge_aware);
   EXPECT_EQ(a.crease, b.crease);
+  EXPECT_EQ(a.shadow, b.shadow);
   EXPECT_EQ(a.edge, b.edge);
   EXPECT_EQ(a.depth_tolerance, b.depth_tolerance);
   EXPECT_EQ(a.scale, b.scale);
@@ -117,6 +118,7 @@ TEST_F(StyleFile, ValuesUpToTheirBoundariesAreTaken) {
   const auto method = [](const T& t) { return double(t.method); };
   const auto metric = [](const T& t) { return double(t.threshold_metric); };
   const auto edge = [](const T& t) { return double(t.edge); };
+  const auto shadow = [](const T& t) { return double(t.shadow); };
   const auto crease = [](const T& t) { return t.crease; };
   const auto tolerance = [](const T& t) { return t.depth_tolerance; };
   const auto edges = [](const T& t) { return double(t.edge_aware); };
@@ -142,6 +144,8 @@ TEST_F(StyleFile, ValuesUpToTheirBoundariesAreTaken) {
       {"edge_aware = false", edges, 0},
       {"edge = 'exact'", edge, double(EdgeMode::kExact)},
       {"edge = 'exemplar'", edge, double(EdgeMode::kExemplar)},
+      {"shadow = 'none'", shadow, double(ShadowMode::kNone)},
+      {"shadow = 'paint'", shadow, double(ShadowMode::kPaint)},
       {"crease = 0", crease, 0},
       {"crease = 180", crease, 180},
       {"depth_tolerance = 0", tolerance, 0},
@@ -184,6 +188,7 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
                                                                   {"blend_radius = 65", "0 to 64"},
                                                                   {"edge_aware = 1", "true or false"},
                                                                   {"edge = 'ragged'", "\"exemplar\""},
+                                                                  {"shadow = true", "\"paint\""},
                                                                   {"crease = -1", "0 to 180"},
                                                                   {"crease = 181", "0 to 180"},
                                                                   {"depth_tolerance = -0.001", "0 to 1"},

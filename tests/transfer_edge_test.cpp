@@ -1,4 +1,6 @@
-// Silhouettes with the exemplar's own painted edge.
+// Silhouettes with the exemplar's own painted edge, and shadows on catchers.
+#include <set>
+
 #include "tests/transfer_fixtures.h"
 
 namespace scumble {
@@ -112,6 +114,74 @@ TEST(PaintedEdge, ThreadsAndRegionsDoNotChangeAByte) {
     }
   }
   EXPECT_EQ(tiled.rgba, one.rgba);
+}
+
+// Light paint, with one dark corner of the disc whose texels differ.
+Picture DarkCorner(int size) {
+  Picture picture(size, size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const bool dark = std::abs(x - size * 0.3) < size * 0.13 && std::abs(y - size * 0.65) < size * 0.13;
+      std::uint16_t* texel = picture.At(x, y);
+      texel[0] = texel[1] = texel[2] = static_cast<std::uint16_t>((dark ? 2000 : 50000) + Hash(x, y) % 500);
+      texel[3] = 65535;
+    }
+  }
+  return picture;
+}
+
+TEST(Shadow, CatchersShowDarkPaintWhereTheyAreInShadowAndNothingElse) {
+  GuideSet guides = MakeGuides(120, 80, [](int, int y) { return y < 8 ? glm::vec3(0.0f) : glm::vec3(0, 0, 1); });
+  guides.Add(Layer::kShadow);
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 120; ++x) {
+      const std::size_t i = guides.Index(x, y);
+      if (x >= 40) guides.Plane(Layer::kObject)[i] = 2.0f;  // the ground; its right part is in shadow
+      guides.Plane(Layer::kShadow)[i] = x < 80 ? 0.0f : x < 100 ? 0.5f : 1.0f;
+    }
+  }
+  Style style = PlainStyle(DarkCorner(256));
+  style.transfer.shadow = ShadowMode::kPaint;
+  EXPECT_TRUE(RequiredLayers(style).Has(Layer::kShadow));
+  const auto prepared = Prepare(style, 80);
+  ASSERT_TRUE(prepared);
+  ASSERT_TRUE(prepared->dark);
+  EXPECT_NEAR(prepared->dark->center.x, 256 * 0.3, 20);
+  EXPECT_NEAR(prepared->dark->center.y, 256 * 0.65, 20);
+  const PreparedStyle* styles[] = {&*prepared};
+  const StyleMap map = MapStyles(guides, {{{2u, StyleMap::kCatch}}, {}, 0});
+  TransferScratch scratch;
+  Picture picture;
+  ASSERT_TRUE(Transfer(styles, map, guides, {}, scratch, picture).ok());
+  std::set<std::uint16_t> tones;
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 120; ++x) {
+      const std::uint16_t* pixel = picture.At(x, y);
+      const int alpha = y < 8 ? 0 : x < 40 ? 65535 : x < 80 ? 0 : x < 100 ? 32768 : 65535;
+      ASSERT_EQ(pixel[3], alpha) << x << ", " << y;
+      if (alpha > 0) {
+        ASSERT_EQ(pixel[0] < 3000, x >= 80) << x << ", " << y;
+      }
+      if (x >= 100) tones.insert(pixel[0]);
+    }
+  }
+  EXPECT_GT(tones.size(), 200u) << "paint, not a flat tone";
+
+  TransferOptions over;
+  Picture below(120, 80);
+  for (std::size_t i = 0; i < below.rgba.size(); ++i) below.rgba[i] = static_cast<std::uint16_t>(i % 4 == 3 ? 65535 : 40000);
+  over.over = &below;
+  ASSERT_TRUE(Transfer(styles, map, guides, over, scratch, picture).ok());
+  EXPECT_EQ(picture.At(60, 40)[0], 40000) << "no shadow, the picture underneath as it is";
+  EXPECT_LT(picture.At(90, 40)[0], 38000);
+  EXPECT_GT(picture.At(90, 40)[0], 20000);
+  EXPECT_LT(picture.At(110, 40)[0], 3000);
+
+  style.transfer.shadow = ShadowMode::kNone;
+  const auto without = Prepare(style, 80);
+  const PreparedStyle* none[] = {&*without};
+  ASSERT_TRUE(Transfer(none, map, guides, {}, scratch, picture).ok());
+  EXPECT_EQ(picture.At(110, 40)[3], 0);
 }
 
 }  // namespace

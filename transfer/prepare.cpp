@@ -105,6 +105,7 @@ Expected<PreparedStyle> Prepare(const Style& style, int output_height) {
       prepared.mean_lightness.push_back(internal::MeanLightness(*prepared.exemplar, k));
     }
   }
+  if (settings.shadow == ShadowMode::kPaint) prepared.dark = DarkestPlace(*prepared.exemplar);
   if (settings.edge == EdgeMode::kExemplar) {
     for (const Exemplar& exemplar : style.exemplars) prepared.rims.emplace_back(exemplar.picture, style.paper, size);
     const auto has_edge = [](const RimPaint& rim) { return rim.HasEdge(); };

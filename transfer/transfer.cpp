@@ -54,7 +54,7 @@ std::vector<Region> Extents(std::size_t styles, const StyleMap* map, const Guide
   for (int y = 0; y < guides.height(); ++y) {
     for (int x = 0; x < guides.width(); ++x) {
       const std::size_t i = guides.Index(x, y);
-      if (!(coverage[i] > 0.0f) || map->style[i] == StyleMap::kLeave) continue;
+      if (!(coverage[i] > 0.0f) || map->style[i] == StyleMap::kLeave || map->style[i] == StyleMap::kCatch) continue;
       SCUMBLE_CHECK(map->style[i] < styles);
       Region& extent = extents[map->style[i]];
       extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1), std::max(extent.y1, y + 1)};
@@ -96,6 +96,7 @@ class Run {
 
   Status Finish(std::span<const PreparedStyle* const> styles) {
     Stopwatch watch;
+    if (styles.front()->dark && map_) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
     std::span<const float> coverage = guides_.Plane(Layer::kCoverage);
     std::vector<float> edged;
     if (std::any_of(styles.begin(), styles.end(), [](const PreparedStyle* style) { return !style->rims.empty(); })) {
@@ -114,6 +115,13 @@ class Run {
  private:
   static Region Intersection(const Region& a, const Region& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+  }
+
+  Status PaintShadows(const PreparedStyle& style) {
+    const Progress unheard;  // far quicker than anything else
+    internal::RowProgress progress(unheard, 0.0, 1.0, std::max(1, region_.y1 - region_.y0));
+    const internal::ShadowInput input{guides_, map_->style, *style.exemplar, *style.dark, SeedsOf(style), region_};
+    return internal::PaintShadows(input, out_, progress) ? Ok() : CancelledError();
   }
 
   Status PaintEdges(std::span<const PreparedStyle* const> styles, std::vector<float>& coverage) {
