@@ -264,7 +264,7 @@ void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
 void AddAssignOption(CLI::App& verb, StyleOptions& options) {
   verb.add_option("--assign", options.assigned,
                   "another style for an object or material, * stands for any text, as 'Tree*=charcoal'; "
-                  "NAME=rendered leaves it as it is, for --over; repeatable")
+                  "NAME=rendered leaves it as it is, for --over; NAME=catcher shows only the shadows on it, with transfer.shadow=paint; repeatable")
       ->type_name("NAME=STYLE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -9,7 +9,7 @@
 namespace scumble {
 namespace {
 
-constexpr const char* kRendered = "rendered";
+constexpr const char *kRendered = "rendered", *kCatcher = "catcher";
 
 std::map<std::uint32_t, std::uint16_t> Assign(const std::vector<StyleSet::Assigned>& assigned,
                                               const std::map<std::uint32_t, std::string>& names,
@@ -67,7 +67,8 @@ Expected<StyleSet> OpenStyles(const StyleOptions& options) {
   StyleSet set;
   SCUMBLE_ASSIGN(Style first, OpenStyle(options));
   set.styles.push_back(std::move(first));
-  std::map<std::string, std::uint16_t> opened{{options.style, 0}, {kRendered, StyleMap::kLeave}};
+  std::map<std::string, std::uint16_t> opened{{options.style, 0}, {kRendered, StyleMap::kLeave},
+                                               {kCatcher, StyleMap::kCatch}};
   for (const std::string& text : options.assigned) {
     // The last '=': names of objects are anyone's, names of styles rarely hold one.
     const std::size_t equals = text.rfind('=');
@@ -84,6 +85,10 @@ Expected<StyleSet> OpenStyles(const StyleOptions& options) {
       set.styles.push_back(std::move(style));
     }
     set.assigned.push_back({pattern, opened[name]});
+    if (name == kCatcher && set.first().transfer.shadow == ShadowMode::kNone) {
+      return UsageError("--assign " + text + ": the style paints no shadows that it could catch; give --set " +
+                        "transfer.shadow=paint, or " + pattern + "=rendered to leave it out");
+    }
   }
   return set;
 }

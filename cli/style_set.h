@@ -25,7 +25,8 @@ struct StyleSet {
   bool NeedsMap() const { return !assigned.empty(); }
 };
 
-// Opens the default style and every assigned one, each once. "rendered" leaves objects as they are.
+// Opens the default style and every assigned one, each once. "rendered" leaves objects as they are,
+// "catcher" shows nothing of them but the shadows on them.
 Expected<StyleSet> OpenStyles(const StyleOptions& options);
 
 // Which style paints which pixel, by the names in the guides; the last assignment that fits a name wins, an object's

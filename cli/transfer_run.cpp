@@ -11,6 +11,7 @@
 
 #include "cli/cache.h"
 #include "cli/json_text.h"
+#include "cli/show.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
 #include "style/style_keyframes.h"
@@ -142,6 +143,11 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
+  verb.add_option("--show", options.show,
+                  "write a picture that explains the result instead of it: where the paint comes from, the chunks and "
+                  "their borders, their size, the guide error, which exemplar, which style")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember(ExplanationNames()));
   verb.add_option("--repeat", options.repeat, "times to run the transfer, to report the median time and its spread")
       ->type_name("N")
       ->check(CLI::Range(1, 10000))
@@ -268,6 +274,9 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, co
     match.push_back(scratch.times.match_ms);
     vote.push_back(scratch.times.vote_ms);
     compose.push_back(scratch.times.compose_ms);
+  }
+  if (const auto what = FindExplanation(options.show)) {
+    picture = Show(*what, {prepared, map, guides, scratch.field, transfer.exposure, picture});
   }
   watch.Lap();
   SCUMBLE_RETURN_IF_ERROR(WritePicture(options.output, picture, {options.bits, options.png_level}));

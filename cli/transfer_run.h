@@ -25,6 +25,7 @@ struct PictureOptions {
   std::string exposure = "auto";
   std::uint64_t seed = 0;
   int repeat = 1;
+  std::string show;  // an explanation's name; empty: the result itself
 };
 void AddPictureOptions(CLI::App& verb, PictureOptions& options);
 
@@ -47,7 +48,7 @@ struct TransferMemory {
 Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptions& options, const Globals& globals,
                     TransferMemory& memory);
 
-// Prepares, transfers `repeat` times and writes the picture; reports its path with the time of each step, and as JSON
+// Prepares, transfers `repeat` times and writes the picture, or the one that explains it; reports its path with the time of each step, and as JSON
 // the steps, coherence and sizes.
 Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                     const PictureOptions& options, const Globals& globals, const Progress& progress,

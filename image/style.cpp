@@ -9,6 +9,8 @@ LayerSet RequiredLayers(const Style& style) {
   if (votes_stop_at_edges || settings.variety > 0.0) layers.Add(Layer::kObject);
   if (votes_stop_at_edges) layers.Add(Layer::kDepth);
   if (style.exemplars.size() > 1) layers.Add(Layer::kLuminance);
+  if (settings.shadow == ShadowMode::kPaint) layers.Add(Layer::kShadow);
+  if (settings.edge == EdgeMode::kExemplar) layers.Add(Layer::kObject).Add(Layer::kDepth);
   if (settings.colorize > 0.0) layers.Add(Layer::kAlbedo);
   return layers;
 }

@@ -42,6 +42,16 @@ enum class LuminanceError {
   kPublished,  // |L_p - L_e|
 };
 
+enum class EdgeMode {
+  kExact,     // the silhouette is the guides' coverage
+  kExemplar,  // the exemplar's own painted edge goes on along it
+};
+
+enum class ShadowMode {
+  kNone,   // what catches shadows shows nothing
+  kPaint,  // the style's darkest paint where the shadow layer says so
+};
+
 enum class ColorizeMode {
   kMultiply,  // paint times the scene's base colour
   kOklab,     // lightness varies as the paint's does, hue and chroma are the scene's
@@ -58,6 +68,8 @@ struct TransferSettings {
   double jitter_fps = 0.0;   // renewals a second; 0 frozen, -1 every frame
   int blend_radius = 1;      // voting window of (2r + 1)² pixels, 0 … 64
   bool edge_aware = true;    // votes do not cross object borders, depth steps and creases
+  double crease = 60.0;      // 0 … 180 degrees between normals, from which on an edge is a crease; 180: none is
+  double depth_tolerance = 0.002;  // 0 … 1: how far depth may leave the surface's slope, as a share of the distance
   float luminance_weight = 0.3f;  // 0 or more: how much a pixel's own light counts inside a chunk; several exemplars only
   LuminanceError luminance_error = LuminanceError::kExcess;
   double colorize = 0.0;     // 0 … 1: how much of the scene's base colour the paint takes on
@@ -65,6 +77,8 @@ struct TransferSettings {
   double variety = 0.0;      // 0 … 90 degrees: how far from its own normal a seed on a flat surface may take its paint
   double scale = 1.0;        // exemplar size, above 0
   double rim = 2.0;          // exemplar pixels at the painted edge that are never used
+  EdgeMode edge = EdgeMode::kExact;
+  ShadowMode shadow = ShadowMode::kNone;  // on the pixels that a style map says catch them
   int reference_height = 1080;  // 0: lengths are plain pixels
 };
 

@@ -106,6 +106,20 @@ Status SetColorizeMode(Style& style, const KeyValue& value, const std::filesyste
   return UsageError("expected \"multiply\" or \"oklab\"");
 }
 
+Status SetEdge(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "exact") return style.transfer.edge = EdgeMode::kExact, Ok();
+  if (text && *text == "exemplar") return style.transfer.edge = EdgeMode::kExemplar, Ok();
+  return UsageError("expected \"exact\" or \"exemplar\"");
+}
+
+Status SetShadow(Style& style, const KeyValue& value, const std::filesystem::path&) {
+  const auto* text = std::get_if<std::string>(&value);
+  if (text && *text == "none") return style.transfer.shadow = ShadowMode::kNone, Ok();
+  if (text && *text == "paint") return style.transfer.shadow = ShadowMode::kPaint, Ok();
+  return UsageError("expected \"none\" or \"paint\"");
+}
+
 Status SetJitterFps(Style& style, const KeyValue& value, const std::filesystem::path&) {
   const auto number = AsNumber(value);
   if (!number || !(*number == -1.0 || (*number >= 0.0 && *number <= 1000.0))) {
@@ -164,6 +178,10 @@ std::vector<StyleKey> MakeKeys() {
       {"transfer.blend_radius", "1", "voting window, pixels, 0 to 64", true, Whole(&T::blend_radius, 0, 64)},
       {"transfer.edge_aware", "true", "votes do not cross object borders, depth steps and creases", true,
        Flag(&T::edge_aware)},
+      {"transfer.crease", "60", "angle of normals that votes do not cross, degrees, 0 to 180; 180: any is crossed", true,
+       Number(&T::crease, 0.0, 180.0)},
+      {"transfer.depth_tolerance", "0.002", "depth step that votes do cross, as a share of the distance, 0 to 1", true,
+       Number(&T::depth_tolerance, 0.0, 1.0)},
       {"transfer.luminance_weight", "0.3", "how much light counts inside a chunk, with several exemplars", true,
        Number(&T::luminance_weight, 0.0, kInfinity)},
       {"transfer.luminance_error", "\"excess\"", "excess, or published: the thesis's own", true, SetLuminanceError},
@@ -177,7 +195,8 @@ std::vector<StyleKey> MakeKeys() {
        Number(&T::rim, 0.0, 16384.0)},
       {"transfer.reference_height", "1080", "lengths are pixels at this output height; 0: plain pixels", true,
        Whole(&T::reference_height, 0, 32768)},
-      ToCome("edge", std::string("exact"), "silhouette: exact coverage"),
+      {"transfer.edge", "\"exact\"", "silhouettes: exact, or exemplar: its painted edge goes on along them", true, SetEdge},
+      {"transfer.shadow", "\"none\"", "none, or paint: shadows on what --assign NAME=catcher names", true, SetShadow},
       {"transfer.paper", "\"\"", "picture or colour behind; empty: transparent", true, SetPaper},
   };
 }

@@ -130,6 +130,31 @@ TEST_F(CliPictures, RepeatReportsTheSpread) {
   EXPECT_TRUE(Contains(RunOk(transfer).out, "p.png  read "));
 }
 
+TEST_F(CliPictures, ShowWritesWhatExplainsTheResult) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(64));
+  const Arguments transfer = {"transfer", "g.exr", "--style", "style", "--json"};
+  nlohmann::json plain = RunOk(With(transfer, {"-o", "p.png"})).Json();
+  std::vector<std::string> seen = {Bytes("p.png")};
+  for (const std::string what : {"sources", "chunks", "borders", "levels", "error", "exemplar", "styles"}) {
+    nlohmann::json shown = RunOk(With(transfer, {"--show", what, "-o", "p.png"})).Json();
+    shown.erase("ms");
+    plain.erase("ms");
+    EXPECT_EQ(shown, plain) << what;
+    EXPECT_NE(Bytes("p.png"), seen.front()) << what;
+    seen.push_back(Bytes("p.png"));
+  }
+  const Expected<Picture> styles = ReadPicture(At("p.png"));
+  ASSERT_TRUE(styles);
+  EXPECT_EQ(styles->At(32, 32)[3], 65535);
+  EXPECT_EQ(styles->At(0, 0)[3], 0) << "background";
+  EXPECT_EQ(styles->At(32, 32)[0], styles->At(20, 40)[0]) << "one style, one colour";
+  const CommandResult wrong = Run(With(transfer, {"--show", "seams", "-o", "p.png"}));
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_TRUE(Contains(wrong.Error(), "sources")) << wrong.err;
+  EXPECT_EQ(Bytes("p.png"), seen.back()) << "a refused run writes nothing";
+}
+
 TEST_F(CliPictures, SetWinsOverTheStyle) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(64));

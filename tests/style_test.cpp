@@ -53,6 +53,10 @@ void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {
   EXPECT_EQ(a.jitter_fps, b.jitter_fps);
   EXPECT_EQ(a.blend_radius, b.blend_radius);
   EXPECT_EQ(a.edge_aware, b.edge_aware);
+  EXPECT_EQ(a.crease, b.crease);
+  EXPECT_EQ(a.shadow, b.shadow);
+  EXPECT_EQ(a.edge, b.edge);
+  EXPECT_EQ(a.depth_tolerance, b.depth_tolerance);
   EXPECT_EQ(a.scale, b.scale);
   EXPECT_EQ(a.rim, b.rim);
   EXPECT_EQ(a.reference_height, b.reference_height);
@@ -115,6 +119,10 @@ TEST_F(StyleFile, ValuesUpToTheirBoundariesAreTaken) {
   const auto height = [](const T& t) { return double(t.reference_height); };
   const auto method = [](const T& t) { return double(t.method); };
   const auto metric = [](const T& t) { return double(t.threshold_metric); };
+  const auto edge = [](const T& t) { return double(t.edge); };
+  const auto shadow = [](const T& t) { return double(t.shadow); };
+  const auto crease = [](const T& t) { return t.crease; };
+  const auto tolerance = [](const T& t) { return t.depth_tolerance; };
   const auto edges = [](const T& t) { return double(t.edge_aware); };
   const Valid cases[] = {
       {"method = 'litsphere'", method, double(Method::kLitSphere)},
@@ -136,6 +144,14 @@ TEST_F(StyleFile, ValuesUpToTheirBoundariesAreTaken) {
       {"blend_radius = 0", blend, 0},
       {"blend_radius = 64", blend, 64},
       {"edge_aware = false", edges, 0},
+      {"edge = 'exact'", edge, double(EdgeMode::kExact)},
+      {"edge = 'exemplar'", edge, double(EdgeMode::kExemplar)},
+      {"shadow = 'none'", shadow, double(ShadowMode::kNone)},
+      {"shadow = 'paint'", shadow, double(ShadowMode::kPaint)},
+      {"crease = 0", crease, 0},
+      {"crease = 180", crease, 180},
+      {"depth_tolerance = 0", tolerance, 0},
+      {"depth_tolerance = 1", tolerance, 1},
       {"scale = 0.001", scale, 0.001},
       {"scale = 64", scale, 64},
       {"rim = 0", rim, 0},
@@ -173,6 +189,13 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
                                                                   {"blend_radius = -1", "0 to 64"},
                                                                   {"blend_radius = 65", "0 to 64"},
                                                                   {"edge_aware = 1", "true or false"},
+                                                                  {"edge = 'ragged'", "\"exemplar\""},
+                                                                  {"shadow = true", "\"paint\""},
+                                                                  {"crease = -1", "0 to 180"},
+                                                                  {"crease = 181", "0 to 180"},
+                                                                  {"depth_tolerance = -0.001", "0 to 1"},
+                                                                  {"depth_tolerance = 1.5", "0 to 1"},
+                                                                  {"depth_tolerance = nan", "0 to 1"},
                                                                   {"scale = 0", "0.001 to 64"},
                                                                   {"scale = -1", "0.001 to 64"},
                                                                   {"scale = 65", "0.001 to 64"},
@@ -196,8 +219,7 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
 }
 
 TEST_F(StyleFile, WhatIsStillToComeIsRefusedByName) {
-  const std::map<std::string, std::vector<std::string>> others = {{"transfer.coherent", {"true", "1"}},
-                                                                  {"transfer.edge", {"'exemplar'"}}};
+  const std::map<std::string, std::vector<std::string>> others = {{"transfer.coherent", {"true", "1"}}};
   for (const StyleKey& key : StyleKeys()) {
     if (key.built_in) continue;
     const auto found = others.find(key.name);
@@ -209,7 +231,7 @@ TEST_F(StyleFile, WhatIsStillToComeIsRefusedByName) {
                     {"style.toml:2", key.name, "not built into this version"});
     }
   }
-  EXPECT_TRUE(LoadLine("edge = 'exact'\ncoherent = false"));
+  EXPECT_TRUE(LoadLine("coherent = false"));
   ExpectRefusal(LoadLine("method = 'stylit'"), ErrorKind::kUnavailable, {"style.toml:2", "transfer.method", "stylit"});
 }
 

@@ -1,8 +1,13 @@
 // Voting, edges, and nothing from outside the painted disc.
 #include <limits>
 
+#include <set>
+
+#include "guidegen/guidegen.h"
+#include "guidegen/load_scene.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/resample.h"
+#include "transfer/vote.h"
 
 namespace scumble {
 namespace {
@@ -167,6 +172,140 @@ TEST(EdgeAware, ChangesNothingWithoutEdges) {
   const Picture aware = MustTransfer(style, guides).picture;
   style.transfer.edge_aware = false;
   EXPECT_EQ(MustTransfer(style, guides).picture.rgba, aware.rgba);
+}
+
+// Which objects' paint is where, after a vote in which every object has a pure colour of its own: the number of pixels
+// that show any other.
+class Ghosting {
+ public:
+  static constexpr int kStripe = 41;  // wider than the window, so a vote never leaves its object's stripe of paint
+
+  explicit Ghosting(const GuideSet& guides) : guides_(guides), active_(guides.pixel_count(), 0) {
+    std::map<float, int> stripes;
+    const auto object = guides.Plane(Layer::kObject), coverage = guides.Plane(Layer::kCoverage);
+    for (const float id : object) stripes.try_emplace(id, static_cast<int>(stripes.size()));
+    const int size = 2 * kStripe * static_cast<int>(stripes.size());  // the stripes lie across the disc's middle
+    Picture paint(size, size);
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        paint.At(x, y)[0] = static_cast<std::uint16_t>(1000 * (x / kStripe)), paint.At(x, y)[3] = 65535;
+      }
+    }
+    exemplar_.emplace(paint, 0.0, size);
+    field_.Reset(guides.width(), guides.height());
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+      active_[i] = coverage[i] > 0.0f;
+      const int stripe = stripes[object[i]] + static_cast<int>(stripes.size()) / 2;
+      if (active_[i]) field_.Set(i, stripe * kStripe + kStripe / 2, size / 2, 0, 0);
+    }
+  }
+
+  std::size_t Count(int radius, const internal::EdgeTest* edges) const {
+    Picture out(guides_.width(), guides_.height());
+    const Region all{0, 0, guides_.width(), guides_.height()};
+    const Progress unheard;
+    internal::RowProgress progress(unheard, 0.0, 1.0, guides_.height());
+    EXPECT_TRUE(internal::Vote({field_, active_, *exemplar_, radius, edges, all}, out, progress));
+    std::size_t ghosts = 0;
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+      ghosts += active_[i] && out.rgba[4 * i] != exemplar_->picture().At(field_.x[i], field_.y[i])[0];
+    }
+    return ghosts;
+  }
+
+ private:
+  const GuideSet& guides_;
+  std::vector<std::uint8_t> active_;
+  std::optional<PreparedExemplar> exemplar_;
+  SourceField field_;
+};
+
+// A branch with leaves, a ball of wire and the frame of a chair before walls.
+GuideSet ThinParts() {
+  Expected<Scene> scene = LoadScene(std::string(SCUMBLE_SOURCE_DIR) + "/scenes/stilllife.glb");
+  EXPECT_TRUE(scene);
+  Expected<PreparedView> view = PrepareView(*scene, "", std::nullopt, 16.0 / 9.0, false);
+  EXPECT_TRUE(view);
+  GuidegenOptions options;
+  options.width = 320, options.height = 180;
+  return std::move(RenderGuides(*scene, view->camera, options)->guides);
+}
+
+TEST(EdgeAware, NoGhostingAtAnyTolerance) {
+  const GuideSet guides = ThinParts();
+  const Ghosting ghosting(guides);
+  const internal::DepthSlopes slopes(guides);
+  for (const int radius : {1, 8}) {
+    EXPECT_GT(ghosting.Count(radius, nullptr), radius == 8 ? 20000u : 5000u) << "plain voting mixes, as it should";
+    for (const double tolerance : {0.0, 1e-4, 3e-4, 1e-3, 2e-3, 1e-2, 3e-2, 1e-1, 1.0}) {
+      for (const double crease : {60.0, 180.0}) {
+        const internal::EdgeTest edges(guides, slopes, crease, tolerance);
+        EXPECT_EQ(ghosting.Count(radius, &edges), 0u) << "radius " << radius << ", tolerance " << tolerance;
+      }
+    }
+  }
+}
+
+// As if the whole scene were one object, so that depth and creases alone keep its parts apart: what is left of the
+// ghosts must fall with the tolerance.
+TEST(EdgeAware, DepthAndCreasesAloneStopMostGhosts) {
+  const GuideSet guides = ThinParts();
+  const Ghosting ghosting(guides);
+  GuideSet one_object = guides;
+  for (float& id : one_object.Plane(Layer::kObject)) id = id > 0.0f ? 1.0f : 0.0f;
+  const internal::DepthSlopes slopes(one_object);
+  const std::size_t plain = ghosting.Count(8, nullptr);
+  std::size_t last = 0;
+  for (const double tolerance : {1e-4, 1e-3, 2e-3, 1e-2, 1e-1}) {
+    const internal::EdgeTest edges(one_object, slopes, 60.0, tolerance);
+    const std::size_t ghosts = ghosting.Count(8, &edges);
+    // Parts that touch are one surface there, so some always remain.
+    if (tolerance <= 0.002) {
+      EXPECT_LT(ghosts, plain / 4) << tolerance;
+    }
+    EXPECT_LT(ghosts, plain * 6 / 10) << tolerance;
+    EXPECT_GE(ghosts, last) << "a larger tolerance lets more through";
+    last = ghosts;
+  }
+}
+
+// Fingers before a face of the same object, a tenth of the distance in front of it.
+TEST(EdgeAware, FingersSurviveRadiusEight) {
+  Style style = PlainStyle(BlackAndWhite(128));
+  style.transfer.blend_radius = 8;
+  for (const float distance : {0.2f, 2.0f, 200.0f}) {
+    GuideSet guides = MakeGuides(96, 48, [](int x, int y) {
+      const bool finger = y > 10 && (x % 16 == 3 || (x % 16 > 8 && x % 16 < 12));
+      return glm::normalize(glm::vec3(finger ? 0.4f : -0.4f, 0, 1));
+    });
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      guides.Plane(Layer::kDepth)[i] = guides.Plane(Layer::kNormal)[i] > 0.0f ? 0.9f * distance : distance;
+    }
+    for (const double tolerance : {1e-4, 2e-3, 1e-2, 5e-2}) {
+      style.transfer.depth_tolerance = tolerance;
+      EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 0u) << distance << " m, tolerance " << tolerance;
+    }
+    style.transfer.depth_tolerance = 0.2;
+    EXPECT_GT(GreyPixels(MustTransfer(style, guides).picture), 2000u) << "the step is within the tolerance";
+    style.transfer.depth_tolerance = TransferSettings().depth_tolerance;
+  }
+}
+
+TEST(EdgeAware, TheCreaseAngleIsWhatItSays) {
+  Style style = PlainStyle(BlackAndWhite(128));
+  style.transfer.blend_radius = 3;
+  for (const double angle : {20.0, 60.0, 90.0, 150.0}) {
+    const float half = static_cast<float>(angle * 3.14159265358979 / 360.0);
+    const GuideSet guides = MakeGuides(64, 32, [&](int x, int) {
+      return glm::vec3((x < 32 ? -1.0f : 1.0f) * std::sin(half), 0.0f, std::cos(half));
+    });
+    style.transfer.crease = angle - 1.0;
+    EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 0u) << angle;
+    style.transfer.crease = angle + 1.0;
+    EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 6u * 32u) << angle;
+    style.transfer.crease = 180.0;
+    EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 6u * 32u) << angle;
+  }
 }
 
 // Grey paint in the disc, magenta around it.

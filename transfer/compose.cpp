@@ -29,9 +29,8 @@ void BlendOver(std::uint16_t* front, const Texel& back) {
 
 }  // namespace
 
-bool Compose(const GuideSet& guides, const Background& background, const Region& region, Picture& picture,
+bool Compose(std::span<const float> coverage, const Background& background, const Region& region, Picture& picture,
              RowProgress& progress) {
-  const auto coverage = guides.Plane(Layer::kCoverage);
   const Paper& paper = background.paper;
   const auto behind = [&](int x, int y) -> Texel {
     const std::uint16_t* texel = nullptr;
@@ -44,7 +43,7 @@ bool Compose(const GuideSet& guides, const Background& background, const Region&
   return ForEachRow(region, progress, [&](int y) {
     for (int x = region.x0; x < region.x1; ++x) {
       std::uint16_t* pixel = picture.At(x, y);
-      const float covered = std::min(coverage[guides.Index(x, y)], 1.0f);
+      const float covered = std::min(coverage[std::size_t(y) * picture.width + x], 1.0f);
       if (covered > 0.0f) {
         pixel[3] = static_cast<std::uint16_t>(static_cast<float>(pixel[3]) * covered + 0.5f);
       } else {

@@ -40,6 +40,10 @@ Status CheckSettings(const TransferSettings& settings) {
   if (settings.blend_radius < 0 || settings.blend_radius > 64) {
     return UsageError("transfer.blend_radius must be 0 to 64");
   }
+  if (!(settings.crease >= 0.0 && settings.crease <= 180.0)) return UsageError("transfer.crease must be 0 to 180 degrees");
+  if (!(settings.depth_tolerance >= 0.0 && settings.depth_tolerance <= 1.0)) {
+    return UsageError("transfer.depth_tolerance must be 0 to 1");
+  }
   if (!(settings.luminance_weight >= 0.0f)) return UsageError("transfer.luminance_weight must be 0 or more");
   if (!(settings.colorize >= 0.0 && settings.colorize <= 1.0)) return UsageError("transfer.colorize must be 0 to 1");
   if (!(settings.variety >= 0.0 && settings.variety <= 90.0)) return UsageError("transfer.variety must be 0 to 90 degrees");
@@ -187,6 +191,12 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     for (int k = 0; k < prepared.exemplar->count(); ++k) {
       prepared.mean_lightness.push_back(internal::MeanLightness(*prepared.exemplar, k));
     }
+  }
+  if (settings.shadow == ShadowMode::kPaint) prepared.dark = DarkestPlace(*prepared.exemplar);
+  if (settings.edge == EdgeMode::kExemplar) {
+    for (const Exemplar& exemplar : style.exemplars) prepared.rims.emplace_back(exemplar.picture, style.paper, size);
+    const auto has_edge = [](const RimPaint& rim) { return rim.HasEdge(); };
+    if (!std::all_of(prepared.rims.begin(), prepared.rims.end(), has_edge)) prepared.rims.clear();
   }
   prepared.paper = style.paper;
   if (style.paper.picture) {

@@ -54,7 +54,7 @@ std::vector<Region> Extents(std::size_t styles, const StyleMap* map, const Guide
   for (int y = 0; y < guides.height(); ++y) {
     for (int x = 0; x < guides.width(); ++x) {
       const std::size_t i = guides.Index(x, y);
-      if (!(coverage[i] > 0.0f) || map->style[i] == StyleMap::kLeave) continue;
+      if (!(coverage[i] > 0.0f) || map->style[i] == StyleMap::kLeave || map->style[i] == StyleMap::kCatch) continue;
       SCUMBLE_CHECK(map->style[i] < styles);
       Region& extent = extents[map->style[i]];
       extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1), std::max(extent.y1, y + 1)};
@@ -79,23 +79,35 @@ class Run {
   }
 
   Status Paint(const PreparedStyle& style, int index, const Region& extent, double from, double to) {
-    const Region painted = Intersection(region_, extent);
-    if (painted.empty()) return Ok();
+    Region painted = Intersection(region_, extent);
+    int reach = style.blend_radius;  // the pixels around whose sources decide what is painted
+    // A painted edge may stand in the region while its object does not.
+    for (const RimPaint& rim : style.rims) reach = std::max(reach, rim.band());
+    const Region near = Intersection(extent, region_.GrownBy(reach, guides_.width(), guides_.height()));
+    if (painted.empty() && (style.rims.empty() || near.empty())) return Ok();
+    if (painted.empty()) painted = {};
     // Chunks of the brute force depend on every pixel above them, so it always runs over all of them.
-    const Region matched = style.settings.method == Method::kBruteForce
-                               ? extent
-                               : Intersection(extent, painted.GrownBy(style.blend_radius, guides_.width(), guides_.height()));
+    const Region matched = style.settings.method == Method::kBruteForce ? extent : near;
     Activate(index, extent);
     const Status done = MatchAndVote(style, matched, painted, from, to);
     Deactivate(extent);
     return done;
   }
 
-  Status Finish(const Paper& paper) {
+  Status Finish(std::span<const PreparedStyle* const> styles) {
     Stopwatch watch;
-    internal::RowProgress progress(options_.progress, 1.0 - kComposeShare, 1.0, std::max(1, region_.y1 - region_.y0));
-    const internal::Background background{paper, options_.over};
-    if (!internal::Compose(guides_, background, region_, out_, progress)) return CancelledError();
+    if (styles.front()->dark && map_) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
+    std::span<const float> coverage = guides_.Plane(Layer::kCoverage);
+    std::vector<float> edged;
+    if (std::any_of(styles.begin(), styles.end(), [](const PreparedStyle* style) { return !style->rims.empty(); })) {
+      edged.assign(coverage.begin(), coverage.end());
+      SCUMBLE_RETURN_IF_ERROR(PaintEdges(styles, edged));
+      coverage = edged;
+    }
+    const double from = 1.0 - (edged.empty() ? kComposeShare : kComposeShare / 2);
+    internal::RowProgress progress(options_.progress, from, 1.0, std::max(1, region_.y1 - region_.y0));
+    const internal::Background background{styles.front()->paper, options_.over};
+    if (!internal::Compose(coverage, background, region_, out_, progress)) return CancelledError();
     scratch_.times.compose_ms += watch.Lap();
     return Ok();
   }
@@ -103,6 +115,30 @@ class Run {
  private:
   static Region Intersection(const Region& a, const Region& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+  }
+
+  Status PaintShadows(const PreparedStyle& style) {
+    const Progress unheard;  // far quicker than anything else
+    internal::RowProgress progress(unheard, 0.0, 1.0, std::max(1, region_.y1 - region_.y0));
+    const internal::ShadowInput input{guides_, map_->style, *style.exemplar, *style.dark, SeedsOf(style), region_};
+    return internal::PaintShadows(input, out_, progress) ? Ok() : CancelledError();
+  }
+
+  Status PaintEdges(std::span<const PreparedStyle* const> styles, std::vector<float>& coverage) {
+    std::vector<internal::EdgePaint> paints;
+    for (const PreparedStyle* style : styles) paints.push_back({style->rims, SeedsOf(*style)});
+    internal::RowProgress progress(options_.progress, 1.0 - kComposeShare, 1.0 - kComposeShare / 2,
+                                   std::max(1, region_.y1 - region_.y0));
+    const std::span<const std::uint16_t> map = map_ ? std::span<const std::uint16_t>(map_->style)
+                                                    : std::span<const std::uint16_t>();
+    const internal::PaintedEdgeInput input{guides_, map, paints, scratch_.field, region_};
+    return internal::PaintEdges(input, coverage, out_, progress) ? Ok() : CancelledError();
+  }
+
+  SeedRules SeedsOf(const PreparedStyle& style) const {
+    const std::int64_t step =
+        JitterStep(style.settings.jitter_fps, options_.frame, options_.fps_numerator, options_.fps_denominator);
+    return {options_.seed, step, style.settings.jitter, style.settings.levels - style.levels};
   }
 
   void Activate(int index, const Region& extent) {
@@ -135,8 +171,6 @@ class Run {
 
   Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from, double to) {
     const TransferSettings& settings = style.settings;
-    const std::int64_t step =
-        JitterStep(settings.jitter_fps, options_.frame, options_.fps_numerator, options_.fps_denominator);
     const internal::MatchInput input{
         guides_,
         scratch_.active,
@@ -144,7 +178,7 @@ class Run {
         style.illumination,
         style.illumination.active() ? ExposedLuminance() : std::span<const float>(),
         GuideTest(settings.threshold, settings.threshold_metric),
-        SeedRules{options_.seed, step, settings.jitter, settings.levels - style.levels},
+        SeedsOf(style),
         style.levels,
         settings.variety,
         kFlatReach,
@@ -155,11 +189,15 @@ class Run {
     if (!Match(settings.method, input, match_progress)) return CancelledError();
     scratch_.times.match_ms += watch.Lap();
 
-    const internal::EdgeTest* edges = nullptr;
-    if (settings.edge_aware && style.blend_radius > 0) edges = edges_ ? &*edges_ : &edges_.emplace(guides_);
+    std::optional<internal::EdgeTest> edges;
+    if (settings.edge_aware && style.blend_radius > 0) {
+      if (!slopes_) slopes_.emplace(guides_);
+      edges.emplace(guides_, *slopes_, settings.crease, settings.depth_tolerance);
+    }
     const int rows = painted.y1 - painted.y0;
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
-    const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, edges, painted};
+    const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
+                                     edges ? &*edges : nullptr, painted};
     if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     scratch_.times.vote_ms += watch.Lap();
 
@@ -193,7 +231,7 @@ class Run {
   Picture& out_;
   Region region_;
   std::vector<float> luminance_;
-  std::optional<internal::EdgeTest> edges_;
+  std::optional<internal::DepthSlopes> slopes_;
 };
 
 Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
@@ -205,7 +243,7 @@ Status TransferInArena(std::span<const PreparedStyle* const> styles, const Style
     const double from = share * static_cast<double>(s);
     SCUMBLE_RETURN_IF_ERROR(run.Paint(*styles[s], static_cast<int>(s), extents[s], from, from + share));
   }
-  return run.Finish(styles.front()->paper);
+  return run.Finish(styles);
 }
 
 Status TransferAll(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,

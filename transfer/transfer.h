@@ -17,8 +17,10 @@
 #include "image/style.h"
 #include "transfer/illumination.h"
 #include "transfer/look_up_table.h"
+#include "transfer/painted_edge.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/region.h"
+#include "transfer/shadow.h"
 #include "transfer/source_field.h"
 #include "transfer/style_map.h"
 
@@ -32,6 +34,9 @@ struct PreparedStyle {
   Illumination illumination;
   std::vector<float> mean_lightness;  // Oklab's, by exemplar; only where the style tints in Oklab
   Paper paper;
+  // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
+  std::vector<RimPaint> rims;
+  std::optional<DarkPlace> dark;  // only where transfer.shadow is "paint"
   int output_height = 0;
   int levels = 1;        // settings.levels at the output's height
   int blend_radius = 0;  // settings.blend_radius at the output's height
@@ -83,7 +88,8 @@ Status Transfer(const PreparedStyle& style, const GuideSet& guides, const Transf
                 TransferScratch& scratch, Picture& out);
 
 // The same with several styles in one picture: `map` says which paints what. Chunks and votes never cross from one style
-// to another. Pixels of StyleMap::kLeave show what is underneath, and their coverage does not count. The paper is the
+// to another. Pixels of StyleMap::kLeave show what is underneath, and their coverage does not count; so do those of
+// StyleMap::kCatch, but with the first style's paint where they are in shadow, if it asks for that. The paper is the
 // first style's. O(covered pixels + the rectangles around each style's pixels).
 Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& map, const GuideSet& guides,
                 const TransferOptions& options, TransferScratch& scratch, Picture& out);

@@ -1,0 +1,48 @@
+#include "cli/show.h"
+
+#include <cmath>
+
+namespace scumble {
+namespace {
+
+float GuideDistance(glm::vec3 a, glm::vec3 b, ThresholdMetric metric) {
+  const glm::vec3 d = a - b;
+  if (metric == ThresholdMetric::kL1) return std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
+  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+}
+
+// What the match compares with the threshold, at the source that each pixel got.
+std::vector<float> GuideErrors(const ShownTransfer& shown) {
+  const SourceField& field = shown.field;
+  std::vector<float> errors(field.level.size(), 0.0f);
+  const float exposure = static_cast<float>(std::exp2(shown.exposure));
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (field.level[i] == SourceField::kNoSource) continue;
+    const PreparedStyle& style = shown.styles[shown.map.style.empty() ? 0 : shown.map.style[i]];
+    const glm::vec3 there = style.exemplar->Normal(field.x[i], field.y[i]);
+    errors[i] = GuideDistance(shown.guides.Vec3(Layer::kNormal, i), there, style.settings.threshold_metric);
+    if (!style.illumination.active()) continue;
+    const float luminance = shown.guides.Plane(Layer::kLuminance)[i] * exposure;
+    errors[i] += style.illumination.Error(luminance, field.exemplar[i]);
+  }
+  return errors;
+}
+
+}  // namespace
+
+Picture Show(Explanation what, const ShownTransfer& shown) {
+  const SourceField& field = shown.field;
+  ExplainPlanes planes{field.width, field.height, shown.guides.Plane(Layer::kCoverage), field.x, field.y, field.level,
+                       field.exemplar, shown.map.style, {}, {}, {}, {}, &shown.result};
+  for (const PreparedStyle& style : shown.styles) {
+    planes.exemplar_size.push_back(style.exemplar->size());
+    planes.exemplar_count.push_back(style.exemplar->count());
+    planes.threshold.push_back(style.settings.threshold);
+  }
+  std::vector<float> errors;
+  if (what == Explanation::kError) errors = GuideErrors(shown);
+  planes.error = errors;
+  return Explain(what, planes);
+}
+
+}  // namespace scumble

@@ -1,0 +1,26 @@
+// --show: instead of the result, the picture that explains it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/picture.h"
+#include "measure/explain.h"
+#include "transfer/transfer.h"
+
+namespace scumble {
+
+// What a finished transfer knows about itself.
+struct ShownTransfer {
+  const std::vector<PreparedStyle>& styles;
+  const StyleMap& map;  // empty: one style everywhere
+  const GuideSet& guides;
+  const SourceField& field;
+  double exposure = 0.0;
+  const Picture& result;
+};
+
+Picture Show(Explanation what, const ShownTransfer& shown);
+
+}  // namespace scumble

@@ -1,0 +1,47 @@
+// How much a picture repeats itself, and how much its seams show: the measures of a flat wall.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "image/picture.h"
+#include "measure/coherence.h"
+
+namespace scumble {
+
+// Mean number of times that a source pixel which shows at all shows over the covered pixels: covered / distinct sources.
+// 0 where nothing is covered.
+double SourceRepetition(const SourcePlanes& planes);
+
+// A rectangle of a picture, pixels [x, x + width) × [y, y + height).
+struct PictureRegion {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
+struct AutocorrelationPeak {
+  double value = 0.0;  // -1 … 1; 1: the region comes back exactly; 0 for a region of one tone
+  int dx = 0;          // the shift
+  int dy = 0;
+};
+
+// The highest normalised correlation (Pearson's, of the Oklab lightness) of a region with itself, shifted by up to half
+// its size but by more than `least_shift` pixels in one direction, within which any texture is alike. Direct sums: O(region² / 2 / step²),
+// exact for every shift that is a multiple of `step`. The region must lie in the picture.
+AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const PictureRegion& region, int least_shift = 8,
+                                           int step = 1);
+
+struct SeamStrength {
+  double along_borders = 0.0;  // mean difference of Oklab colours between neighbours in different chunks
+  double inside = 0.0;         // the same inside chunks: where nothing was blended, the exemplar's own
+  double excess = 0.0;         // along_borders / inside - 1; 0: seams cannot be told from the paint
+  std::size_t border_pairs = 0;
+};
+
+// Right and lower neighbours that are both covered; a chunk is what shares its offset and exemplar. O(pixels).
+SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes);
+
+}  // namespace scumble

@@ -1,0 +1,91 @@
+// Repetition and seams of pictures whose answer is known.
+#include "measure/repetition.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "image/hash.h"
+
+namespace scumble {
+namespace {
+
+// Each pixel a grey of its own, coming back every `tile_x` × `tile_y` pixels; 0: never.
+Picture Noise(int size, int tile_x, int tile_y) {
+  Picture picture(size, size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const auto grey = static_cast<std::uint16_t>(Hash(tile_x ? x % tile_x : x, tile_y ? y % tile_y : y) & 0xffff);
+      std::uint16_t* pixel = picture.At(x, y);
+      pixel[0] = pixel[1] = pixel[2] = grey, pixel[3] = 65535;
+    }
+  }
+  return picture;
+}
+
+TEST(Autocorrelation, ATiledPicturePeaksAtItsTile) {
+  const AutocorrelationPeak peak = HighestAutocorrelation(Noise(96, 20, 300), {0, 0, 96, 96});
+  EXPECT_NEAR(peak.value, 1.0, 1e-6);
+  EXPECT_EQ(std::abs(peak.dx) % 20, 0);
+  EXPECT_EQ(peak.dy, 0);
+  const AutocorrelationPeak tall = HighestAutocorrelation(Noise(96, 300, 31), {3, 1, 90, 90});
+  EXPECT_NEAR(tall.value, 1.0, 1e-6);
+  EXPECT_EQ(tall.dx, 0);
+  EXPECT_EQ(tall.dy, 31);
+}
+
+TEST(Autocorrelation, ARandomPictureHasNoPeakAndAFlatOneNone) {
+  EXPECT_LT(HighestAutocorrelation(Noise(96, 0, 0), {0, 0, 96, 96}).value, 0.12);
+  Picture flat(64, 64);
+  EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 64, 64}).value, 0.0);
+  EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 4, 4}).value, 0.0) << "no shift is left";
+}
+
+// Chunks of `side` pixels; each takes its paint from where `from` says, an exemplar of noise.
+struct Wall {
+  static constexpr int kSize = 64;
+  std::vector<std::int16_t> x, y;
+  std::vector<std::uint8_t> covered = std::vector<std::uint8_t>(kSize * kSize, 1);
+
+  Wall(int side, bool same_place) {
+    for (int v = 0; v < kSize; ++v) {
+      for (int u = 0; u < kSize; ++u) {
+        x.push_back(static_cast<std::int16_t>(same_place ? u % side : u));
+        y.push_back(static_cast<std::int16_t>(same_place ? v % side : v));
+      }
+    }
+  }
+  SourcePlanes Planes() const { return {kSize, kSize, x, y, covered, {}}; }
+};
+
+TEST(SourceRepetition, CountsHowOftenASourceShows) {
+  EXPECT_DOUBLE_EQ(SourceRepetition(Wall(64, true).Planes()), 1.0);
+  EXPECT_DOUBLE_EQ(SourceRepetition(Wall(16, true).Planes()), 16.0);
+  EXPECT_DOUBLE_EQ(SourceRepetition(Wall(16, false).Planes()), 1.0);
+  Wall none(16, true);
+  none.covered.assign(none.covered.size(), 0);
+  EXPECT_EQ(SourceRepetition(none.Planes()), 0.0);
+}
+
+TEST(Seams, AreTheExcessAlongBorders) {
+  const Wall wall(16, true);
+  // White noise: neighbours differ as much inside as across.
+  const SeamStrength noise = MeasureSeams(Noise(64, 0, 0), wall.Planes());
+  EXPECT_EQ(noise.border_pairs, 2u * 3 * 64);
+  EXPECT_NEAR(noise.excess, 0.0, 0.1);
+  // A ramp inside each tile that jumps back at its end: 15 steps across against 1 inside, along rows only.
+  Picture ramp(64, 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      std::uint16_t* pixel = ramp.At(x, y);
+      pixel[0] = pixel[1] = pixel[2] = static_cast<std::uint16_t>(20000 + 500 * (x % 16)), pixel[3] = 65535;
+    }
+  }
+  const SeamStrength seams = MeasureSeams(ramp, wall.Planes());
+  EXPECT_NEAR(seams.along_borders / seams.inside, 15.0, 0.8);
+  EXPECT_NEAR(seams.excess, seams.along_borders / seams.inside - 1.0, 1e-12);
+  EXPECT_EQ(MeasureSeams(ramp, Wall(64, true).Planes()).excess, 0.0) << "one chunk has no borders";
+}
+
+}  // namespace
+}  // namespace scumble
