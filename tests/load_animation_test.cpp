@@ -68,8 +68,8 @@ struct Bar {
                                                     0, 1, 0, 0}) {
     const int position = b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0}, 3);
     const int normal = b.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
-    std::vector<std::uint8_t> joints;
-    for (int i = 0; i < 6; ++i) joints.insert(joints.end(), {0, 1, 0, 0});
+    std::vector<std::uint8_t> joints(24, 0);
+    for (std::size_t i = 0; i < 6; ++i) joints[4 * i + 1] = 1;
     const int joint = b.Accessor(b.View(joints), kUbyte, 6, "VEC4");
     const int weight = b.Floats(weights, 4);
     const int index = b.Indices({0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5});
@@ -249,8 +249,11 @@ TEST_F(LoadAnimation, AMirroredSkeletonKeepsItsFaces) {
 
 TEST_F(LoadAnimation, IntegerWeightsAreMadeToSumToOne) {
   Bar bar;
-  std::vector<std::uint8_t> weights;
-  for (int i = 0; i < 6; ++i) weights.insert(weights.end(), {50, 150, 0, 0});  // ¼ and ¾ once divided by their sum
+  std::vector<std::uint8_t> weights(24, 0);
+  for (std::size_t i = 0; i < 24; i += 4) {
+    weights[i] = 50;  // ¼ and ¾ once divided by their sum
+    weights[i + 1] = 150;
+  }
   const int accessor = bar.b.Accessor(bar.b.View(weights), kUbyte, 6, "VEC4");
   bar.b.json["accessors"][accessor]["normalized"] = true;
   bar.b.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = accessor;
