@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -45,6 +46,8 @@ int ComponentCount(int type) {
       return 3;
     case TINYGLTF_TYPE_VEC4:
       return 4;
+    case TINYGLTF_TYPE_MAT4:
+      return 16;
     default:
       return 0;
   }
@@ -96,34 +99,22 @@ class Reader {
   Reader(const tinygltf::Model& model, const std::string& file, int index, const std::string& what)
       : model_(model), file_(file), index_(index), what_(what) {}
 
+  // For 4 × 4 matrices, which must be floats: their columns have no padding then.
+  Status OpenMatrices() {
+    SCUMBLE_RETURN_IF_ERROR(OpenAny());
+    if (accessor_->type == TINYGLTF_TYPE_MAT4 && accessor_->componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) return Ok();
+    return Bad("is no list of 4 × 4 matrices of floats");
+  }
+
   Error Bad(const std::string& reason) const {
     return InputError(file_ + ": " + what_ + ": accessor " + std::to_string(index_) + " " + reason +
                       "; the file is corrupt or was cut short, export it again");
   }
 
-  // Checks everything that does not need the values.
+  // Scalars and vectors.
   Status Open() {
-    if (index_ < 0 || std::size_t(index_) >= model_.accessors.size()) {
-      return Bad("does not exist, the file has " + std::to_string(model_.accessors.size()));
-    }
-    accessor_ = &model_.accessors[std::size_t(index_)];
-    components_ = ComponentCount(accessor_->type);
-    component_bytes_ = ComponentBytes(accessor_->componentType);
-    if (components_ == 0) return Bad("is a matrix, expected a scalar or a vector");
-    if (component_bytes_ == 0) {
-      return Bad("has the component type " + std::to_string(accessor_->componentType) + ", which glTF does not know");
-    }
-    if (accessor_->bufferView < 0) {
-      if (accessor_->count > kMaxZeroElements) {
-        return Bad("has " + std::to_string(accessor_->count) + " elements and no data");
-      }
-      return Ok();
-    }
-    SCUMBLE_ASSIGN(main_, Slice({.view = accessor_->bufferView,
-                                 .offset = accessor_->byteOffset,
-                                 .count = accessor_->count,
-                                 .element_bytes = element_bytes(),
-                                 .strided = true}));
+    SCUMBLE_RETURN_IF_ERROR(OpenAny());
+    if (components_ > 4) return Bad("is a matrix, expected a scalar or a vector");
     return Ok();
   }
 
@@ -191,6 +182,32 @@ class Reader {
   }
 
  private:
+  // Checks everything that does not need the values.
+  Status OpenAny() {
+    if (index_ < 0 || std::size_t(index_) >= model_.accessors.size()) {
+      return Bad("does not exist, the file has " + std::to_string(model_.accessors.size()));
+    }
+    accessor_ = &model_.accessors[std::size_t(index_)];
+    components_ = ComponentCount(accessor_->type);
+    component_bytes_ = ComponentBytes(accessor_->componentType);
+    if (components_ == 0) return Bad("is a matrix, expected a scalar or a vector");
+    if (component_bytes_ == 0) {
+      return Bad("has the component type " + std::to_string(accessor_->componentType) + ", which glTF does not know");
+    }
+    if (accessor_->bufferView < 0) {
+      if (accessor_->count > kMaxZeroElements) {
+        return Bad("has " + std::to_string(accessor_->count) + " elements and no data");
+      }
+      return Ok();
+    }
+    SCUMBLE_ASSIGN(main_, Slice({.view = accessor_->bufferView,
+                                 .offset = accessor_->byteOffset,
+                                 .count = accessor_->count,
+                                 .element_bytes = element_bytes(),
+                                 .strided = true}));
+    return Ok();
+  }
+
   const tinygltf::Model& model_;
   const std::string& file_;
   const int index_;
@@ -232,10 +249,10 @@ Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::str
   return reader.accessor().count;
 }
 
-Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
-                                const std::string& what) {
-  Reader reader(model, file, accessor, what);
-  SCUMBLE_RETURN_IF_ERROR(reader.Open());
+namespace {
+
+// `reader` is open.
+Expected<FloatTable> ReadTable(const Reader& reader) {
   const int type = reader.accessor().componentType;
   const bool normalized = reader.accessor().normalized;
   FloatTable table;
@@ -252,6 +269,30 @@ Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string&
   for (std::size_t i = 0; i < block.count; ++i) put(i, block.data + i * block.stride);
   SCUMBLE_RETURN_IF_ERROR(reader.ForEachSparse(put));
   return table;
+}
+
+}  // namespace
+
+Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
+                                const std::string& what) {
+  Reader reader(model, file, accessor, what);
+  SCUMBLE_RETURN_IF_ERROR(reader.Open());
+  return ReadTable(reader);
+}
+
+Expected<std::vector<glm::dmat4>> ReadMatrices(const tinygltf::Model& model, const std::string& file, int accessor,
+                                               const std::string& what) {
+  Reader reader(model, file, accessor, what);
+  SCUMBLE_RETURN_IF_ERROR(reader.OpenMatrices());
+  SCUMBLE_ASSIGN(const FloatTable table, ReadTable(reader));
+  std::vector<glm::dmat4> matrices(table.count);
+  for (std::size_t i = 0; i < table.values.size(); ++i) {
+    if (!std::isfinite(table.values[i])) {
+      return reader.Bad("has NaN or infinity in matrix " + std::to_string(i / 16));
+    }
+    matrices[i / 16][int(i % 16 / 4)][int(i % 4)] = double(table.values[i]);
+  }
+  return matrices;
 }
 
 Expected<std::vector<std::uint32_t>> ReadIndices(const tinygltf::Model& model, const std::string& file, int accessor,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,10 @@ Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::str
 // Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused.
 Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
                                 const std::string& what);
+
+// A list of 4 × 4 matrices of floats, column by column; each value finite.
+Expected<std::vector<glm::dmat4>> ReadMatrices(const tinygltf::Model& model, const std::string& file, int accessor,
+                                               const std::string& what);
 
 // Unsigned 8-, 16- or 32-bit scalars, each below `vertex_count`.
 Expected<std::vector<std::uint32_t>> ReadIndices(const tinygltf::Model& model, const std::string& file, int accessor,

@@ -2,6 +2,7 @@
 
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -24,7 +25,7 @@ glm::uvec3 TriangleCorners(int mode, std::uint32_t i) {
 }
 
 // Drops the vertices that no triangle uses: exporters share one long vertex list between many primitives.
-void DropUnusedVertices(Mesh& mesh) {
+void DropUnusedVertices(Mesh& mesh, MeshDeformation& deformation) {
   constexpr std::uint32_t kUnused = ~0u;
   std::vector<std::uint32_t> renamed(mesh.positions.size(), kUnused);
   std::vector<std::uint32_t> kept;
@@ -38,11 +39,13 @@ void DropUnusedVertices(Mesh& mesh) {
       triangle[i] = name;
     }
   }
-  const auto gather = [&](auto& values) {
+  const auto gather = [&](auto& values, std::size_t of_each = 1) {
     if (values.empty()) return;
     std::remove_reference_t<decltype(values)> chosen;
-    chosen.reserve(kept.size());
-    for (std::uint32_t vertex : kept) chosen.push_back(values[vertex]);
+    chosen.reserve(kept.size() * of_each);
+    for (std::uint32_t vertex : kept) {
+      for (std::size_t i = 0; i < of_each; ++i) chosen.push_back(values[vertex * of_each + i]);
+    }
     values = std::move(chosen);
   };
   gather(mesh.positions);
@@ -51,19 +54,31 @@ void DropUnusedVertices(Mesh& mesh) {
   gather(mesh.uvs[1]);
   gather(mesh.tangents);
   gather(mesh.colors);
+  for (MorphTarget& target : deformation.targets) {
+    gather(target.positions);
+    gather(target.normals);
+    gather(target.tangents);
+  }
+  gather(deformation.joints, std::size_t(deformation.influences));
+  gather(deformation.weights, std::size_t(deformation.influences));
 }
 
 // Loads one primitive; the members only save passing them on.
 class PrimitiveLoader {
  public:
-  PrimitiveLoader(const GltfLoad& load, const tinygltf::Primitive& primitive, std::string name)
+  PrimitiveLoader(const GltfLoad& load, const tinygltf::Primitive& primitive, std::string name,
+                  const DeformationRequest* request)
       : model_(load.model),
         file_(load.file),
         scene_(load.scene),
         budget_(load.budget),
         warnings_(load.warnings),
         primitive_(primitive),
-        name_(std::move(name)) {}
+        name_(std::move(name)),
+        request_(request) {}
+
+  // After Load, where one was requested.
+  MeshDeformation TakeDeformation() { return std::move(deformation_); }
 
   // Nothing for primitives that are left out.
   Expected<std::optional<Mesh>> Load() {
@@ -85,10 +100,14 @@ class PrimitiveLoader {
     SCUMBLE_RETURN_IF_ERROR(ReadPositions(position));
     SCUMBLE_RETURN_IF_ERROR(ReadTriangles());
     SCUMBLE_RETURN_IF_ERROR(ReadAttributes());
+    if (request_) {
+      SCUMBLE_RETURN_IF_ERROR(ReadTargets());
+      SCUMBLE_RETURN_IF_ERROR(ReadInfluences());
+    }
     SCUMBLE_RETURN_IF_ERROR(ChooseMaterial());
     if (mesh_.triangles.size() < mesh_.positions.size() / 4) {
       const std::size_t before = mesh_.positions.size();
-      DropUnusedVertices(mesh_);
+      DropUnusedVertices(mesh_, deformation_);
       budget_.GiveBackVertices(before - mesh_.positions.size());
     }
     if (mesh_.triangles.empty()) {
@@ -97,6 +116,12 @@ class PrimitiveLoader {
     }
     if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", name_);
     PrepareTangents(scene_.materials[std::size_t(mesh_.material)]);
+    if (request_) {
+      mesh_.rest_positions = mesh_.positions;
+      deformation_.smooth_normals = Accessor("NORMAL") < 0;
+      deformation_.normals = mesh_.normals;
+      deformation_.tangents = mesh_.tangents;
+    }
     return std::optional<Mesh>(std::move(mesh_));
   }
 
@@ -146,7 +171,11 @@ class PrimitiveLoader {
   template <class Put>
   Status ReadAttribute(const std::string& attribute, int min_components, int max_components, Put put) {
     const int accessor = Accessor(attribute);
-    if (accessor < 0) return Ok();
+    return accessor < 0 ? Ok() : ReadRows(accessor, attribute, min_components, max_components, put);
+  }
+
+  template <class Put>
+  Status ReadRows(int accessor, const std::string& attribute, int min_components, int max_components, Put put) {
     SCUMBLE_ASSIGN(const FloatTable table, ReadFloats(model_, file_, accessor, name_ + ", " + attribute));
     if (table.components < min_components || table.components > max_components) {
       return InputError(file_ + ": " + name_ + ", " + attribute + ": accessor " + std::to_string(accessor) + " has " +
@@ -190,6 +219,104 @@ class PrimitiveLoader {
       mesh_.colors[i] = glm::vec4(1.0f);
       warnings_.Add("vertex colours that are NaN or infinite count as white", name_);
     });
+  }
+
+  Status ReadTargets() {
+    if (request_->targets == 0) return Ok();
+    const std::size_t vertices = mesh_.positions.size();
+    if (primitive_.targets.size() != request_->targets) {
+      return InputError(file_ + ": " + name_ + " has " + std::to_string(primitive_.targets.size()) +
+                        " morph targets for " + std::to_string(request_->targets) + " weights; expected as many");
+    }
+    deformation_.targets.resize(request_->targets);
+    for (std::size_t i = 0; i < request_->targets; ++i) {
+      MorphTarget& target = deformation_.targets[i];
+      const auto read = [&](const std::string& attribute, std::vector<glm::vec3>& deltas) -> Status {
+        const auto it = primitive_.targets[i].find(attribute);
+        if (it == primitive_.targets[i].end()) return Ok();
+        // What targets hold counts as geometry: a sparse accessor asks for any amount of it with a few bytes.
+        SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, vertices, 0));
+        deltas.resize(vertices);
+        std::size_t broken = vertices;
+        const std::string what = "morph target " + std::to_string(i) + ", " + attribute;
+        SCUMBLE_RETURN_IF_ERROR(ReadRows(it->second, what, 3, 3, [&](std::size_t v, const float* d, const FloatTable&) {
+          deltas[v] = glm::vec3(d[0], d[1], d[2]);
+          if (!IsFinite(deltas[v])) broken = std::min(broken, v);
+        }));
+        if (broken == vertices) return Ok();
+        return InputError(file_ + ": " + name_ + ", " + what + ": accessor " + std::to_string(it->second) +
+                          " has NaN or infinity at vertex " + std::to_string(broken) + "; expected finite numbers");
+      };
+      SCUMBLE_RETURN_IF_ERROR(read("POSITION", target.positions));
+      SCUMBLE_RETURN_IF_ERROR(read("NORMAL", target.normals));
+      if (!mesh_.tangents.empty()) SCUMBLE_RETURN_IF_ERROR(read("TANGENT", target.tangents));
+    }
+    return Ok();
+  }
+
+  // Joints and weights, four of each in a set: JOINTS_0 and WEIGHTS_0, then further sets.
+  Status ReadInfluences() {
+    if (request_->joints == 0) return Ok();
+    int sets = 0;
+    while (Accessor("JOINTS_" + std::to_string(sets)) >= 0 && Accessor("WEIGHTS_" + std::to_string(sets)) >= 0) ++sets;
+    if (sets == 0) {
+      warnings_.Add("skinned meshes without JOINTS_0 and WEIGHTS_0 stand where their node does", name_);
+      return Ok();
+    }
+    const std::size_t vertices = mesh_.positions.size();
+    const std::size_t influences = 4 * std::size_t(sets);
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, vertices * std::uint64_t(sets), 0));
+    deformation_.influences = static_cast<int>(influences);
+    deformation_.joints.resize(vertices * influences);
+    deformation_.weights.resize(vertices * influences);
+    for (int set = 0; set < sets; ++set) SCUMBLE_RETURN_IF_ERROR(ReadInfluenceSet(set));
+    return CheckInfluences();
+  }
+
+  Status ReadInfluenceSet(int set) {
+    const std::size_t influences = std::size_t(deformation_.influences);
+    const std::string joints = "JOINTS_" + std::to_string(set), weights = "WEIGHTS_" + std::to_string(set);
+    std::string fault;
+    const auto complain = [&](const std::string& attribute, std::size_t vertex, const std::string& what) {
+      if (!fault.empty()) return;
+      fault = attribute + ": accessor " + std::to_string(Accessor(attribute)) + " has " + what + " at vertex " +
+              std::to_string(vertex);
+    };
+    SCUMBLE_RETURN_IF_ERROR(ReadAttribute(weights, 4, 4, [&](std::size_t v, const float* w, const FloatTable&) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        deformation_.weights[v * influences + 4 * std::size_t(set) + i] = w[i];
+        if (!(w[i] >= 0.0f) || !std::isfinite(w[i])) complain(weights, v, "the weight " + std::to_string(w[i]));
+      }
+    }));
+    SCUMBLE_RETURN_IF_ERROR(ReadAttribute(joints, 4, 4, [&](std::size_t v, const float* j, const FloatTable&) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t at = v * influences + 4 * std::size_t(set) + i;
+        const bool exists = j[i] >= 0.0f && j[i] < float(std::min<std::size_t>(request_->joints, 65536));
+        deformation_.joints[at] = exists ? static_cast<std::uint16_t>(j[i]) : std::uint16_t(0);
+        // What weighs nothing may name anything: some exporters leave it undefined.
+        if (!exists && deformation_.weights[at] > 0.0f) {
+          complain(joints, v, "joint " + std::to_string(j[i]) + " of " + std::to_string(request_->joints));
+        }
+      }
+    }));
+    const tinygltf::Accessor& accessor = model_.accessors[std::size_t(Accessor(joints))];
+    const bool whole = accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                       accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+    if (!whole || accessor.normalized) {
+      fault = joints + ": accessor " + std::to_string(Accessor(joints)) + " does not hold unsigned bytes or shorts";
+    }
+    if (fault.empty()) return Ok();
+    return InputError(file_ + ": " + name_ + ", " + fault + "; the file is corrupt, export it again");
+  }
+
+  Status CheckInfluences() {
+    const std::size_t influences = std::size_t(deformation_.influences);
+    for (std::size_t first = 0; first < deformation_.weights.size(); first += influences) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < influences; ++i) sum += double(deformation_.weights[first + i]);
+      if (!(sum > 0.0)) warnings_.Add("vertices without a weight follow the first joint that they name", name_);
+    }
+    return Ok();
   }
 
   Status ChooseMaterial() {
@@ -242,27 +369,41 @@ class PrimitiveLoader {
   WarningCounter& warnings_;
   const tinygltf::Primitive& primitive_;
   const std::string name_;
+  const DeformationRequest* request_;
   Mesh mesh_;
+  MeshDeformation deformation_;
 };
 
-}  // namespace
-
-Expected<std::vector<int>> LoadGltfMesh(const GltfLoad& load, int mesh_index) {
+// `request` may be null.
+Expected<std::vector<DeformableMesh>> LoadPrimitives(const GltfLoad& load, int mesh_index,
+                                                     const DeformationRequest* request) {
   const tinygltf::Mesh& mesh = load.model.meshes[std::size_t(mesh_index)];
-  std::vector<int> loaded;
+  std::vector<DeformableMesh> loaded;
   for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
     std::string name = "mesh " + std::to_string(mesh_index);
     if (!mesh.name.empty()) name += " '" + Excerpt(mesh.name, 80) + "'";
     if (mesh.primitives.size() > 1) name += ", primitive " + std::to_string(i);
-    if (!mesh.primitives[i].targets.empty())
-      load.warnings.Add("shape keys are ignored, meshes keep their rest shape", name);
-    PrimitiveLoader loader(load, mesh.primitives[i], name);
+    PrimitiveLoader loader(load, mesh.primitives[i], name, request);
     SCUMBLE_ASSIGN(std::optional<Mesh> primitive, loader.Load());
     if (!primitive) continue;
     load.scene.meshes.push_back(std::move(*primitive));
-    loaded.push_back(static_cast<int>(load.scene.meshes.size()) - 1);
+    loaded.push_back({static_cast<int>(load.scene.meshes.size()) - 1, loader.TakeDeformation()});
   }
   return loaded;
+}
+
+}  // namespace
+
+Expected<std::vector<int>> LoadGltfMesh(const GltfLoad& load, int mesh_index) {
+  SCUMBLE_ASSIGN(const std::vector<DeformableMesh> loaded, LoadPrimitives(load, mesh_index, nullptr));
+  std::vector<int> indices;
+  for (const DeformableMesh& mesh : loaded) indices.push_back(mesh.mesh);
+  return indices;
+}
+
+Expected<std::vector<DeformableMesh>> LoadDeformableMesh(const GltfLoad& load, int mesh_index,
+                                                         const DeformationRequest& request) {
+  return LoadPrimitives(load, mesh_index, &request);
 }
 
 }  // namespace scumble

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "guidegen/gltf_skin.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/scene.h"
 #include "image/status.h"
@@ -26,5 +27,19 @@ struct GltfLoad {
 // Loads the primitives of one glTF mesh into scene.meshes and returns their indices. Points, lines and primitives
 // without positions are left out with a warning; the list may be empty. scene.materials must hold the file's.
 Expected<std::vector<int>> LoadGltfMesh(const GltfLoad& load, int mesh_index);
+
+// A mesh that is to be deformed. Its scene.meshes have rest_positions.
+struct DeformationRequest {
+  std::size_t joints = 0;   // of its skin; 0: it has none
+  std::size_t targets = 0;  // how many weights there are; 0: morph targets are not read
+};
+struct DeformableMesh {
+  int mesh = 0;  // in scene.meshes
+  MeshDeformation deformation;
+};
+// Counts that differ, joints that do not exist and numbers that are not finite are kInput errors naming mesh and place.
+// A primitive without JOINTS_0 and WEIGHTS_0 has no influences.
+Expected<std::vector<DeformableMesh>> LoadDeformableMesh(const GltfLoad& load, int mesh_index,
+                                                         const DeformationRequest& request);
 
 }  // namespace scumble

@@ -35,40 +35,31 @@ bool IsKnownExtension(std::string_view name) {
   return name.rfind("KHR_materials_", 0) == 0 && name != "KHR_materials_pbrSpecularGlossiness";
 }
 
-// Rotation and translation only.
-std::optional<glm::dmat4> WithoutScale(const glm::dmat4& world) {
-  const std::optional<glm::dmat3> axes = StraightenAxes(world);
-  if (!axes) return std::nullopt;
-  glm::dmat4 rigid(*axes);
-  rigid[3] = world[3];
-  return rigid;
-}
-
-// A node of the hierarchy as reached from the scene's roots.
-struct Visit {
-  int node = 0;
-  int parent = -1;  // index of the parent's Visit
-  int depth = 0;
-  glm::dmat4 world{1.0};
-};
-
 class GltfLoader {
  public:
-  explicit GltfLoader(std::string file) : file_(std::move(file)) {}
+  // `animation` as in AnimationOptions; without one the scene is seen at rest.
+  GltfLoader(std::string file, std::optional<std::string> animation)
+      : file_(std::move(file)), animation_(std::move(animation)) {}
 
-  Expected<Scene> Load(const std::filesystem::path& path) {
+  Expected<MovingScene> Load(const std::filesystem::path& path) {
     SCUMBLE_RETURN_IF_ERROR(ParseGltf(path, model_, warnings_));
     SCUMBLE_RETURN_IF_ERROR(CheckVersionAndExtensions());
     SCUMBLE_RETURN_IF_ERROR(LoadGltfMaterials(model_, file_, scene_, warnings_));
     SCUMBLE_RETURN_IF_ERROR(ReadMaterialExtras(model_, file_, scene_));
     SCUMBLE_RETURN_IF_ERROR(ReadSceneExtras(model_, std::max(model_.defaultScene, 0), file_, scene_));
+    rig_.file = file_;
+    if (animation_) {
+      SCUMBLE_ASSIGN(rig_.animation, GltfAnimation::Read(model_, file_, *animation_, warnings_));
+    }
     SCUMBLE_ASSIGN(const std::vector<int> roots, ChooseRoots());
     SCUMBLE_RETURN_IF_ERROR(WalkNodes(roots));
     NameObjects();
-    for (std::size_t i = 0; i < visits_.size(); ++i) SCUMBLE_RETURN_IF_ERROR(LoadNode(i));
+    for (std::size_t i = 0; i < rig_.nodes.size(); ++i) SCUMBLE_RETURN_IF_ERROR(LoadNode(i));
+    SCUMBLE_RETURN_IF_ERROR(CheckAnimatedWeights());
+    if (!rig_.meshes.empty()) SCUMBLE_RETURN_IF_ERROR(rig_.Pose(std::nullopt, scene_));
     WarnOfIgnoredParts();
     warnings_.MoveTo(scene_.warnings);
-    return std::move(scene_);
+    return MovingScene{std::move(scene_), std::move(rig_), AnimationNames(model_)};
   }
 
  private:
@@ -126,10 +117,10 @@ class GltfLoader {
   // Depth first, in the file's order, without recursion: the depth is the file's to choose.
   Status WalkNodes(const std::vector<int>& roots) {
     std::vector<bool> seen(model_.nodes.size(), false);
-    std::vector<Visit> stack;
-    for (std::size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], -1, 0, glm::dmat4(1.0)});
+    std::vector<RigNode> stack;
+    for (std::size_t i = roots.size(); i-- > 0;) stack.push_back({.node = roots[i]});
     while (!stack.empty()) {
-      Visit visit = stack.back();
+      RigNode visit = stack.back();
       stack.pop_back();
       if (visit.node < 0 || std::size_t(visit.node) >= model_.nodes.size()) {
         return InputError(file_ + ": node " + std::to_string(visit.node) + " does not exist, the file has " +
@@ -143,15 +134,23 @@ class GltfLoader {
         return InputError(file_ + ": nodes are nested more than " + std::to_string(kMaxNodeDepth) + " levels deep");
       }
       seen[std::size_t(visit.node)] = true;
-      SCUMBLE_ASSIGN(const glm::dmat4 local, LocalTransform(visit.node));
-      visit.world = visit.world * local;
+      SCUMBLE_ASSIGN(visit.local, LocalTransform(visit.node));
+      visit.world = visit.world * visit.local;
       if (!IsFinite(visit.world))
         return InputError(file_ + ": " + NodeLabel(visit.node) + " has an infinite transform");
-      const int index = static_cast<int>(visits_.size());
-      visits_.push_back(visit);
+      if (rig_.animation.Moves(visit.node)) {
+        visit.moves = true;
+        visit.pose = RestPose(visit.node);
+      }
+      const int index = static_cast<int>(rig_.nodes.size());
+      rig_.nodes.push_back(visit);
       const std::vector<int>& children = model_.nodes[std::size_t(visit.node)].children;
       for (std::size_t i = children.size(); i-- > 0;) {
-        stack.push_back({children[i], index, visit.depth + 1, visit.world});
+        stack.push_back({.node = children[i],
+                         .parent = index,
+                         .depth = visit.depth + 1,
+                         .moves = visit.moves,
+                         .world = visit.world});
       }
     }
     return Ok();
@@ -190,21 +189,36 @@ class GltfLoader {
     return local;
   }
 
+  // Of a node without a matrix that LocalTransform has accepted.
+  NodePose RestPose(int index) const {
+    const tinygltf::Node& node = model_.nodes[std::size_t(index)];
+    NodePose pose;
+    if (!node.translation.empty()) {
+      pose.translation = glm::dvec3(node.translation[0], node.translation[1], node.translation[2]);
+    }
+    if (!node.rotation.empty()) {
+      pose.rotation =
+          glm::normalize(glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
+    }
+    if (!node.scale.empty()) pose.scale = glm::dvec3(node.scale[0], node.scale[1], node.scale[2]);
+    return pose;
+  }
+
   // Ids are hashes of names, so objects of one name would be one object. The first node of a name, by its place in the
   // file's list, keeps it whatever comes later; the others take their whole path.
   void NameObjects() {
     std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < visits_.size(); ++i) {
-      if (model_.nodes[std::size_t(visits_[i].node)].mesh >= 0) order.push_back(i);
+    for (std::size_t i = 0; i < rig_.nodes.size(); ++i) {
+      if (model_.nodes[std::size_t(rig_.nodes[i].node)].mesh >= 0) order.push_back(i);
     }
     std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return visits_[a].node < visits_[b].node; });
-    names_.resize(visits_.size());
+              [&](std::size_t a, std::size_t b) { return rig_.nodes[a].node < rig_.nodes[b].node; });
+    names_.resize(rig_.nodes.size());
     UniqueNames unique;
     std::set<std::string> plain;
     std::vector<std::size_t> later;
     for (std::size_t i : order) {
-      const std::string name = NodeName(visits_[i].node);
+      const std::string name = NodeName(rig_.nodes[i].node);
       if (plain.insert(name).second) {
         names_[i] = unique.Take(name);
       } else {
@@ -212,19 +226,29 @@ class GltfLoader {
       }
     }
     for (std::size_t i : later) {
-      std::string path = NodeName(visits_[i].node);
-      for (int at = visits_[i].parent; at >= 0; at = visits_[std::size_t(at)].parent) {
-        path = NodeName(visits_[std::size_t(at)].node) + "/" + path;
+      std::string path = NodeName(rig_.nodes[i].node);
+      for (int at = rig_.nodes[i].parent; at >= 0; at = rig_.nodes[std::size_t(at)].parent) {
+        path = NodeName(rig_.nodes[std::size_t(at)].node) + "/" + path;
       }
       names_[i] = unique.Take(path);
     }
   }
 
   Status LoadNode(std::size_t index) {
-    const Visit& visit = visits_[index];
+    SCUMBLE_RETURN_IF_ERROR(LoadWhatNodeHolds(index));
+    // A node has one light at most.
+    if (scene_.lights.size() > rig_.light_nodes.size()) rig_.light_nodes.push_back(static_cast<int>(index));
+    return Ok();
+  }
+
+  Status LoadWhatNodeHolds(std::size_t index) {
+    const RigNode& visit = rig_.nodes[index];
     const tinygltf::Node& node = model_.nodes[std::size_t(visit.node)];
     if (node.mesh >= 0) SCUMBLE_RETURN_IF_ERROR(LoadInstances(index));
-    if (node.camera >= 0) SCUMBLE_RETURN_IF_ERROR(LoadCamera(visit));
+    if (node.camera >= 0) {
+      SCUMBLE_RETURN_IF_ERROR(LoadCamera(visit));
+      rig_.camera_nodes.push_back(static_cast<int>(index));
+    }
     SCUMBLE_ASSIGN(const std::optional<Light> lamp, ReadLampExtras(node, file_ + ": " + NodeLabel(visit.node)));
     if (lamp) return PlaceLight(visit, *lamp);
     const auto light = node.extensions.find("KHR_lights_punctual");
@@ -235,38 +259,120 @@ class GltfLoader {
   }
 
   Status LoadInstances(std::size_t index) {
-    const Visit& visit = visits_[index];
+    const RigNode& visit = rig_.nodes[index];
     const tinygltf::Node& node = model_.nodes[std::size_t(visit.node)];
     if (std::size_t(node.mesh) >= model_.meshes.size()) {
       return InputError(file_ + ": " + NodeLabel(visit.node) + " uses mesh " + std::to_string(node.mesh) +
                         ", the file has " + std::to_string(model_.meshes.size()) + ": export it again");
     }
-    if (node.skin >= 0) {
-      warnings_.Add("skeletons are ignored, skinned meshes keep their bind pose", NodeLabel(visit.node));
-    }
     if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
       warnings_.Add("EXT_mesh_gpu_instancing is ignored, such a mesh is seen once", NodeLabel(visit.node));
     }
-    const double determinant = glm::determinant(glm::dmat3(visit.world));
-    if (determinant == 0.0 || !std::isfinite(1.0 / determinant)) {
+    // A skeleton places its mesh anew, and an animation may give it back what flattens it at rest.
+    if (Flattens(visit.world) && !visit.moves && node.skin < 0) {
       warnings_.Add("objects that their transform flattens are left out", NodeLabel(visit.node));
       return Ok();
+    }
+    Instance instance{names_[index], 0, visit.world};
+    SCUMBLE_RETURN_IF_ERROR(ReadObjectExtras(node, file_ + ": " + NodeLabel(visit.node), instance));
+    SCUMBLE_ASSIGN(const std::vector<double> weights, MorphWeights(visit.node));
+    const bool morphs = rig_.animation.Morphs(visit.node) ||
+                        std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0.0; });
+    if (node.skin >= 0 || morphs) {
+      return LoadDeformed(static_cast<int>(index), std::move(instance), morphs ? weights : std::vector<double>());
     }
     const auto [loaded, is_new] = loaded_meshes_.try_emplace(node.mesh);
     if (is_new) {
       SCUMBLE_ASSIGN(loaded->second, LoadGltfMesh({model_, file_, scene_, budget_, warnings_}, node.mesh));
     }
-    Instance instance{names_[index], 0, visit.world};
-    SCUMBLE_RETURN_IF_ERROR(ReadObjectExtras(node, file_ + ": " + NodeLabel(visit.node), instance));
     for (int mesh : loaded->second) {
       SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_new));
       instance.mesh = mesh;
-      scene_.instances.push_back(instance);
+      AddInstance({instance, static_cast<int>(index), -1});
     }
     return Ok();
   }
 
-  Status LoadCamera(const Visit& visit) {
+  void AddInstance(RigInstance instance) {
+    if (!Flattens(instance.instance.world_from_object)) scene_.instances.push_back(instance.instance);
+    rig_.instances.push_back(std::move(instance));
+  }
+
+  // The weights of the node's morph targets at rest: its own, its mesh's, or zeros.
+  Expected<std::vector<double>> MorphWeights(int index) const {
+    const tinygltf::Node& node = model_.nodes[std::size_t(index)];
+    const tinygltf::Mesh& mesh = model_.meshes[std::size_t(node.mesh)];
+    const std::size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives[0].targets.size();
+    const std::vector<double>& given = node.weights.empty() ? mesh.weights : node.weights;
+    if (given.empty() || targets == 0) return std::vector<double>(targets, 0.0);
+    const auto bad = [&](const std::string& what) {
+      return InputError(file_ + ": " + NodeLabel(index) + " " + what + ": export it again");
+    };
+    if (given.size() != targets) {
+      return bad("has " + std::to_string(given.size()) + " morph weights for " + std::to_string(targets) +
+                 " targets; expected as many");
+    }
+    for (double weight : given) {
+      if (!std::isfinite(weight)) return bad("has a morph weight that is NaN or infinite");
+    }
+    return given;
+  }
+
+  Status LoadDeformed(int index, Instance instance, const std::vector<double>& weights) {
+    const tinygltf::Node& node = model_.nodes[std::size_t(rig_.nodes[std::size_t(index)].node)];
+    int skin = -1;
+    if (node.skin >= 0) {
+      SCUMBLE_ASSIGN(skin, LoadSkin(node.skin));
+    }
+    DeformationRequest request;
+    request.joints = skin < 0 ? 0 : rig_.skins[std::size_t(skin)].joints.size();
+    request.targets = weights.size();
+    SCUMBLE_ASSIGN(std::vector<DeformableMesh> loaded,
+                   LoadDeformableMesh({model_, file_, scene_, budget_, warnings_}, node.mesh, request));
+    for (DeformableMesh& mesh : loaded) {
+      SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh.mesh)], true));
+      instance.mesh = mesh.mesh;
+      const bool skinned = mesh.deformation.influences > 0;
+      AddInstance({instance, index, static_cast<int>(rig_.meshes.size())});
+      rig_.meshes.push_back({mesh.mesh, index, skinned ? skin : -1, std::move(mesh.deformation), weights});
+    }
+    return Ok();
+  }
+
+  // The skin's place in the rig. Skins are few, and each is read once.
+  Expected<int> LoadSkin(int index) {
+    const auto [known, is_new] = loaded_skins_.try_emplace(index, static_cast<int>(rig_.skins.size()));
+    if (!is_new) return known->second;
+    SCUMBLE_ASSIGN(GltfSkin skin, ReadSkin(model_, file_, index));
+    std::map<int, int> rig_nodes;
+    for (std::size_t i = 0; i < rig_.nodes.size(); ++i) rig_nodes[rig_.nodes[i].node] = static_cast<int>(i);
+    for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+      const auto joint = rig_nodes.find(skin.joints[i]);
+      if (joint == rig_nodes.end()) {
+        return InputError(file_ + ": " + skin.name + ", joint " + std::to_string(i) + " is node " +
+                          std::to_string(skin.joints[i]) + ", which is not in the scene: export it again");
+      }
+      skin.joints[i] = joint->second;
+    }
+    rig_.skins.push_back(std::move(skin));
+    return known->second;
+  }
+
+  // Every key of an animated mesh must have as many weights as there are targets.
+  Status CheckAnimatedWeights() const {
+    for (const RigMesh& mesh : rig_.meshes) {
+      const int node = rig_.nodes[std::size_t(mesh.node)].node;
+      if (!rig_.animation.Morphs(node)) continue;
+      const std::size_t animated = rig_.animation.MorphWeights(node, 0.0).size();
+      if (animated == mesh.weights.size()) continue;
+      return InputError(file_ + ": the animation of " + NodeLabel(node) + " has " + std::to_string(animated) +
+                        " morph weights a key for " + std::to_string(mesh.weights.size()) +
+                        " targets; expected as many: export it again");
+    }
+    return Ok();
+  }
+
+  Status LoadCamera(const RigNode& visit) {
     const int index = model_.nodes[std::size_t(visit.node)].camera;
     const auto bad = [&](const std::string& what) {
       return InputError(file_ + ": the camera of " + NodeLabel(visit.node) + " " + what + ": export it again");
@@ -306,7 +412,7 @@ class GltfLoader {
     return Ok();
   }
 
-  Status LoadLight(const Visit& visit, int index) {
+  Status LoadLight(const RigNode& visit, int index) {
     const auto bad = [&](const std::string& what) {
       return InputError(file_ + ": the light of " + NodeLabel(visit.node) + " " + what + ": export it again");
     };
@@ -343,7 +449,7 @@ class GltfLoader {
   }
 
   // Appends a light at its node, whose name it takes if there is one.
-  Status PlaceLight(const Visit& visit, Light light) {
+  Status PlaceLight(const RigNode& visit, Light light) {
     const std::string& name = model_.nodes[std::size_t(visit.node)].name;
     if (!name.empty()) light.name = name;
     const std::optional<glm::dmat4> world = WithoutScale(visit.world);
@@ -357,25 +463,34 @@ class GltfLoader {
   }
 
   void WarnOfIgnoredParts() {
-    if (!model_.animations.empty()) {
-      warnings_.Add("animations are ignored, the scene is seen as its nodes stand",
+    if (!model_.animations.empty() && !animation_) {
+      warnings_.Add("animations are not played, the scene is seen as its nodes stand",
                     std::to_string(model_.animations.size()) + " in the file");
     }
   }
 
   const std::string file_;
+  const std::optional<std::string> animation_;
   tinygltf::Model model_;
   Scene scene_;
   GeometryBudget budget_;
   WarningCounter warnings_;
-  std::vector<Visit> visits_;
+  GltfRig rig_;
   std::vector<std::string> names_;  // of the object at each visit; empty where there is no mesh
   std::map<int, std::vector<int>> loaded_meshes_;
+  std::map<int, int> loaded_skins_;
   UniqueNames camera_names_;
 };
 
 }  // namespace
 
-Expected<Scene> LoadGltfScene(const std::filesystem::path& path) { return GltfLoader(path.string()).Load(path); }
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(MovingScene loaded, GltfLoader(path.string(), std::nullopt).Load(path));
+  return std::move(loaded.scene);
+}
+
+Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation) {
+  return GltfLoader(path.string(), animation).Load(path);
+}
 
 }  // namespace scumble

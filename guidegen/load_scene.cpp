@@ -1,6 +1,7 @@
 #include "guidegen/load_scene.h"
 
 #include <cctype>
+#include <cmath>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -46,21 +47,72 @@ void CheckPromises(const Scene& scene) {
   }
 }
 
-}  // namespace
-
-Expected<Scene> LoadScene(const std::filesystem::path& path) {
+// Calls load() and turns the ways in which memory can run out into an error.
+template <class Load>
+auto WithinMemory(const std::filesystem::path& path, Load load) -> decltype(load()) {
   try {
-    SCUMBLE_ASSIGN(Scene scene, LoadByEnding(path));
-    scene.name = path.string();
-    if (scene.materials.empty()) DefaultMaterial(scene);
-    if (scene.instances.empty()) scene.warnings.push_back("there is no geometry in the scene, its picture is empty");
-    CheckPromises(scene);
-    return scene;
+    return load();
   } catch (const std::bad_alloc&) {
     return InputError(path.string() + " asks for more memory than there is: simplify the scene");
   } catch (const std::length_error&) {
     return InputError(path.string() + " asks for more memory than there is: simplify the scene");
   }
+}
+
+void Finish(const std::filesystem::path& path, bool has_geometry, Scene& scene) {
+  scene.name = path.string();
+  if (scene.materials.empty()) DefaultMaterial(scene);
+  if (!has_geometry) scene.warnings.push_back("there is no geometry in the scene, its picture is empty");
+  CheckPromises(scene);
+}
+
+}  // namespace
+
+Expected<Scene> LoadScene(const std::filesystem::path& path) {
+  return WithinMemory(path, [&]() -> Expected<Scene> {
+    SCUMBLE_ASSIGN(Scene scene, LoadByEnding(path));
+    Finish(path, !scene.instances.empty(), scene);
+    return scene;
+  });
+}
+
+Expected<AnimatedScene> AnimatedScene::Load(const std::filesystem::path& path, const AnimationOptions& options) {
+  return WithinMemory(path, [&]() -> Expected<AnimatedScene> {
+    AnimatedScene animated;
+    const std::string ending = LowerEnding(path);
+    if (ending != ".glb" && ending != ".gltf") {
+      SCUMBLE_ASSIGN(animated.rest_, LoadScene(path));
+      if (options.animation.empty() || options.animation == "*") return animated;
+      return UsageError(path.string() + " has no animation \"" + Excerpt(options.animation, 80) +
+                        "\": only .glb and .gltf files have any");
+    }
+    SCUMBLE_ASSIGN(MovingScene loaded, LoadMovingGltfScene(path, options.animation));
+    animated.rest_ = std::move(loaded.scene);
+    animated.animations_ = std::move(loaded.animations);
+    Finish(path, !loaded.rig.instances.empty(), animated.rest_);
+    if (!loaded.rig.animation.empty()) animated.rig_ = std::make_shared<const GltfRig>(std::move(loaded.rig));
+    return animated;
+  });
+}
+
+bool AnimatedScene::moves() const { return rig_ != nullptr; }
+
+double AnimatedScene::duration_seconds() const { return rig_ ? rig_->animation.duration_seconds() : 0.0; }
+
+Expected<Scene> AnimatedScene::SceneAt(double seconds) const {
+  return WithinMemory(rest_.name, [&]() -> Expected<Scene> {
+    Scene scene = rest_;
+    SCUMBLE_RETURN_IF_ERROR(MoveTo(seconds, scene));
+    return scene;
+  });
+}
+
+Status AnimatedScene::MoveTo(double seconds, Scene& scene) const {
+  if (!std::isfinite(seconds)) return UsageError("a scene cannot be seen at " + std::to_string(seconds) + " s");
+  if (!rig_) return Ok();
+  SCUMBLE_CHECK_EQ(scene.meshes.size(), rest_.meshes.size());
+  SCUMBLE_CHECK(scene.cameras.size() >= rest_.cameras.size() && scene.lights.size() >= rest_.lights.size());
+  return rig_->Pose(seconds, scene);
 }
 
 }  // namespace scumble

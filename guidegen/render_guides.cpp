@@ -16,6 +16,7 @@ void CheckMesh(const Mesh& mesh, const Scene& scene) {
   const std::size_t count = mesh.positions.size();
   const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
   SCUMBLE_CHECK(fits(mesh.normals.size()) && fits(mesh.tangents.size()) && fits(mesh.colors.size()));
+  SCUMBLE_CHECK(fits(mesh.rest_positions.size()));
   SCUMBLE_CHECK(fits(mesh.uvs[0].size()) && fits(mesh.uvs[1].size()));
   SCUMBLE_CHECK(mesh.material >= 0 && std::size_t(mesh.material) < scene.materials.size());
   bool inside = true;

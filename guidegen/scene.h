@@ -58,6 +58,8 @@ struct Mesh {
   std::vector<glm::vec4> tangents;  // xyz and handedness; only where a normal map needs them
   std::vector<glm::vec4> colors;    // linear; multiplied into the base colour
   std::vector<glm::uvec3> triangles;
+  // The shape that nothing has deformed, in the file's own space: what `pref` holds. Empty: the same as `positions`.
+  std::vector<glm::vec3> rest_positions;
   int material = 0;  // index into Scene::materials, always valid
 };
 

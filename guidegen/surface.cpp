@@ -92,7 +92,7 @@ SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primiti
     return a + (b - a) * v + (c - a) * w;
   };
   point.position = mix(triangle.corner[0], triangle.corner[1], triangle.corner[2]);
-  const auto& positions = object.mesh->positions;
+  const auto& positions = object.mesh->rest_positions.empty() ? object.mesh->positions : object.mesh->rest_positions;
   point.rest_position = mix(positions[corners.x], positions[corners.y], positions[corners.z]);
   point.largest_coordinate = LargestCoordinate(point.position);
   for (const glm::dvec3& corner : triangle.corner) {
