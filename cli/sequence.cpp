@@ -101,7 +101,7 @@ class Tally {
 
   Expected<ExitCode> Result() const {
     if (failed_.empty()) return ExitCode::kOk;
-    return InputError(fmt::format("{} of {} frames were not made: {}; the first because {}", failed_.size(),
+    return InputError(fmt::format("{} of {} frames were not made: {}; the first: {}", failed_.size(),
                                   sequence_.frames.size(), FramesToText(failed_), first_reason_));
   }
 
