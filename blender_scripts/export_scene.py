@@ -111,8 +111,8 @@ def numbered(path, frame):
 
 
 def wait_for_reader(written, ahead, parent):
-    """Until no more than `ahead` of the files are still there, or the reader is gone."""
-    while sum(path.exists() for path in written[-ahead - 1:]) > ahead:
+    """Until fewer than `ahead` of the files are still there, or the reader is gone."""
+    while sum(path.exists() for path in written[-ahead:]) >= ahead:
         if os.getppid() != parent:
             fail("the program that reads the frames has ended")
         time.sleep(0.02)
@@ -148,7 +148,7 @@ def main():
     which.add_argument("--frame", type=int, help="frame of the scene; left out: the one it was saved at")
     which.add_argument("--frames", type=parse_frames, help="several frames, as 1-24 or 3,5-10 or 12-24x2")
     parser.add_argument("--ahead", type=int, default=0,
-                        help="with --frames: wait while more files than this are there; a reader deletes them. 0: never")
+                        help="with --frames: wait while so many files are there; a reader deletes them. 0: never wait")
     parser.add_argument("--scene", help="scene by name; left out: the one that was open when the file was saved")
     arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
     if arguments.frames is not None and "#" not in arguments.output.name:

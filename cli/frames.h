@@ -14,8 +14,8 @@ inline constexpr int kMaxFrame = 999'999'999;  // frame numbers are -kMaxFrame â
 inline constexpr std::size_t kMaxFrames = 1'000'000;
 
 // "7", "1-24", "3,5-10", "12-24x2" (every second), "10-1" or "10-1x-1" (backwards), "-5--1" (negative numbers), as
-// oiiotool, Nuke and fileseq write them. In the order given; a frame that comes again counts once. A usage error says what
-// is wrong: fileseq's y and : and Blender's .. are refused by name.
+// oiiotool, Nuke and fileseq write them. In the order given; a frame that comes again counts once. A usage error says
+// what is wrong: fileseq's y and : and Blender's .. are refused by name.
 Expected<std::vector<int>> ParseFrames(const std::string& text);
 
 // Short text that ParseFrames reads back as the same list.

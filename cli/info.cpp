@@ -66,7 +66,7 @@ Expected<Json> DescribeScene(const std::string& path) {
 }
 
 Expected<Json> DescribeStyle(const std::string& path) {
-  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}}));
+  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
   constexpr const char* kMethods[] = {"litsphere", "styleblit", "bruteforce"};
   Json json{{"kind", "style"}, {"name", style.name}, {"licence", style.licence}};
   json["method"] = kMethods[static_cast<int>(style.transfer.method)];

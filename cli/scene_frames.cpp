@@ -30,8 +30,7 @@ Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progr
   for (const std::string& warning : scene.warnings) {
     if (warned_.insert(warning).second) Warn(options_.scene + ": " + warning);
   }
-  SCUMBLE_ASSIGN(guides_,
-                 MakeGuidesOf(scene, options_, layers_, spoken_ ? silent_ : globals_, progress, false));
+  SCUMBLE_ASSIGN(guides_, MakeGuidesOf(scene, options_, layers_, spoken_ ? silent_ : globals_, progress, false));
   SCUMBLE_RETURN_IF_ERROR(guides_.guides.Validate(options_.scene));
   guides_.times.insert(guides_.times.begin(), {"load", load_ms});
   if (spoken_) guides_.plan.clear();

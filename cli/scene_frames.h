@@ -24,8 +24,8 @@ class SceneFrames {
   // these frames.
   Status Start(std::span<const int> frames, const Progress& progress);
 
-  // The guides of one of the frames, to be asked for in their order; the same one may be asked for again. What the scene
-  // has to say (cameras, lights, warnings) is said once. Plan and times are those of the work that this call did.
+  // The guides of one of the frames, to be asked for in their order; the same one may be asked for again. What the
+  // scene has to say (cameras, lights, warnings) is said once. Plan and times are those of the work that this call did.
   // Valid until the next call.
   Expected<const SceneGuides*> At(int frame, const Progress& progress);
 
@@ -33,7 +33,6 @@ class SceneFrames {
   Expected<const SceneGuides*> Ahead(int frame, const Progress& progress);
 
  private:
-
   SceneOptions options_;
   LayerSet layers_;
   const Globals& globals_;

@@ -31,10 +31,10 @@ Expected<std::optional<Sequence>> PlanSequence(const SequenceOptions& options, s
   SCUMBLE_ASSIGN(sequence.output, FrameName::Parse(output));
   if (sequence.frames.size() > 1 && !sequence.output.has_place() && !output.empty()) {
     const std::size_t dot = output.rfind('.');
-    return UsageError(fmt::format("-o {} is one file for {} frames: write #### where the frame's number goes, as in "
-                                  "{}.####{}",
-                                  output, sequence.frames.size(), output.substr(0, dot),
-                                  dot == std::string::npos ? "" : output.substr(dot)));
+    return UsageError(fmt::format(
+        "-o {} is one file for {} frames: write #### where the frame's number goes, as in "
+        "{}.####{}",
+        output, sequence.frames.size(), output.substr(0, dot), dot == std::string::npos ? "" : output.substr(dot)));
   }
   return std::optional(std::move(sequence));
 }
@@ -101,7 +101,7 @@ class Tally {
 
   Expected<ExitCode> Result() const {
     if (failed_.empty()) return ExitCode::kOk;
-    return InputError(fmt::format("{} of {} frames were not made: {}; the first because {}", failed_.size(),
+    return InputError(fmt::format("{} of {} frames were not made: {}; the first: {}", failed_.size(),
                                   sequence_.frames.size(), FramesToText(failed_), first_reason_));
   }
 

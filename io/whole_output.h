@@ -1,5 +1,5 @@
-// Whether an output of an earlier run can be kept: it must be whole, not merely there. A job that was killed leaves empty
-// files, and a disk that was full leaves truncated ones.
+// Whether an output of an earlier run can be kept: it must be whole, not merely there. A job that was killed leaves
+// empty files, and a disk that was full leaves truncated ones.
 #pragma once
 
 #include <filesystem>

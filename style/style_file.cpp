@@ -253,7 +253,9 @@ Status ApplyOverride(Style& style, const std::string& text) {
   const std::string name = text.substr(0, equals), value_text = text.substr(equals + 1);
   auto parsed = ParseToml("value = " + value_text, "--set");
   toml::table table = parsed ? std::move(*parsed) : toml::table();
-  if (table.size() != 1 || !(ValueOf(*table.get("value")) || table.get("value")->is_array())) {
+  const toml::array* pairs = table.size() == 1 ? table.get("value")->as_array() : nullptr;
+  const bool is_track = pairs && !pairs->empty() && pairs->is_homogeneous(toml::node_type::array);
+  if (table.size() != 1 || !(ValueOf(*table.get("value")) || is_track)) {
     table.clear();
     table.insert("value", value_text);
   }

@@ -42,8 +42,8 @@ Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
   const std::int64_t* before = nullptr;
   for (const auto& [frame, value] : track.keys) {
     if (before && *before >= frame) {
-      return UsageError(key.name + ": frame " + std::to_string(frame) + " comes after frame " + std::to_string(*before) +
-                        ": name each frame once, in rising order");
+      return UsageError(key.name + ": frame " + std::to_string(frame) + " comes after frame " +
+                        std::to_string(*before) + ": name each frame once, in rising order");
     }
     before = &frame;
     if (auto done = key.set(scratch, value, track.folder); !done) {
@@ -64,7 +64,8 @@ void RemoveTrack(Style& style, const std::string& name) {
 }
 
 KeyValue ValueAt(const StyleTrack& track, std::int64_t frame) {
-  const auto next = std::find_if(track.keys.begin(), track.keys.end(), [&](const auto& key) { return key.frame > frame; });
+  const auto next =
+      std::find_if(track.keys.begin(), track.keys.end(), [&](const auto& key) { return key.frame > frame; });
   if (next == track.keys.begin()) return next->value;
   const auto& [from, value] = *std::prev(next);
   if (next == track.keys.end() || from == frame || !track.straight) return value;

@@ -79,10 +79,10 @@ TEST(Frames, WhatIsWrongIsSaid) {
 }
 
 TEST(Frames, ShortTextReadsBack) {
-  const std::map<std::string, std::string> shorter = {{"1,2,3,4", "1-4"},    {"1,2", "1-2"},         {"1,3", "1,3"},
-                                                      {"1,3,5", "1-5x2"},    {"5,3,1", "5-1x-2"},    {"3,2,1", "3-1"},
-                                                      {"-3,-2,-1", "-3--1"}, {"7", "7"},             {"1,2,3,9", "1-3,9"},
-                                                      {"9,1-3", "9,1-3"},    {"1,2,4,6,8", "1-2,4-8x2"}, {"-1,4", "-1,4"}};
+  const std::map<std::string, std::string> shorter = {
+      {"1,2,3,4", "1-4"},         {"1,2", "1-2"},        {"1,3", "1,3"}, {"1,3,5", "1-5x2"},   {"5,3,1", "5-1x-2"},
+      {"3,2,1", "3-1"},           {"-3,-2,-1", "-3--1"}, {"7", "7"},     {"1,2,3,9", "1-3,9"}, {"9,1-3", "9,1-3"},
+      {"1,2,4,6,8", "1-2,4-8x2"}, {"-1,4", "-1,4"}};
   for (const auto& [text, expected] : shorter) {
     EXPECT_EQ(FramesToText(Frames(text)), expected);
     EXPECT_EQ(Frames(FramesToText(Frames(text))), Frames(text)) << text;

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 class CliSequence : public CliTest {
  protected:
-  // Everything in it moves: the pattern from frame to frame, the threshold as keyed (nothing is prepared anew), the scale
-  // too (everything is).
+  // Everything in it moves: the pattern from frame to frame, the threshold as keyed (nothing is prepared anew), the
+  // scale too (everything is).
   void WriteMovingStyle(const std::string& folder) {
     WritePainted(folder + "/lit.png", 64, 64);
     WriteText(folder + "/style.toml",
@@ -47,8 +47,12 @@ class CliSequence : public CliTest {
     }
     return all;
   }
-  static std::string Frame(const std::string& start, int frame) { return start + "000" + std::to_string(frame) + ".png"; }
-  static bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+  static std::string Frame(const std::string& start, int frame) {
+    return start + "000" + std::to_string(frame) + ".png";
+  }
+  static bool Contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
 };
 
 TEST_F(CliSequence, TheSameBytesHoweverARangeIsCut) {
@@ -70,7 +74,8 @@ TEST_F(CliSequence, TheSameBytesHoweverARangeIsCut) {
   }
   EXPECT_EQ(AllBytes("one.", 1, 6), once);
 
-  RunOk({"guidegen", Scene("stilllife.glb"), "--style", "style", "--size", "96x54", "--frames", "1-6", "-o", "g.####.exr"});
+  RunOk({"guidegen", Scene("stilllife.glb"), "--style", "style", "--size", "96x54", "--frames", "1-6", "-o",
+         "g.####.exr"});
   const Arguments transfer = {"transfer", "g.####.exr", "--style", "style"};
   RunOk(With(transfer, {"--frames", "1-6", "-o", "two.####.png"}));
   EXPECT_EQ(AllBytes("two.", 1, 6), once);
@@ -95,11 +100,11 @@ TEST_F(CliSequence, TwelveRenewalsASecondAtTwentyFourFrames) {
 
 TEST_F(CliSequence, ResumeRepairsAndLeavesTheRest) {
   WriteMovingStyle("style");
-  const Arguments stylize = {"stylize", Scene("stilllife.glb"), "--style", "style", "--size", "96x54", "--frames", "1-6",
-                             "-o", "p.####.png"};
+  const Arguments stylize = {
+      "stylize", Scene("stilllife.glb"), "--style", "style", "--size", "96x54", "--frames", "1-6", "-o", "p.####.png"};
   RunOk(stylize);
   const auto whole = AllBytes("p.", 1, 6);
-  WriteText(Frame("p.", 2), "");                                                  // a placeholder of a killed job
+  WriteText(Frame("p.", 2), "");                                                   // a placeholder of a killed job
   fs::resize_file(At(Frame("p.", 3)), fs::file_size(At(Frame("p.", 3))) * 2 / 3);  // a full disk
   fs::remove(At(Frame("p.", 4)));
   WritePainted(Frame("p.", 5), 96, 55);
@@ -186,8 +191,7 @@ TEST_F(CliSequence, AnErrorThatWouldComeAgainEndsIt) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(32));
   fs::create_directory(At("p2.png"));
-  const CommandResult result =
-      Run({"transfer", "g.exr", "--style", "style", "--frames", "1-3", "-o", "p#.png"});
+  const CommandResult result = Run({"transfer", "g.exr", "--style", "style", "--frames", "1-3", "-o", "p#.png"});
   EXPECT_EQ(result.code, 4) << result.err;
   EXPECT_TRUE(Contains(result.Error(), "frame 2: ")) << result.err;
   EXPECT_TRUE(Exists("p1.png"));
@@ -262,15 +266,17 @@ TEST_F(CliSequence, OneExposureForAllFrames) {
   const Arguments stylize = {"stylize", Scene("stilllife.glb"), "--style", "style", "--size", "48", "--frames", "1-2"};
   const CommandResult memory = RunOk(With(stylize, {"-o", "s#.png"}));
   EXPECT_TRUE(Contains(memory.Warning(), "measured on frame 1")) << memory.err;
-  EXPECT_EQ(RunOk({"stylize", Scene("stilllife.glb"), "--style", "style", "--size", "48", "-o", "s.png"}).Warning(), "");
+  EXPECT_EQ(RunOk({"stylize", Scene("stilllife.glb"), "--style", "style", "--size", "48", "-o", "s.png"}).Warning(),
+            "");
 }
 
 TEST_F(CliSequence, EachFrameIsReported) {
   WriteStyle("style");
-  const Arguments stylize = {"stylize", Scene("stilllife.glb"), "--style", "style", "--size", "32", "--frames", "8,3-4",
-                             "-o", "p.##.png"};
+  const Arguments stylize = {
+      "stylize", Scene("stilllife.glb"), "--style", "style", "--size", "32", "--frames", "8,3-4", "-o", "p.##.png"};
   const CommandResult text = RunOk(stylize);
-  const std::size_t eight = text.out.find("p.08.png"), three = text.out.find("p.03.png"), four = text.out.find("p.04.png");
+  const std::size_t eight = text.out.find("p.08.png"), three = text.out.find("p.03.png"),
+                    four = text.out.find("p.04.png");
   EXPECT_LT(eight, three);
   EXPECT_LT(three, four);
   EXPECT_TRUE(Contains(text.out.substr(four), "\n3 frames: 3 made;")) << text.out;

@@ -44,7 +44,8 @@ class StyleKeyframes : public testing::Test {
     ASSERT_FALSE(style) << lines;
     EXPECT_EQ(style.error().kind, ErrorKind::kInput) << style.error().message;
     for (const std::string& word : words) {
-      EXPECT_NE(style.error().message.find(word), std::string::npos) << "'" << word << "' in: " << style.error().message;
+      EXPECT_NE(style.error().message.find(word), std::string::npos)
+          << "'" << word << "' in: " << style.error().message;
     }
   }
 
@@ -112,7 +113,8 @@ TEST_F(StyleKeyframes, OnlyWhatChangesIsNamed) {
   EXPECT_EQ(*SetStyleFrame(style, 1), Names());
   EXPECT_EQ(*SetStyleFrame(style, 2), Names({"transfer.threshold"}));
   EXPECT_EQ(*SetStyleFrame(style, 2), Names());
-  EXPECT_EQ(*SetStyleFrame(style, 4), Names({"transfer.threshold", "transfer.levels"}));
+  EXPECT_EQ(*SetStyleFrame(style, 4), Names({"transfer.levels", "transfer.threshold"}))
+      << "in the order of the alphabet";
   EXPECT_EQ(*SetStyleFrame(style, 100), Names({"transfer.threshold"}));
 }
 

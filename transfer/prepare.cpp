@@ -194,6 +194,11 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   }
   if (settings.shadow == ShadowMode::kPaint) prepared.dark = DarkestPlace(*prepared.exemplar);
   if (settings.edge == EdgeMode::kExemplar) {
+    if (!style.exemplars.front().is_sphere) {
+      return UsageError("transfer.edge = \"exemplar\" continues the painted edge of a sphere; " +
+                        style.exemplars.front().name + " is another scene: set it to \"exact\"");
+    }
+    const int size = prepared.exemplar->size();
     for (const Exemplar& exemplar : style.exemplars) prepared.rims.emplace_back(exemplar.picture, style.paper, size);
     const auto has_edge = [](const RimPaint& rim) { return rim.HasEdge(); };
     if (!std::all_of(prepared.rims.begin(), prepared.rims.end(), has_edge)) prepared.rims.clear();
