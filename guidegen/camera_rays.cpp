@@ -78,6 +78,13 @@ ViewRay CameraRays::Through(double x, double y) const {
   return ray;
 }
 
+std::optional<glm::dvec2> CameraRays::PixelOf(const glm::dvec3& point) const {
+  if (!orthographic_ && !(point.z < 0.0)) return std::nullopt;
+  const glm::dvec2 plane = orthographic_ ? glm::dvec2(point) : glm::dvec2(point) / -point.z;
+  const glm::dvec2 steps = (plane - shift_) / step_;
+  return glm::dvec2((steps.x + width_) / 2.0, (height_ - steps.y) / 2.0);
+}
+
 glm::dmat4 CameraRays::ViewFromObject(const glm::dmat4& world_from_object) const {
   const glm::dmat3 view_from_world = glm::transpose(axes_);
   const glm::dmat3 linear = view_from_world * glm::dmat3(world_from_object);

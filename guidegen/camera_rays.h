@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "guidegen/scene.h"
 #include "image/guides.h"
@@ -25,6 +26,9 @@ class CameraRays {
 
   // The ray through a point of the picture, in pixels from the top left corner.
   ViewRay Through(double x, double y) const;
+
+  // Where in the picture a point of view space is seen, the inverse of Through; nothing behind the eye.
+  std::optional<glm::dvec2> PixelOf(const glm::dvec3& point) const;
 
   // Planar depth between which surfaces are seen; the far one may be infinite.
   double near_depth() const { return near_depth_; }

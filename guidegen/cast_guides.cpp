@@ -122,7 +122,7 @@ Status CheckSampling(const GuidegenOptions& options) {
 
 }  // namespace
 
-Status CheckOptions(const GuidegenOptions& options) {
+Status CheckOptions(const GuidegenOptions& options, bool has_next_frame) {
   const auto in_range = [](int side) { return side >= 1 && side <= kMaxImageSide; };
   if (!in_range(options.width) || !in_range(options.height)) {
     return UsageError("a picture of " + std::to_string(options.width) + "x" + std::to_string(options.height) +
@@ -135,9 +135,10 @@ Status CheckOptions(const GuidegenOptions& options) {
   if (options.threads < 0) {
     return UsageError("threads " + std::to_string(options.threads) + " is out of range: expected 0 (all) or more");
   }
-  if (options.layers.Has(Layer::kMotion)) {
+  if (options.layers.Has(Layer::kMotion) && !has_next_frame) {
     return UnavailableError("layer " + std::string(Info(Layer::kMotion).name) +
-                            " is not built into this version's guidegen: leave it out, or take it from Blender");
+                            " is not built from one frame alone, it needs the next one: leave it out, or take it from " +
+                            "Blender");
   }
   return CheckSampling(options);
 }

@@ -185,8 +185,7 @@ Expected<GltfAnimation> GltfAnimation::Read(const tinygltf::Model& model, const 
     warnings.Add("only the first of the " + std::to_string(names.size()) + " animations in the file is played",
                  "'" + Excerpt(names[0], 80) + "'");
   }
-  SCUMBLE_RETURN_IF_ERROR(
-      animation.ReadAnimation(model, file, static_cast<int>(chosen - names.begin()), warnings));
+  SCUMBLE_RETURN_IF_ERROR(animation.ReadAnimation(model, file, static_cast<int>(chosen - names.begin()), warnings));
   return animation;
 }
 
@@ -199,8 +198,8 @@ Status GltfAnimation::ReadAnimation(const tinygltf::Model& model, const std::str
     const std::string& path = channels[i].target_path;
     const std::string where = reader.Where(i);
     if (node < 0 || std::size_t(node) >= model.nodes.size()) {
-      return reader.Bad(where, "moves node " + std::to_string(node) + ", the file has " +
-                                   std::to_string(model.nodes.size()));
+      return reader.Bad(where,
+                        "moves node " + std::to_string(node) + ", the file has " + std::to_string(model.nodes.size()));
     }
     NodeTracks& tracks = nodes_[node];
     KeyTrack* track = path == "translation" ? &tracks.translation

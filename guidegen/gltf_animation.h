@@ -1,5 +1,6 @@
-// glTF animation: what the samplers of the chosen animation say of a node at a time. glTF 2.0, section 3.11 and appendix
-// C: linear (rotations by slerp), step, cubic spline; before the first key and after the last one the value stands still.
+// glTF animation: what the samplers of the chosen animation say of a node at a time. glTF 2.0, section 3.11 and
+// appendix C: linear (rotations by slerp), step, cubic spline; before the first key and after the last one the value
+// stands still.
 #pragma once
 
 #include <glm/glm.hpp>

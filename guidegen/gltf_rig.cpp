@@ -21,7 +21,8 @@ glm::dmat4 SkinFrame(const glm::dmat4& first_joint, const glm::dmat4& first_matr
 // Poses one scene at one time; the members only save passing them on.
 class Poser {
  public:
-  Poser(const GltfRig& rig, std::optional<double> seconds, Scene& scene) : rig_(rig), seconds_(seconds), scene_(scene) {}
+  Poser(const GltfRig& rig, std::optional<double> seconds, Scene& scene)
+      : rig_(rig), seconds_(seconds), scene_(scene) {}
 
   Status Run() {
     SCUMBLE_RETURN_IF_ERROR(PlaceNodes());
@@ -29,10 +30,10 @@ class Poser {
     for (std::size_t i = 0; i < rig_.meshes.size(); ++i) SCUMBLE_RETURN_IF_ERROR(Deform(i));
     PlaceInstances();
     if (!seconds_) return Ok();
-    SCUMBLE_RETURN_IF_ERROR(Place(rig_.camera_nodes, "camera", [&](std::size_t i) -> auto& {
-      return scene_.cameras[i].world_from_camera;
-    }));
-    return Place(rig_.light_nodes, "light", [&](std::size_t i) -> auto& { return scene_.lights[i].world_from_light; });
+    SCUMBLE_RETURN_IF_ERROR(Place(
+        rig_.camera_nodes, "camera", [&](std::size_t i) -> auto& { return scene_.cameras[i].world_from_camera; }));
+    return Place(
+        rig_.light_nodes, "light", [&](std::size_t i) -> auto& { return scene_.lights[i].world_from_light; });
   }
 
  private:

@@ -33,9 +33,9 @@ struct RigMesh {
 };
 
 struct RigInstance {
-  Instance instance;   // as at rest
-  int node = 0;        // in the rig
-  int rig_mesh = -1;   // where the mesh is deformed
+  Instance instance;  // as at rest
+  int node = 0;       // in the rig
+  int rig_mesh = -1;  // where the mesh is deformed
 };
 
 struct GltfRig {

@@ -86,6 +86,19 @@ struct GuidegenResult {
 // Embree 3.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options);
 
+// What the layer `motion` is measured against: the same scene and camera, one frame later, as AnimatedScene gives them.
+// Objects are told by name and mesh. Both are borrowed.
+struct NextFrame {
+  const Scene& scene;
+  const Camera& camera;
+};
+
+// As above, with the layer `motion` among what can be asked for: how far what the pixel shows moves until the next
+// frame, +X right and +Y down as rows count, in pixels. 0 for background, for what is gone by then, and, exactly, for
+// what stands still; it says nothing of whether something else hides the place then.
+Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
+                                      const GuidegenOptions& options);
+
 struct SphereOptions {
   int size = 512;  // N × N pixels
   LayerSet layers;

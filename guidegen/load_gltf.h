@@ -3,9 +3,9 @@
 //
 // Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
 // strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
-// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations. Ignored with a
-// warning: points, lines, the range of lights (Blender's lamps have none). A file that *requires* another extension is
-// refused by the extension's name.
+// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations. Ignored with
+// a warning: points, lines, the range of lights (Blender's lamps have none). A file that *requires* another extension
+// is refused by the extension's name.
 //
 // An object is named after its node. Where several nodes have one name, the first in the file's list keeps it and the
 // others take their path, "Parent/Name", then "Parent/Name#2", …: what is added behind them renames nobody.

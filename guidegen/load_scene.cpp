@@ -28,7 +28,8 @@ Expected<Scene> LoadByEnding(const std::filesystem::path& path) {
   if (ending == ".obj") return LoadObjScene(path);
   if (ending == ".ply") return LoadPlyScene(path);
   if (ending == ".blend") {
-    return UnavailableError(path.string() + ": .blend files cannot be read directly: scumble guidegen and stylize have " +
+    return UnavailableError(path.string() +
+                            ": .blend files cannot be read directly: scumble guidegen and stylize have " +
                             "Blender export them; elsewhere, export the scene to .glb");
   }
   return InputError(path.string() + " has the ending '" + Excerpt(path.extension().string(), 40) +

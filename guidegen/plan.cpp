@@ -46,14 +46,13 @@ std::string LayerCost(Layer layer, const Scene& scene, const GuidegenOptions& op
     case Layer::kMaterial:
     case Layer::kPosition:
     case Layer::kPref:
+    case Layer::kMotion:
       return "none: follows from the primary rays";
     case Layer::kAlbedo:
       return HasTexturedColor(scene) ? "1 texture lookup per covered pixel" : "none: no material has a texture";
     case Layer::kLuminance:
     case Layer::kShadow:
       return SupplyOf(scene).light ? "shadow rays" : "none: the scene has no light, so it is 0";
-    case Layer::kMotion:
-      return "not built in";
     default:
       return PathCost(layer, scene, options);
   }

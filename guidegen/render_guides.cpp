@@ -88,10 +88,33 @@ std::map<std::uint32_t, std::string> NamesById(const std::vector<std::uint32_t>&
   return result;
 }
 
-}  // namespace
+// The instances of the next frame in the order of this one's.
+Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenOptions& options, View& view) {
+  SCUMBLE_ASSIGN(view.next_camera, CameraRays::Make(next.camera, options.width, options.height));
+  std::map<std::pair<std::string, int>, const Instance*> by_name;
+  for (const Instance& instance : next.scene.instances)
+    by_name.try_emplace({instance.object, instance.mesh}, &instance);
+  for (const Instance& instance : scene.instances) {
+    PlacedObject placed;
+    const auto found = by_name.find({instance.object, instance.mesh});
+    if (found != by_name.end() && std::size_t(instance.mesh) < next.scene.meshes.size()) {
+      const Mesh& mesh = next.scene.meshes[std::size_t(instance.mesh)];
+      const Mesh& now = scene.meshes[std::size_t(instance.mesh)];
+      // Another number of triangles is another thing under an old name.
+      if (mesh.triangles.size() == now.triangles.size() && mesh.positions.size() == now.positions.size()) {
+        placed.mesh = &mesh;
+        placed.view_from_object = view.next_camera.ViewFromObject(found->second->world_from_object);
+      }
+    }
+    view.next_objects.push_back(placed);
+  }
+  return Ok();
+}
 
-Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options) {
-  SCUMBLE_RETURN_IF_ERROR(CheckOptions(options));
+// `next` may be null.
+Expected<GuidegenResult> Render(const Scene& scene, const Camera& camera, const NextFrame* next,
+                                const GuidegenOptions& options) {
+  SCUMBLE_RETURN_IF_ERROR(CheckOptions(options, next != nullptr));
   for (const Material& material : scene.materials) CheckMaterial(material, scene);
   for (const Mesh& mesh : scene.meshes) CheckMesh(mesh, scene);
 
@@ -118,10 +141,25 @@ Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, 
     object.material_id = material_ids[mesh.material];
     view.objects.push_back(object);
   }
+  if (next && options.layers.Has(Layer::kMotion)) {
+    for (const Mesh& mesh : next->scene.meshes) CheckMesh(mesh, next->scene);
+    SCUMBLE_RETURN_IF_ERROR(PlaceNextFrame(scene, *next, options, view));
+  }
   SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(std::move(view), options));
   result.guides.object_names = NamesById(object_ids, object_names);
   result.guides.material_names = NamesById(material_ids, material_names);
   return result;
+}
+
+}  // namespace
+
+Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options) {
+  return Render(scene, camera, nullptr, options);
+}
+
+Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
+                                      const GuidegenOptions& options) {
+  return Render(scene, camera, &next, options);
 }
 
 }  // namespace scumble

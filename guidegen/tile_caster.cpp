@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "guidegen/soft_light.h"
@@ -134,6 +135,7 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
   planes_.position = PlanesOrNull(guides, Layer::kPosition);
   planes_.pref = PlanesOrNull(guides, Layer::kPref);
   planes_.albedo = PlanesOrNull(guides, Layer::kAlbedo);
+  planes_.motion = {PlaneOrNull(guides, Layer::kMotion, 0), PlaneOrNull(guides, Layer::kMotion, 1)};
 }
 
 void TileCaster::CastCentres(const Tile& tile, Hits& hits) const {
@@ -260,6 +262,20 @@ void TileCaster::Cover(const Tile& tile, Hits& hits, RayCounts& counts) const {
   }
 }
 
+glm::dvec2 TileCaster::MotionOf(const Hit& hit, const glm::dvec2& barycentric) const {
+  const PlacedObject& next = view_.next_objects[hit.object];
+  if (!next.mesh) return glm::dvec2(0.0);
+  // Both frames by the same sums, so that what stands still moves by exactly 0.
+  const auto pixel = [&](const PlacedObject& object, const CameraRays& camera) {
+    const Triangle triangle = ViewTriangle(object, hit.primitive);
+    return camera.PixelOf(triangle.corner[0] + (triangle.corner[1] - triangle.corner[0]) * barycentric.x +
+                          (triangle.corner[2] - triangle.corner[0]) * barycentric.y);
+  };
+  const std::optional<glm::dvec2> from = pixel(scene_.objects()[hit.object], view_.camera);
+  const std::optional<glm::dvec2> to = pixel(next, view_.next_camera);
+  return from && to ? *to - *from : glm::dvec2(0.0);
+}
+
 SurfacePoint TileCaster::Write(std::size_t index, const Hit& hit) const {
   const PlacedObject& object = scene_.objects()[hit.object];
   const ViewRay ray = view_.camera.Through(hit.x, hit.y);
@@ -273,6 +289,10 @@ SurfacePoint TileCaster::Write(std::size_t index, const Hit& hit) const {
   Store(planes_.pref, index, point.rest_position);
   if (planes_.albedo[0]) {
     Store(planes_.albedo, index, glm::dvec3(SurfaceColor(object, hit.primitive, point.barycentric)));
+  }
+  if (planes_.motion[0]) {
+    const glm::dvec2 motion = MotionOf(hit, point.barycentric);
+    for (int i = 0; i < 2; ++i) planes_.motion[i][index] = float(motion[i]);
   }
   return point;
 }

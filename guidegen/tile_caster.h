@@ -63,6 +63,7 @@ class TileCaster {
     std::array<float*, 3> position{};
     std::array<float*, 3> pref{};
     std::array<float*, 3> albedo{};
+    std::array<float*, 2> motion{};
   };
 
   using Mask = std::bitset<kTilePixels>;
@@ -72,6 +73,8 @@ class TileCaster {
   std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
   std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, Hit& hit) const;
   void Cover(const Tile& tile, Hits& hits, RayCounts& counts) const;
+  // How far the place that was hit moves in the picture until the next frame, pixels; 0 where it is not seen then.
+  glm::dvec2 MotionOf(const Hit& hit, const glm::dvec2& barycentric) const;
   SurfacePoint Write(std::size_t index, const Hit& hit) const;
   void Light(const Tile& tile, const Hits& hits, const std::vector<SurfacePoint>& points, RayCounts& counts) const;
   std::size_t Index(const Tile& tile, int pixel) const {

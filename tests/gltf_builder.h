@@ -81,9 +81,7 @@ struct GltfBuilder {
   }
 
   // Column by column, 16 numbers each.
-  int Matrices(const std::vector<float>& values) {
-    return Accessor(View(values), kFloat, values.size() / 16, "MAT4");
-  }
+  int Matrices(const std::vector<float>& values) { return Accessor(View(values), kFloat, values.size() / 16, "MAT4"); }
 
   // Adds a channel to animation 0, which is made if there is none. `path` is "translation", "weights", …
   void Animate(int node, const std::string& path, const std::vector<float>& times, const std::vector<float>& values,
@@ -94,8 +92,7 @@ struct GltfBuilder {
     const int components = path == "rotation" ? 4 : path == "weights" ? 1 : 3;
     const int input = Floats(times, 1), output = Floats(values, components);
     nlohmann::json& animation = json["animations"][0];
-    animation["samplers"].push_back(
-        {{"input", input}, {"output", output}, {"interpolation", interpolation}});
+    animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
     animation["channels"].push_back(
         {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
   }

@@ -31,8 +31,7 @@ glm::dmat4 RotationY(double degrees) {
 
 glm::dvec3 WorldPosition(const Scene& scene, std::size_t instance, std::size_t vertex) {
   const Instance& shown = scene.instances[instance];
-  return glm::dvec3(shown.world_from_object *
-                    glm::dvec4(scene.meshes[std::size_t(shown.mesh)].positions[vertex], 1.0));
+  return glm::dvec3(shown.world_from_object * glm::dvec4(scene.meshes[std::size_t(shown.mesh)].positions[vertex], 1.0));
 }
 
 class LoadAnimation : public LoaderTest {
@@ -64,8 +63,8 @@ struct Bar {
   GltfBuilder b;
   int root = 0, tip = 0, node = 0;
 
-  explicit Bar(const std::vector<float>& weights = {1, 0, 0, 0, 1, 0, 0, 0, .5, .5, 0, 0, .5, .5, 0, 0, 0, 1, 0, 0,
-                                                    0, 1, 0, 0}) {
+  explicit Bar(const std::vector<float>& weights = {1,  0,  0, 0, 1, 0, 0, 0, .5, .5, 0, 0,
+                                                    .5, .5, 0, 0, 0, 1, 0, 0, 0,  1,  0, 0}) {
     const int position = b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0, 1, 2, 0}, 3);
     const int normal = b.Floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
     std::vector<std::uint8_t> joints(24, 0);
@@ -73,9 +72,9 @@ struct Bar {
     const int joint = b.Accessor(b.View(joints), kUbyte, 6, "VEC4");
     const int weight = b.Floats(weights, 4);
     const int index = b.Indices({0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5});
-    const int mesh = b.Mesh({{{"attributes",
-                               {{"POSITION", position}, {"NORMAL", normal}, {"JOINTS_0", joint}, {"WEIGHTS_0", weight}}},
-                              {"indices", index}}});
+    const int mesh = b.Mesh(
+        {{{"attributes", {{"POSITION", position}, {"NORMAL", normal}, {"JOINTS_0", joint}, {"WEIGHTS_0", weight}}},
+          {"indices", index}}});
     tip = b.Append("nodes", {{"name", "Tip"}, {"translation", {0, 1, 0}}});
     root = b.Root({{"name", "Root"}, {"children", {tip}}});
     const int inverse = b.Matrices({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,  //
@@ -166,9 +165,8 @@ TEST_F(LoadAnimation, ChildrenCamerasAndLightsFollow) {
   b.json["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"intensity", 683}}}}}}};
   const int mesh = b.Mesh({{{"attributes", {{"POSITION", b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}}}}});
   const int child = b.Append("nodes", {{"name", "Child"}, {"mesh", mesh}, {"camera", 0}, {"translation", {0, 0, 1}}});
-  const int lamp = b.Append("nodes", {{"name", "Lamp"},
-                                      {"scale", {3, 3, 3}},
-                                      {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  const int lamp = b.Append(
+      "nodes", {{"name", "Lamp"}, {"scale", {3, 3, 3}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   const int parent = b.Root({{"name", "Parent"}, {"children", {child, lamp}}});
   b.Root({{"name", "Still"}, {"mesh", mesh}});
   b.Animate(parent, "translation", {0, 1}, {0, 0, 0, 10, 0, 0});
@@ -418,9 +416,7 @@ TEST_F(LoadAnimation, BrokenAnimationsAreRefusedByPlace) {
   EXPECT_THAT(broken(times({0, 1, 2})), HasSubstr("2 elements for 3 keys; expected 3"));
   EXPECT_THAT(broken(times({})), HasSubstr("no key"));
   const auto values = [](const std::vector<float>& list, int components) {
-    return [=](GltfBuilder& b, json& animation) {
-      animation["samplers"][0]["output"] = b.Floats(list, components);
-    };
+    return [=](GltfBuilder& b, json& animation) { animation["samplers"][0]["output"] = b.Floats(list, components); };
   };
   EXPECT_THAT(broken(values({0, 0, 0, 1, 0, nan, 0, 1}, 4)), HasSubstr("NaN or infinity at key 1"));
   EXPECT_THAT(broken(values({0, 0, 0, 1, 0, 0, 0, 0}, 4)), HasSubstr("zero length at key 1"));
@@ -456,7 +452,9 @@ TEST_F(LoadAnimation, BrokenSkinsAreRefusedByPlace) {
   };
   EXPECT_THAT(broken([](GltfBuilder& b) { b.json["skins"][0]["joints"] = json::array(); }), HasSubstr("no joints"));
   EXPECT_THAT(broken([](GltfBuilder& b) { b.json["skins"][0]["joints"] = {0, 99}; }), HasSubstr("node 99"));
-  EXPECT_THAT(broken([](GltfBuilder& b) { b.json["skins"][0]["joints"] = {0, 1, 2}; }),
+  EXPECT_THAT(broken([](GltfBuilder& b) {
+                b.json["skins"][0]["joints"] = {0, 1, 2};
+              }),
               HasSubstr("2 inverse bind matrices for 3 joints"));
   EXPECT_THAT(broken([](GltfBuilder& b) { b.json["skins"][0]["inverseBindMatrices"] = 0; }), HasSubstr("no list of 4"));
   EXPECT_THAT(broken([](GltfBuilder& b) {
@@ -465,19 +463,29 @@ TEST_F(LoadAnimation, BrokenSkinsAreRefusedByPlace) {
                 b.json["skins"][0]["inverseBindMatrices"] = b.Matrices(values);
               }),
               HasSubstr("NaN or infinity in matrix 0"));
-  EXPECT_THAT(broken([](GltfBuilder& b) { b.json["skins"][0]["inverseBindMatrices"] = b.Matrices(std::vector<float>(32)); }),
-              HasSubstr("projective part, for joint 0"));
+  EXPECT_THAT(
+      broken([](GltfBuilder& b) { b.json["skins"][0]["inverseBindMatrices"] = b.Matrices(std::vector<float>(32)); }),
+      HasSubstr("projective part, for joint 0"));
   EXPECT_THAT(broken([](GltfBuilder& b) { b.json["nodes"][2]["skin"] = 5; }, "skin 5"), HasSubstr("does not exist"));
-  EXPECT_THAT(broken([&](GltfBuilder& b) { attribute("JOINTS_0", b.Accessor(b.View(std::vector<std::uint8_t>(24, 2)), kUbyte, 6, "VEC4"), b); }, "JOINTS_0"),
+  EXPECT_THAT(broken(
+                  [&](GltfBuilder& b) {
+                    attribute("JOINTS_0", b.Accessor(b.View(std::vector<std::uint8_t>(24, 2)), kUbyte, 6, "VEC4"), b);
+                  },
+                  "JOINTS_0"),
               HasSubstr("joint 2.000000 of 2 at vertex 0"));
-  EXPECT_THAT(broken([&](GltfBuilder& b) { attribute("JOINTS_0", b.Floats(std::vector<float>(24, 0), 4), b); }, "JOINTS_0"),
-              HasSubstr("unsigned bytes or shorts"));
-  EXPECT_THAT(broken([&](GltfBuilder& b) { attribute("WEIGHTS_0", b.Floats(std::vector<float>(20, 1), 4), b); }, "WEIGHTS_0"),
-              HasSubstr("5 elements for 6 positions"));
-  EXPECT_THAT(broken([&](GltfBuilder& b) { attribute("WEIGHTS_0", b.Floats(std::vector<float>(24, std::nanf("")), 4), b); }, "WEIGHTS_0"),
-              HasSubstr("at vertex 0"));
-  EXPECT_THAT(broken([&](GltfBuilder& b) { attribute("WEIGHTS_0", b.Floats(std::vector<float>(24, -1), 4), b); }, "WEIGHTS_0"),
-              HasSubstr("the weight -1"));
+  EXPECT_THAT(
+      broken([&](GltfBuilder& b) { attribute("JOINTS_0", b.Floats(std::vector<float>(24, 0), 4), b); }, "JOINTS_0"),
+      HasSubstr("unsigned bytes or shorts"));
+  EXPECT_THAT(
+      broken([&](GltfBuilder& b) { attribute("WEIGHTS_0", b.Floats(std::vector<float>(20, 1), 4), b); }, "WEIGHTS_0"),
+      HasSubstr("5 elements for 6 positions"));
+  EXPECT_THAT(
+      broken([&](GltfBuilder& b) { attribute("WEIGHTS_0", b.Floats(std::vector<float>(24, std::nanf("")), 4), b); },
+             "WEIGHTS_0"),
+      HasSubstr("at vertex 0"));
+  EXPECT_THAT(
+      broken([&](GltfBuilder& b) { attribute("WEIGHTS_0", b.Floats(std::vector<float>(24, -1), 4), b); }, "WEIGHTS_0"),
+      HasSubstr("the weight -1"));
 }
 
 TEST_F(LoadAnimation, BrokenMorphsAreRefusedByPlace) {
@@ -497,14 +505,18 @@ TEST_F(LoadAnimation, BrokenMorphsAreRefusedByPlace) {
                 target["POSITION"] = b.Floats({0, 0, 0, 0, std::nanf(""), 0, 0, 0, 0}, 3);
               }),
               HasSubstr("morph target 0, POSITION: accessor"));
-  EXPECT_THAT(broken([](GltfBuilder& b, json&) { b.json["nodes"][0]["weights"] = {1, 2}; }),
+  EXPECT_THAT(broken([](GltfBuilder& b, json&) {
+                b.json["nodes"][0]["weights"] = {1, 2};
+              }),
               HasSubstr("2 morph weights for 1 targets"));
   EXPECT_THAT(broken([](GltfBuilder& b, json&) {
                 b.json["animations"][0]["samplers"][0]["output"] = b.Floats({0, 0, 1, 1}, 1);
               }),
               HasSubstr("2 morph weights a key for 1 targets"));
-  EXPECT_THAT(broken([](GltfBuilder& b, json& target) { target["POSITION"] = b.Floats(std::vector<float>(9, 3e38f), 3);
-                b.json["nodes"][0]["weights"] = {9}; }),
+  EXPECT_THAT(broken([](GltfBuilder& b, json& target) {
+                target["POSITION"] = b.Floats(std::vector<float>(9, 3e38f), 3);
+                b.json["nodes"][0]["weights"] = {9};
+              }),
               HasSubstr("deformed to infinity"));
 }
 
@@ -518,6 +530,79 @@ TEST_F(LoadAnimation, WhatHasNoSenseAtATimeNamesTheTime) {
   const Expected<Scene> scene = animated.SceneAt(1.0);
   ASSERT_FALSE(scene.ok());
   EXPECT_THAT(scene.error().message, testing::AllOf(HasSubstr("scene.glb"), HasSubstr("1.0"), HasSubstr("camera")));
+}
+
+// A square that slides and a camera that does not: the pixels are known.
+TEST_F(LoadAnimation, MotionIsInPixelsToTheNextFrame) {
+  Bar bar;
+  bar.b.Animate(bar.root, "translation", {0, 1}, {0, 0, 0, 0.5, 0.25, 0});
+  bar.b.Triangle("Still");
+  const AnimatedScene animated = Load(bar.b);
+  const Scene now = At(animated, 0.0), next = At(animated, 1.0);
+  Camera camera;
+  camera.orthographic = true;
+  camera.ymag = 2.0;
+  camera.world_from_camera[3] = glm::dvec4(0, 1, 5, 1);
+  GuidegenOptions options;
+  options.width = options.height = 80;  // 20 pixels a metre
+  options.layers = {Layer::kMotion};
+  EXPECT_EQ(RenderGuides(now, camera, options).error().kind, ErrorKind::kUnavailable);
+  const auto motion_at = [&](const Camera& now_camera, const Camera& next_camera, int column, int row) {
+    const Expected<GuidegenResult> result = RenderGuides(now, now_camera, {next, next_camera}, options);
+    if (!result) throw std::runtime_error(result.error().message);
+    const std::size_t at = std::size_t(row) * 80 + std::size_t(column);
+    return glm::dvec2(result->guides.Plane(Layer::kMotion, 0)[at], result->guides.Plane(Layer::kMotion, 1)[at]);
+  };
+  EXPECT_LT(glm::distance(motion_at(camera, camera, 50, 25), glm::dvec2(10, -5)), 1e-5);
+  EXPECT_EQ(motion_at(camera, camera, 5, 10), glm::dvec2(0));  // background
+  const auto still = RenderGuides(now, camera, {now, camera}, options);
+  ASSERT_TRUE(still.ok());
+  for (int c = 0; c < 2; ++c) {
+    for (const float value : still->guides.Plane(Layer::kMotion, c)) ASSERT_EQ(value, 0.0f);
+  }
+  // A perspective camera that steps back from z = 5 to z = 10 halves every distance from the picture's centre.
+  camera.orthographic = false;
+  camera.yfov_degrees = 2.0 * glm::degrees(std::atan(0.4));  // 4 m high at 5 m
+  Camera back = camera;
+  back.world_from_camera[3].z = 10.0;
+  const auto result = RenderGuides(now, camera, {now, back}, options);
+  ASSERT_TRUE(result.ok());
+  const std::size_t at = 25 * 80 + 50;  // its centre is 10.5 pixels right of the middle and 14.5 above it
+  EXPECT_NEAR(result->guides.Plane(Layer::kMotion, 0)[at], -5.25, 1e-5);
+  EXPECT_NEAR(result->guides.Plane(Layer::kMotion, 1)[at], 7.25, 1e-5);
+}
+
+// Random damage must end in an error or in a scene that can be shown, never in a crash; the sanitizer build looks on.
+TEST_F(LoadAnimation, DamagedFilesNeverCrash) {
+  Bar bar;
+  bar.b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", bar.b.Floats(std::vector<float>(18, 1), 3)}}};
+  bar.b.Animate(bar.tip, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, kHalf, kHalf});
+  bar.b.Animate(bar.node, "weights", {0, 1, 2}, {0, 1, 0});
+  const std::vector<unsigned char> whole = bar.b.Glb();
+  std::uint32_t state = 1;
+  const auto random = [&](std::size_t below) {
+    state = state * 1664525u + 1013904223u;
+    return std::size_t((std::uint64_t(state) * below) >> 32);
+  };
+  int shown = 0;
+  for (int i = 0; i < 600; ++i) {
+    std::vector<unsigned char> bytes = whole;
+    for (std::size_t n = 1 + random(3); n-- > 0;) {
+      unsigned char& byte = bytes[20 + random(bytes.size() - 20)];
+      // A digit becomes another one, so that much of the damage passes the parser.
+      byte =
+          std::isdigit(byte) ? static_cast<unsigned char>('0' + random(10)) : static_cast<unsigned char>(random(256));
+    }
+    const Expected<AnimatedScene> animated = AnimatedScene::Load(Write("damaged.glb", bytes), {"*"});
+    if (!animated) continue;
+    const Expected<Scene> scene = animated->SceneAt(0.7);
+    if (!scene) continue;
+    ++shown;
+    for (const Mesh& mesh : scene->meshes) {
+      for (const glm::vec3& p : mesh.positions) ASSERT_TRUE(std::isfinite(p.x + p.y + p.z));
+    }
+  }
+  EXPECT_GT(shown, 30);
 }
 
 }  // namespace

@@ -84,11 +84,12 @@ def skinned_tube():
 
 
 def face():
-    """Two shape keys, one overshooting."""
+    """Two shape keys."""
     thing = tube("Face")
     thing.location = (-4, 0, 0)
     thing.shape_key_add(name="Basis")
-    for name, scale, values in (("Wide", (2, 1, 1), ((1, 0.0), (12, 1.0))), ("Bent", (1, 1.3, 0.5), ((1, 0.2), (20, 0.9)))):
+    for name, scale, values in (("Wide", (2, 1, 1), ((1, 0.0), (12, 1.0))),
+                                ("Bent", (1, 1.3, 0.5), ((1, 0.2), (20, 0.9)))):
         key = thing.shape_key_add(name=name)
         for vertex, point in zip(thing.data.vertices, key.data):
             point.co = Vector(vertex.co[i] * scale[i] for i in range(3)) + Vector((0, 0.1 * vertex.co.z ** 2, 0))
