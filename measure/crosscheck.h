@@ -28,10 +28,11 @@ struct CrosscheckFigure {
 
   double LimitInForce() const;
   bool TightenedByBaseline() const { return baseline_limit && *baseline_limit < limit; }
-  // A value whose error is as large as the limit neither keeps nor breaks it.
+  // Twice the error is above the limit, and the value without it within: the limit is neither kept nor broken.
   bool TooNoisy() const;
   // NaN keeps no limit.
   bool kept() const { return value <= LimitInForce() && !TooNoisy(); }
+  bool broken() const { return !kept() && !TooNoisy(); }
 };
 
 // A layer side by side, for people.
@@ -42,6 +43,9 @@ struct CrosscheckPictures {
   Picture difference;
   std::string look;        // how both are shown, in words; empty where it goes without saying
   std::string full_scale;  // what the colours of the difference mean, in words
+  // The colours of the difference from the least to the most, for CSS, and what stands at evenly spaced places below them.
+  std::vector<std::string> scale_colors = {};
+  std::vector<std::string> scale_labels = {};
 };
 
 // How far ours and the reference are apart pixel by pixel, at several sample counts.
@@ -71,8 +75,16 @@ struct CrosscheckSetup {
   bool operator==(const CrosscheckSetup&) const = default;
 };
 
+enum class CrosscheckOutcome {
+  kAgrees,
+  kNotProved,    // nothing speaks against it but figures that are too noisy
+  kDiffers,
+  kNotCompared,  // a side could not be made
+};
+
 struct CrosscheckReport {
   std::string scene;
+  std::string failure = {};  // why it could not be compared; then the rest is empty but for the set-up
   CrosscheckSetup setup;
   std::size_t compared = 0;  // pixels inside the eroded masks
   bool glossy = false;       // the reference shows a specular surface
@@ -81,9 +93,14 @@ struct CrosscheckReport {
   std::vector<CrosscheckPictures> pictures;
   std::vector<std::string> skipped;   // layers that one side lacks: they fail the verdict
   std::vector<std::string> problems;  // whatever else fails the verdict, one sentence each
-  std::vector<std::string> warnings;  // what is not compared as authored
-  bool KeepsBuiltInLimits() const;    // the verdict without any baseline
-  bool passed() const;
+  std::vector<std::string> unsupported;  // what one side or both do not express, one sentence each
+  std::vector<std::string> warnings;     // what is not compared as authored, on purpose
+  std::string scumble_version = {};      // of this program
+  std::string blender_version = {};      // of the reference; empty where it is not known
+  std::string baseline_mismatch = {};    // why the baseline does not judge this scene; empty where it does or there is none
+  bool KeepsBuiltInLimits() const;       // the verdict without any baseline
+  CrosscheckOutcome Outcome() const;
+  bool passed() const { return Outcome() == CrosscheckOutcome::kAgrees; }
 };
 
 struct CrosscheckOptions {
@@ -122,6 +139,8 @@ std::string CrosscheckToText(const CrosscheckReport& report);
 // NaN and infinities are the texts "nan", "inf" and "-inf".
 std::string CrosscheckToJson(const std::vector<CrosscheckReport>& reports);
 
+// "agrees", "not proved", "differs", "could not be compared".
+const char* OutcomeName(CrosscheckOutcome outcome);
 // The verdict's own line, and why it fails, one sentence each.
 std::string CrosscheckVerdict(const CrosscheckReport& report);
 std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report);

@@ -1,10 +1,12 @@
 // The cross-check for terminals and for machines.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "measure/crosscheck.h"
+#include "measure/crosscheck_parts.h"
 
 namespace scumble {
 namespace {
@@ -21,18 +23,15 @@ std::string SetupText(const CrosscheckSetup& setup) {
   std::string text = fmt::format("{}×{}", setup.width, setup.height);
   if (!setup.camera.empty()) text += ", camera " + setup.camera;
   if (setup.frame) text += fmt::format(", frame {}", *setup.frame);
-  if (setup.samples > 0) text += fmt::format(", {} samples, {} bounces", setup.samples, setup.max_bounces);
+  if (setup.samples > 0) {
+    text += fmt::format(", {}, {}", internal::Counted(setup.samples, "sample"),
+                        internal::Counted(setup.max_bounces, "bounce"));
+  }
   return text;
 }
 
-// Beyond the limit by more than chance explains.
-bool IsBroken(const CrosscheckFigure& figure) {
-  return !(figure.value - (figure.TooNoisy() ? 2.0 * figure.error : 0.0) <= figure.LimitInForce());
-}
-
 std::string State(const CrosscheckFigure& figure) {
-  if (figure.kept()) return "kept";
-  return IsBroken(figure) ? "BROKEN" : "TOO NOISY";
+  return figure.kept() ? "kept" : figure.TooNoisy() ? "TOO NOISY" : "BROKEN";
 }
 
 std::string FigureLine(const CrosscheckFigure& figure) {
@@ -100,11 +99,17 @@ Json ReportJson(const CrosscheckReport& report) {
             {"max_bounces", report.setup.max_bounces},
             {"compared", report.compared},
             {"glossy", report.glossy},
-            {"passed", report.passed()}};
+            {"verdict", OutcomeName(report.Outcome())},
+            {"passed", report.passed()},
+            {"scumble", report.scumble_version},
+            {"blender", report.blender_version}};
+  if (!report.failure.empty()) json["failure"] = report.failure;
+  if (!report.baseline_mismatch.empty()) json["baseline_mismatch"] = report.baseline_mismatch;
   if (!report.setup.camera.empty()) json["camera"] = report.setup.camera;
   if (report.setup.frame) json["frame"] = *report.setup.frame;
   json["skipped"] = report.skipped;
   json["problems"] = report.problems;
+  json["unsupported"] = report.unsupported;
   json["warnings"] = report.warnings;
   json["figures"] = Json::array();
   for (const CrosscheckFigure& figure : report.figures) json["figures"].push_back(FigureJson(figure));
@@ -116,6 +121,7 @@ Json ReportJson(const CrosscheckReport& report) {
 }  // namespace
 
 std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
+  if (!report.failure.empty()) return {report.failure};
   std::vector<std::string> reasons;
   if (report.compared == 0) {
     reasons.push_back("nothing to compare: no object is wide enough, or the pictures do not agree at all");
@@ -128,11 +134,9 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
                                           figure.LimitInForce(), figure.unit);
     if (figure.TooNoisy()) {
       reasons.push_back(
-          fmt::format("{}: twice its standard error, {:.3g}, is above {}, so the figure proves nothing: raise "
-                      "--samples",
-                      what, 2.0 * figure.error, limit));
-    }
-    if (IsBroken(figure)) {
+          fmt::format("{}: {:.3g} with twice its standard error, {:.3g}, above {} proves nothing: raise --samples",
+                      what, figure.value, 2.0 * figure.error, limit));
+    } else {
       reasons.push_back(fmt::format("{}: {:.3g} is above {}", what, figure.value, limit) +
                         (figure.note.empty() ? "" : ", " + figure.note));
     }
@@ -141,18 +145,51 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
   return reasons;
 }
 
+const char* OutcomeName(CrosscheckOutcome outcome) {
+  switch (outcome) {
+    case CrosscheckOutcome::kAgrees:
+      return "agrees";
+    case CrosscheckOutcome::kNotProved:
+      return "not proved";
+    case CrosscheckOutcome::kDiffers:
+      return "differs";
+    case CrosscheckOutcome::kNotCompared:
+      return "could not be compared";
+  }
+  return "";
+}
+
 std::string CrosscheckVerdict(const CrosscheckReport& report) {
-  const std::string verdict = report.passed() ? "agrees" : "DIFFERS";
+  const CrosscheckOutcome outcome = report.Outcome();
+  std::string verdict = OutcomeName(outcome);
+  if (outcome == CrosscheckOutcome::kNotCompared) return verdict + ": " + report.failure;
+  const auto count = [&report](auto is) { return std::count_if(report.figures.begin(), report.figures.end(), is); };
+  const auto noisy = count([](const CrosscheckFigure& figure) { return figure.TooNoisy(); });
+  if (outcome == CrosscheckOutcome::kDiffers) verdict = "DIFFERS";
+  if (outcome == CrosscheckOutcome::kNotProved) {
+    verdict = fmt::format("NOT PROVED, {} too noisy: raise --samples",
+                          noisy == 1 ? "1 figure is" : fmt::format("{} figures are", noisy));
+  }
+  if (!report.unsupported.empty() && count([](const CrosscheckFigure& figure) { return figure.broken(); }) > 0) {
+    verdict += fmt::format(", {} not expressed: see the list “not expressed”",
+                           report.unsupported.size() == 1 ? "1 thing is"
+                                                          : fmt::format("{} things are", report.unsupported.size()));
+  }
   return report.setup.samples > 0 ? verdict : verdict + ", data layers alone: light was not compared (--samples 0)";
 }
 
 std::string CrosscheckToText(const CrosscheckReport& report) {
+  if (!report.failure.empty()) return report.scene + "\n  verdict: " + CrosscheckVerdict(report) + "\n";
   std::string text =
       fmt::format("{}  {}, {} pixels compared\n", report.scene, SetupText(report.setup), report.compared);
   for (const CrosscheckFigure& figure : report.figures) text += FigureLine(figure);
   text += NoiseText(report.noise);
-  if (!report.warnings.empty()) text += "  not compared as authored:\n";
-  for (const std::string& warning : report.warnings) text += "    " + warning + "\n";
+  const auto list = [&text](const char* title, const std::vector<std::string>& lines) {
+    if (!lines.empty()) text += fmt::format("  {}:\n", title);
+    for (const std::string& line : lines) text += "    " + line + "\n";
+  };
+  list("not compared as authored", report.warnings);
+  list("not expressed", report.unsupported);
   for (const std::string& reason : WhyCrosscheckFails(report)) text += "  ! " + reason + "\n";
   return text + "  verdict: " + CrosscheckVerdict(report) + "\n";
 }
