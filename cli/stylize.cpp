@@ -22,6 +22,9 @@ struct TransferVerb {
 };
 
 Expected<ExitCode> RunTransferVerb(const TransferVerb& verb, const Globals& globals) {
+  if (IsBlenderScene(verb.guides)) {
+    return InputError(verb.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
+  }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
   SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));

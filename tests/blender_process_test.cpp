@@ -87,5 +87,38 @@ TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
   EXPECT_FALSE(Exists("g.exr"));
 }
 
+TEST_F(BlenderProcess, BothVerbsTellTheSameFailureInTheSameWords) {
+  WriteProgram("talking", "echo 'Fra:1 Mem:1M'; echo 'out of paint'; echo 'Fra:2 Mem:1M'; exit 1");
+  WriteProgram("killed", "kill -KILL $$");
+  WriteText("shot.blend", "");
+  const auto fails = [&](const std::string& blender, int code, const std::string& part) {
+    for (const Arguments& verb : {Arguments{"guidegen", "shot.blend", "-o", "g.exr"},
+                                  Arguments{"crosscheck", Scene("suzanne.glb"), "--size", "32", "--samples", "0"}}) {
+      const CommandResult result = Run(With(verb, {"--blender", blender}));
+      EXPECT_EQ(result.code, code) << result.err;
+      EXPECT_NE(result.Error().find(part), std::string::npos) << result.err;
+      EXPECT_EQ(result.Error().find("Fra:"), std::string::npos) << result.err;
+      if (verb[0] == "crosscheck") {
+        EXPECT_EQ(result.Error().find("by hand"), std::string::npos) << result.err;
+      }
+    }
+  };
+  fails("./talking", 3, ": out of paint");
+  fails("./killed", 3, "ended from outside (Killed)");
+  fails("./none", 5, "./none cannot be run (No such file or directory): install Blender 3.4, or say where it is");
+}
+
+TEST_F(BlenderProcess, TargetsAreCheckedBeforeItRuns) {
+  WriteProgram("blender", "touch ran");
+  WriteText("shot.blend", "");
+  const Arguments with = {"--blender", "./blender"};
+  ExpectError(With({"guidegen", "shot.blend", "-o", "nodir/g.exr"}, with), 4, {"nodir/g.exr", "there is no folder"});
+  ExpectError(With({"crosscheck", Scene("suzanne.glb"), "-o", "/proc/report.html"}, with), 4, {"/proc/report.html"});
+  EXPECT_FALSE(Exists("ran"));
+  ExpectError({"info", "shot.blend"}, 3, {"scumble stylize"});
+  WriteStyle("style");
+  ExpectError({"transfer", "shot.blend", "--style", "style", "-o", "p.png"}, 3, {"scumble stylize"});
+}
+
 }  // namespace
 }  // namespace scumble

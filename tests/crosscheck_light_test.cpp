@@ -82,6 +82,25 @@ TEST(CrosscheckLight, AFigureThatIsTooNoisyProvesNothing) {
   EXPECT_NEAR(NoiseOf(report, "lpe.LDDE").nrmse.back(), 0.2 / 0.5, 1e-5);
 }
 
+TEST(CrosscheckLight, OnlyNoiseIsNotProvedAndABreakNamesWhatIsNotExpressed) {
+  CrosscheckReport report;
+  report.scene = "scene", report.compared = 1, report.setup.samples = 1;
+  report.unsupported = {"hair", "fog"};
+  report.figures = {{"lpe.full", "mean difference", "%", 3.0, 1.5, 1.0}};  // 3 − 2 is within 1.5
+  EXPECT_EQ(report.Outcome(), CrosscheckOutcome::kNotProved);
+  EXPECT_FALSE(report.passed());
+  EXPECT_EQ(CrosscheckVerdict(report), "NOT PROVED, 1 figure is too noisy: raise --samples");
+  report.figures[0].value = 4.0;  // 4 − 2 is not
+  EXPECT_TRUE(report.figures[0].broken());
+  EXPECT_EQ(report.Outcome(), CrosscheckOutcome::kDiffers);
+  EXPECT_FALSE(Says(WhyCrosscheckFails(report), "raise --samples"));
+  EXPECT_EQ(CrosscheckVerdict(report), "DIFFERS, 2 things are not expressed: see the list “not expressed”");
+  const auto html = CrosscheckToHtml({report}, {"Cycles", "scumble"});
+  ASSERT_TRUE(html.ok());
+  EXPECT_LT(html->find("Not expressed"), html->find("✗ broken"));
+  EXPECT_NE(CrosscheckToText(report).find("1 sample,"), std::string::npos);
+}
+
 TEST(CrosscheckLight, LightOnOneSideAloneBreaks) {
   CrosscheckLight ours_alone = EqualLight(64), theirs_alone = EqualLight(64);
   FillLayer(ours_alone.ours, Layer::kLpeLSE, glm::vec3(1e-6f));
