@@ -85,7 +85,7 @@ def say(text):
 
 
 def open_scene(options, unsupported):
-    if options.scene.endswith(".blend"):
+    if options.scene.lower().endswith(".blend"):
         bpy.ops.wm.open_mainfile(filepath=options.scene, load_ui=False, use_scripts=False)
         scene = bpy.context.scene
         set_size(scene.render, options.size)

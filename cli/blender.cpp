@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kExitVersion = 5;  // of export_scene.py
-
 Status CheckReadable(const std::string& path) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed)) {
@@ -49,12 +47,13 @@ bool IsBlenderScene(const std::string& path) {
 
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
-  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", path));
+  const std::string program = options.program.empty() ? "blender" : options.program;
+  const BlenderTask task{path, program, "the export by " + program + " failed", true};
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", task));
   const ScratchFolder scratch;
   if (scratch.path().empty())
     return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   const fs::path exported = scratch.path() / "scene.glb", log = scratch.path() / "log";
-  const std::string program = options.program.empty() ? "blender" : options.program;
   std::vector<std::string> arguments{program,
                                      "-b",
                                      "-noaudio",
@@ -69,18 +68,7 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& 
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   Say(globals, path + ": " + program + " exports it" +
                    (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
-  const Expected<ProgramEnd> ended = RunProgram(arguments, log);
-  if (!ended) return Error{ended.error().kind, path + ": " + ended.error().message};
-  const ProgramEnd end = *ended;
-  std::error_code failed;
-  if (end.signal != 0) {
-    return InputError(path + ": " + program + " crashed (" + ::strsignal(end.signal) +
-                      "): open the file in it and look");
-  }
-  if (end.code == kExitVersion) return UnavailableError(path + ": " + ReasonFrom(LinesOf(log)));
-  if (end.code != 0 || !fs::is_regular_file(exported, failed)) {
-    return InputError(path + ": the export by " + program + " failed: " + ReasonFrom(LinesOf(log)));
-  }
+  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), task, log, exported));
   Expected<Scene> scene = LoadScene(exported);
   if (!scene) return Error{scene.error().kind, Renamed(scene.error().message, exported.string(), path)};
   scene->name = path;

@@ -10,6 +10,7 @@
 #include "cli/json_text.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "io/atomic_file.h"
 #include "io/guide_file.h"
 
 namespace scumble {
@@ -74,6 +75,7 @@ Expected<ExitCode> RunGuidegenVerb(const GuidegenVerb& verb, const Globals& glob
   const GuideWriteOptions write{verb.scene.half, verb.compression};
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(verb.output, write));
   if (verb.style.style.empty() && !verb.style.sets.empty()) return UsageError("--set changes a style: give --style too");
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.output));
   ProgressBar bar("guidegen", globals.quiet);
   SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(verb.scene, layers, globals, bar.Part(0.0, 1.0), plan_only));
   if (style) NameStyleInPlan(made.plan, *style);

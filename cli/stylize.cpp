@@ -6,6 +6,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/transfer_run.h"
+#include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 
@@ -21,7 +22,11 @@ struct TransferVerb {
 };
 
 Expected<ExitCode> RunTransferVerb(const TransferVerb& verb, const Globals& globals) {
+  if (IsBlenderScene(verb.guides)) {
+    return InputError(verb.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
+  }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
+  SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
   SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
   Stopwatch watch;
   GuideReadOptions read;
@@ -43,6 +48,7 @@ struct StylizeVerb {
 
 Expected<ExitCode> RunStylizeVerb(const StylizeVerb& verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
+  SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
   Stopwatch watch;
   SCUMBLE_ASSIGN(const Style style, OpenStyle(verb.style));
   const double style_ms = watch.Lap();
