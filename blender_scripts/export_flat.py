@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from blend_common import choose_layer
+
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 RAYS = {"visible_camera": "camera", "visible_diffuse": "diffuse", "visible_glossy": "glossy",
@@ -116,7 +118,7 @@ def note_limits(thing, unsupported):
 
 
 def flatten(scene, unsupported):
-    view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+    view_layer = choose_layer(scene)
     bpy.context.window.view_layer = view_layer
     show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph

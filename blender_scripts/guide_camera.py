@@ -3,8 +3,7 @@
 import bpy
 from mathutils import Matrix, Vector
 
-# Blender's axes (+Z up) to glTF's (+Y up): x, z, -y.
-GLTF_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+from blend_common import GLTF_FROM_BLENDER
 
 
 def choose(scene, name):
