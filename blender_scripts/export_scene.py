@@ -22,12 +22,13 @@ import bpy
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-import export_flat  # noqa: E402  (Blender does not put a script's own folder on the path)
+import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
+import export_flat  # noqa: E402
 import export_glb  # noqa: E402
 import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
 import export_stretch  # noqa: E402
-from blend_common import Unsupported, check_version, choose_scene, fail  # noqa: E402
+from blend_common import Unsupported, check_version, choose_layer, choose_scene, fail  # noqa: E402
 
 
 def export(scene, output, unsupported):
@@ -66,6 +67,7 @@ def main():
     bpy.context.window.scene = scene
     scene.frame_set(arguments.frame if arguments.frame is not None else scene.frame_current)
     unsupported = Unsupported()
+    blend_check.check_file(choose_layer(scene), unsupported)
     export(scene, arguments.output, unsupported)
     unsupported.say()
 

@@ -32,7 +32,8 @@ import bpy
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-import blend_common  # noqa: E402  (Blender does not put a script's own folder on the path)
+import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
+import blend_common  # noqa: E402
 import guide_camera  # noqa: E402
 import guide_import  # noqa: E402
 import guide_instances  # noqa: E402
@@ -86,7 +87,9 @@ def open_scene(options, unsupported):
         scene = bpy.context.scene
         set_size(scene.render, options.size)
         scene.frame_set(scene.frame_current if options.frame is None else options.frame)
-        guide_instances.name_apart(scene, blend_common.choose_layer(scene), unsupported)
+        layer = blend_common.choose_layer(scene)
+        blend_check.check_file(layer, unsupported)
+        guide_instances.name_apart(scene, layer, unsupported)
     else:
         guide_import.load(options.scene, options.size, unsupported)
         set_size(bpy.context.scene.render, options.size)
