@@ -74,3 +74,36 @@ def choose_scene(name):
 def choose_layer(scene):
     """The first view layer that is rendered."""
     return next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+
+
+# ---- Cameras --------------------------------------------------------------------------------------------------------
+
+
+def camera_rank(scene, name):
+    """Sorts cameras: the active one first, the others by name."""
+    return (scene.camera is None or name != scene.camera.name, name)
+
+
+def cameras_of(scene, unsupported):
+    """Those that can be looked through, in order. A camera may be hidden: nobody renders cameras."""
+    found = {thing for thing in scene.objects if thing.type == "CAMERA"} | ({scene.camera} - {None})
+    usable = []
+    for thing in sorted(found, key=lambda thing: camera_rank(scene, thing.name)):
+        if thing.type != "CAMERA":
+            unsupported.add(f"camera '{thing.name}': is of type {thing.type}, left out")
+        elif thing.data.type not in {"PERSP", "ORTHO"}:
+            unsupported.add(f"camera '{thing.name}': is panoramic, left out")
+        else:
+            usable.append(thing)
+    return usable
+
+
+def note_crooked_camera(name, matrix, unsupported):
+    """Cycles takes the lengths of a camera's axes away and keeps their angles and their handedness."""
+    axes = [matrix.col[i].to_3d().normalized() for i in range(3)]
+    square = all(abs(axes[i].dot(axes[j])) < 1e-5 for i, j in ((0, 1), (0, 2), (1, 2)))
+    mirrored = axes[0].cross(axes[1]).dot(axes[2]) < 0.0
+    if mirrored or not square:
+        what = "mirrors" if square else "shears" if not mirrored else "shears and mirrors"
+        unsupported.add(f"camera '{name}': the scale of what it hangs on {what} Cycles' picture; guides are seen by a "
+                        "straight camera instead: take the scale away")

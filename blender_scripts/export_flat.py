@@ -93,15 +93,47 @@ def name_of(instance, taken):
     return name if taken[name] == 1 else f"{name}#{taken[name]}"
 
 
-def mesh_key(instance):
+def every_instance(depsgraph):
+    """What is rendered and may have a place in an export, with its name: pairs of an instance and a string. An instance
+    is Blender's own and only lives until the next one."""
+    taken = {}
+    for instance in depsgraph.object_instances:
+        thing = instance.object
+        if (not instance.is_instance and not instance.show_self) or thing.type in SILENT_TYPES:
+            continue
+        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
+            continue  # a curve's triangles, which follow the curve itself
+        yield instance, name_of(instance, taken)
+
+
+def is_generated(instance, depsgraph):
+    """Whether geometry nodes made up the mesh of an instance: it is then shown as the object that made it."""
+    thing = instance.object
+    if not instance.is_instance or thing.type != "MESH":
+        return False
+    return thing.data.as_pointer() != thing.original.evaluated_get(depsgraph).data.as_pointer()
+
+
+def mesh_key(instance, depsgraph):
     """Equal for those that show the same triangles in the same materials."""
     thing = instance.object
     slots = tuple(material_key(slot.material) for slot in thing.material_slots)
     original = thing.original
     plain = original.type == "MESH" and original.data is not None and not original.modifiers
-    if plain and not original.data.shape_keys and not (instance.is_instance and thing.data.name != original.data.name):
+    if plain and not original.data.shape_keys and not is_generated(instance, depsgraph):
         return ("plain", original.data.name_full, slots)
     return ("evaluated", thing.data.as_pointer(), slots)
+
+
+def new_mesh(instance, depsgraph):
+    """The evaluated mesh as one of the file's."""
+    thing = instance.object
+    if not is_generated(instance, depsgraph):
+        return bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=depsgraph)
+    mesh = thing.data.copy()  # new_from_object would give the mesh of the object that made it
+    for number, material in enumerate(mesh.materials):
+        mesh.materials[number] = material.original if material else None
+    return mesh
 
 
 def note_limits(thing, unsupported):
@@ -123,14 +155,9 @@ def flatten(scene, unsupported):
     show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph
     depsgraph.update()
-    flat, meshes, taken = FlatScene(), {}, {}
-    for instance in depsgraph.object_instances:
-        thing = instance.object
-        if not instance.is_instance and not instance.show_self:
-            continue
-        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
-            continue  # a curve's triangles, which follow the curve itself
-        place_object(flat, meshes, taken, instance, depsgraph, unsupported)
+    flat, meshes = FlatScene(), {}
+    for instance, name in every_instance(depsgraph):
+        place_object(flat, meshes, instance, name, depsgraph, unsupported)
     flat.cameras.sort(key=lambda camera: camera.source != scene.camera)
     if scene.camera and not any(camera.source == scene.camera for camera in flat.cameras):
         flat.cameras.insert(0, Placed(scene.camera.name, scene.camera, scene.camera.matrix_world.copy()))
@@ -144,14 +171,12 @@ def flatten(scene, unsupported):
     return flat
 
 
-def place_object(flat, meshes, taken, instance, depsgraph, unsupported):
+def place_object(flat, meshes, instance, name, depsgraph, unsupported):
     thing = instance.object
-    if thing.type in SILENT_TYPES:
-        return
     if thing.type not in MESH_TYPES | {"CAMERA", "LIGHT"}:
         unsupported.add(f"object '{thing.original.name}': is of type {thing.type}, left out")
         return
-    placed = Placed(name_of(instance, taken), thing.original, instance.matrix_world.copy())
+    placed = Placed(name, thing.original, instance.matrix_world.copy())
     if thing.type == "LIGHT":
         flat.lamps.append(placed)
     elif thing.type == "CAMERA":
@@ -163,9 +188,9 @@ def place_object(flat, meshes, taken, instance, depsgraph, unsupported):
 
 def place_mesh(flat, meshes, placed, instance, depsgraph):
     thing = instance.object
-    key = mesh_key(instance)
+    key = mesh_key(instance, depsgraph)
     if key not in meshes:
-        mesh = bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=depsgraph)
+        mesh = new_mesh(instance, depsgraph)
         meshes[key] = mesh if len(mesh.polygons) else None
         if meshes[key]:
             mesh.name = f"scumble.{len(meshes):06d}"
