@@ -84,17 +84,20 @@ def camera_rank(scene, name):
     return (scene.camera is None or name != scene.camera.name, name)
 
 
+def can_be_looked_through(thing):
+    return thing.type == "CAMERA" and thing.data.type in {"PERSP", "ORTHO"}
+
+
 def cameras_of(scene, unsupported):
     """Those that can be looked through, in order. A camera may be hidden: nobody renders cameras."""
     found = {thing for thing in scene.objects if thing.type == "CAMERA"} | ({scene.camera} - {None})
     usable = []
     for thing in sorted(found, key=lambda thing: camera_rank(scene, thing.name)):
-        if thing.type != "CAMERA":
-            unsupported.add(f"camera '{thing.name}': is of type {thing.type}, left out")
-        elif thing.data.type not in {"PERSP", "ORTHO"}:
-            unsupported.add(f"camera '{thing.name}': is panoramic, left out")
-        else:
+        if can_be_looked_through(thing):
             usable.append(thing)
+        else:
+            what = "panoramic" if thing.type == "CAMERA" else f"of type {thing.type}"
+            unsupported.add(f"camera '{thing.name}': is {what}, left out")
     return usable
 
 

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from blend_common import choose_layer
+from blend_common import camera_rank, cameras_of, can_be_looked_through, choose_layer, note_crooked_camera
 
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
-RAYS = {"visible_camera": "camera", "visible_diffuse": "diffuse", "visible_glossy": "glossy",
+RAYS = {"visible_diffuse": "diffuse", "visible_glossy": "glossy",
         "visible_shadow": "shadow"}
 
 
@@ -136,11 +136,16 @@ def new_mesh(instance, depsgraph):
     return mesh
 
 
-def note_limits(thing, unsupported):
+def seen_by_camera(thing, shown, view_layer):
+    """`shown` is what stands in the scene: the thing itself, or what instances it."""
+    return thing.visible_camera and shown.visible_camera and not shown.indirect_only_get(view_layer=view_layer)
+
+
+def note_limits(thing, shown, view_layer, unsupported):
     rays = [name for key, name in RAYS.items() if not getattr(thing, key, True)]
     if rays:
         unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
-    if getattr(thing, "is_holdout", False):
+    if thing.is_holdout or shown.holdout_get(view_layer=view_layer):
         unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
     if getattr(thing, "is_shadow_catcher", False):
         unsupported.add(f"object '{thing.name}': is a shadow catcher, which is ignored")
@@ -158,17 +163,21 @@ def flatten(scene, unsupported):
     flat, meshes = FlatScene(), {}
     for instance, name in every_instance(depsgraph):
         place_object(flat, meshes, instance, name, depsgraph, unsupported)
-    flat.cameras.sort(key=lambda camera: camera.source != scene.camera)
-    if scene.camera and not any(camera.source == scene.camera for camera in flat.cameras):
-        flat.cameras.insert(0, Placed(scene.camera.name, scene.camera, scene.camera.matrix_world.copy()))
-    usable = [camera for camera in flat.cameras if camera.source.data.type in {"PERSP", "ORTHO"}]
-    for camera in flat.cameras:
-        if camera not in usable:
-            unsupported.add(f"camera '{camera.name}': is panoramic, left out")
-    flat.cameras = usable
+    order_cameras(flat, scene, unsupported)
     if abs(scene.render.pixel_aspect_x - scene.render.pixel_aspect_y) > 1e-6:
         unsupported.add("the render's pixels are not square, which is ignored")
     return flat
+
+
+def order_cameras(flat, scene, unsupported):
+    """Those of the scene, hidden ones too, and instances; blend_common says in which order."""
+    usable = cameras_of(scene, unsupported)
+    placed = {camera.name for camera in flat.cameras}
+    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy()) for thing in usable if thing.name not in placed]
+    flat.cameras = [camera for camera in flat.cameras if can_be_looked_through(camera.source)]
+    flat.cameras.sort(key=lambda camera: camera_rank(scene, camera.name))
+    for camera in flat.cameras:
+        note_crooked_camera(camera.name, camera.matrix, unsupported)
 
 
 def place_object(flat, meshes, instance, name, depsgraph, unsupported):
@@ -182,7 +191,12 @@ def place_object(flat, meshes, instance, name, depsgraph, unsupported):
     elif thing.type == "CAMERA":
         flat.cameras.append(placed)
     else:
-        note_limits(thing.original, unsupported)
+        shown = instance.parent.original if instance.is_instance else thing.original
+        if not seen_by_camera(thing.original, shown, depsgraph.view_layer):
+            unsupported.add(f"object '{thing.original.name}': is not seen by the camera, so it is left out, with its "
+                            "shadows and the light from it")
+            return
+        note_limits(thing.original, shown, depsgraph.view_layer, unsupported)
         place_mesh(flat, meshes, placed, instance, depsgraph)
 
 

@@ -5,12 +5,25 @@ Cryptomatte knows an instance by its object's name alone, and objects of one nam
 what made them stops doing so; objects that share their name with another are renamed.
 """
 
+from dataclasses import dataclass
+
 import bpy
 
-from export_flat import RAYS, every_instance, is_generated, new_mesh, show_as_rendered
+from export_flat import RAYS, every_instance, is_generated, new_mesh, seen_by_camera, show_as_rendered
 
 LONGEST_NAME = 63  # bytes that Blender keeps of a name
 SCATTERED = {"OBJECT", "COLLECTION"}  # what particles are rendered as
+
+
+@dataclass
+class Copy:
+    """What takes an instance's place: data of the original object, or a mesh of its own."""
+    name: str
+    original: object
+    mesh: object
+    matrix: object
+    rays: dict
+    holdout: bool
 
 
 def name_apart(scene, view_layer, unsupported):
@@ -27,8 +40,11 @@ def name_apart(scene, view_layer, unsupported):
         if len(name.encode()) > LONGEST_NAME:
             too_long += 1
             name = name.encode()[:LONGEST_NAME].decode(errors="ignore")
-        copies.append((name, thing.original, made_mesh(instance, made, depsgraph), instance.matrix_world.copy()))
-        for instancer in (instance.parent.original, thing.original):  # instancers may be instances
+        parent = instance.parent.original
+        copies.append(Copy(name, thing.original, made_mesh(instance, made, depsgraph), instance.matrix_world.copy(),
+                           rays_of(thing.original, parent, view_layer),
+                           thing.original.is_holdout or parent.holdout_get(view_layer=view_layer)))
+        for instancer in (parent, thing.original):  # instancers may be instances
             if instancer not in instancers:
                 instancers.append(instancer)
     if too_long:
@@ -46,8 +62,8 @@ def name_apart(scene, view_layer, unsupported):
             thing.hide_render = True
     anchor = bpy.data.objects.new("scumble.anchor", None)
     scene.collection.objects.link(anchor)
-    for name, original, mesh, matrix in copies:
-        place(scene, anchor, name, original, mesh, matrix)
+    for copy in copies:
+        place(scene, anchor, copy)
 
 
 def rename(standing):
@@ -99,19 +115,27 @@ def own_geometry():
     return tree
 
 
-def place(scene, anchor, name, original, mesh, matrix):
-    if mesh is None:
-        copy = original.copy()
+def rays_of(thing, parent, view_layer):
+    """Which rays see an instance: those that see both, unless its collection is for indirect light only."""
+    rays = {ray: getattr(thing, ray) and getattr(parent, ray) for ray in ("visible_camera", *RAYS)}
+    rays["visible_camera"] = seen_by_camera(thing, parent, view_layer)
+    return rays
+
+
+def place(scene, anchor, wanted):
+    if wanted.mesh is None:
+        copy = wanted.original.copy()
     else:
-        copy = bpy.data.objects.new(name, mesh)
-        copy.pass_index = original.pass_index
-        for ray in RAYS:
-            setattr(copy, ray, getattr(original, ray))
-    copy.name = name
+        copy = bpy.data.objects.new(wanted.name, wanted.mesh)
+        copy.pass_index = wanted.original.pass_index
+    copy.name = wanted.name
+    copy.is_holdout = wanted.holdout
+    for ray, seen in wanted.rays.items():
+        setattr(copy, ray, seen)
     copy.animation_data_clear()
     copy.constraints.clear()
     copy.parent, copy.parent_type = anchor, "OBJECT"
-    copy.matrix_parent_inverse = matrix  # any matrix, with shear
+    copy.matrix_parent_inverse = wanted.matrix  # any matrix, with shear
     for name_, zero in (("location", (0, 0, 0)), ("rotation_euler", (0, 0, 0)), ("scale", (1, 1, 1)),
                         ("delta_location", (0, 0, 0)), ("delta_rotation_euler", (0, 0, 0)), ("delta_scale", (1, 1, 1))):
         setattr(copy, name_, zero)

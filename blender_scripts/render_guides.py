@@ -191,7 +191,7 @@ def main():
     options.output = Path(os.path.abspath(options.output))
     unsupported = Unsupported()
     scene = open_scene(options, unsupported)
-    guide_camera.choose(scene, options.camera)
+    guide_camera.choose(scene, options.camera, unsupported)
     if options.materials == "pure":
         guide_materials.purify()
     set_up_output(scene)
