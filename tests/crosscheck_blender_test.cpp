@@ -134,8 +134,10 @@ TEST_F(CrosscheckBlender, InstancesOfEveryKindAreToldApart) {
   EXPECT_EQ(Figures(reports[0]).at("object differing")["value"], 0.0);
   ASSERT_EQ(reports[0]["warnings"].size(), 1u) << reports[0]["warnings"];
   EXPECT_NE(reports[0]["warnings"][0].get<std::string>().find("'Unseen': is not seen by the camera"), std::string::npos);
+  GuideReadOptions read;
+  read.required = {Layer::kCoverage, Layer::kObject};
   for (const std::string side : {"kept/scatter.cycles.exr", "kept/scatter.ours.exr"}) {
-    const auto guides = ReadGuides(At(side), GuideReadOptions{});
+    const auto guides = ReadGuides(At(side), read);
     ASSERT_TRUE(guides.ok()) << guides.error().message;
     EXPECT_EQ(guides->camera->name, "Aside") << "the first by name";
     std::set<std::string> seen;

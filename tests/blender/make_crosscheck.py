@@ -145,7 +145,8 @@ def scatter():
     bristles = mesh("Bristles", plane(0.5), (0, -1.2, 0.2), grey)
     bristles.modifiers.new("Particles", "PARTICLE_SYSTEM")
     settings = bristles.particle_systems[0].settings
-    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 12, "OBJECT", pebble
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 9, "OBJECT", pebble
+    settings.emit_from, settings.use_emit_random = "VERT", False  # apart: faces that coincide have no one name
     settings.use_advanced_hair, settings.particle_size = True, 1.0
 
     unseen = collection_of("Unseen", mesh("Unseen", box(0.8), (0.6, -2.0, 0.6), red))
