@@ -230,7 +230,7 @@ TEST(LightPaths, FiveHundredLights) {
   ExpectFinite(result);
   ExpectFinite(Render(scene, kRoomCamera, Paths(8, Lit(), 8)));
   // Light adds up: the scene's own light alone, and the lamps twenty at a time.
-  const auto layers = {Layer::kLpeFull, Layer::kLpeLDE, Layer::kLuminance};
+  const auto layers = {Layer::kLpeFull, Layer::kLpeLDE};
   std::map<Layer, double> sum;
   const std::size_t own = Room().lights.size();
   for (std::size_t begin = own; begin < scene.lights.size(); begin += 20) {
