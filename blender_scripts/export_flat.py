@@ -173,7 +173,8 @@ def order_cameras(flat, scene, unsupported):
     """Those of the scene, hidden ones too, and instances; blend_common says in which order."""
     usable = cameras_of(scene, unsupported)
     placed = {camera.name for camera in flat.cameras}
-    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy()) for thing in usable if thing.name not in placed]
+    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy()) for thing in usable
+                     if thing.name not in placed]
     flat.cameras = [camera for camera in flat.cameras if can_be_looked_through(camera.source)]
     flat.cameras.sort(key=lambda camera: camera_rank(scene, camera.name))
     for camera in flat.cameras:

@@ -133,7 +133,8 @@ TEST_F(CrosscheckBlender, InstancesOfEveryKindAreToldApart) {
   const Json reports = Check({"scatter.blend", "--size", "160x90", "--samples", "0", "--keep", "kept"}, 0);
   EXPECT_EQ(Figures(reports[0]).at("object differing")["value"], 0.0);
   ASSERT_EQ(reports[0]["warnings"].size(), 1u) << reports[0]["warnings"];
-  EXPECT_NE(reports[0]["warnings"][0].get<std::string>().find("'Unseen': is not seen by the camera"), std::string::npos);
+  EXPECT_NE(reports[0]["warnings"][0].get<std::string>().find("'Unseen': is not seen by the camera"),
+            std::string::npos);
   GuideReadOptions read;
   read.required = {Layer::kCoverage, Layer::kNormal, Layer::kObject};
   for (const std::string side : {"kept/scatter.cycles.exr", "kept/scatter.ours.exr"}) {
@@ -158,8 +159,9 @@ TEST_F(CrosscheckBlender, WhatCannotAgreeIsNamedOnce) {
   const Json reports = Check({"crooked.blend", "--size", "96x54", "--samples", "0"}, 1);
   const std::vector<std::string> warnings = reports[0]["warnings"];
   EXPECT_EQ(warnings.size(), 4u) << reports[0]["warnings"];
-  for (const char* cause : {"camera 'Camera': the scale of what it hangs on mirrors", "object 'Hole': is a holdout",
-                            "image 'Gone' cannot be read from '//gone.png'", "its material override 'Clay' is ignored"}) {
+  for (const char* cause :
+       {"camera 'Camera': the scale of what it hangs on mirrors", "object 'Hole': is a holdout",
+        "image 'Gone' cannot be read from '//gone.png'", "its material override 'Clay' is ignored"}) {
     EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
                             [&](const std::string& line) { return line.find(cause) != std::string::npos; }),
               1)
