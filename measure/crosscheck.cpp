@@ -231,7 +231,7 @@ void CountCovered(const GuideSet& a, const GuideSet& b, const std::vector<std::s
     names += (names.empty() ? "" : ", ") + (name != b.object_names.end() ? name->second : fmt::format("id {}", id));
   }
   if (thin == 0) return;
-  report.warnings.push_back(fmt::format("too thin to compare at this size: {}{}", names, thin > 5 ? fmt::format(" and {} more", thin - 5) : ""));
+  report.too_thin = names + (thin > 5 ? fmt::format(" and {} more", thin - 5) : "");
 }
 
 }  // namespace

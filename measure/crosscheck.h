@@ -95,6 +95,7 @@ struct CrosscheckReport {
   CrosscheckSetup setup;
   std::size_t covered = 0;   // pixels where both sides show something
   std::size_t compared = 0;  // of these, inside the eroded masks
+  std::string too_thin = {};  // objects of which no pixel is compared, for people
   bool glossy = false;       // the reference shows a specular surface
   std::vector<CrosscheckFigure> figures;
   std::vector<CrosscheckNoise> noise;

@@ -108,6 +108,7 @@ Json ReportJson(const CrosscheckReport& report) {
   if (!report.baseline_mismatch.empty()) json["baseline_mismatch"] = report.baseline_mismatch;
   if (!report.setup.camera.empty()) json["camera"] = report.setup.camera;
   if (report.setup.frame) json["frame"] = *report.setup.frame;
+  json["too_thin"] = report.too_thin;
   json["skipped"] = report.skipped;
   json["problems"] = report.problems;
   json["unsupported"] = report.unsupported;
@@ -193,6 +194,7 @@ std::string CrosscheckToText(const CrosscheckReport& report) {
     if (!lines.empty()) text += fmt::format("  {}:\n", title);
     for (const std::string& line : lines) text += "    " + line + "\n";
   };
+  if (!report.too_thin.empty()) text += "  too thin to compare at this size: " + report.too_thin + "\n";
   list("not compared as authored", report.warnings);
   list("not expressed", report.unsupported);
   for (const std::string& reason : WhyCrosscheckFails(report)) text += "  ! " + reason + "\n";
