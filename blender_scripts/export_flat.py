@@ -4,9 +4,11 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from blend_common import camera_rank, cameras_of, can_be_looked_through, choose_layer, note_crooked_camera
+
 MESH_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 SILENT_TYPES = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
-RAYS = {"visible_camera": "camera", "visible_diffuse": "diffuse", "visible_glossy": "glossy",
+RAYS = {"visible_diffuse": "diffuse", "visible_glossy": "glossy",
         "visible_shadow": "shadow"}
 
 
@@ -91,22 +93,59 @@ def name_of(instance, taken):
     return name if taken[name] == 1 else f"{name}#{taken[name]}"
 
 
-def mesh_key(instance):
+def every_instance(depsgraph):
+    """What is rendered and may have a place in an export, with its name: pairs of an instance and a string. An instance
+    is Blender's own and only lives until the next one."""
+    taken = {}
+    for instance in depsgraph.object_instances:
+        thing = instance.object
+        if (not instance.is_instance and not instance.show_self) or thing.type in SILENT_TYPES:
+            continue
+        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
+            continue  # a curve's triangles, which follow the curve itself
+        yield instance, name_of(instance, taken)
+
+
+def is_generated(instance, depsgraph):
+    """Whether geometry nodes made up the mesh of an instance: it is then shown as the object that made it."""
+    thing = instance.object
+    if not instance.is_instance or thing.type != "MESH":
+        return False
+    return thing.data.as_pointer() != thing.original.evaluated_get(depsgraph).data.as_pointer()
+
+
+def mesh_key(instance, depsgraph):
     """Equal for those that show the same triangles in the same materials."""
     thing = instance.object
     slots = tuple(material_key(slot.material) for slot in thing.material_slots)
     original = thing.original
     plain = original.type == "MESH" and original.data is not None and not original.modifiers
-    if plain and not original.data.shape_keys and not (instance.is_instance and thing.data.name != original.data.name):
+    if plain and not original.data.shape_keys and not is_generated(instance, depsgraph):
         return ("plain", original.data.name_full, slots)
     return ("evaluated", thing.data.as_pointer(), slots)
 
 
-def note_limits(thing, unsupported):
+def new_mesh(instance, depsgraph):
+    """The evaluated mesh as one of the file's."""
+    thing = instance.object
+    if not is_generated(instance, depsgraph):
+        return bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=depsgraph)
+    mesh = thing.data.copy()  # new_from_object would give the mesh of the object that made it
+    for number, material in enumerate(mesh.materials):
+        mesh.materials[number] = material.original if material else None
+    return mesh
+
+
+def seen_by_camera(thing, shown, view_layer):
+    """`shown` is what stands in the scene: the thing itself, or what instances it."""
+    return thing.visible_camera and shown.visible_camera and not shown.indirect_only_get(view_layer=view_layer)
+
+
+def note_limits(thing, shown, view_layer, unsupported):
     rays = [name for key, name in RAYS.items() if not getattr(thing, key, True)]
     if rays:
         unsupported.add(f"object '{thing.name}': is invisible to {', '.join(rays)} rays, which is ignored")
-    if getattr(thing, "is_holdout", False):
+    if thing.is_holdout or shown.holdout_get(view_layer=view_layer):
         unsupported.add(f"object '{thing.name}': is a holdout, which is ignored")
     if getattr(thing, "is_shadow_catcher", False):
         unsupported.add(f"object '{thing.name}': is a shadow catcher, which is ignored")
@@ -116,54 +155,57 @@ def note_limits(thing, unsupported):
 
 
 def flatten(scene, unsupported):
-    view_layer = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+    view_layer = choose_layer(scene)
     bpy.context.window.view_layer = view_layer
     show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph
     depsgraph.update()
-    flat, meshes, taken = FlatScene(), {}, {}
-    for instance in depsgraph.object_instances:
-        thing = instance.object
-        if not instance.is_instance and not instance.show_self:
-            continue
-        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
-            continue  # a curve's triangles, which follow the curve itself
-        place_object(flat, meshes, taken, instance, depsgraph, unsupported)
-    flat.cameras.sort(key=lambda camera: camera.source != scene.camera)
-    if scene.camera and not any(camera.source == scene.camera for camera in flat.cameras):
-        flat.cameras.insert(0, Placed(scene.camera.name, scene.camera, scene.camera.matrix_world.copy()))
-    usable = [camera for camera in flat.cameras if camera.source.data.type in {"PERSP", "ORTHO"}]
-    for camera in flat.cameras:
-        if camera not in usable:
-            unsupported.add(f"camera '{camera.name}': is panoramic, left out")
-    flat.cameras = usable
+    flat, meshes = FlatScene(), {}
+    for instance, name in every_instance(depsgraph):
+        place_object(flat, meshes, instance, name, depsgraph, unsupported)
+    order_cameras(flat, scene, unsupported)
     if abs(scene.render.pixel_aspect_x - scene.render.pixel_aspect_y) > 1e-6:
         unsupported.add("the render's pixels are not square, which is ignored")
     return flat
 
 
-def place_object(flat, meshes, taken, instance, depsgraph, unsupported):
+def order_cameras(flat, scene, unsupported):
+    """Those of the scene, hidden ones too, and instances; blend_common says in which order."""
+    usable = cameras_of(scene, unsupported)
+    placed = {camera.name for camera in flat.cameras}
+    flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy()) for thing in usable
+                     if thing.name not in placed]
+    flat.cameras = [camera for camera in flat.cameras if can_be_looked_through(camera.source)]
+    flat.cameras.sort(key=lambda camera: camera_rank(scene, camera.name))
+    for camera in flat.cameras:
+        note_crooked_camera(camera.name, camera.matrix, unsupported)
+
+
+def place_object(flat, meshes, instance, name, depsgraph, unsupported):
     thing = instance.object
-    if thing.type in SILENT_TYPES:
-        return
     if thing.type not in MESH_TYPES | {"CAMERA", "LIGHT"}:
         unsupported.add(f"object '{thing.original.name}': is of type {thing.type}, left out")
         return
-    placed = Placed(name_of(instance, taken), thing.original, instance.matrix_world.copy())
+    placed = Placed(name, thing.original, instance.matrix_world.copy())
     if thing.type == "LIGHT":
         flat.lamps.append(placed)
     elif thing.type == "CAMERA":
         flat.cameras.append(placed)
     else:
-        note_limits(thing.original, unsupported)
+        shown = instance.parent.original if instance.is_instance else thing.original
+        if not seen_by_camera(thing.original, shown, depsgraph.view_layer):
+            unsupported.add(f"object '{thing.original.name}': is not seen by the camera, so it is left out, with its "
+                            "shadows and the light from it")
+            return
+        note_limits(thing.original, shown, depsgraph.view_layer, unsupported)
         place_mesh(flat, meshes, placed, instance, depsgraph)
 
 
 def place_mesh(flat, meshes, placed, instance, depsgraph):
     thing = instance.object
-    key = mesh_key(instance)
+    key = mesh_key(instance, depsgraph)
     if key not in meshes:
-        mesh = bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=depsgraph)
+        mesh = new_mesh(instance, depsgraph)
         meshes[key] = mesh if len(mesh.polygons) else None
         if meshes[key]:
             mesh.name = f"scumble.{len(meshes):06d}"

@@ -5,10 +5,9 @@ import math
 import os
 import struct
 
-from mathutils import Matrix
+from blend_common import GLTF_FROM_BLENDER
 
 LUMENS_PER_WATT = 683.0
-Y_UP = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))  # glTF's world from Blender's
 JSON_CHUNK, BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 
 
@@ -41,9 +40,9 @@ def write(path, document, binary):
 def matrix_numbers(matrix, turned):
     """Column by column, in glTF's world. `turned` for meshes, whose vertices the exporter turns too; lamps and cameras
     look down their own −Z in both programs."""
-    result = Y_UP @ matrix
+    result = GLTF_FROM_BLENDER @ matrix
     if turned:
-        result = result @ Y_UP.transposed()
+        result = result @ GLTF_FROM_BLENDER.transposed()
     return [result[row][column] for column in range(4) for row in range(4)]
 
 

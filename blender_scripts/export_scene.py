@@ -28,41 +28,13 @@ import bpy
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-import export_flat  # noqa: E402  (Blender does not put a script's own folder on the path)
+import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
+import export_flat  # noqa: E402
 import export_glb  # noqa: E402
 import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
 import export_stretch  # noqa: E402
-
-SUPPORTED = (3, 4)  # lamp formulas, node sockets and the exporter's options are known for this one
-EXIT_INPUT, EXIT_VERSION = 3, 5
-
-
-class Unsupported:
-    """Collects what cannot be expressed, each line once, in order."""
-
-    def __init__(self):
-        self.lines = []
-
-    def add(self, line):
-        if line not in self.lines:
-            self.lines.append(line)
-
-
-def fail(message, code=EXIT_INPUT):
-    sys.stdout.flush()
-    print("scumble: error: " + message, file=sys.stderr, flush=True)
-    sys.exit(code)
-
-
-def choose_scene(name):
-    if not bpy.data.filepath:
-        fail("Blender did not open the file: it is no .blend file, or one of a newer Blender")
-    if name is None:
-        return bpy.context.window.scene
-    if name not in bpy.data.scenes:
-        fail(f"there is no scene '{name}'; there are: " + ", ".join(f"'{scene.name}'" for scene in bpy.data.scenes))
-    return bpy.data.scenes[name]
+from blend_common import Unsupported, check_version, choose_layer, choose_scene, fail  # noqa: E402
 
 
 def export(scene, output, unsupported):
@@ -122,6 +94,7 @@ def export_frame(arguments, frame, output, unsupported):
     scene = choose_scene(arguments.scene)
     bpy.context.window.scene = scene
     scene.frame_set(frame if frame is not None else scene.frame_current)
+    blend_check.check_file(choose_layer(scene), unsupported)
     export(scene, output, unsupported)
 
 
@@ -153,19 +126,13 @@ def main():
     arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
     if arguments.frames is not None and "#" not in arguments.output.name:
         parser.error("with --frames the output's name needs a #, where the frame's number goes")
-    if bpy.app.version[:2] != SUPPORTED:
-        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
-             "lamps shine by other formulas in other versions: name another one with --blender, or export to .glb by "
-             "hand",
-             EXIT_VERSION)
+    check_version(", or export to .glb by hand")
     unsupported = Unsupported()
     if arguments.frames is not None:
         unsupported = export_range(arguments)
     else:
         export_frame(arguments, arguments.frame, arguments.output, unsupported)
-    sys.stdout.flush()
-    for line in unsupported.lines:
-        print("scumble: unsupported: " + line, file=sys.stderr)
+    unsupported.say()
 
 
 if __name__ == "__main__":

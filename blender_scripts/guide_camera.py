@@ -3,23 +3,20 @@
 import bpy
 from mathutils import Matrix, Vector
 
-# Blender's axes (+Z up) to glTF's (+Y up): x, z, -y.
-GLTF_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+import blend_common
+from blend_common import GLTF_FROM_BLENDER
 
 
-def choose(scene, name):
-    """Makes the camera of that name the scene's; without a name the scene keeps its own, or takes the first one."""
-    cameras = sorted(thing.name for thing in scene.objects if thing.type == "CAMERA")
-    if name:
-        if name not in cameras:
-            raise LookupError(f"there is no camera '{name}'; there are: " + (", ".join(cameras) or "none"))
-        scene.camera = scene.objects[name]
-    elif scene.camera is None:
-        if not cameras:
-            raise LookupError("the scene has no camera: add one")
-        scene.camera = scene.objects[cameras[0]]
-    if scene.camera.type != "CAMERA" or scene.camera.data.type not in {"PERSP", "ORTHO"}:
-        raise LookupError(f"'{scene.camera.name}' is no perspective or orthographic camera: name another one")
+def choose(scene, name, unsupported):
+    """Makes the camera of that name the scene's; without a name the first one that export_scene.py writes."""
+    cameras = {thing.name: thing for thing in blend_common.cameras_of(scene, unsupported)}
+    if name and name not in cameras:
+        raise LookupError(f"there is no camera '{name}'; there are: " + (", ".join(cameras) or "none"))
+    if not cameras:
+        raise LookupError("the scene has no perspective or orthographic camera: add one")
+    scene.camera = cameras[name] if name else next(iter(cameras.values()))
+    bpy.context.view_layer.update()
+    blend_common.note_crooked_camera(scene.camera.name, scene.camera.matrix_world, unsupported)
 
 
 def rigid(matrix):
@@ -39,7 +36,7 @@ def matrix_text(matrix):
 def write(scene, path):
     depsgraph = bpy.context.evaluated_depsgraph_get()
     camera = scene.camera.evaluated_get(depsgraph)
-    world_from_view = GLTF_FROM_BLENDER @ Matrix.LocRotScale(*camera.matrix_world.decompose()[:2], None)
+    world_from_view = GLTF_FROM_BLENDER @ rigid(camera.matrix_world)
     projection = camera.calc_matrix_camera(depsgraph, x=scene.render.resolution_x, y=scene.render.resolution_y)
     with open(path, "w", encoding="utf-8") as file:
         file.write(f"camera {scene.camera.name}\n")

@@ -12,6 +12,7 @@ import bpy
 from mathutils import Matrix, Quaternion, Vector
 
 import guide_camera
+from blend_common import GLTF_FROM_BLENDER
 from guide_import_lamps import complete_world, replace_lamp, use_punctual
 from guide_import_materials import complete_material, ours
 
@@ -94,10 +95,10 @@ def complete_node(gltf, index, world, aspect, cameras, unsupported):
     node = gltf.data.nodes[index]
     things = objects_of(gltf, index)
     extras = ours(node.extras)
-    place = guide_camera.GLTF_FROM_BLENDER.transposed() @ world
+    place = GLTF_FROM_BLENDER.transposed() @ world
     bpy.context.view_layer.update()
     if "MESH" in things:
-        place_mesh(things["MESH"], place @ guide_camera.GLTF_FROM_BLENDER, unsupported)
+        place_mesh(things["MESH"], place @ GLTF_FROM_BLENDER, unsupported)
     if "CAMERA" in things:
         put(things["CAMERA"], guide_camera.rigid(place))
         fit_camera(things["CAMERA"].data, gltf.data.cameras[node.camera], aspect, extras.get("camera"))

@@ -1,54 +1,141 @@
-"""Instances with names of their own, as export_scene.py names them: part of render_guides.py."""
+"""Every thing that is rendered under a name of its own, as export_scene.py names it: part of render_guides.py.
+
+Cryptomatte knows an instance by its object's name alone, and objects of one name as one. So instances of all kinds
+(collections, vertices, faces, particles, geometry nodes) become objects at their places, called "Instancer/Object", and
+what made them stops doing so; objects that share their name with another are renamed.
+"""
+
+from dataclasses import dataclass
 
 import bpy
 
-from export_flat import MESH_TYPES, SILENT_TYPES, name_of, show_as_rendered
+from export_flat import RAYS, every_instance, is_generated, new_mesh, seen_by_camera, show_as_rendered
 
 LONGEST_NAME = 63  # bytes that Blender keeps of a name
+SCATTERED = {"OBJECT", "COLLECTION"}  # what particles are rendered as
+
+
+@dataclass
+class Copy:
+    """What takes an instance's place: data of the original object, or a mesh of its own."""
+    name: str
+    original: object
+    mesh: object
+    matrix: object
+    rays: dict
+    holdout: bool
 
 
 def name_apart(scene, view_layer, unsupported):
-    """Cryptomatte knows an instance by its object's name alone. So every collection that is instanced is replaced by
-    objects at its places that share data and materials with it and are called "Instancer/Object"."""
-    if not any(thing.instance_type != "NONE" or thing.particle_systems for thing in scene.objects):
-        return
     bpy.context.window.view_layer = view_layer
     show_as_rendered(scene, view_layer)
     depsgraph = view_layer.depsgraph
     depsgraph.update()
-    taken, copies, instancers = {}, [], set()
-    for instance in depsgraph.object_instances:
+    standing, copies, instancers, made, too_long = [], [], [], {}, 0
+    for instance, name in every_instance(depsgraph):
         thing = instance.object
-        if (not instance.is_instance and not instance.show_self) or thing.type in SILENT_TYPES:
-            continue
-        if thing.type == "MESH" and thing.original.type in MESH_TYPES - {"MESH"}:
-            continue
-        name = name_of(instance, taken)  # counts on for whatever has a name there
         if not instance.is_instance:
+            standing.append((thing.original, name))
             continue
+        if len(name.encode()) > LONGEST_NAME:
+            too_long += 1
+            name = name.encode()[:LONGEST_NAME].decode(errors="ignore")
         parent = instance.parent.original
-        if parent.instance_type != "COLLECTION" or len(name.encode()) > LONGEST_NAME:
-            unsupported.add(f"instance '{name}': is called '{thing.original.name}' in Cycles' object pass")
-            continue
-        copies.append((name, thing.original, instance.matrix_world.copy()))
-        instancers.add(parent)
-    if copies:
-        anchor = bpy.data.objects.new("scumble.anchor", None)
-        scene.collection.objects.link(anchor)
-        for name, original, matrix in copies:
-            place(scene, anchor, name, original, matrix)
+        copies.append(Copy(name, thing.original, made_mesh(instance, made, depsgraph), instance.matrix_world.copy(),
+                           rays_of(thing.original, parent, view_layer),
+                           thing.original.is_holdout or parent.holdout_get(view_layer=view_layer)))
+        for instancer in (parent, thing.original):  # instancers may be instances
+            if instancer not in instancers:
+                instancers.append(instancer)
+    if too_long:
+        unsupported.add(f"{too_long} instances have names of more than {LONGEST_NAME} bytes, which Cycles' object pass "
+                        "cuts")
+    rename(standing)
+    if not copies:
+        return
+    shown = {thing for thing, _ in standing}
     for instancer in instancers:
-        instancer.instance_type = "NONE"
+        disarm(instancer)
+    for thing in scene.objects:
+        # Neither instancers that only their instances are to be seen of, nor what was shown as instances alone.
+        if thing.type not in {"CAMERA", "EMPTY"} and thing not in shown:
+            thing.hide_render = True
+    anchor = bpy.data.objects.new("scumble.anchor", None)
+    scene.collection.objects.link(anchor)
+    for copy in copies:
+        place(scene, anchor, copy)
 
 
-def place(scene, anchor, name, original, matrix):
-    copy = original.copy()
-    copy.name = name
+def rename(standing):
+    for thing, name in standing:
+        if thing.name != name:
+            if thing.library is not None:
+                thing = thing.make_local()  # names of linked things cannot be changed
+            thing.name = name
+
+
+def made_mesh(instance, made, depsgraph):
+    """The mesh of an instance that only geometry nodes know of; None where it is that of its object."""
+    if not is_generated(instance, depsgraph):
+        return None
+    key = instance.object.data.as_pointer()
+    if key not in made:
+        made[key] = new_mesh(instance, depsgraph)
+    return made[key]
+
+
+# ---- Instancers -----------------------------------------------------------------------------------------------------
+
+
+def disarm(thing):
+    """Leaves the thing itself and takes its instances away."""
+    thing.instance_type = "NONE"
+    for modifier in thing.modifiers:
+        if modifier.type == "PARTICLE_SYSTEM" and modifier.particle_system.settings.render_type in SCATTERED:
+            modifier.show_render = modifier.show_viewport = False
+    if any(modifier.type == "NODES" and modifier.show_render for modifier in thing.modifiers):
+        thing.modifiers.new("scumble.own", "NODES").node_group = own_geometry()
+
+
+def own_geometry():
+    """Geometry nodes that let everything but instances through."""
+    name = "scumble.own"
+    if name in bpy.data.node_groups:
+        return bpy.data.node_groups[name]
+    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    tree.inputs.new("NodeSocketGeometry", "Geometry")
+    tree.outputs.new("NodeSocketGeometry", "Geometry")
+    source, target = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    parts, joined = tree.nodes.new("GeometryNodeSeparateComponents"), tree.nodes.new("GeometryNodeJoinGeometry")
+    tree.links.new(source.outputs[0], parts.inputs[0])
+    for part in parts.outputs:
+        if part.name != "Instances":
+            tree.links.new(part, joined.inputs[0])
+    tree.links.new(joined.outputs[0], target.inputs[0])
+    return tree
+
+
+def rays_of(thing, parent, view_layer):
+    """Which rays see an instance: those that see both, unless its collection is for indirect light only."""
+    rays = {ray: getattr(thing, ray) and getattr(parent, ray) for ray in ("visible_camera", *RAYS)}
+    rays["visible_camera"] = seen_by_camera(thing, parent, view_layer)
+    return rays
+
+
+def place(scene, anchor, wanted):
+    if wanted.mesh is None:
+        copy = wanted.original.copy()
+    else:
+        copy = bpy.data.objects.new(wanted.name, wanted.mesh)
+        copy.pass_index = wanted.original.pass_index
+    copy.name = wanted.name
+    copy.is_holdout = wanted.holdout
+    for ray, seen in wanted.rays.items():
+        setattr(copy, ray, seen)
     copy.animation_data_clear()
     copy.constraints.clear()
-    copy.instance_type = "NONE"
     copy.parent, copy.parent_type = anchor, "OBJECT"
-    copy.matrix_parent_inverse = matrix  # any matrix, with shear
+    copy.matrix_parent_inverse = wanted.matrix  # any matrix, with shear
     for name_, zero in (("location", (0, 0, 0)), ("rotation_euler", (0, 0, 0)), ("scale", (1, 1, 1)),
                         ("delta_location", (0, 0, 0)), ("delta_rotation_euler", (0, 0, 0)), ("delta_scale", (1, 1, 1))):
         setattr(copy, name_, zero)

@@ -32,11 +32,13 @@ import bpy
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-import guide_camera  # noqa: E402  (Blender does not put a script's own folder on the path)
+import blend_check  # noqa: E402  (Blender does not put a script's own folder on the path)
+import blend_common  # noqa: E402
+import guide_camera  # noqa: E402
 import guide_import  # noqa: E402
 import guide_instances  # noqa: E402
 import guide_materials  # noqa: E402
-from export_scene import EXIT_INPUT, EXIT_VERSION, SUPPORTED, Unsupported, fail  # noqa: E402
+from blend_common import Unsupported, check_version, fail, say  # noqa: E402
 
 DATA_PASSES = {"normal", "z", "position", "diffuse_color", "glossy_color", "emit", "cryptomatte_object",
                "cryptomatte_material"}
@@ -79,18 +81,15 @@ def bounces(text):
     return int(text)
 
 
-def say(text):
-    sys.stdout.flush()
-    print("scumble: " + text, file=sys.stderr, flush=True)
-
-
 def open_scene(options, unsupported):
-    if options.scene.endswith(".blend"):
+    if options.scene.lower().endswith(".blend"):
         bpy.ops.wm.open_mainfile(filepath=options.scene, load_ui=False, use_scripts=False)
         scene = bpy.context.scene
         set_size(scene.render, options.size)
         scene.frame_set(scene.frame_current if options.frame is None else options.frame)
-        guide_instances.name_apart(scene, choose_layer(scene), unsupported)
+        layer = blend_common.choose_layer(scene)
+        blend_check.check_file(layer, unsupported)
+        guide_instances.name_apart(scene, layer, unsupported)
     else:
         guide_import.load(options.scene, options.size, unsupported)
         set_size(bpy.context.scene.render, options.size)
@@ -141,9 +140,9 @@ def set_up_cycles(scene):
         thing.cycles.shadow_terminator_offset = thing.cycles.shadow_terminator_geometry_offset = 0.0
 
 
-def choose_layer(scene):
-    """The first view layer that is rendered, as export_scene.py chooses, alone."""
-    chosen = next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+def set_up_layer(scene):
+    """The layer that is exported, alone."""
+    chosen = blend_common.choose_layer(scene)
     for layer in scene.view_layers:
         layer.use = layer == chosen
     chosen.material_override = None
@@ -190,20 +189,17 @@ def render_light(scene, options):
 
 def main():
     options = parse_arguments()
-    if bpy.app.version[:2] != SUPPORTED:
-        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
-             "lamps shine by other formulas in other versions: name another one with --blender", EXIT_VERSION)
+    check_version()
     options.output = Path(os.path.abspath(options.output))
     unsupported = Unsupported()
     scene = open_scene(options, unsupported)
-    guide_camera.choose(scene, options.camera)
+    guide_camera.choose(scene, options.camera, unsupported)
     if options.materials == "pure":
         guide_materials.purify()
     set_up_output(scene)
     set_up_cycles(scene)
-    layer = choose_layer(scene)
-    for line in unsupported.lines:
-        say("unsupported: " + line)
+    layer = set_up_layer(scene)
+    unsupported.say()
     guide_camera.write(scene, options.output.with_suffix(".camera"))
     choose_passes(layer, DATA_PASSES)
     say("rendering data, 1 sample")
@@ -218,4 +214,4 @@ if __name__ == "__main__":
         main()
     except Exception as problem:  # Blender itself would print the traceback and exit with 0
         traceback.print_exc()
-        fail(str(problem).strip().removeprefix("Error: ") or type(problem).__name__, EXIT_INPUT)
+        fail(str(problem).strip().removeprefix("Error: ") or type(problem).__name__)

@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kExitVersion = 5;  // of export_scene.py
-
 Status CheckReadable(const std::string& path) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed)) {
@@ -51,7 +49,7 @@ std::string NameOfProgram(const BlenderOptions& options) {
 Expected<std::vector<std::string>> ExportCommand(const std::string& path, const BlenderOptions& options,
                                                  const fs::path& output) {
   SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
-  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", path));
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", ExportTask(path, options)));
   if (!output.has_parent_path())
     return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   return std::vector<std::string>{NameOfProgram(options),
@@ -67,14 +65,9 @@ Expected<std::vector<std::string>> ExportCommand(const std::string& path, const 
                                   output.string()};
 }
 
-// Why there is no export, from how Blender ended and what it said.
-Error ExplainEnd(const std::string& path, const std::string& program, const ProgramEnd& end, const fs::path& log) {
-  if (end.signal != 0) {
-    return InputError(path + ": " + program + " crashed (" + ::strsignal(end.signal) +
-                      "): open the file in it and look");
-  }
-  if (end.code == kExitVersion) return UnavailableError(path + ": " + ReasonFrom(LinesOf(log)));
-  return InputError(path + ": the export by " + program + " failed: " + ReasonFrom(LinesOf(log)));
+BlenderTask ExportTask(const std::string& path, const BlenderOptions& options) {
+  const std::string program = NameOfProgram(options);
+  return {path, program, "the export by " + program + " failed", true};
 }
 
 Expected<Scene> LoadExport(const fs::path& exported, const std::string& path) {
@@ -108,12 +101,7 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& 
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   Say(globals, path + ": " + arguments.front() + " exports it" +
                    (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
-  const Expected<ProgramEnd> end = RunProgram(arguments, log);
-  if (!end) return Error{end.error().kind, path + ": " + end.error().message};
-  std::error_code failed;
-  if (end->code != 0 || !fs::is_regular_file(exported, failed)) {
-    return ExplainEnd(path, arguments.front(), *end, log);
-  }
+  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), ExportTask(path, options), log, exported));
   return LoadExport(exported, path);
 }
 
@@ -126,7 +114,7 @@ BlenderRange::~BlenderRange() {
 Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& path, const BlenderOptions& options,
                                                             std::span<const int> frames, const Globals& globals) {
   std::unique_ptr<BlenderRange> range(new BlenderRange);
-  range->path_ = path, range->program_name_ = NameOfProgram(options);
+  range->task_ = std::make_unique<BlenderTask>(ExportTask(path, options));
   range->scratch_ = std::make_unique<ScratchFolder>();
   SCUMBLE_ASSIGN(std::vector<std::string> arguments,
                  ExportCommand(path, options, In(*range->scratch_, kRangeOutput)));
@@ -134,8 +122,9 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   arguments.push_back("--frames=" + FramesToText(frames));
   arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
   Say(globals, path + ": " + arguments.front() + " exports frames " + FramesToText(frames));
-  auto program = RunningProgram::Start(arguments, In(*range->scratch_, "log"));
-  if (!program) return Error{program.error().kind, path + ": " + program.error().message};
+  const fs::path log = In(*range->scratch_, "log");
+  auto program = RunningProgram::Start(arguments, log);
+  if (!program) return CheckProgramEnd(program.error(), *range->task_, log, {}).error();
   range->program_ = std::move(*program);
   return range;
 }
@@ -148,10 +137,10 @@ Expected<Scene> BlenderRange::Load(int frame) {
     // In this order: a Blender that ends between the two questions has written its last file before.
     SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, program_->Poll());
     if (fs::is_regular_file(exported, failed)) break;  // it gets this name when it is whole
-    if (end) return ExplainEnd(path_, program_name_, *end, In(*scratch_, "log"));
+    if (end) SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(*end, *task_, In(*scratch_, "log"), exported));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  Expected<Scene> scene = LoadExport(exported, path_);
+  Expected<Scene> scene = LoadExport(exported, task_->scene);
   fs::remove(exported, failed);
   return scene;
 }

@@ -12,6 +12,7 @@
 
 namespace scumble {
 
+struct BlenderTask;
 class RunningProgram;
 class ScratchFolder;
 
@@ -46,7 +47,7 @@ class BlenderRange {
  private:
   BlenderRange();
 
-  std::string path_, program_name_;
+  std::unique_ptr<BlenderTask> task_;  // for messages
   std::unique_ptr<ScratchFolder> scratch_;
   std::unique_ptr<RunningProgram> program_;
 };

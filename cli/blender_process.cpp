@@ -7,10 +7,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <system_error>
 
 #include "cli/options.h"
@@ -24,11 +28,138 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kSupported = "Blender 3.4";
+constexpr int kExitVersion = 5;  // of our scripts
 constexpr const char* kErrorMark = "scumble: error: ";
+
+// What a signal handler may touch.
+constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP};
+std::atomic<pid_t> running_group = 0;
+std::atomic<int> caught_signal = 0;
+static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+struct sigaction actions_before[std::size(kEndingSignals)];
+
+void EndRunningGroup(int signal) {
+  caught_signal = signal;
+  if (const pid_t group = running_group) ::kill(-group, SIGKILL);
+}
+
+// A signal that is ignored, as under nohup, stays ignored.
+void CatchSignals() {
+  for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
+    struct sigaction ours = {};
+    ours.sa_handler = EndRunningGroup;
+    ours.sa_flags = SA_RESTART;
+    ::sigaction(kEndingSignals[i], nullptr, &actions_before[i]);
+    if (actions_before[i].sa_handler != SIG_IGN) ::sigaction(kEndingSignals[i], &ours, nullptr);
+  }
+}
+
+void ReleaseSignals() {
+  for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
+    ::sigaction(kEndingSignals[i], &actions_before[i], nullptr);
+  }
+  if (const int signal = caught_signal.exchange(0)) ::raise(signal);
+}
+
+// Where the program of that name really is; the name itself where it is not found.
+fs::path RealPathOf(const std::string& program) {
+  std::error_code failed;
+  if (program.find('/') != std::string::npos) return fs::canonical(program, failed);
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path candidate = fs::path(folder.empty() ? "." : folder) / program;
+    if (::access(candidate.c_str(), X_OK) == 0 && fs::is_regular_file(candidate, failed)) {
+      return fs::canonical(candidate, failed);
+    }
+  }
+  return {};
+}
+
+// Blender's Python looks for its packages beside the first python3 in PATH, and where these variables send it.
+std::vector<std::string> EnvironmentFor(const std::string& program, const fs::path& temporary) {
+  std::vector<std::string> environment;
+  std::string path = "/usr/bin";
+  if (const fs::path real = RealPathOf(program); real.has_parent_path() && real.parent_path() != path) {
+    path = real.parent_path().string() + ":" + path;
+  }
+  for (char** variable = environ; *variable; ++variable) {
+    const std::string text = *variable;
+    const std::string name = text.substr(0, text.find('='));
+    if (name.starts_with("PYTHON") || name == "VIRTUAL_ENV" || name == "TMPDIR" || name == "TMP" || name == "TEMP") {
+      continue;
+    }
+    if (name == "PATH")
+      path += ":" + text.substr(5);
+    else
+      environment.push_back(text);
+  }
+  environment.push_back("PATH=" + path);
+  // What Blender leaves behind when it is killed goes with the folder.
+  for (const char* name : {"TMPDIR=", "TMP=", "TEMP="}) environment.push_back(name + temporary.string());
+  return environment;
+}
+
+std::vector<char*> Pointers(const std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(const_cast<char*>(text.c_str()));
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+// 0 and the child, or what failed.
+int Spawn(const std::vector<std::string>& arguments, const fs::path& log, pid_t& child) {
+  const std::vector<std::string> environment = EnvironmentFor(arguments.front(), log.parent_path());
+  const std::vector<char*> argv = Pointers(arguments), envp = Pointers(environment);
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+  ::posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  ::posix_spawnattr_setpgroup(&attributes, 0);
+  const int failure = ::posix_spawnp(&child, argv.front(), &actions, &attributes, argv.data(), envp.data());
+  ::posix_spawnattr_destroy(&attributes);
+  ::posix_spawn_file_actions_destroy(&actions);
+  return failure;
+}
+
+// How a signal is called, and what it may mean.
+std::string SignalText(int signal) {
+  const bool from_outside = signal == SIGKILL || signal == SIGTERM || signal == SIGINT || signal == SIGHUP;
+  if (!from_outside) return std::string(" crashed (") + ::strsignal(signal) + "): open the file in it and look";
+  return std::string(" was ended from outside (") + ::strsignal(signal) + ")" +
+         (signal == SIGKILL ? ": was memory short?" : "");
+}
+
+std::string ReasonFrom(const std::vector<std::string>& lines) {
+  std::string reason, complaints;
+  std::vector<std::string> talk;
+  for (const std::string& line : lines) {
+    if (line.rfind(kErrorMark, 0) == 0) reason = line.substr(std::strlen(kErrorMark));
+    if (line.rfind("Error: ", 0) == 0) complaints += "; Blender says: " + line.substr(std::strlen("Error: "));
+    if (line.rfind("Fra:", 0) != 0) talk.push_back(line);  // Cycles' progress
+  }
+  if (!reason.empty()) return reason + complaints;
+  constexpr std::size_t kLastLines = 3;
+  for (std::size_t i = talk.size() - std::min(talk.size(), kLastLines); i < talk.size(); ++i) {
+    reason += (reason.empty() ? "" : " | ") + talk[i];
+  }
+  return reason.empty() ? "it says nothing" : reason;
+}
+
+// Another way than by Blender here and now, where there is one.
+std::string ByHand(const BlenderTask& task) {
+  return task.can_be_exported ? ", or export the scene to .glb by hand" : "";
+}
 
 }  // namespace
 
 ScratchFolder::ScratchFolder() {
+  CatchSignals();
   std::error_code failed;
   std::string name = (fs::temp_directory_path(failed) / "scumble-XXXXXX").string();
   if (!failed && ::mkdtemp(name.data())) path_ = name;
@@ -37,42 +168,36 @@ ScratchFolder::ScratchFolder() {
 ScratchFolder::~ScratchFolder() {
   std::error_code failed;
   if (!path_.empty()) fs::remove_all(path_, failed);
+  ReleaseSignals();
 }
 
-Expected<fs::path> FindBlenderScript(const std::string& name, const std::string& scene) {
+Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask& task) {
   std::error_code failed;
   for (const fs::path& root : DataRoots("blender_scripts")) {
     if (fs::is_regular_file(root / name, failed)) return root / name;
   }
-  return UnavailableError(scene + ": " + name + " is not found beside this program: install it again, or export to .glb");
+  return UnavailableError(task.scene + ": " + name + " is not found beside this program: install it again" +
+                          ByHand(task));
 }
 
 Expected<std::unique_ptr<RunningProgram>> RunningProgram::Start(const std::vector<std::string>& arguments,
                                                                 const fs::path& log) {
-  std::vector<char*> argv;
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  ::posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-  ::posix_spawn_file_actions_adddup2(&actions, 1, 2);
   pid_t child = 0;
-  const int failure = ::posix_spawnp(&child, argv.front(), &actions, nullptr, argv.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
+  const int failure = Spawn(arguments, log, child);
   if (failure != 0) {
-    return UnavailableError(arguments.front() + " cannot be run (" + std::strerror(failure) + "): install " +
-                            kSupported + ", name it with --blender PATH, or export the scene to .glb by hand");
+    return UnavailableError(arguments.front() + " cannot be run (" + std::strerror(failure) + ")");
   }
   std::unique_ptr<RunningProgram> program(new RunningProgram);
   program->name_ = arguments.front();
   program->child_ = child;
+  running_group = child;
+  if (caught_signal) ::kill(-child, SIGKILL);  // it came before the handler knew whom to end
   return program;
 }
 
 RunningProgram::~RunningProgram() {
   if (end_) return;
-  ::kill(child_, SIGTERM);
+  ::kill(-child_, SIGTERM);
   if (!Wait()) return;  // it is no child of ours any more
 }
 
@@ -86,9 +211,13 @@ Expected<std::optional<ProgramEnd>> RunningProgram::Wait(bool patiently) {
   int status = 0;
   pid_t ended = 0;
   while ((ended = ::waitpid(child_, &status, patiently ? 0 : WNOHANG)) < 0) {
-    if (errno != EINTR) return UnavailableError(name_ + " got lost: " + std::strerror(errno));
+    if (errno == EINTR) continue;
+    running_group = 0;
+    return UnavailableError(name_ + " got lost: " + std::strerror(errno));
   }
-  if (ended == child_) end_ = WIFSIGNALED(status) ? ProgramEnd{-1, WTERMSIG(status)} : ProgramEnd{WEXITSTATUS(status), 0};
+  if (ended != child_) return end_;
+  running_group = 0;
+  end_ = WIFSIGNALED(status) ? ProgramEnd{-1, WTERMSIG(status)} : ProgramEnd{WEXITSTATUS(status), 0};
   return end_;
 }
 
@@ -107,18 +236,22 @@ std::vector<std::string> LinesOf(const fs::path& log) {
   return lines;
 }
 
-std::string ReasonFrom(const std::vector<std::string>& lines) {
-  std::string reason, complaints;
-  for (const std::string& line : lines) {
-    if (line.rfind(kErrorMark, 0) == 0) reason = line.substr(std::strlen(kErrorMark));
-    if (line.rfind("Error: ", 0) == 0) complaints += "; Blender says: " + line.substr(std::strlen("Error: "));
+Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& task, const fs::path& log,
+                       const fs::path& product) {
+  if (!ended) {
+    return Error{ended.error().kind, task.scene + ": " + ended.error().message + ": install " + kSupported +
+                                         ", or say where it is with --blender PATH" + ByHand(task)};
   }
-  if (!reason.empty()) return reason + complaints;
-  constexpr std::size_t kLastLines = 3;
-  for (std::size_t i = lines.size() - std::min(lines.size(), kLastLines); i < lines.size(); ++i) {
-    reason += (reason.empty() ? "" : " | ") + lines[i];
+  // A shell that runs Blender tells its signal so.
+  const int signal = ended->signal != 0 ? ended->signal : ended->code > 128 && ended->code <= 128 + SIGRTMAX ? ended->code - 128 : 0;
+  if (signal != 0) return InputError(task.scene + ": " + task.program + SignalText(signal));
+  const std::string reason = ReasonFrom(LinesOf(log));
+  if (ended->code == kExitVersion) return UnavailableError(task.scene + ": " + reason);
+  std::error_code failed;
+  if (ended->code != 0 || !fs::is_regular_file(product, failed)) {
+    return InputError(task.scene + ": " + task.failure + ": " + reason);
   }
-  return reason.empty() ? "it says nothing" : reason;
+  return Ok();
 }
 
 }  // namespace scumble

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -58,6 +59,7 @@ struct BothSides {
   Reference reference;
   GuideSet ours;
   std::vector<GuideSet> ours_light;  // by sample count
+  std::vector<std::string> unsupported;
   std::vector<std::string> warnings;
 };
 
@@ -77,7 +79,7 @@ Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::
   options.key_light = false;  // Blender would not let one shine
   if (IsBlenderScene(path)) options.blender = {verb.blender, verb.frame};
   SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
-  sides.warnings = scene.warnings;
+  sides.unsupported = scene.warnings;
   SCUMBLE_ASSIGN(SceneGuides data,
                  MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, globals, bar.Part(0.0, 0.02), false));
   sides.ours = std::move(data.guides);
@@ -111,7 +113,7 @@ Expected<BothSides> MakeBothSides(const CrosscheckVerb& verb, const std::string&
   ReferenceOptions options{verb.blender, path,       size.width, size.height,
                            verb.camera,  verb.frame, counts,     verb.max_bounces};
   SCUMBLE_ASSIGN(sides.reference, RenderReference(options, globals, bar.Part(counts.empty() ? 0.02 : 0.3, 1.0)));
-  for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.warnings);
+  for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.unsupported);
   return sides;
 }
 
@@ -141,12 +143,7 @@ Status KeepGuides(const CrosscheckVerb& verb, const std::string& scene, const Gu
   return Ok();
 }
 
-struct CheckedScene {
-  CrosscheckReport report;
-  std::string blender_version;
-};
-
-Expected<CheckedScene> CheckScene(const CrosscheckVerb& verb, const std::string& scene, const Globals& globals) {
+Expected<CrosscheckReport> CheckScene(const CrosscheckVerb& verb, const std::string& scene, const Globals& globals) {
   const std::vector<int> counts = SampleCounts(verb.samples);
   SCUMBLE_ASSIGN(BothSides sides, MakeBothSides(verb, scene, counts, globals));
   const CrosscheckOptions options{2, !verb.html.empty(), std::move(sides.reference.only_shines)};
@@ -162,8 +159,11 @@ Expected<CheckedScene> CheckScene(const CrosscheckVerb& verb, const std::string&
   report.setup.max_bounces = verb.samples > 0 ? verb.max_bounces : 0;
   report.setup.camera = verb.camera;
   report.setup.frame = verb.frame;
+  report.unsupported = std::move(sides.unsupported);
   report.warnings = std::move(sides.warnings);
-  return CheckedScene{std::move(report), sides.reference.version};
+  report.scumble_version = SCUMBLE_VERSION;
+  report.blender_version = sides.reference.version;
+  return report;
 }
 
 // ---- Before the work
@@ -172,7 +172,8 @@ Expected<CheckedScene> CheckScene(const CrosscheckVerb& verb, const std::string&
 Status CheckScenes(const CrosscheckVerb& verb) {
   std::set<std::string> names, stems;
   for (const std::string& scene : verb.scenes) {
-    const std::string ending = fs::path(scene).extension().string();
+    std::string ending = fs::path(scene).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     if (ending != ".glb" && ending != ".gltf" && !IsBlenderScene(scene)) {
       return InputError(scene +
                         ": a cross-check needs a scene with a camera that Blender reads too: .glb, .gltf or .blend");
@@ -196,18 +197,18 @@ Status CheckScenes(const CrosscheckVerb& verb) {
 // Told before minutes of rendering, not after.
 Status CheckTargets(const CrosscheckVerb& verb) {
   for (const std::string& file : {verb.html, verb.write_baseline}) {
-    if (file.empty()) continue;
-    std::error_code failed;
-    const fs::path folder = fs::absolute(file).parent_path();
-    if (!fs::is_directory(folder, failed)) {
-      return OutputError(file + " cannot be written: there is no folder " + folder.string());
-    }
+    if (!file.empty()) SCUMBLE_RETURN_IF_ERROR(CheckWritable(file));
   }
   if (verb.keep.empty()) return Ok();
   std::error_code failed;
   fs::create_directories(verb.keep, failed);
   if (!fs::is_directory(fs::status(verb.keep, failed)))
     return OutputError("--keep " + verb.keep + " is no folder and none can be made: " + failed.message());
+  for (const std::string& scene : verb.scenes) {
+    for (const char* side : {".cycles.exr", ".ours.exr"}) {
+      SCUMBLE_RETURN_IF_ERROR(CheckWritable(fs::path(verb.keep) / (fs::path(scene).stem().string() + side)));
+    }
+  }
   return Ok();
 }
 
@@ -216,11 +217,14 @@ Expected<Baseline> ReadBaseline(const std::string& path) {
   return ParseBaseline({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
 }
 
+CrosscheckSetup SetupOf(const CrosscheckVerb& verb, const Size& size) {
+  return {size.width, size.height, verb.samples, verb.samples > 0 ? verb.max_bounces : 0, verb.camera, verb.frame};
+}
+
 // A scene that the baseline cannot judge is an error, unless this run is about to measure it anew.
 Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.size));
-  const CrosscheckSetup setup{size.width,  size.height, verb.samples, verb.samples > 0 ? verb.max_bounces : 0,
-                              verb.camera, verb.frame};
+  const CrosscheckSetup setup = SetupOf(verb, size);
   std::set<std::string> unchecked;
   for (const auto& [name, scene] : baseline.scenes) unchecked.insert(name);
   for (const std::string& scene : verb.scenes) {
@@ -239,31 +243,97 @@ Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline) {
 // ---- The work
 // ---------------------------------------------------------------------------------------------------------
 
+// As a shell takes it for one word.
+std::string Quoted(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,@-";
+  if (!word.empty() && word.front() != '-' && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string RepeatCommand(const CrosscheckVerb& verb) {
   std::string command = "scumble crosscheck";
-  for (const std::string& scene : verb.scenes) command += " " + scene;
+  for (const std::string& scene : verb.scenes) command += " " + Quoted(scene.front() == '-' ? "./" + scene : scene);
   command += fmt::format(" --size {} --samples {}", verb.size, verb.samples);
   if (verb.samples > 0) command += fmt::format(" --max-bounces {}", verb.max_bounces);
-  if (!verb.camera.empty()) command += " --camera '" + verb.camera + "'";
+  if (!verb.camera.empty()) command += " --camera=" + Quoted(verb.camera);
   if (verb.frame) command += fmt::format(" --frame {}", *verb.frame);
-  if (!verb.baseline.empty()) command += " --baseline " + verb.baseline;
+  if (verb.blender != "blender") command += " --blender " + Quoted(verb.blender);
+  if (!verb.baseline.empty()) command += " --baseline " + Quoted(verb.baseline);
   return command;
 }
 
 // Entries of scenes that this run did not check stay as they are.
-Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckReport>& reports,
-                     const std::string& version, Baseline baseline, const Globals& globals) {
-  baseline.blender = version;
+Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckReport>& reports, Baseline baseline,
+                     const Globals& globals) {
   for (const CrosscheckReport& report : reports) {
     if (!report.KeepsBuiltInLimits()) {
-      Warn(verb.write_baseline + " is not written: " + report.scene + " does not keep the built-in limits");
+      Warn(verb.write_baseline + " is not written: " + report.scene +
+           (report.failure.empty() ? " does not keep the built-in limits" : " could not be compared"));
       return Ok();
     }
+    baseline.blender = report.blender_version;
     RecordInBaseline(report, NameInBaseline(report.scene), baseline);
   }
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(verb.write_baseline, BaselineToJson(baseline)));
   Say(globals, verb.write_baseline + ": the baseline");
   return Ok();
+}
+
+// Scenes that could not be compared have the failure as their verdict.
+struct CheckedScenes {
+  std::vector<CrosscheckReport> reports;
+  std::optional<Error> first_failure;
+  std::string blender_version;
+};
+
+void JudgeByBaseline(const std::string& file, const Baseline& baseline, CrosscheckReport& report) {
+  const std::string name = NameInBaseline(report.scene);
+  if (!baseline.blender.empty() && baseline.blender != report.blender_version) {
+    Warn(file + " was measured with Blender " + baseline.blender + ", this is " + report.blender_version);
+  }
+  report.baseline_mismatch = BaselineMismatch(baseline, name, report.setup);
+  if (!report.baseline_mismatch.empty()) return;
+  for (const std::string& note : ApplyBaseline(baseline, name, report)) Warn(file + ": " + note);
+}
+
+// An error is what would stop every other scene too: no Blender.
+Expected<CheckedScenes> CheckAllScenes(const CrosscheckVerb& verb, const Baseline& baseline, const Globals& globals) {
+  SCUMBLE_ASSIGN(const Size size, ParseSize(verb.size));
+  CheckedScenes checked;
+  for (const std::string& scene : verb.scenes) {
+    Expected<CrosscheckReport> made = CheckScene(verb, scene, globals);
+    CrosscheckReport report;
+    if (made) {
+      report = std::move(*made);
+      checked.blender_version = report.blender_version;
+      if (!verb.baseline.empty()) JudgeByBaseline(verb.baseline, baseline, report);
+    } else {
+      if (made.error().kind == ErrorKind::kUnavailable && checked.reports.empty()) return made.error();
+      report.scene = scene, report.failure = made.error().message, report.setup = SetupOf(verb, size);
+      report.scumble_version = SCUMBLE_VERSION;
+      if (!checked.first_failure) checked.first_failure = made.error();
+    }
+    if (!globals.json) Print(CrosscheckToText(report));
+    checked.reports.push_back(std::move(report));
+  }
+  return checked;
+}
+
+// The failure decides the exit code; limits that broke elsewhere are not to be lost in it.
+Error FailureOf(const CheckedScenes& checked) {
+  Error error = *checked.first_failure;
+  int failed = 0, other = 0;
+  for (const CrosscheckReport& report : checked.reports) {
+    failed += !report.failure.empty();
+    other += report.failure.empty() && !report.passed();
+  }
+  if (checked.reports.size() > 1) {
+    error.message += fmt::format("; {} of {} scenes could not be compared", failed, checked.reports.size());
+    if (other > 0) error.message += fmt::format(", {} more {} not agree", other, other == 1 ? "does" : "do");
+  }
+  return error;
 }
 
 Expected<ExitCode> RunCrosscheckVerb(const CrosscheckVerb& verb, const Globals& globals) {
@@ -275,33 +345,20 @@ Expected<ExitCode> RunCrosscheckVerb(const CrosscheckVerb& verb, const Globals& 
     SCUMBLE_ASSIGN(baseline, ReadBaseline(verb.baseline));
     SCUMBLE_RETURN_IF_ERROR(CheckBaselineFits(verb, baseline));
   }
-  std::vector<CrosscheckReport> reports;
-  bool passed = true;
-  std::string version;
-  for (const std::string& scene : verb.scenes) {
-    SCUMBLE_ASSIGN(CheckedScene checked, CheckScene(verb, scene, globals));
-    version = checked.blender_version;
-    if (reports.empty() && !baseline.blender.empty() && baseline.blender != version) {
-      Warn(verb.baseline + " was measured with Blender " + baseline.blender + ", this is " + version);
-    }
-    if (BaselineMismatch(baseline, NameInBaseline(scene), checked.report.setup).empty()) {
-      for (const std::string& note : ApplyBaseline(baseline, NameInBaseline(scene), checked.report))
-        Warn(verb.baseline + ": " + note);
-    }
-    if (!globals.json) Print(CrosscheckToText(checked.report));
-    passed = passed && checked.report.passed();
-    reports.push_back(std::move(checked.report));
-  }
-  if (globals.json) Print(CrosscheckToJson(reports));
+  SCUMBLE_ASSIGN(const CheckedScenes checked, CheckAllScenes(verb, baseline, globals));
+  if (globals.json) Print(CrosscheckToJson(checked.reports));
   if (!verb.html.empty()) {
-    const CrosscheckRun run{"Cycles, Blender " + version, RepeatCommand(verb), verb.baseline};
-    SCUMBLE_ASSIGN(const std::string html, CrosscheckToHtml(reports, run));
+    const CrosscheckRun run{"Cycles, Blender " + checked.blender_version, RepeatCommand(verb), verb.baseline};
+    SCUMBLE_ASSIGN(const std::string html, CrosscheckToHtml(checked.reports, run));
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(verb.html, html));
     Say(globals, verb.html + ": the report");
   }
   if (!verb.write_baseline.empty()) {
-    SCUMBLE_RETURN_IF_ERROR(WriteBaseline(verb, reports, version, std::move(baseline), globals));
+    SCUMBLE_RETURN_IF_ERROR(WriteBaseline(verb, checked.reports, std::move(baseline), globals));
   }
+  if (checked.first_failure) return FailureOf(checked);
+  const bool passed = std::all_of(checked.reports.begin(), checked.reports.end(),
+                                  [](const CrosscheckReport& report) { return report.passed(); });
   return passed ? ExitCode::kOk : ExitCode::kDiffers;
 }
 
@@ -311,7 +368,7 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<CrosscheckVerb>();
   CLI::App* sub =
       app.add_subcommand("crosscheck", "our guides against those of Blender's Cycles: figures, limits, verdict");
-  sub->add_option("scenes", verb->scenes, "scene files with a camera: .glb or .blend")->type_name("FILE")->required();
+  sub->add_option("scenes", verb->scenes, "scene files with a camera: .glb, .gltf or .blend")->type_name("FILE")->required();
   sub->add_option("--size", verb->size, "pixels of the pictures; one number makes a square")
       ->type_name("WIDTHxHEIGHT")
       ->capture_default_str();
@@ -335,7 +392,10 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   sub->add_option("--keep", verb->keep, "keep both sides' guides here, as SCENE.cycles.exr and SCENE.ours.exr")
       ->type_name("FOLDER");
-  sub->add_option("--blender", verb->blender, "the Blender to run")->type_name("PATH")->capture_default_str();
+  sub->add_option("--blender", verb->blender, "the Blender to run")
+      ->type_name("PATH")
+      ->check(RefuseEmpty)
+      ->capture_default_str();
   sub->add_option("-o,--output", verb->html, "report to write: one .html file, pictures included")->type_name("FILE");
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunCrosscheckVerb(*verb, globals); }; });

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <future>
-#include <system_error>
 
 #include "cli/blender_process.h"
 #include "io/guide_file.h"
@@ -16,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kExitVersion = 5;  // of render_guides.py
 constexpr const char* kRenderingMark = "scumble: rendering ";
 constexpr const char* kUnsupportedMark = "scumble: unsupported: ";
 
@@ -85,23 +83,17 @@ void ReadLog(const std::vector<std::string>& lines, Reference& reference) {
 }  // namespace
 
 Expected<Reference> RenderReference(const ReferenceOptions& options, const Globals& globals, const Progress& progress) {
-  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", options.scene));
+  const BlenderTask task{options.scene, options.blender, options.blender + " rendered no reference"};
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", task));
   const ScratchFolder scratch;
   if (scratch.path().empty())
     return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   const fs::path picture = scratch.path() / "cycles.exr", log = scratch.path() / "log";
   Say(globals, options.scene + ": " + options.blender + " renders the reference");
-  const Expected<ProgramEnd> ended =
-      RunWatched(Arguments(options, globals, script, picture), log, options.samples, progress);
-  if (!ended) return Error{ended.error().kind, options.scene + ": " + ended.error().message};
-  const std::vector<std::string> lines = LinesOf(log);
-  if (ended->code == kExitVersion) return UnavailableError(options.scene + ": " + ReasonFrom(lines));
-  std::error_code failed;
-  if (ended->signal != 0 || ended->code != 0 || !fs::is_regular_file(picture, failed)) {
-    return InputError(options.scene + ": " + options.blender + " rendered no reference: " + ReasonFrom(lines));
-  }
+  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(
+      RunWatched(Arguments(options, globals, script, picture), log, options.samples, progress), task, log, picture));
   Reference reference;
-  ReadLog(lines, reference);
+  ReadLog(LinesOf(log), reference);
   GuideReadOptions read;
   read.required = {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo};
   read.blender_camera = scratch.path() / "cycles.camera";

@@ -13,6 +13,7 @@
 #include "cli/progress_bar.h"
 #include "cli/scene_frames.h"
 #include "cli/sequence.h"
+#include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/whole_output.h"
 #include "style/style_keyframes.h"
@@ -113,6 +114,7 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
   if (!sequence) {
     SCUMBLE_ASSIGN(verb.output, NameOfOne(verb.output, verb.scene.blender.frame));
   }
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.output));
   ProgressBar bar("guidegen", globals.quiet);
   SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(verb.scene, layers, globals, bar.Part(0.0, 1.0), plan_only));
   if (style) NameStyleInPlan(made.plan, *style);

@@ -18,11 +18,14 @@ using Json = nlohmann::ordered_json;
 
 // Whether transfer can read a Blender render as it is.
 std::string BlenderNote(const GuideFileInfo& info) {
-  const bool solvable = std::all_of(info.layers.begin(), info.layers.end(), [](const auto& entry) {
-    return entry.second.Contains({Layer::kPosition, Layer::kDepth});
-  });
-  return solvable ? "rendered by Blender: transfer finds its camera from Position and Depth, or takes --camera FILE"
-                  : "rendered by Blender, without Position and Depth: transfer needs --camera FILE";
+  std::string missing;
+  for (const auto& [layer, pass] : {std::pair{Layer::kPosition, "Position"}, {Layer::kDepth, "Z"}}) {
+    const bool everywhere = std::all_of(info.layers.begin(), info.layers.end(),
+                                        [layer = layer](const auto& entry) { return entry.second.Has(layer); });
+    if (!everywhere) missing += (missing.empty() ? "" : " and ") + std::string(pass);
+  }
+  return missing.empty() ? "rendered by Blender: transfer finds its camera from Position and Z, or takes --camera FILE"
+                         : "rendered by Blender, without " + missing + ": transfer needs --camera FILE";
 }
 
 Expected<Json> DescribeGuides(const std::string& path) {
@@ -106,6 +109,10 @@ Expected<Json> Describe(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".exr") return DescribeGuides(path);
+  if (ending == ".blend") {
+    return InputError(path + ": info does not run Blender, which alone reads it: make guides with `scumble guidegen " + path +
+                      " -o guides.exr`, or a picture with `scumble stylize`");
+  }
   if (ending == ".glb" || ending == ".gltf" || ending == ".obj" || ending == ".ply") return DescribeScene(path);
   return DescribeStyle(path);
 }

@@ -26,6 +26,8 @@ std::string RefuseNegative(const std::string& text) {
   return text.rfind('-', 0) == 0 ? text + " is negative: expected a whole number, 0 or more" : "";
 }
 
+std::string RefuseEmpty(const std::string& text) { return text.empty() ? "it is empty: give a name, or leave it out" : ""; }
+
 namespace {
 
 // Larger pictures cannot be read back.
@@ -103,7 +105,8 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
       ->type_name("NAME");
   verb.add_option("--blender", options.blender.program,
                   "the Blender that exports a .blend scene; left out: blender in PATH")
-      ->type_name("PATH");
+      ->type_name("PATH")
+      ->check(RefuseEmpty);
   verb.add_flag("--half", options.half, "16-bit half floats for colour layers; data layers stay 32-bit");
   verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
 }

@@ -25,6 +25,8 @@ void AddGlobalOptions(CLI::App& verb, Globals& globals);
 
 // For counts: the parser would take -1 for the largest number there is. Returns what is wrong, or nothing.
 std::string RefuseNegative(const std::string& text);
+// For names, which a shell's empty variable would leave out unseen.
+std::string RefuseEmpty(const std::string& text);
 
 // "1280x720" or "512": width and height in pixels.
 struct Size {

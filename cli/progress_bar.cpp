@@ -29,6 +29,15 @@ Progress ProgressBar::Part(double from, double to) {
   };
 }
 
+std::string TimeLeft(double elapsed_seconds, double share) {
+  constexpr double kEnoughSeconds = 1.0, kEnoughShare = 0.02;
+  if (elapsed_seconds < kEnoughSeconds || share < kEnoughShare) return "";
+  const int left = static_cast<int>(std::ceil(elapsed_seconds / share - elapsed_seconds));
+  char text[32];
+  std::snprintf(text, sizeof text, "  %d:%02d left", left / 60, left % 60);
+  return text;
+}
+
 void ProgressBar::Update(double share) {
   constexpr double kWorthShowingSeconds = 2.0;
   constexpr int kWidth = 30;
@@ -40,9 +49,8 @@ void ProgressBar::Update(double share) {
   if (drawn_ && std::chrono::duration<double>(now - last_draw_).count() < 0.1) return;
   last_draw_ = now, drawn_ = true;
   const int filled = std::clamp(static_cast<int>(std::lround(share * kWidth)), 0, kWidth);
-  const int left = static_cast<int>(std::ceil(total - elapsed));
-  std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f%%  %d:%02d left", label_.c_str(), std::string(filled, '#').c_str(),
-               std::string(kWidth - filled, '.').c_str(), share * 100.0, left / 60, left % 60);
+  std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f%%%s", label_.c_str(), std::string(filled, '#').c_str(),
+               std::string(kWidth - filled, '.').c_str(), share * 100.0, TimeLeft(elapsed, share).c_str());
   std::fflush(stderr);
 }
 

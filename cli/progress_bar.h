@@ -8,6 +8,9 @@
 
 namespace scumble {
 
+// "  1:05 left", or nothing in the first second and before 2%, when it would be a guess. `share` in [0, 1].
+std::string TimeLeft(double elapsed_seconds, double share);
+
 class ProgressBar {
  public:
   // Draws nothing when stderr is no terminal or `quiet`.

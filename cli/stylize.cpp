@@ -12,6 +12,7 @@
 #include "cli/scene_frames.h"
 #include "cli/sequence.h"
 #include "cli/transfer_run.h"
+#include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 #include "io/whole_output.h"
@@ -136,10 +137,14 @@ Status NameOne(PictureOptions& picture) {
 }
 
 Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
+  if (IsBlenderScene(verb.guides)) {
+    return InputError(verb.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
+  }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.picture.frame, verb.picture.output));
   if (!sequence) {
     SCUMBLE_RETURN_IF_ERROR(NameOne(verb.picture));
+    SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
     SCUMBLE_ASSIGN(verb.guides, NameOfOne(verb.guides, verb.picture.frame));
     SCUMBLE_ASSIGN(verb.camera, NameOfOne(verb.camera, verb.picture.frame));
   }
@@ -204,6 +209,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.picture.frame, verb.picture.output));
   if (!sequence) SCUMBLE_RETURN_IF_ERROR(NameOne(verb.picture));
+  if (!sequence) SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
   Stopwatch watch;
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
   SCUMBLE_ASSIGN(const LayerSet required, styles.Required());

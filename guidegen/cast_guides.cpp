@@ -65,7 +65,9 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   if (!Continue(options.progress, 0.0)) return CancelledError();
   GuidegenResult result;
   Stopwatch watch;
-  SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa));
+  // Only the light of meshes without blockers needs the emitters by themselves.
+  const bool keep_emitters = options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
+  SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa, keep_emitters));
   result.build_ms = watch.Lap();
 
   result.guides = EmptyGuides(options);

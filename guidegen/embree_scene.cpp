@@ -137,11 +137,12 @@ RTCScene NewScene(RTCDevice device) {
 
 }  // namespace
 
-Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa) {
+Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa,
+                                         bool keep_emitters) {
   EmbreeScene scene;
   scene.objects_ = std::make_unique<std::vector<PlacedObject>>(std::move(objects));
   SCUMBLE_RETURN_IF_ERROR(scene.OpenDevice(isa));
-  SCUMBLE_RETURN_IF_ERROR(scene.Commit());
+  SCUMBLE_RETURN_IF_ERROR(scene.Commit(keep_emitters));
   return scene;
 }
 
@@ -163,7 +164,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
                     AvailableIsas());
 }
 
-Status EmbreeScene::Commit() {
+Status EmbreeScene::Commit(bool keep_emitters) {
   scene_.reset(NewScene(device_.get()));
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
@@ -172,7 +173,7 @@ Status EmbreeScene::Commit() {
     rtcSetGeometryUserData(geometry, &object);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
-    if (object.mesh && MayEmit(*object.material)) {
+    if (keep_emitters && object.mesh && MayEmit(*object.material)) {
       if (!emitters_) emitters_.reset(NewScene(device_.get()));
       rtcAttachGeometryByID(emitters_.get(), geometry, static_cast<unsigned>(i));
     }

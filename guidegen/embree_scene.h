@@ -41,10 +41,11 @@ class EmbreeScene {
   // error. Builds in the calling thread's oneTBB arena, whose size is the only limit: Embree's own "threads=" would
   // throttle oneTBB for the whole process. The hierarchy is the same at any thread count. Triangles with corners that
   // are not finite are left out.
-  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa);
+  // `keep_emitters`: whether emitters() will be asked for.
+  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, bool keep_emitters);
 
   RTCScene handle() const { return scene_.get(); }
-  RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none do
+  RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none
   const std::string& isa() const { return isa_; }                         // what is in use, never empty
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 
@@ -58,7 +59,7 @@ class EmbreeScene {
 
   EmbreeScene() = default;
   Status OpenDevice(const std::string& isa);
-  Status Commit();
+  Status Commit(bool keep_emitters);
 
   // Filter functions keep pointers to the objects, so they must not move with this. Order matters: the scene goes
   // before its device, the device before the objects.

@@ -14,6 +14,9 @@ constexpr double kPi = glm::pi<double>();
 // Squared distances below this are lights inside the surface.
 constexpr double kLeastSquare = 1e-30;
 
+// The distance from a plane, over the largest coordinate, that doubles cannot be trusted to tell.
+constexpr double kFlat = 0x1.0p-40;
+
 // Irradiance beyond this does not fit a float once it is reflected, and could become infinite on its way.
 constexpr double kMostIrradiance = std::numeric_limits<float>::max();
 
@@ -274,15 +277,18 @@ LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point,
   if (!(square > kLeastSquare)) return draw;
   draw.direction = way / std::sqrt(square);
   const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
-  const double cosine = std::abs(glm::dot(normal, draw.direction));
+  double largest = LargestCoordinate(point);
+  for (const glm::dvec3& corner : triangle.corner) largest = std::max(largest, LargestCoordinate(corner));
+  // A flat emitter does not light itself: so near its plane, the side is rounding alone.
+  const double off_plane = std::abs(glm::dot(normal, way));
+  if (!(off_plane > largest * kFlat)) return draw;
+  const double cosine = off_plane / std::sqrt(square);
   draw.density = PerSolidAngle(area, square, cosine);
   if (draw.density > 0.0 && !IsHole(object, primitive, barycentric)) {
     draw.radiance = SurfaceEmission(object, primitive, barycentric);
   }
   draw.object = emitter.object;
   draw.primitive = primitive;
-  double largest = LargestCoordinate(point);
-  for (const glm::dvec3& corner : triangle.corner) largest = std::max(largest, LargestCoordinate(corner));
   draw.rounding = largest * kRoundingPerCoordinate / cosine;
   return draw;
 }

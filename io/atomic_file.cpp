@@ -68,28 +68,53 @@ mode_t ModeFor(const fs::file_status& replaced) {
   return 0666 & ~mask;
 }
 
-}  // namespace
+// A target with its links followed, and whether it is a device or a pipe, which is written to directly.
+struct Target {
+  fs::path path;
+  fs::file_status status;
+  bool is_special = false;
+};
 
-Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> bytes) {
+Expected<Target> CheckTarget(const fs::path& path) {
   SCUMBLE_ASSIGN(const fs::path target, FollowLinks(path));
   std::error_code ignored;
   const fs::file_status status = fs::status(target, ignored);
   if (fs::is_directory(status)) return OutputError("cannot write " + path.string() + ": it is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
+  if (fs::exists(status) && !fs::is_regular_file(status)) return Target{target, status, true};
+  const fs::path folder = target.parent_path();
+  if (!folder.empty() && !fs::exists(folder, ignored)) {
+    return OutputError("cannot write " + path.string() + ": there is no folder " + folder.string() + "; make it first");
+  }
+  return Target{target, status, false};
+}
+
+}  // namespace
+
+Status CheckWritable(const fs::path& path) {
+  SCUMBLE_ASSIGN(const Target target, CheckTarget(path));
+  if (target.is_special) return ::access(target.path.c_str(), W_OK) == 0 ? Ok() : Status(WriteFailure(path, errno));
+  std::string temporary;
+  const int descriptor = OpenTemporary(target.path, temporary);
+  if (descriptor < 0) return WriteFailure(path, errno);
+  ::close(descriptor);
+  ::unlink(temporary.c_str());
+  return Ok();
+}
+
+Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> bytes) {
+  SCUMBLE_ASSIGN(const Target checked, CheckTarget(path));
+  const fs::path& target = checked.path;
+  if (checked.is_special) {
     const int descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) return WriteFailure(path, errno);
     const int failure = WriteAllAndClose(descriptor, bytes, false);
     return failure == 0 ? Ok() : Status(WriteFailure(path, failure));
   }
-  const fs::path folder = target.parent_path();
-  if (!folder.empty() && !fs::exists(folder, ignored)) {
-    return OutputError("cannot write " + path.string() + ": there is no folder " + folder.string() + "; make it first");
-  }
   std::string temporary;
   const int descriptor = OpenTemporary(target, temporary);
   if (descriptor < 0) return WriteFailure(path, errno);
   // Where the file system has no permissions, that is no failure to write.
-  [[maybe_unused]] const int kept = ::fchmod(descriptor, ModeFor(status));
+  [[maybe_unused]] const int kept = ::fchmod(descriptor, ModeFor(checked.status));
   int failure = WriteAllAndClose(descriptor, bytes, true);
   if (failure == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) failure = errno;
   if (failure != 0) {

@@ -18,6 +18,10 @@ namespace scumble {
 Status WriteFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
 
+// Whether WriteFileAtomically could write there, found out by making its temporary file and taking it away: to be asked
+// before long work.
+Status CheckWritable(const std::filesystem::path& path);
+
 // The whole file; `limit` bytes at most.
 Expected<std::vector<std::byte>> ReadWholeFile(const std::filesystem::path& path, std::size_t limit = std::size_t(8)
                                                                                                       << 30);

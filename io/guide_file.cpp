@@ -412,11 +412,23 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
   for (const LayerInfo& info : AllLayers()) {
     if (complete.Has(info.layer) || mattes.count(info.layer)) missing.Remove(info.layer);
   }
+  const bool solves_camera = contents.from_blender && !camera;
+  if (solves_camera && !missing.empty()) {  // say at once what the next run would lack
+    for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
+      if (!complete.Has(layer)) missing.Add(layer);
+    }
+  }
   if (!missing.empty()) {
-    return InputError(name + " has no layer " + missing.ToString() + "; its channels are " + contents.all_names +
-                      (contents.from_blender ? BlenderPassesFor(missing)
-                                             : ". Make guides with `scumble guidegen`, or render that pass too") +
-                      options.mend);
+    std::string remedy = ". Make guides with `scumble guidegen`, or render that pass too";
+    if (contents.from_blender) remedy = BlenderPassesFor(missing);
+    if (solves_camera && missing.Has(Layer::kPosition)) {
+      remedy += ", or give the camera with --camera FILE, which does without Position";
+    }
+    LayerSet others = missing;
+    others.Remove(Layer::kObject);
+    if (!solves_camera) others.Remove(Layer::kDepth);
+    if (others.empty()) remedy += options.mend;
+    return InputError(name + " has no layer " + missing.ToString() + remedy + ". Its channels are " + contents.all_names);
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {

@@ -27,7 +27,7 @@ struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
-  std::string mend;                     // how the caller can do without, for the message about missing layers
+  std::string mend;                     // how the caller can do without depth and object, said where nothing else is missing
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 

@@ -42,6 +42,8 @@ void PutColor(Picture& picture, std::size_t i, glm::vec3 linear) {
   picture.rgba[4 * i + 3] = 65535;
 }
 
+std::string Counted(int count, const char* what) { return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"); }
+
 }  // namespace internal
 
 namespace {
@@ -160,7 +162,9 @@ CrosscheckPictures MakePictures(const LayerMeasure& measure, const GuideSet& a, 
                               Picture(a.width(), a.height()),
                               Picture(a.width(), a.height()),
                               "",
-                              std::string("yellow is ") + measure.full_scale_words};
+                              std::string("yellow is ") + measure.full_scale_words,
+                              {"#00001c", "#ffe03f"},
+                              {"equal", measure.full_scale_words}};
   for (std::size_t i = 0; i < a.pixel_count(); ++i) {
     if (a.Plane(Layer::kCoverage)[i] > 0.0f) PutColor(pictures.reference, i, measure.look(a, i));
     if (b.Plane(Layer::kCoverage)[i] > 0.0f) PutColor(pictures.ours, i, measure.look(b, i));
@@ -181,6 +185,19 @@ std::vector<std::size_t> Without(const std::vector<std::uint8_t>& flags, const s
     if (!flags[i]) rest.push_back(i);
   }
   return rest;
+}
+
+CrosscheckPictures CoveragePictures(const GuideSet& a, const GuideSet& b) {
+  const auto covered_a = a.Plane(Layer::kCoverage), covered_b = b.Plane(Layer::kCoverage);
+  std::vector<std::size_t> everywhere(a.pixel_count());
+  std::vector<double> differences(a.pixel_count());
+  for (std::size_t i = 0; i < everywhere.size(); ++i) {
+    everywhere[i] = i;
+    differences[i] = (covered_a[i] >= 0.5f) != (covered_b[i] >= 0.5f) ? 1.0 : 0.0;
+  }
+  const LayerMeasure measure{Layer::kCoverage, nullptr, [](const GuideSet&, std::size_t) { return glm::vec3(0.8f); },
+                             1.0, "covered on one side alone"};
+  return MakePictures(measure, a, b, everywhere, differences);
 }
 
 void AddCoverage(const GuideSet& a, const GuideSet& b, CrosscheckReport& report) {
@@ -214,21 +231,27 @@ void CountCovered(const GuideSet& a, const GuideSet& b, const std::vector<std::s
     names += (names.empty() ? "" : ", ") + (name != b.object_names.end() ? name->second : fmt::format("id {}", id));
   }
   if (thin == 0) return;
-  report.warnings.push_back(fmt::format("too thin to compare at this size: {}{}", names, thin > 5 ? fmt::format(" and {} more", thin - 5) : ""));
+  report.too_thin = names + (thin > 5 ? fmt::format(" and {} more", thin - 5) : "");
 }
 
 }  // namespace
 
 double CrosscheckFigure::LimitInForce() const { return TightenedByBaseline() ? *baseline_limit : limit; }
 
-bool CrosscheckReport::passed() const {
-  return skipped.empty() && problems.empty() && compared >= kLeastCompared &&
-         std::all_of(figures.begin(), figures.end(), [](const CrosscheckFigure& figure) { return figure.kept(); });
+CrosscheckOutcome CrosscheckReport::Outcome() const {
+  if (!failure.empty()) return CrosscheckOutcome::kNotCompared;
+  const auto any = [this](auto is) { return std::any_of(figures.begin(), figures.end(), is); };
+  if (!skipped.empty() || !problems.empty() || compared < kLeastCompared ||
+      any([](const CrosscheckFigure& figure) { return figure.broken(); })) {
+    return CrosscheckOutcome::kDiffers;
+  }
+  return any([](const CrosscheckFigure& figure) { return figure.TooNoisy(); }) ? CrosscheckOutcome::kNotProved
+                                                                              : CrosscheckOutcome::kAgrees;
 }
 
 bool CrosscheckReport::KeepsBuiltInLimits() const {
   CrosscheckReport alone;
-  alone.compared = compared, alone.skipped = skipped, alone.figures = figures;
+  alone.failure = failure, alone.compared = compared, alone.skipped = skipped, alone.figures = figures;
   for (CrosscheckFigure& figure : alone.figures) figure.baseline_limit.reset();
   return alone.passed();
 }
@@ -251,6 +274,7 @@ Expected<CrosscheckReport> Crosscheck(const std::string& scene, const GuideSet& 
     if (ours.Has(layer) && !reference.Has(layer)) report.skipped.push_back(Info(layer).name);
   }
   AddCoverage(reference, ours, report);
+  if (options.make_pictures) report.pictures.push_back(CoveragePictures(reference, ours));
   const std::vector<std::size_t> mask = internal::ErodedMask(reference, ours, options.erode_pixels);
   report.compared = mask.size();
   CountCovered(reference, ours, mask, report);

@@ -31,12 +31,12 @@ struct CrosscheckFigure {
   double LimitInForce() const;
   bool TightenedByBaseline() const { return baseline_limit && *baseline_limit < limit; }
   // Beyond the limit by more than twice the error explains. NaN breaks every limit.
-  bool Broken() const { return !(value - 2.0 * error <= LimitInForce()); }
+  bool broken() const { return !(value - 2.0 * error <= LimitInForce()); }
   // Within the limit even if twice the error is against it.
   bool Proved() const { return value + 2.0 * error <= LimitInForce(); }
-  bool kept() const { return must_prove ? Proved() : !Broken(); }
+  bool kept() const { return must_prove ? Proved() : !broken(); }
   // Neither: more samples would tell.
-  bool TooNoisy() const { return !kept() && !Broken(); }
+  bool TooNoisy() const { return !kept() && !broken(); }
 };
 
 // A layer side by side, for people.
@@ -47,6 +47,9 @@ struct CrosscheckPictures {
   Picture difference;
   std::string look;        // how both are shown, in words; empty where it goes without saying
   std::string full_scale;  // what the colours of the difference mean, in words
+  // The colours of the difference from the least to the most, for CSS, and what stands at evenly spaced places below them.
+  std::vector<std::string> scale_colors = {};
+  std::vector<std::string> scale_labels = {};
 };
 
 // How far ours and the reference are apart pixel by pixel, at several sample counts.
@@ -79,20 +82,34 @@ struct CrosscheckSetup {
 // Fewer pixels prove nothing.
 inline constexpr std::size_t kLeastCompared = 100;
 
+enum class CrosscheckOutcome {
+  kAgrees,
+  kNotProved,    // nothing speaks against it but figures that are too noisy
+  kDiffers,
+  kNotCompared,  // a side could not be made
+};
+
 struct CrosscheckReport {
   std::string scene;
+  std::string failure = {};  // why it could not be compared; then the rest is empty but for the set-up
   CrosscheckSetup setup;
   std::size_t covered = 0;   // pixels where both sides show something
   std::size_t compared = 0;  // of these, inside the eroded masks
+  std::string too_thin = {};  // objects of which no pixel is compared, for people
   bool glossy = false;       // the reference shows a specular surface
   std::vector<CrosscheckFigure> figures;
   std::vector<CrosscheckNoise> noise;
   std::vector<CrosscheckPictures> pictures;
   std::vector<std::string> skipped;   // layers that one side lacks: they fail the verdict
   std::vector<std::string> problems;  // whatever else fails the verdict, one sentence each
-  std::vector<std::string> warnings;  // what is not compared as authored
-  bool KeepsBuiltInLimits() const;    // the verdict without any baseline
-  bool passed() const;
+  std::vector<std::string> unsupported;  // what one side or both do not express, one sentence each
+  std::vector<std::string> warnings;     // what is not compared as authored, on purpose
+  std::string scumble_version = {};      // of this program
+  std::string blender_version = {};      // of the reference; empty where it is not known
+  std::string baseline_mismatch = {};    // why the baseline does not judge this scene; empty where it does or there is none
+  bool KeepsBuiltInLimits() const;       // the verdict without any baseline
+  CrosscheckOutcome Outcome() const;
+  bool passed() const { return Outcome() == CrosscheckOutcome::kAgrees; }
 };
 
 struct CrosscheckOptions {
@@ -135,6 +152,8 @@ std::string CrosscheckToText(const CrosscheckReport& report);
 // NaN and infinities are the texts "nan", "inf" and "-inf".
 std::string CrosscheckToJson(const std::vector<CrosscheckReport>& reports);
 
+// "agrees", "not proved", "differs", "could not be compared".
+const char* OutcomeName(CrosscheckOutcome outcome);
 // The verdict's own line, and why it fails, one sentence each.
 std::string CrosscheckVerdict(const CrosscheckReport& report);
 std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report);

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "io/picture_file.h"
 #include "measure/crosscheck_chart.h"
+#include "measure/crosscheck_parts.h"
 
 namespace scumble {
 namespace {
@@ -60,9 +62,9 @@ constexpr const char* kHead = R"(<!DOCTYPE html>
 <title>Scumble cross-check</title>
 <style>
 :root { color-scheme: light dark; --text: #23252b; --soft: #676b75; --ground: #f7f7f8; --card: #fff; --line: #dcdde2;
-  --good: #1f7a4a; --bad: #b3261e; --badground: #fbeae8; }
+  --good: #1f7a4a; --bad: #b3261e; --warn: #8a5a00; --badground: #fbeae8; }
 @media (prefers-color-scheme: dark) { :root { --text: #e4e5e9; --soft: #9a9eaa; --ground: #17181b; --card: #202226;
-  --line: #35373e; --good: #4dbb82; --bad: #ff8a80; --badground: #3a2221; } }
+  --line: #35373e; --good: #4dbb82; --bad: #ff8a80; --warn: #e5b04a; --badground: #3a2221; } }
 body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 80rem; padding: 0 1.2rem; color: var(--text);
   background: var(--ground); }
 h1 { font-weight: 600; margin-bottom: .3rem; } h2 { margin: 3rem 0 .2rem; font-weight: 600; } h3 { margin: 1.8rem 0 .4rem; font-size: 1rem; }
@@ -73,7 +75,10 @@ th, td { text-align: left; padding: .28rem 1.4rem .28rem 0; border-bottom: 1px s
 tr:last-child td { border-bottom: 0; } th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 tr.broken td { color: var(--bad); font-weight: 600; } td.first { font-weight: 600; } td.again { color: transparent; }
 .verdict { display: inline-block; padding: .1rem .7rem; border-radius: 1rem; font-size: .85em; font-weight: 600; border: 1.5px solid; }
-.agrees { color: var(--good); } .differs { color: var(--bad); }
+.agrees { color: var(--good); } .differs { color: var(--bad); } .unproved { color: var(--warn); }
+.scale { height: .6rem; border-radius: 3px; margin-top: .4rem; border: 1px solid var(--line); }
+.labels { display: flex; justify-content: space-between; color: var(--soft); font-size: .78rem; }
+td.state { white-space: nowrap; }
 .fails { background: var(--badground); border-left: 4px solid var(--bad); padding: .4rem 1rem; margin: .6rem 0; }
 ul { margin: .2rem 0; padding-left: 1.2rem; }
 .row { display: grid; grid-template-columns: repeat(3, 1fr); gap: .8rem; } figure { margin: 0; }
@@ -85,8 +90,19 @@ svg .grid { stroke: var(--line); } svg .guide { stroke: var(--soft); stroke-dash
 </style></head><body>
 )";
 
-std::string Badge(bool passed) {
-  return passed ? "<span class=\"verdict agrees\">agrees</span>" : "<span class=\"verdict differs\">differs</span>";
+// A mark too: colours alone are not for every eye.
+std::string Badge(CrosscheckOutcome outcome) {
+  const char* kind = outcome == CrosscheckOutcome::kAgrees      ? "agrees\">✓"
+                     : outcome == CrosscheckOutcome::kNotProved ? "unproved\">?"
+                                                                : "differs\">✗";
+  return fmt::format("<span class=\"verdict {} {}</span>", kind, OutcomeName(outcome));
+}
+
+// The worst of all scenes.
+CrosscheckOutcome OutcomeOf(const std::vector<CrosscheckReport>& reports) {
+  CrosscheckOutcome worst = reports.empty() ? CrosscheckOutcome::kNotCompared : CrosscheckOutcome::kAgrees;
+  for (const CrosscheckReport& report : reports) worst = std::max(worst, report.Outcome());
+  return worst;
 }
 
 std::string Anchor(std::size_t index) { return fmt::format("scene{}", index + 1); }
@@ -113,7 +129,7 @@ std::string Summary(const std::vector<CrosscheckReport>& reports) {
     html += fmt::format(
         "<tr><td class=\"first\"><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>"
         "<td class=\"number\">{}</td>",
-        Anchor(i), Escape(report.scene), Badge(report.passed()), report.compared,
+        Anchor(i), Escape(report.scene), Badge(report.Outcome()), report.compared,
         report.setup.samples > 0 ? std::to_string(report.setup.samples) : "data only");
     if (const CrosscheckFigure* figure = Tightest(report)) {
       html += fmt::format("<td>{} {}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{:.3g}</td><td>{}</td>",
@@ -128,19 +144,23 @@ std::string Summary(const std::vector<CrosscheckReport>& reports) {
 std::string FigureTable(const CrosscheckReport& report) {
   std::string html =
       "<table><tr><th>layer</th><th>figure</th><th class=\"number\">measured</th><th class=\"number\">± error</th>"
-      "<th class=\"number\">limit</th><th></th><th></th></tr>\n";
+      "<th class=\"number\">limit</th><th></th><th></th><th></th></tr>\n";
   std::string above;
   for (const CrosscheckFigure& figure : report.figures) {
     std::string remark = figure.note;
     const auto add = [&remark](const std::string& text) { remark += (remark.empty() ? "" : "; ") + text; };
-    if (figure.TooNoisy()) add("too noisy: raise --samples");
+    if (figure.TooNoisy()) add("raise --samples");
     if (figure.TightenedByBaseline()) add(fmt::format("limit from the baseline; built in {:.3g}", figure.limit));
     html += fmt::format(
         "<tr{}><td class=\"{}\">{}</td><td>{}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{}</td>"
-        "<td class=\"number\">{:.3g}</td><td>{}</td><td class=\"soft\">{}</td></tr>\n",
+        "<td class=\"number\">{:.3g}</td><td>{}</td><td class=\"state\">{}</td><td class=\"soft\">{}</td></tr>\n",
         figure.kept() ? "" : " class=\"broken\"", figure.layer == above ? "again" : "first", Escape(figure.layer),
         Escape(figure.name), figure.value, figure.error > 0.0 ? fmt::format("{:.2g}", figure.error) : "",
-        figure.LimitInForce(), Escape(figure.unit), Escape(remark));
+        figure.LimitInForce(), Escape(figure.unit),
+        figure.kept()       ? "✓ kept"
+        : figure.TooNoisy() ? "? too noisy"
+                            : "✗ broken",
+        Escape(remark));
     above = figure.layer;
   }
   return html + "</table>\n";
@@ -153,7 +173,7 @@ std::string NoiseTable(const std::vector<CrosscheckNoise>& noise) {
   }
   if (!measured) return "";
   std::string html = "<table><tr><th>layer</th>";
-  for (const int count : measured->samples) html += fmt::format("<th class=\"number\">{} samples</th>", count);
+  for (const int count : measured->samples) html += "<th class=\"number\">" + internal::Counted(count, "sample") + "</th>";
   html += "<th class=\"number\">slope</th><th>largest difference of a pixel</th></tr>\n";
   for (const CrosscheckNoise& layer : noise) {
     html += "<tr><td class=\"first\">" + Escape(layer.layer) + "</td>";
@@ -194,8 +214,18 @@ std::string SetupLine(const CrosscheckReport& report) {
   if (!setup.camera.empty()) line += ", camera " + Escape(setup.camera);
   if (setup.frame) line += fmt::format(", frame {}", *setup.frame);
   if (setup.samples == 0) return line + "; data layers alone, light was not compared";
-  return line + fmt::format("; light with {} samples and {} bounces, {}", setup.samples, setup.max_bounces,
+  return line + fmt::format("; light with {} and {}, {}", internal::Counted(setup.samples, "sample"),
+                            internal::Counted(setup.max_bounces, "bounce"),
                             report.glossy ? "some of it specular" : "nothing specular in view");
+}
+
+std::string ColorScale(const CrosscheckPictures& pictures) {
+  if (pictures.scale_colors.empty()) return "";
+  std::string colors, labels;
+  for (const std::string& color : pictures.scale_colors) colors += ", " + color;
+  for (const std::string& label : pictures.scale_labels) labels += "<span>" + Escape(label) + "</span>";
+  return "<div class=\"scale\" style=\"background: linear-gradient(to right" + colors +
+         ")\"></div><div class=\"labels\">" + labels + "</div>";
 }
 
 Expected<std::string> PictureRows(const CrosscheckReport& report) {
@@ -207,7 +237,7 @@ Expected<std::string> PictureRows(const CrosscheckReport& report) {
     html += "<h3>" + Escape(pictures.layer);
     if (!pictures.look.empty())
       html += " <span class=\"soft\" style=\"font-weight:400\">" + Escape(pictures.look) + "</span>";
-    html += "</h3>\n<div class=\"row\">\n" + reference + ours + difference + "</div>\n";
+    html += "</h3>\n<div class=\"row\">\n" + reference + ours + "<div>" + difference + ColorScale(pictures) + "</div></div>\n";
   }
   return html;
 }
@@ -215,11 +245,9 @@ Expected<std::string> PictureRows(const CrosscheckReport& report) {
 }  // namespace
 
 Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& reports, const CrosscheckRun& run) {
-  bool passed = !reports.empty();
-  for (const CrosscheckReport& report : reports) passed = passed && report.passed();
   std::string html = kHead;
   html += fmt::format("<h1>Scumble cross-check {}</h1>\n<p>Reference: {}. Repeat with <code>{}</code>.{}</p>\n",
-                      Badge(passed), Escape(run.reference), Escape(run.command),
+                      Badge(OutcomeOf(reports)), Escape(run.reference), Escape(run.command),
                       run.baseline.empty() ? "" : " Limits tightened by <code>" + Escape(run.baseline) + "</code>.");
   html +=
       "<p class=\"soft\">Coverage is compared over the whole picture; everything else where a pixel and its "
@@ -228,10 +256,23 @@ Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& repo
   html += Summary(reports);
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const CrosscheckReport& report = reports[i];
-    html += fmt::format("<h2 id=\"{}\">{} {}</h2>\n<p class=\"soft\">{}.</p>\n", Anchor(i), Escape(report.scene),
-                        Badge(report.passed()), SetupLine(report));
+    html += fmt::format("<h2 id=\"{}\">{} {}</h2>\n", Anchor(i), Escape(report.scene), Badge(report.Outcome()));
+    if (!report.failure.empty()) {
+      html += "<div class=\"fails\"><b>It could not be compared</b>" + List({report.failure}) + "</div>\n";
+      continue;
+    }
+    html += fmt::format("<p class=\"soft\">{}.</p>\n", SetupLine(report));
+    if (!report.passed()) html += "<p><b>Verdict:</b> " + Escape(CrosscheckVerdict(report)) + ".</p>\n";
+    if (!report.unsupported.empty()) html += "<h3>Not expressed</h3>\n" + List(report.unsupported);
     const std::vector<std::string> reasons = WhyCrosscheckFails(report);
-    if (!reasons.empty()) html += "<div class=\"fails\"><b>Why it differs</b>" + List(reasons) + "</div>\n";
+    if (!reasons.empty()) {
+      const bool differs = report.Outcome() == CrosscheckOutcome::kDiffers;
+      html += fmt::format("<div class=\"fails\"><b>Why it {}</b>", differs ? "differs" : "is not proved") + List(reasons) +
+              "</div>\n";
+    }
+    if (!report.baseline_mismatch.empty()) {
+      html += "<p>Judged by the built-in limits alone: " + Escape(report.baseline_mismatch) + ".</p>\n";
+    }
     html += "<section>" + FigureTable(report) + "</section>\n";
     if (!report.warnings.empty()) html += "<h3>Not compared as authored</h3>\n" + List(report.warnings);
     html += NoisePart(report);

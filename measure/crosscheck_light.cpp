@@ -288,7 +288,9 @@ CrosscheckPictures LightPictures(const LightMeasure& measure, const GuideSet& re
                               Picture(width, height),
                               Picture(width, height),
                               fmt::format("both exposed by {:+.2f} stops, clipped at white", std::log2(exposure)),
-                              "orange: ours is brighter, blue: darker; full colour is a tenth of white"};
+                              "orange: ours is brighter, blue: darker; full colour is a tenth of white",
+                              {"#40a0ff", "#000000", "#ffb431"},
+                              {"ours darker by a tenth of white", "equal", "brighter by a tenth"}};
   for (std::size_t i = 0; i < light.ours.pixel_count(); ++i) {
     PutColor(pictures.difference, i, glm::vec3(0.02f));
     if (!(reference.Plane(Layer::kCoverage)[i] > 0.0f)) continue;

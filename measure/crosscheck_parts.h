@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "image/guides.h"
@@ -14,5 +15,8 @@ std::vector<std::size_t> ErodedMask(const GuideSet& a, const GuideSet& b, int re
 
 // An opaque pixel of that linear colour.
 void PutColor(Picture& picture, std::size_t i, glm::vec3 linear);
+
+// "1 sample", "64 samples".
+std::string Counted(int count, const char* what);
 
 }  // namespace scumble::internal

@@ -1,10 +1,12 @@
 // The cross-check for terminals and for machines.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "measure/crosscheck.h"
+#include "measure/crosscheck_parts.h"
 
 namespace scumble {
 namespace {
@@ -21,13 +23,15 @@ std::string SetupText(const CrosscheckSetup& setup) {
   std::string text = fmt::format("{}×{}", setup.width, setup.height);
   if (!setup.camera.empty()) text += ", camera " + setup.camera;
   if (setup.frame) text += fmt::format(", frame {}", *setup.frame);
-  if (setup.samples > 0) text += fmt::format(", {} samples, {} bounces", setup.samples, setup.max_bounces);
+  if (setup.samples > 0) {
+    text += fmt::format(", {}, {}", internal::Counted(setup.samples, "sample"),
+                        internal::Counted(setup.max_bounces, "bounce"));
+  }
   return text;
 }
 
 std::string State(const CrosscheckFigure& figure) {
-  if (figure.kept()) return "kept";
-  return figure.Broken() ? "BROKEN" : "TOO NOISY";
+  return figure.kept() ? "kept" : figure.TooNoisy() ? "TOO NOISY" : "BROKEN";
 }
 
 std::string FigureLine(const CrosscheckFigure& figure) {
@@ -96,11 +100,18 @@ Json ReportJson(const CrosscheckReport& report) {
             {"covered", report.covered},
             {"compared", report.compared},
             {"glossy", report.glossy},
-            {"passed", report.passed()}};
+            {"verdict", OutcomeName(report.Outcome())},
+            {"passed", report.passed()},
+            {"scumble", report.scumble_version},
+            {"blender", report.blender_version}};
+  if (!report.failure.empty()) json["failure"] = report.failure;
+  if (!report.baseline_mismatch.empty()) json["baseline_mismatch"] = report.baseline_mismatch;
   if (!report.setup.camera.empty()) json["camera"] = report.setup.camera;
   if (report.setup.frame) json["frame"] = *report.setup.frame;
+  json["too_thin"] = report.too_thin;
   json["skipped"] = report.skipped;
   json["problems"] = report.problems;
+  json["unsupported"] = report.unsupported;
   json["warnings"] = report.warnings;
   json["figures"] = Json::array();
   for (const CrosscheckFigure& figure : report.figures) json["figures"].push_back(FigureJson(figure));
@@ -112,6 +123,7 @@ Json ReportJson(const CrosscheckReport& report) {
 }  // namespace
 
 std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
+  if (!report.failure.empty()) return {report.failure};
   std::vector<std::string> reasons;
   if (report.compared == 0) {
     reasons.push_back("nothing to compare: no object is wide enough, or the pictures do not agree at all");
@@ -128,8 +140,7 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
     if (figure.TooNoisy()) {
       reasons.push_back(fmt::format("{}: {:.3g} give or take {:.3g} does not show whether {} is kept: raise --samples", what,
                                     figure.value, 2.0 * figure.error, limit));
-    }
-    if (figure.Broken()) {
+    } else {
       reasons.push_back(fmt::format("{}: {:.3g} is above {}", what, figure.value, limit) +
                         (figure.note.empty() ? "" : ", " + figure.note));
     }
@@ -138,20 +149,54 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
   return reasons;
 }
 
+const char* OutcomeName(CrosscheckOutcome outcome) {
+  switch (outcome) {
+    case CrosscheckOutcome::kAgrees:
+      return "agrees";
+    case CrosscheckOutcome::kNotProved:
+      return "not proved";
+    case CrosscheckOutcome::kDiffers:
+      return "differs";
+    case CrosscheckOutcome::kNotCompared:
+      return "could not be compared";
+  }
+  return "";
+}
+
 std::string CrosscheckVerdict(const CrosscheckReport& report) {
-  const std::string verdict = report.passed() ? "agrees" : "DIFFERS";
+  const CrosscheckOutcome outcome = report.Outcome();
+  std::string verdict = OutcomeName(outcome);
+  if (outcome == CrosscheckOutcome::kNotCompared) return verdict + ": " + report.failure;
+  const auto count = [&report](auto is) { return std::count_if(report.figures.begin(), report.figures.end(), is); };
+  const auto noisy = count([](const CrosscheckFigure& figure) { return figure.TooNoisy(); });
+  if (outcome == CrosscheckOutcome::kDiffers) verdict = "DIFFERS";
+  if (outcome == CrosscheckOutcome::kNotProved) {
+    verdict = fmt::format("NOT PROVED, {} too noisy: raise --samples",
+                          noisy == 1 ? "1 figure is" : fmt::format("{} figures are", noisy));
+  }
+  if (!report.unsupported.empty() && count([](const CrosscheckFigure& figure) { return figure.broken(); }) > 0) {
+    verdict += fmt::format(", {} not expressed: see the list “not expressed”",
+                           report.unsupported.size() == 1 ? "1 thing is"
+                                                          : fmt::format("{} things are", report.unsupported.size()));
+  }
   if (report.setup.samples == 0) return verdict + ", data layers alone: light was not compared (--samples 0)";
   return report.setup.max_bounces > 0 ? verdict : verdict + ", direct light alone (--max-bounces 0)";
 }
 
 std::string CrosscheckToText(const CrosscheckReport& report) {
+  if (!report.failure.empty()) return report.scene + "\n  verdict: " + CrosscheckVerdict(report) + "\n";
   std::string text =
       fmt::format("{}  {}, {} of {} covered pixels compared\n", report.scene, SetupText(report.setup),
                   report.compared, report.covered);
   for (const CrosscheckFigure& figure : report.figures) text += FigureLine(figure);
   text += NoiseText(report.noise);
-  if (!report.warnings.empty()) text += "  not compared as authored:\n";
-  for (const std::string& warning : report.warnings) text += "    " + warning + "\n";
+  const auto list = [&text](const char* title, const std::vector<std::string>& lines) {
+    if (!lines.empty()) text += fmt::format("  {}:\n", title);
+    for (const std::string& line : lines) text += "    " + line + "\n";
+  };
+  if (!report.too_thin.empty()) text += "  too thin to compare at this size: " + report.too_thin + "\n";
+  list("not compared as authored", report.warnings);
+  list("not expressed", report.unsupported);
   for (const std::string& reason : WhyCrosscheckFails(report)) text += "  ! " + reason + "\n";
   return text + "  verdict: " + CrosscheckVerdict(report) + "\n";
 }

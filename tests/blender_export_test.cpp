@@ -34,7 +34,7 @@ class Cases : public testing::Environment {
   void SetUp() override {
     folder_ = new TemporaryFolder;
     Shell(kBlender + ("-P " + Source("tests/blender/make_cases.py")) + " -- --output " + folder_->path().string());
-    for (const char* name : {"lamps", "materials", "objects", "cameras", "rendered"}) Export(name, "", name);
+    for (const char* name : {"lamps", "materials", "objects", "cameras", "rendered", "broken"}) Export(name, "", name);
     Export("objects", " --frame 6", "objects6");
     expected_ = nlohmann::json::parse(std::ifstream(*folder_ / "expected.json"), nullptr, false);
     ASSERT_TRUE(expected_.is_object()) << "make_cases.py wrote no expected.json";
@@ -276,6 +276,27 @@ TEST(BlenderObjects, InstancesShareTheirMesh) {
   EXPECT_NE(meshes["Smooth"], meshes["One"]);
   EXPECT_EQ(meshes.count("Scatter/Leaf#8"), 1u) << "one for each corner of the instancer";
   EXPECT_THAT(scene.warnings, testing::ElementsAre(AllOf(HasSubstr("'Strands'"), HasSubstr("left out"))));
+}
+
+TEST(BlenderFiles, WhatIsLostOrAsleepIsNamed) {
+  const Scene scene = Loaded("broken");
+  EXPECT_THAT(
+      scene.warnings,
+      UnorderedElementsAre(
+          AllOf(HasSubstr("image 'Gone'"), HasSubstr("//textures/gone.png"), HasSubstr("'MissingTexture'")),
+          AllOf(HasSubstr("lost.blend' is missing"), HasSubstr("'Lost'"), HasSubstr("'LostToo'")),
+          AllOf(HasSubstr("poor.blend' has lost"), HasSubstr("'Goes'"), testing::Not(HasSubstr("'Stays'"))),
+          AllOf(HasSubstr("object 'Driven'"), HasSubstr("location[0] = unknown(frame) and 1 more")),
+          HasSubstr("script 'rig.py'"), AllOf(HasSubstr("'ViewLayer'"), HasSubstr("material override 'Clay'"))));
+  ExpectColor(Named(scene.materials, "MissingTexture").base_color, glm::vec3(1.0f), "as the warning says");
+  EXPECT_LT(Named(scene.materials, "MissingTexture").base_color_texture.texture, 0);
+  for (const char* name : {"PackedTexture", "GeneratedTexture"}) {
+    EXPECT_GE(Named(scene.materials, name).base_color_texture.texture, 0) << name;
+  }
+  const std::map<std::string, Box> boxes = Boxes(scene);
+  for (const char* name : {"Lost", "LostToo", "Goes"}) EXPECT_FALSE(boxes.count(name)) << name;
+  ASSERT_TRUE(boxes.count("Stays") && boxes.count("Driven"));
+  EXPECT_NEAR(boxes.at("Driven").low.y, 6.5, 1e-6) << "a driver that needs no script works";
 }
 
 TEST(BlenderCameras, TheActiveOneComesFirst) {

@@ -410,10 +410,7 @@ TEST_F(CliVerbs, SeedsOfGuidesDecideAndRepeat) {
   EXPECT_EQ(RunOk({"info", "g.exr", "--json"}).Json()["scumble:seed"], "5");
   ExpectError(With({"guidegen"}, {"glow.gltf", "--seed", "-1", "-o", "g.exr"}), 2, {"--seed: -1 is negative"});
   // One number feeds both steps of stylize.
-  WritePainted("style/lit.png", 64, 64);
-  WriteText("style/style.toml",
-            "name = \"test\"\n[transfer]\nreference_height = 0\nlevels = 4\n[[exemplar]]\nimage = \"lit.png\"\n"
-            "luminance = 0.2\n[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.05\n");
+  WriteStyle("style");
   const Arguments rest = {"--style", "style", "--seed", "5"};
   RunOk(With(With(With({"stylize"}, scene), rest), {"-o", "once.png"}));
   RunOk(With(With(With({"guidegen"}, scene), rest), {"-o", "g.exr"}));

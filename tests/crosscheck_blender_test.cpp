@@ -1,13 +1,16 @@
 // scumble crosscheck end to end: a small .blend and a sample scene, both sides rendered here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "tests/cli_harness.h"
 
@@ -44,6 +47,13 @@ class CrosscheckBlender : public CliTest {
     EXPECT_EQ(result.code, code) << result.err << result.out;
     said_ = result.err;
     return result.Json();
+  }
+  // room.blend, scatter.blend and crooked.blend, which make_crosscheck.py describes.
+  void MakeScenes() {
+    const std::string make = "blender -b -noaudio --factory-startup -P '" SCUMBLE_SOURCE_DIR
+                             "/tests/blender/make_crosscheck.py' -- '" +
+                             At("").string() + "' > '" + At("log").string() + "' 2>&1";
+    ASSERT_EQ(std::system(make.c_str()), 0) << TextOf(At("log"));
   }
   std::string said_;
 };
@@ -95,10 +105,7 @@ TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
 }
 
 TEST_F(CrosscheckBlender, ABlendFileAgreesAtTheFrameAskedFor) {
-  const std::string make = "blender -b -noaudio --factory-startup -P '" SCUMBLE_SOURCE_DIR
-                           "/tests/blender/make_crosscheck.py' -- '" +
-                           At("room.blend").string() + "' > '" + At("log").string() + "' 2>&1";
-  ASSERT_EQ(std::system(make.c_str()), 0) << TextOf(At("log"));
+  MakeScenes();
   const Arguments run{"room.blend", "--size", "160x90", "--max-bounces", "3"};
   Arguments first = run, fifth = run, data = run;
   first.insert(first.end(), {"--samples", "32"});
@@ -119,6 +126,47 @@ TEST_F(CrosscheckBlender, ABlendFileAgreesAtTheFrameAskedFor) {
   EXPECT_EQ(moved[0]["samples"], 0);
   EXPECT_EQ(Run({"compare", "one/room.cycles.exr", "five/room.cycles.exr", "--layer", "object"}).code, 1)
       << "the box has moved";
+}
+
+TEST_F(CrosscheckBlender, InstancesOfEveryKindAreToldApart) {
+  MakeScenes();
+  const Json reports = Check({"scatter.blend", "--size", "160x90", "--samples", "0", "--keep", "kept"}, 0);
+  EXPECT_EQ(Figures(reports[0]).at("object differing")["value"], 0.0);
+  ASSERT_EQ(reports[0]["warnings"].size(), 1u) << reports[0]["warnings"];
+  EXPECT_NE(reports[0]["warnings"][0].get<std::string>().find("'Unseen': is not seen by the camera"),
+            std::string::npos);
+  GuideReadOptions read;
+  read.required = {Layer::kCoverage, Layer::kNormal, Layer::kObject};
+  for (const std::string side : {"kept/scatter.cycles.exr", "kept/scatter.ours.exr"}) {
+    const auto guides = ReadGuides(At(side), read);
+    ASSERT_TRUE(guides.ok()) << guides.error().message;
+    EXPECT_EQ(guides->camera->name, "Aside") << "the first by name";
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < guides->pixel_count(); ++i) {
+      const auto name = guides->object_names.find(std::uint32_t(guides->Plane(Layer::kObject)[i]));
+      if (name != guides->object_names.end()) seen.insert(name->second);
+    }
+    for (const char* name : {"Same", "Same#2", "MadeUp", "MadeUp/MadeUp#5", "Group0/Pebble#4", "Group1/Placed",
+                             "Corners/Leaf#4", "Bristles/Pebble#2"}) {
+      EXPECT_TRUE(seen.count(name)) << side << " shows no " << name;
+    }
+    EXPECT_FALSE(seen.count("Unseen") || seen.count("Corners")) << side;
+  }
+}
+
+TEST_F(CrosscheckBlender, WhatCannotAgreeIsNamedOnce) {
+  MakeScenes();
+  const Json reports = Check({"crooked.blend", "--size", "96x54", "--samples", "0"}, 1);
+  const std::vector<std::string> warnings = reports[0]["warnings"];
+  EXPECT_EQ(warnings.size(), 4u) << reports[0]["warnings"];
+  for (const char* cause :
+       {"camera 'Camera': the scale of what it hangs on mirrors", "object 'Hole': is a holdout",
+        "image 'Gone' cannot be read from '//gone.png'", "its material override 'Clay' is ignored"}) {
+    EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                            [&](const std::string& line) { return line.find(cause) != std::string::npos; }),
+              1)
+        << cause;
+  }
 }
 
 }  // namespace

@@ -42,6 +42,7 @@ TEST_F(CrosscheckCli, MistakesAreSaidBeforeBlenderRuns) {
   expect({kSuzanne, kSuzanne, "--keep", "."}, 2, "kept as suzanne.cycles.exr");
   expect({"x.obj"}, 3, "a cross-check needs a scene");
   expect({kSuzanne, "-o", "nowhere/report.html"}, 4, "there is no folder");
+  expect({"--blender", "", kSuzanne}, 2, "--blender");
   expect({kSuzanne, "--write-baseline", "nowhere/b.json"}, 4, "there is no folder");
   Write("file", "");
   expect({kSuzanne, "--keep", "file"}, 4, "--keep file is no folder");
@@ -53,6 +54,25 @@ TEST_F(CrosscheckCli, MistakesAreSaidBeforeBlenderRuns) {
   expect({SCUMBLE_SOURCE_DIR "/scenes/snail.glb", "--baseline", "b.json"}, 3, "no scene snail.glb");
   expect({kSuzanne, "--size", "64x36", "--samples", "1"}, 5, "/nowhere/blender cannot be run");
   EXPECT_FALSE(std::filesystem::exists(At("report.html")));
+}
+
+TEST_F(CrosscheckCli, ABadSceneIsAVerdictAndTheReportIsWritten) {
+  Write("bad's.glb", "none");
+  const CommandResult result = Run({"crosscheck", "bad's.glb", "UP.GLB", "--size", "32", "--samples", "1", "--json",
+                                    "--camera", "My Camera", "--blender", "./my blender", "-o", "report.html"});
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_NE(result.Error().find("bad's.glb"), std::string::npos) << result.err;
+  EXPECT_NE(result.Error().find("2 of 2 scenes could not be compared"), std::string::npos) << result.err;
+  const nlohmann::json json = result.Json();
+  ASSERT_EQ(json.size(), 2u) << result.out;
+  EXPECT_EQ(json[0]["verdict"], "could not be compared");
+  EXPECT_EQ(json[0]["passed"], false);
+  EXPECT_NE(json[0]["failure"].get<std::string>().find("bad's.glb"), std::string::npos);
+  EXPECT_NE(json[1]["failure"].get<std::string>().find("no such file"), std::string::npos) << "an ending in capitals";
+  const std::string html = Bytes("report.html");
+  EXPECT_NE(html.find("could not be compared"), std::string::npos);
+  EXPECT_NE(html.find("&#39;bad&#39;\\&#39;&#39;s.glb&#39; UP.GLB --size 32"), std::string::npos);
+  EXPECT_NE(html.find("--camera=&#39;My Camera&#39; --blender &#39;./my blender&#39;"), std::string::npos);
 }
 
 }  // namespace

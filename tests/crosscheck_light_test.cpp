@@ -89,9 +89,9 @@ TEST(CrosscheckLight, AFigureIsKeptOnlyIfItsErrorLeavesNoDoubt) {
   figure.error = 0.03;  // 1.51 is possible
   EXPECT_FALSE(figure.kept());
   EXPECT_TRUE(figure.TooNoisy());
-  EXPECT_FALSE(figure.Broken());
+  EXPECT_FALSE(figure.broken());
   figure.value = 1.6, figure.error = 0.04;
-  EXPECT_TRUE(figure.Broken());
+  EXPECT_TRUE(figure.broken());
   EXPECT_FALSE(figure.TooNoisy());
   figure.must_prove = false, figure.error = 0.1;
   EXPECT_TRUE(figure.kept()) << "1.4 is possible";
@@ -113,7 +113,7 @@ TEST(CrosscheckLight, LightInTheWrongPlaceBreaksThoughTheMeanIsRight) {
   const CrosscheckReport report = CheckLight(light);
   EXPECT_TRUE(FigureOf(report, "lpe.LDE").kept()) << "the mean is right";
   EXPECT_NEAR(FigureOf(report, "lpe.LDE").error, 0.0, 1e-9) << "nothing of it is noise";
-  EXPECT_TRUE(FigureOf(report, "lpe.LDE", "8x8 tiles").Broken());
+  EXPECT_TRUE(FigureOf(report, "lpe.LDE", "8x8 tiles").broken());
   EXPECT_FALSE(report.passed());
 }
 
@@ -138,6 +138,25 @@ TEST(CrosscheckLight, AFewPixelsProveNothing) {
   report.compared = 99;
   EXPECT_FALSE(report.passed());
   EXPECT_TRUE(Says(WhyCrosscheckFails(report), "raise --size"));
+}
+
+TEST(CrosscheckLight, OnlyNoiseIsNotProvedAndABreakNamesWhatIsNotExpressed) {
+  CrosscheckReport report;
+  report.scene = "scene", report.compared = 200, report.setup.samples = 1, report.setup.max_bounces = 8;
+  report.unsupported = {"hair", "fog"};
+  report.figures = {{"lpe.full", "mean difference", "%", 3.0, 1.5, 1.0}};  // 3 − 2 is within 1.5
+  EXPECT_EQ(report.Outcome(), CrosscheckOutcome::kNotProved);
+  EXPECT_FALSE(report.passed());
+  EXPECT_EQ(CrosscheckVerdict(report), "NOT PROVED, 1 figure is too noisy: raise --samples");
+  report.figures[0].value = 4.0;  // 4 − 2 is not
+  EXPECT_TRUE(report.figures[0].broken());
+  EXPECT_EQ(report.Outcome(), CrosscheckOutcome::kDiffers);
+  EXPECT_FALSE(Says(WhyCrosscheckFails(report), "raise --samples"));
+  EXPECT_EQ(CrosscheckVerdict(report), "DIFFERS, 2 things are not expressed: see the list “not expressed”");
+  const auto html = CrosscheckToHtml({report}, {"Cycles", "scumble"});
+  ASSERT_TRUE(html.ok());
+  EXPECT_LT(html->find("Not expressed"), html->find("✗ broken"));
+  EXPECT_NE(CrosscheckToText(report).find("1 sample,"), std::string::npos);
 }
 
 TEST(CrosscheckLight, LightOnOneSideAloneBreaks) {

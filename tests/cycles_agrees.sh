@@ -7,8 +7,9 @@ source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$program" crosscheck "$source"/scenes/*.glb --size 480x270 --samples 16 -o "$work/report.html" --quiet
-grep -q 'class="verdict agrees"' "$work/report.html"
+"$program" crosscheck "$source"/scenes/*.glb --size 480x270 --samples 16 -o "$work/report.html" --quiet > "$work/verdicts"
+cat "$work/verdicts"
+test "$(grep -c '^  verdict: agrees$' "$work/verdicts")" = "$(ls "$source"/scenes/*.glb | wc -l)"
 
 blender -b -noaudio --factory-startup -P "$source/blender_scripts/render_guides.py" -- \
   "$source/scenes/suzanne.glb" "$work/cycles.exr" --size 480x270 > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }

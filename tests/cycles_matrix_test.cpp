@@ -47,6 +47,7 @@ class CyclesMatrixTest : public CliTest {
     }
     // Only Principled surfaces are not compared as authored.
     EXPECT_EQ(report["warnings"].size(), name == "principled" ? 1u : 0u) << report["warnings"];
+    EXPECT_EQ(report["unsupported"].size(), 0u) << report["unsupported"];
   }
 
   nlohmann::json matrix_;

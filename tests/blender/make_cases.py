@@ -369,7 +369,56 @@ def rendered():
     return {thing.name: thing.pass_index for thing in bpy.data.objects if thing.type == "MESH"}
 
 
+# ---- Files that lack something --------------------------------------------------------------------------------------
+
+
+def library(folder, name, *objects):
+    """A .blend file of cubes; returns its path. The scene at hand is gone afterwards."""
+    clear()
+    for thing in objects:
+        cube(thing)
+    save(folder, name)
+    return folder / (name + ".blend")
+
+
+def link_from(path, *names):
+    with bpy.data.libraries.load(str(path), link=True) as (_, wanted):
+        wanted.objects = list(names)
+    for thing in wanted.objects:
+        link(thing)
+
+
+def broken(folder):
+    """A lost texture, two that only look lost, a lost library, a library without its object, drivers, a script, and an
+    override."""
+    lost, poor = library(folder, "lost", "Lost", "LostToo"), library(folder, "poor", "Stays", "Goes")
+    clear()
+    link_from(lost, "Lost", "LostToo")
+    link_from(poor, "Stays", "Goes")
+    image = bpy.data.images.new("Gone", 4, 4)
+    image.source, image.filepath = "FILE", "//textures/gone.png"
+    material = textured("MissingTexture", "ShaderNodeBsdfDiffuse", image)
+    cube("Textured", (0, 0, 0), material)
+    cube("Packed", (2, 0, 0), textured("PackedTexture", "ShaderNodeBsdfDiffuse", checker()))
+    made = bpy.data.images.new("Made", 4, 4)
+    cube("Generated", (4, 0, 0), textured("GeneratedTexture", "ShaderNodeBsdfDiffuse", made))
+    driven = cube("Driven", (1.5, 0, 3))
+    driven.driver_add("location", 0).driver.expression = "unknown(frame)"
+    driven.driver_add("location", 1).driver.expression = "also_unknown(frame)"
+    driven.driver_add("location", 2).driver.expression = "frame * 0.0 + 7.0"
+    text = bpy.data.texts.new("rig.py")
+    text.use_module = True
+    bpy.data.texts.new("notes")
+    bpy.context.view_layer.material_override = new_material("Clay", "ShaderNodeBsdfDiffuse")[0]
+    save(folder, "broken")
+    lost.unlink()
+    library(folder, "poor", "Stays")
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "broken.blend"))
+    return {}
+
+
 CASES = {"lamps": lamps, "materials": materials, "objects": objects, "cameras": cameras, "rendered": rendered}
+FILES = {"broken": broken}  # these write their files themselves
 
 
 def main():
@@ -381,6 +430,8 @@ def main():
         clear()
         expected[name] = build()
         save(folder, name)
+    for name, build in FILES.items():
+        expected[name] = build(folder)
     (folder / "expected.json").write_text(json.dumps(expected))
 
 

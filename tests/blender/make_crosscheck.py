@@ -1,9 +1,11 @@
-"""Makes the .blend of crosscheck_blender_test.cpp: a diffuse room, a glossy ball, a lamp with extent, and a box that moves.
+"""Makes the scenes of crosscheck_blender_test.cpp: room.blend, scatter.blend, crooked.blend.
 
-    blender -b -noaudio --factory-startup -P tests/blender/make_crosscheck.py -- OUTPUT.blend
+    blender -b -noaudio --factory-startup -P tests/blender/make_crosscheck.py -- FOLDER
 """
 
 import sys
+import traceback
+from pathlib import Path
 
 import bmesh
 import bpy
@@ -40,9 +42,8 @@ def mesh(name, build, location, made, smooth=False):
     return thing
 
 
-def main():
-    output = sys.argv[sys.argv.index("--") + 1]
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+def room():
+    """A box that moves, a ball of metal, a point lamp."""
     scene = bpy.context.scene
     floor = material("Floor", "ShaderNodeBsdfDiffuse", (0.7, 0.6, 0.5))
     red = material("Red", "ShaderNodeBsdfDiffuse", (0.8, 0.2, 0.1))
@@ -55,16 +56,139 @@ def main():
         box.keyframe_insert("location", frame=frame)
     lamp = bpy.data.lights.new("Lamp", "POINT")
     lamp.energy, lamp.shadow_soft_size = 300.0, 0.3
-    thing = bpy.data.objects.new("Lamp", lamp)
-    thing.location = (1.5, -2.0, 3.0)
-    scene.collection.objects.link(thing)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.location = (0.0, -5.0, 2.4)
-    camera.rotation_euler = Euler((1.2, 0.0, 0.0))
-    scene.collection.objects.link(camera)
-    scene.camera = camera
+    link(bpy.data.objects.new("Lamp", lamp)).location = (1.5, -2.0, 3.0)
+    scene.camera = camera("Camera")
     scene.frame_set(1)
-    bpy.ops.wm.save_as_mainfile(filepath=output)
 
 
-main()
+def camera(name, x=0.0):
+    thing = link(bpy.data.objects.new(name, bpy.data.cameras.new(name)))
+    thing.location = (x, -5.0, 2.4)
+    thing.rotation_euler = Euler((1.2, 0.0, 0.0))
+    return thing
+
+
+def link(thing, collection=None):
+    (collection or bpy.context.scene.collection).objects.link(thing)
+    return thing
+
+
+def collection_of(name, *things):
+    """A collection of its own, beside the scene's."""
+    made = bpy.data.collections.new(name)
+    for thing in things:
+        bpy.context.scene.collection.objects.unlink(thing)
+        made.objects.link(thing)
+    return made
+
+
+def cubes_on_points(name, instance, generated):
+    """Geometry nodes that put an object, or a cube that they make up themselves, on each of a mesh's corners, and keep
+    the mesh."""
+    tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    tree.inputs.new("NodeSocketGeometry", "Geometry")
+    tree.outputs.new("NodeSocketGeometry", "Geometry")
+    source, target = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    points, joined = tree.nodes.new("GeometryNodeInstanceOnPoints"), tree.nodes.new("GeometryNodeJoinGeometry")
+    if generated is None:
+        node = tree.nodes.new("GeometryNodeObjectInfo")
+        node.inputs["Object"].default_value, node.inputs["As Instance"].default_value = instance, True
+        tree.links.new(node.outputs["Geometry"], points.inputs["Instance"])
+    else:
+        node, paint = tree.nodes.new("GeometryNodeMeshCube"), tree.nodes.new("GeometryNodeSetMaterial")
+        node.inputs["Size"].default_value = (0.15, 0.15, 0.15)
+        paint.inputs["Material"].default_value = generated
+        tree.links.new(node.outputs["Mesh"], paint.inputs["Geometry"])
+        tree.links.new(paint.outputs["Geometry"], points.inputs["Instance"])
+    tree.links.new(source.outputs[0], points.inputs["Points"])
+    for part in (points.outputs[0], source.outputs[0]):
+        tree.links.new(part, joined.inputs[0])
+    tree.links.new(joined.outputs[0], target.inputs[0])
+    return tree
+
+
+def plane(size):
+    return lambda b: bmesh.ops.create_grid(b, x_segments=2, y_segments=2, size=size)
+
+
+def box(size):
+    return lambda b: bmesh.ops.create_cube(b, size=size)
+
+
+def scatter():
+    """Every kind of instance, a linked object with the name of a local one, an object for indirect light only, and two
+    cameras of which none is active."""
+    red, grey = (material(name, "ShaderNodeBsdfDiffuse", color)
+                 for name, color in (("Red", (0.8, 0.2, 0.1)), ("Grey", (0.5, 0.5, 0.5))))
+    same = mesh("Same", box(0.5), (0, 0, 0), red)
+    library = output("library.blend")
+    bpy.data.libraries.write(library, {same})
+    same.location = (-1.6, -1.2, 0.3)
+    with bpy.data.libraries.load(library, link=True) as (_, wanted):
+        wanted.objects = ["Same"]
+    link(wanted.objects[0])
+    mesh("Floor", plane(3.0), (0, 0, -0.3), grey)
+    pebble = mesh("Pebble", box(0.12), (2.2, -1.2, 0.0), red)
+
+    made_up = mesh("MadeUp", plane(0.4), (-1.6, 0, 0.2), grey)
+    made_up.modifiers.new("Nodes", "NODES").node_group = cubes_on_points("MadeUp", None, red)
+    placed = mesh("Placed", plane(0.4), (0, 0, 0.2), grey)
+    placed.modifiers.new("Nodes", "NODES").node_group = cubes_on_points("Placed", pebble, None)
+    group = collection_of("Group", placed)
+    for number in range(2):
+        instancer = link(bpy.data.objects.new(f"Group{number}", None))
+        instancer.instance_type, instancer.instance_collection = "COLLECTION", group
+        instancer.location, instancer.scale = (1.4 * number - 0.4, 0.6, 0.3), (1.0, 1.0 + number, 1.0)
+    corners = mesh("Corners", plane(0.4), (1.6, -0.6, 0.2), grey)
+    mesh("Leaf", box(0.15), (0, 0, 0), red).parent = corners
+    corners.instance_type, corners.show_instancer_for_render = "VERTS", False
+    bristles = mesh("Bristles", plane(0.5), (0, -1.2, 0.2), grey)
+    bristles.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    settings = bristles.particle_systems[0].settings
+    settings.type, settings.count, settings.render_type, settings.instance_object = "HAIR", 9, "OBJECT", pebble
+    settings.emit_from, settings.use_emit_random = "VERT", False  # apart: faces that coincide have no one name
+    settings.use_advanced_hair, settings.particle_size = True, 1.0
+
+    unseen = collection_of("Unseen", mesh("Unseen", box(0.8), (0.6, -2.0, 0.6), red))
+    bpy.context.scene.collection.children.link(unseen)
+    bpy.context.view_layer.layer_collection.children["Unseen"].indirect_only = True
+    camera("Zero", 1.0)
+    camera("Aside")
+    bpy.context.scene.camera = None
+
+
+def crooked():
+    """A camera on a mirrored rig, a holdout, a texture that is lost, and a material override."""
+    rig = link(bpy.data.objects.new("Rig", None))
+    rig.scale = (-1, 1, 1)
+    bpy.context.scene.camera = camera("Camera", 0.3)
+    bpy.context.scene.camera.parent = rig
+    lost = material("Lost", "ShaderNodeBsdfDiffuse", (1, 1, 1))
+    texture = lost.node_tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("Gone", 4, 4)
+    texture.image.source, texture.image.filepath = "FILE", "//gone.png"
+    lost.node_tree.links.new(texture.outputs["Color"], lost.node_tree.nodes["Diffuse BSDF"].inputs["Color"])
+    mesh("Floor", plane(2.0), (0, 0, 0), lost)
+    held = collection_of("Held", mesh("Hole", box(0.5), (0.8, 0, 0.4), lost))
+    bpy.context.scene.collection.children.link(held)
+    bpy.context.view_layer.layer_collection.children["Held"].holdout = True
+    bpy.context.view_layer.material_override = material("Clay", "ShaderNodeBsdfDiffuse", (0.5, 0.5, 0.5))
+
+
+def output(name):
+    return str(Path(sys.argv[sys.argv.index("--") + 1]) / name)
+
+
+def main():
+    for build in (room, scatter, crooked):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        build()
+        bpy.ops.wm.save_as_mainfile(filepath=output(build.__name__ + ".blend"))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except Exception:  # Blender itself would print the traceback and exit with 0
+        traceback.print_exc()
+        sys.exit(1)

@@ -212,8 +212,8 @@ LAMPS = {
     "area_disc": lambda: lamp("AREA", 400, HIGH, shape="DISK", size=1.2),
     "area_ellipse": lambda: lamp("AREA", 400, KEY, shape="ELLIPSE", size=1.8, size_y=0.7),
 }
-SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 128), "glossy": (glossy_set, ["LSE"], 64),
-            "textured": (textured_set, ["LDE", "LSE"], 64)}
+SURFACES = {"diffuse": (diffuse_set, ["LDE", "LDDE", "LD12E"], 128), "glossy": (glossy_set, ["LSE"], 128),
+            "textured": (textured_set, ["LDE", "LSE"], 128)}
 
 
 def world(color, strength):
@@ -319,7 +319,7 @@ SCENES = {  # builder, layers, size, samples
     "mixed": (mixed, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "stretched": (stretched, DIFFUSE_LAYERS, LANDSCAPE, 64),
     "instances": (instances, DIFFUSE_LAYERS, LANDSCAPE, 64),
-    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 64),
+    "principled": (principled, DIFFUSE_LAYERS + ["LSE"], LANDSCAPE, 128),
     "orthographic": (camera_scene(type="ORTHO", ortho_scale=6.0), DIFFUSE_LAYERS, LANDSCAPE, 64),
     "shifted": (camera_scene(shift_x=0.12, shift_y=-0.08), DIFFUSE_LAYERS, LANDSCAPE, 64),
 }

@@ -1,0 +1,148 @@
+"""What is wrong with a .blend file before anybody looks at its scene: lost textures and libraries, drivers and scripts
+that do not run, overrides that are not heeded. Shared by export_scene.py and render_guides.py, in the same words, so
+that a cross-check's report says each of them once."""
+
+import os
+
+import bpy
+
+from blend_common import listed
+
+PICTURES = {"IMAGE", "MULTILAYER", "UV_TEST"}  # not the renders and compositions that other nodes leave behind
+
+
+def check_file(layer, unsupported):
+    """Call it at the frame that is rendered: drivers are only known to fail once they have been asked."""
+    check_images(unsupported)
+    check_libraries(unsupported)
+    check_drivers(unsupported)
+    for text in bpy.data.texts:
+        if text.use_module:
+            unsupported.add(f"script '{text.name}' inside the file is not run")
+    if layer.material_override is not None:
+        unsupported.add(f"view layer '{layer.name}': its material override '{layer.material_override.name}' is ignored")
+
+
+def is_used(thing):
+    return thing.users > (1 if thing.use_fake_user else 0)
+
+
+def kind_of(thing):
+    return thing.bl_rna.name.lower()
+
+
+def every_id():
+    """Every data-block with the name of its collection in bpy.data."""
+    for kind in bpy.data.bl_rna.properties:
+        if kind.type == "COLLECTION":
+            for thing in getattr(bpy.data, kind.identifier):
+                yield kind.identifier, thing
+
+
+# ---- Images ---------------------------------------------------------------------------------------------------------
+
+
+def images_in(tree, seen):
+    """Of a node tree and its groups; `seen` collects the trees."""
+    seen.add(tree)
+    for node in tree.nodes:
+        if getattr(node, "image", None) is not None:
+            yield node.image
+        group = getattr(node, "node_tree", None)
+        if group is not None and group not in seen:
+            yield from images_in(group, seen)
+
+
+def file_exists(path, library=None):
+    """`path` as Blender writes it: "//" is the folder of the file, "<UDIM>" the number of a tile."""
+    whole = bpy.path.abspath(path, library=library)
+    if "<UDIM>" not in whole and "<UVTILE>" not in whole:
+        return os.path.exists(whole)
+    start = os.path.basename(whole).split("<")[0]
+    folder = os.path.dirname(whole)
+    return os.path.isdir(folder) and any(name.startswith(start) for name in os.listdir(folder))
+
+
+def is_lost(image):
+    if image.type not in PICTURES or image.source in {"GENERATED", "VIEWER"}:
+        return False
+    if image.source == "FILE":
+        return min(image.size) == 0  # asking for the size loads the picture, packed ones too
+    return image.packed_file is None and not file_exists(image.filepath, image.library)
+
+
+def check_images(unsupported):
+    users = {}
+    for things in (bpy.data.materials, bpy.data.worlds, bpy.data.lights):
+        for thing in things:
+            if is_used(thing) and thing.use_nodes and thing.node_tree:
+                for image in images_in(thing.node_tree, set()):
+                    users.setdefault(image, {})[f"{kind_of(thing)} '{thing.name}'"] = True
+    for image, names in users.items():
+        if is_lost(image):
+            first, *others = names
+            more = f" and {len(others)} more" if others else ""
+            unsupported.add(f"image '{image.name}' cannot be read from '{image.filepath}': {first}{more} is exported "
+                            "without it, white where it was the colour; in Cycles it is magenta")
+
+
+# ---- Libraries ------------------------------------------------------------------------------------------------------
+
+
+def check_libraries(unsupported):
+    """Blender puts empty data-blocks in the place of what it does not find."""
+    linked = {}
+    for collection, thing in every_id():
+        if thing.library is not None:
+            linked.setdefault(thing.library, []).append((collection, thing))
+    for library in bpy.data.libraries:
+        things = linked.get(library, [])
+        # Blender keeps an indirect library's path relative to either file.
+        path = next((path for path in (bpy.path.abspath(library.filepath, library=library.parent),
+                                       bpy.path.abspath(library.filepath)) if os.path.isfile(path)), None)
+        if path is None:
+            if library.packed_file is None and things:
+                unsupported.add(f"library '{library.filepath}' is missing: what is linked from it is left out, "
+                                + listed([thing.name for _, thing in things]))
+            continue
+        lacking = missing_from(path, things)
+        if lacking:
+            unsupported.add(f"library '{library.filepath}' has lost what is linked from it, which is left out: "
+                            + listed(lacking))
+
+
+def missing_from(path, things):
+    """The names of those things that a .blend file does not hold."""
+    try:
+        with bpy.data.libraries.load(path, link=True) as (names, _):
+            held = {kind: set(getattr(names, kind)) for kind in dir(names)}
+    except OSError:
+        return [thing.name for _, thing in things]
+    return [thing.name for kind, thing in things if kind in held and thing.name not in held[kind]]
+
+
+# ---- Drivers --------------------------------------------------------------------------------------------------------
+
+
+def broken_drivers(thing):
+    data = getattr(thing, "animation_data", None)
+    return [curve for curve in data.drivers if not curve.mute and not curve.driver.is_valid] if data else []
+
+
+def check_drivers(unsupported):
+    for _, thing in every_id():
+        if not isinstance(thing, bpy.types.ID) or not is_used(thing):
+            continue
+        curves = broken_drivers(thing)
+        tree = getattr(thing, "node_tree", None)
+        if tree is not None:
+            curves += broken_drivers(tree)
+        if not curves:
+            continue
+        first = curves[0]
+        what = f"{first.data_path}[{first.array_index}]"
+        if first.driver.type == "SCRIPTED":
+            what += f" = {first.driver.expression[:60]}"
+        more = f" and {len(curves) - 1} more" if len(curves) > 1 else ""
+        unsupported.add(f"{kind_of(thing)} '{thing.name}': its driver {what}{more} does not work here, where scripts "
+                        "inside the file are not run: its value may be wrong")

@@ -1,0 +1,112 @@
+"""What export_scene.py and render_guides.py share: which Blender, which scene, which camera, and how they talk.
+
+Both must choose alike, or a cross-check compares two different pictures. docs/blender.md states the rules.
+"""
+
+import sys
+
+import bpy
+from mathutils import Matrix
+
+SUPPORTED = (3, 4)  # lamp formulas, node sockets and the glTF exporter's options are known for this one
+EXIT_INPUT, EXIT_VERSION = 3, 5
+
+# Blender's axes (+Z up) to glTF's (+Y up): x, z, -y.
+GLTF_FROM_BLENDER = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+
+LONGEST_LINE = 380  # bytes; guidegen keeps 400 of a line in the extras, and the same line of both scripts counts once
+
+
+class Unsupported:
+    """Collects what cannot be expressed or rendered as meant, each line once, in order."""
+
+    def __init__(self):
+        self.lines = []
+
+    def add(self, line):
+        """Names in it may hold anything; it stays one line of valid UTF-8."""
+        text = "".join(" " if ord(c) < 32 or ord(c) == 127 else c for c in line).encode("utf-8", "replace")
+        if len(text) > LONGEST_LINE:
+            text = text[:LONGEST_LINE].decode("utf-8", "ignore").encode("utf-8") + "…".encode("utf-8")
+        line = text.decode("utf-8")
+        if line not in self.lines:
+            self.lines.append(line)
+
+    def say(self):
+        for line in self.lines:
+            say("unsupported: " + line)
+
+
+def say(text):
+    sys.stdout.flush()
+    print("scumble: " + text, file=sys.stderr, flush=True)
+
+
+def fail(message, code=EXIT_INPUT):
+    say("error: " + message)
+    sys.exit(code)
+
+
+def check_version(way_out=""):
+    """Ends the program in a Blender that is not supported. `way_out`: what else the user may do."""
+    if bpy.app.version[:2] != SUPPORTED:
+        fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
+             "lamps shine by other formulas in other versions: name another one with --blender" + way_out,
+             EXIT_VERSION)
+
+
+def listed(names, most=3):
+    """'a', 'b', 'c' and 4 more"""
+    more = len(names) - most
+    return ", ".join(f"'{name}'" for name in names[:most]) + (f" and {more} more" if more > 0 else "")
+
+
+def choose_scene(name):
+    if not bpy.data.filepath:
+        fail("Blender did not open the file: it is no .blend file, or one of a newer Blender")
+    if name is None:
+        return bpy.context.window.scene
+    if name not in bpy.data.scenes:
+        fail(f"there is no scene '{name}'; there are: " + ", ".join(f"'{scene.name}'" for scene in bpy.data.scenes))
+    return bpy.data.scenes[name]
+
+
+def choose_layer(scene):
+    """The first view layer that is rendered."""
+    return next((layer for layer in scene.view_layers if layer.use), scene.view_layers[0])
+
+
+# ---- Cameras --------------------------------------------------------------------------------------------------------
+
+
+def camera_rank(scene, name):
+    """Sorts cameras: the active one first, the others by name."""
+    return (scene.camera is None or name != scene.camera.name, name)
+
+
+def can_be_looked_through(thing):
+    return thing.type == "CAMERA" and thing.data.type in {"PERSP", "ORTHO"}
+
+
+def cameras_of(scene, unsupported):
+    """Those that can be looked through, in order. A camera may be hidden: nobody renders cameras."""
+    found = {thing for thing in scene.objects if thing.type == "CAMERA"} | ({scene.camera} - {None})
+    usable = []
+    for thing in sorted(found, key=lambda thing: camera_rank(scene, thing.name)):
+        if can_be_looked_through(thing):
+            usable.append(thing)
+        else:
+            what = "panoramic" if thing.type == "CAMERA" else f"of type {thing.type}"
+            unsupported.add(f"camera '{thing.name}': is {what}, left out")
+    return usable
+
+
+def note_crooked_camera(name, matrix, unsupported):
+    """Cycles takes the lengths of a camera's axes away and keeps their angles and their handedness."""
+    axes = [matrix.col[i].to_3d().normalized() for i in range(3)]
+    square = all(abs(axes[i].dot(axes[j])) < 1e-5 for i, j in ((0, 1), (0, 2), (1, 2)))
+    mirrored = axes[0].cross(axes[1]).dot(axes[2]) < 0.0
+    if mirrored or not square:
+        what = "mirrors" if square else "shears" if not mirrored else "shears and mirrors"
+        unsupported.add(f"camera '{name}': the scale of what it hangs on {what} Cycles' picture; guides are seen by a "
+                        "straight camera instead: take the scale away")
