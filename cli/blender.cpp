@@ -45,6 +45,11 @@ std::string NameOfProgram(const BlenderOptions& options) {
   return options.program.empty() ? "blender" : options.program;
 }
 
+BlenderTask ExportTask(const std::string& path, const BlenderOptions& options) {
+  const std::string program = NameOfProgram(options);
+  return {path, program, "the export by " + program + " failed", true};
+}
+
 // What runs export_scene.py on a scene, with the script's own arguments to follow.
 Expected<std::vector<std::string>> ExportCommand(const std::string& path, const BlenderOptions& options,
                                                  const fs::path& output) {
@@ -63,11 +68,6 @@ Expected<std::vector<std::string>> ExportCommand(const std::string& path, const 
                                   "--",
                                   "--output",
                                   output.string()};
-}
-
-BlenderTask ExportTask(const std::string& path, const BlenderOptions& options) {
-  const std::string program = NameOfProgram(options);
-  return {path, program, "the export by " + program + " failed", true};
 }
 
 Expected<Scene> LoadExport(const fs::path& exported, const std::string& path) {

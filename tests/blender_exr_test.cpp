@@ -492,7 +492,7 @@ TEST(BlenderFile, SaysWhatItNeedsToFindTheCamera) {
   file.Drop("Normal.X"), file.Drop("Normal.Y"), file.Drop("Normal.Z"), file.Drop("IndexOB.X");
   file.Write(folder / "shot.exr");
   ExpectRefusal(ReadGuides(folder / "shot.exr", WithObjects()),
-                {"no layer normal, object;", "View Layer > Passes > Normal, Cryptomatte Object"});
+                {"no layer normal, object.", "View Layer > Passes > Normal, Cryptomatte Object"});
 }
 
 TEST(BlenderFile, NamesComeFromCryptomatte) {

@@ -191,8 +191,8 @@ TEST_F(CliBadContent, UnknownStyles) {
   ExpectError(Transfer("g.exr", "bad"), 3, {"bad/style.toml:2", "unknown key transfer.bogus", "blend_radius"});
   WriteText("syntax/style.toml", "name = \"x\"\nlicence\n");
   ExpectError(Transfer("g.exr", "syntax"), 3, {"syntax/style.toml:2", "not valid TOML"});
-  WriteText("later/style.toml", "[transfer]\ncolorize = 0.5\n");
-  ExpectError(Transfer("g.exr", "later"), 5, {"later/style.toml:2", "transfer.colorize", "not built"});
+  WriteText("later/style.toml", "[transfer]\ncoherent = true\n");
+  ExpectError(Transfer("g.exr", "later"), 5, {"later/style.toml:2", "transfer.coherent", "not built"});
 }
 
 TEST_F(CliBadContent, ScenesThatShowNothing) {

@@ -179,7 +179,7 @@ TEST_F(CliPictures, SetWinsOverTheStyle) {
   ExpectError(With(transfer, {"--set", "transfer.threshold=nan"}), 2, {"transfer.threshold", "0 or more"});
   ExpectError(With(transfer, {"--set", "transfer.method=bogus"}), 2, {"litsphere", "styleblit", "bruteforce"});
   ExpectError(With(transfer, {"--set", "transfer.method=stylit"}), 5, {"stylit", "not built"});
-  ExpectError(With(transfer, {"--set", "transfer.colorize=0.5"}), 5, {"transfer.colorize", "not built"});
+  ExpectError(With(transfer, {"--set", "transfer.coherent=true"}), 5, {"transfer.coherent", "not built"});
   ExpectError(With(transfer, {"--set", "transfer.paper=no.png"}), 3, {"transfer.paper", "no.png", "no such file"});
 }
 

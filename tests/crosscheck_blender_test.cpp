@@ -61,7 +61,7 @@ class CrosscheckBlender : public CliTest {
 TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
   const Arguments run{kSuzanne, "--size", "160x90"};
   Arguments first = run;
-  first.insert(first.end(), {"--samples", "96", "--max-bounces", "3", "--keep", "kept", "-o", "report.html",
+  first.insert(first.end(), {"--samples", "384", "--max-bounces", "3", "--keep", "kept", "-o", "report.html",
                              "--write-baseline", "b.json"});
   const Json reports = Check(first, 0);
   ASSERT_EQ(reports.size(), 1u);
@@ -69,7 +69,7 @@ TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
   EXPECT_EQ(figures.at("lpe.LSE mean difference")["note"], "no such light");
   EXPECT_LT(figures.at("lpe.LDE mean difference")["value"], 0.5);
   EXPECT_EQ(reports[0]["noise"].size(), 6u);
-  EXPECT_EQ(reports[0]["noise"][0]["samples"], Json({6, 24, 96}));
+  EXPECT_EQ(reports[0]["noise"][0]["samples"], Json({24, 96, 384}));
   EXPECT_LT(reports[0]["noise"][2]["slope"], -0.4) << "LDDE";
   EXPECT_EQ(reports[0]["warnings"].size(), 1u);
   EXPECT_NE(reports[0]["warnings"][0].get<std::string>().find("Skin, Eyes, Plinth, Ball, Ring"), std::string::npos);
@@ -132,8 +132,8 @@ TEST_F(CrosscheckBlender, InstancesOfEveryKindAreToldApart) {
   MakeScenes();
   const Json reports = Check({"scatter.blend", "--size", "160x90", "--samples", "0", "--keep", "kept"}, 0);
   EXPECT_EQ(Figures(reports[0]).at("object differing")["value"], 0.0);
-  ASSERT_EQ(reports[0]["warnings"].size(), 1u) << reports[0]["warnings"];
-  EXPECT_NE(reports[0]["warnings"][0].get<std::string>().find("'Unseen': is not seen by the camera"),
+  ASSERT_EQ(reports[0]["unsupported"].size(), 1u) << reports[0]["unsupported"];
+  EXPECT_NE(reports[0]["unsupported"][0].get<std::string>().find("'Unseen': is not seen by the camera"),
             std::string::npos);
   GuideReadOptions read;
   read.required = {Layer::kCoverage, Layer::kNormal, Layer::kObject};
@@ -157,8 +157,8 @@ TEST_F(CrosscheckBlender, InstancesOfEveryKindAreToldApart) {
 TEST_F(CrosscheckBlender, WhatCannotAgreeIsNamedOnce) {
   MakeScenes();
   const Json reports = Check({"crooked.blend", "--size", "96x54", "--samples", "0"}, 1);
-  const std::vector<std::string> warnings = reports[0]["warnings"];
-  EXPECT_EQ(warnings.size(), 4u) << reports[0]["warnings"];
+  const std::vector<std::string> warnings = reports[0]["unsupported"];
+  EXPECT_EQ(warnings.size(), 4u) << reports[0]["unsupported"];
   for (const char* cause :
        {"camera 'Camera': the scale of what it hangs on mirrors", "object 'Hole': is a holdout",
         "image 'Gone' cannot be read from '//gone.png'", "its material override 'Clay' is ignored"}) {
