@@ -363,7 +363,84 @@ def stilllife():
     kit.camera("Camera", (0.1, -9.2, 2.9), (0.12, 0.0, 1.42), 53)
 
 
-SCENES = {"suzanne": suzanne, "snail": snail, "stilllife": stilllife}
+# ---- toys -----------------------------------------------------------------------------------------------------------
+
+
+TOYS_FRAMES = range(1, 49)  # two seconds
+
+
+def rolling_ball(color):
+    """Rolls along +X without slipping."""
+    radius = 0.36
+    ball = Shape().ball((0, 0, 0), (radius,) * 3, 24, 36).place("Ball", color, keep_uv=True)
+    kit.key(ball, "location", lambda t: (-1.35 + 2.7 * t, -1.05, radius), TOYS_FRAMES)
+    kit.key(ball, "rotation_euler", lambda t: (math.radians(60), 2.7 * t / radius, 0), TOYS_FRAMES)
+
+
+def dancer(color):
+    """A skittle with two arms on three bones: turns once, and sways to both sides."""
+    profile = spline([(0.0, 0.0), (0.40, 0.0), (0.46, 0.08), (0.36, 0.50), (0.22, 0.95), (0.17, 1.16), (0.26, 1.34),
+                      (0.24, 1.54), (0.10, 1.64), (0.0, 1.65)], 44)
+    profile[0, 0] = profile[-1, 0] = 0.0
+    shape = Shape().lathe(np.maximum(profile, [[0.0, -1.0]]), 40)
+    for side in (-1, 1):
+        arm = spline([(0.16 * side, 0, 0.98), (0.48 * side, -0.04, 1.08), (0.66 * side, -0.10, 1.40)], 20)
+        shape.tube(arm, 0.075 * kit.round_cap(4, 20), 10)
+    shape.ball((0, -0.27, 1.43), (0.06, 0.10, 0.06), 8, 10)
+    body = shape.place("Dancer", color)
+    bones = kit.skeleton("DancerBones", (-0.62, 0.55, 0), (0.55, 0.55, 0.55))
+    knees = (0.4, 0.9)  # heights at which one bone hands over to the next
+    def weights(at):
+        upper = [min(max((at.z - knee) / 0.35 + 0.5, 0.0), 1.0) for knee in knees]
+        return 1 - upper[0], upper[0] - upper[1], upper[1]
+    kit.bind(body, bones, weights)
+    for i, bone in enumerate(bones.pose.bones):
+        turn = 2 * math.pi if i == 0 else 0.0  # about the bone's own axis, which stands upright
+        kit.key(bone, "rotation_euler",
+                lambda t: (0.10 * i * math.sin(4 * math.pi * t), turn * t, 0.22 * i * math.sin(2 * math.pi * t)),
+                TOYS_FRAMES)
+
+
+def jelly(color):
+    """Wobbles by a shape key: flat and wide, then tall and narrow."""
+    profile = spline([(0.0, 0.0), (0.50, 0.0), (0.56, 0.06), (0.50, 0.45), (0.36, 0.68), (0.0, 0.74)], 24)
+    profile[0, 0] = profile[-1, 0] = 0.0
+    pudding = Shape().lathe(np.maximum(profile, [[0.0, -1.0]]), 56, lambda a, z: 1 + 0.05 * math.cos(8 * a)).place(
+        "Jelly", color, (1.05, 0.45, 0))
+    pudding.shape_key_add(name="Basis")
+    squash = pudding.shape_key_add(name="Squash")
+    for vertex, point in zip(pudding.data.vertices, squash.data):
+        wide = 1 + 0.35 * vertex.co.z
+        point.co = (wide * vertex.co.x, wide * vertex.co.y, 0.66 * vertex.co.z)
+    squash.slider_min = -1.0
+    kit.key(squash, "value", lambda t: math.sin(6 * math.pi * t) * (1 - 0.6 * t), TOYS_FRAMES)
+
+
+def toys():
+    scene = bpy.context.scene
+    scene.render.fps, scene.frame_start, scene.frame_end = 24, TOYS_FRAMES[0], TOYS_FRAMES[-1]
+    ground = [(0.0, 0.0), (1.2, 0.0), (2.18, 0.0), (2.2, 0.0), (2.27, -0.03), (2.30, -0.10), (2.30, -0.22),
+              (2.28, -0.24), (0.0, -0.24)]
+    Shape().lathe(ground, 64).place("Table", kit.material("Table", (0.50, 0.45, 0.36), 0.8))
+    rolling_ball(kit.material("Ball", (0.6, 0.3, 0.1), 0.3, kit.checker("BallChecker", 64, 4, (0.85, 0.30, 0.20),
+                                                                        (0.92, 0.88, 0.75))))
+    dancer(kit.material("Dancer", (0.16, 0.34, 0.55), 0.4))
+    jelly(kit.material("Jelly", (0.20, 0.45, 0.15), 0.3))
+    Shape().ball((0, 0, 0.17), (0.3, 0.24, 0.17), 12, 18).place("Pebble", kit.material("Pebble", (0.4, 0.38, 0.36), 0.8),
+                                                               (0.35, 1.25, 0), (0, 0, 30))
+    three_lamps((0, 0, 0.7), 1.8)
+    eye = kit.camera("Camera", (0.0, -7.4, 3.2), (0.0, 0.0, 0.5), 52)
+    target = Vector((0.0, 0.0, 0.5))
+    def place(t):
+        turn = math.radians(-9 + 18 * t)
+        return Vector((7.4 * math.sin(turn), -7.4 * math.cos(turn), 3.2))
+    kit.key(eye, "location", place, TOYS_FRAMES)
+    kit.key(eye, "rotation_euler", lambda t: (target - place(t)).to_track_quat("-Z", "Y").to_euler(), TOYS_FRAMES)
+    scene.frame_set(TOYS_FRAMES[0])
+
+
+SCENES = {"suzanne": suzanne, "snail": snail, "stilllife": stilllife, "toys": toys}
+MOVING = {"toys"}
 
 
 def main():
@@ -377,7 +454,7 @@ def main():
         if arguments.only in (None, name):
             kit.clear()
             build()
-            kit.export(arguments.output / (name + ".glb"))
+            kit.export(arguments.output / (name + ".glb"), name in MOVING)
             if arguments.preview:
                 kit.preview(arguments.preview / (name + ".png"))
 

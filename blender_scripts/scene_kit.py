@@ -226,17 +226,59 @@ def lamp(name, kind, at, target, energy, color=(1.0, 1.0, 1.0), cone_degrees=50.
     return look("lamp", name, data, at, target)
 
 
+# ---- Movement -------------------------------------------------------------------------------------------------------
+
+
+def key(thing, path, value_at, frames):
+    """Sets `thing.path` to value_at(0 … 1) at every frame of a range; the last one has 1."""
+    first, last = frames[0], frames[-1]
+    for frame in frames:
+        setattr(thing, path, value_at((frame - first) / (last - first)))
+        thing.keyframe_insert(path, frame=frame)
+
+
+def skeleton(name, at, lengths):
+    """An upright chain of bones, one above the other: Bone0, Bone1, …"""
+    result = bpy.data.objects.new(name, bpy.data.armatures.new(name))
+    bpy.context.scene.collection.objects.link(result)
+    result.location = at
+    bpy.context.view_layer.objects.active = result
+    bpy.ops.object.mode_set(mode="EDIT")
+    last, height = None, 0.0
+    for i, length in enumerate(lengths):
+        bone = result.data.edit_bones.new(f"Bone{i}")
+        bone.head, bone.tail = (0, 0, height), (0, 0, height + length)
+        bone.parent, bone.use_connect = last, last is not None
+        last, height = bone, height + length
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for bone in result.pose.bones:
+        bone.rotation_mode = "XYZ"
+    return result
+
+
+def bind(thing, bones, weights_at):
+    """Hangs a mesh object on a skeleton. `weights_at(vertex position)` has a weight for each bone."""
+    thing.parent = bones
+    thing.modifiers.new("Armature", "ARMATURE").object = bones
+    groups = [thing.vertex_groups.new(name=bone.name) for bone in bones.data.bones]
+    for vertex in thing.data.vertices:
+        for group, weight in zip(groups, weights_at(vertex.co)):
+            if weight > 0:
+                group.add([vertex.index], weight, "REPLACE")
+
+
 # ---- Files ----------------------------------------------------------------------------------------------------------
 
 
-def export(path):
-    """Writes the scene as .glb, the same bytes every time."""
+def export(path, moving=False):
+    """Writes the scene as .glb, the same bytes every time. In a moving one modifiers are not applied, because the
+    exporter would drop the shape keys."""
     bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 1920, 1080
     bpy.context.view_layer.update()
-    bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLB", export_apply=True, export_yup=True,
-                              export_cameras=True, export_lights=True, export_animations=False, export_skins=False,
-                              export_morph=False, export_colors=False, export_tangents=False,
-                              export_copyright="CC0-1.0")
+    bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLB", export_apply=not moving, export_yup=True,
+                              export_cameras=True, export_lights=True, export_animations=moving,
+                              export_nla_strips=False, export_skins=moving, export_morph=moving, export_colors=False,
+                              export_tangents=False, export_copyright="CC0-1.0")
     sharp = {thing.data.name for thing in bpy.data.objects if thing.type == "MESH" and thing.data.use_auto_smooth}
     make_repeatable(Path(path), sharp)
 
@@ -261,8 +303,11 @@ def make_repeatable(path, sharp_meshes):
         for primitive in mesh["primitives"] if mesh["name"] not in sharp_meshes else []:
             attributes, indices = primitive["attributes"], primitive["indices"]
             triangles = array(indices, index_types[document["accessors"][indices]["componentType"]], 1).reshape(-1, 3)
-            array(attributes["NORMAL"], np.float32, 3)[:] = smooth_normals(
-                array(attributes["POSITION"], np.float32, 3), triangles)
+            positions, normals = (array(attributes[name], np.float32, 3) for name in ("POSITION", "NORMAL"))
+            normals[:] = smooth_normals(positions, triangles)
+            for target in primitive.get("targets", []):
+                moved = positions + array(target["POSITION"], np.float32, 3)
+                array(target["NORMAL"], np.float32, 3)[:] = smooth_normals(moved, triangles) - normals
 
     text = json.dumps(document, separators=(",", ":"), sort_keys=True).encode()
     text += b" " * (-len(text) % 4)
