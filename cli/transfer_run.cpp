@@ -80,7 +80,10 @@ nlohmann::ordered_json ToJson(const Style& style, const PreparedStyle& prepared,
   json["style"] = style.name;
   json["width"] = field.width;
   json["height"] = field.height;
-  json["exemplar_size"] = prepared.exemplar->size();
+  const PreparedExemplar& exemplar = *prepared.exemplar;
+  json["exemplar_size"] = exemplar.size();  // the longer side
+  json["exemplar_width"] = exemplar.width();
+  json["exemplar_height"] = exemplar.height();
   json["levels"] = prepared.levels;
   json["blend_radius"] = prepared.blend_radius;
   const CoherenceReport coherence = CoherenceOf(field);

@@ -54,19 +54,6 @@ TEST_F(CliOneStepOrTwo, SameBytesHoweverItIsAsked) {
   EXPECT_EQ(ExpectSameBytes("style", {{"--half"}, {}}), plain);  // a style of normals has no colour layer to round
 }
 
-TEST_F(CliOneStepOrTwo, SameBytesInEveryBundledStyle) {
-  int styles = 0;
-  for (const auto& entry : fs::directory_iterator(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars")) {
-    if (!fs::exists(entry.path() / "style.toml")) continue;
-    ++styles;
-    ExpectSameBytes(entry.path().string(), {});
-    // As plain pixels even the small pictures of a test have all levels and a vote.
-    ExpectSameBytes(entry.path().string(),
-                    {{}, {"--set", "transfer.reference_height=0", "--set", "transfer.scale=0.1"}});
-  }
-  EXPECT_GT(styles, 0);
-}
-
 TEST_F(CliPictures, EveryFormatHoldsThePicture) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(64));

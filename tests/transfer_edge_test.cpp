@@ -1,4 +1,5 @@
 // Silhouettes with the exemplar's own painted edge, and shadows on catchers.
+#include <algorithm>
 #include <set>
 
 #include "tests/transfer_fixtures.h"
@@ -116,6 +117,39 @@ TEST(PaintedEdge, ThreadsAndRegionsDoNotChangeAByte) {
   EXPECT_EQ(tiled.rgba, one.rgba);
 }
 
+// Grey paint takes on the base colour by the formula; the same grey in the edge must not stay grey beside it.
+TEST(PaintedEdge, TakesOnItsObjectsColourAsThePaintDoes) {
+  GuideSet guides = Ball();
+  guides.Add(Layer::kAlbedo);
+  for (int y = 0; y < 180; ++y) {
+    for (int x = 0; x < 200; ++x) guides.Plane(Layer::kAlbedo, x < 100 ? 0 : 2)[guides.Index(x, y)] = 1.0f;
+  }
+  Picture paint = PaintOnPaper(400, 1.02, 0.0);
+  for (std::size_t i = 0; i < paint.rgba.size(); ++i) paint.rgba[i] = std::max<std::uint16_t>(paint.rgba[i], 20000);
+  for (const ColorizeMode mode : {ColorizeMode::kMultiply, ColorizeMode::kOklab}) {
+    Style style = PlainStyle(paint);
+    style.transfer.edge = EdgeMode::kExemplar, style.transfer.colorize = 1.0, style.transfer.colorize_mode = mode;
+    const Picture picture = MustTransfer(style, guides).picture;
+    int outside = 0;
+    for (int y = 0; y < 180; ++y) {
+      for (int x = 0; x < 200; ++x) {
+        const std::uint16_t* pixel = picture.At(x, y);
+        if (pixel[3] < 6000 || std::abs(x - 100) < 10) continue;  // where the halves meet, the owner is either's
+        outside += std::hypot(x + 0.5 - 100, y + 0.5 - 90) > 60.8;
+        const std::uint16_t own = pixel[x < 100 ? 0 : 2], other = pixel[x < 100 ? 2 : 0];
+        ASSERT_GT(own, 15000) << x << ", " << y;
+        if (mode == ColorizeMode::kMultiply) {
+          ASSERT_EQ(other, 0) << x << ", " << y;
+          ASSERT_EQ(pixel[1], 0) << x << ", " << y;
+        } else {
+          ASSERT_LT(other, own) << x << ", " << y;
+        }
+      }
+    }
+    EXPECT_GT(outside, 500) << "an edge goes past the silhouette";
+  }
+}
+
 // Light paint, with one dark corner of the disc whose texels differ.
 Picture DarkCorner(int size) {
   Picture picture(size, size);
@@ -182,6 +216,37 @@ TEST(Shadow, CatchersShowDarkPaintWhereTheyAreInShadowAndNothingElse) {
   const PreparedStyle* none[] = {&*without};
   ASSERT_TRUE(Transfer(none, map, guides, {}, scratch, picture).ok());
   EXPECT_EQ(picture.At(110, 40)[3], 0);
+}
+
+// In a painted scene the darkest pixels may be where nothing usable is: between its objects, or beyond a shorter side.
+TEST(Shadow, TheDarkPlaceOfAPaintedSceneIsUsable) {
+  const auto dark_place = [](int width, int height, auto covered) {
+    Style style = PlainStyle(Picture(width, height));
+    style.exemplars[0].is_sphere = false;
+    style.exemplars[0].guides =
+        MakeGuides(width, height, [=](int x, int y) { return covered(x, y) ? glm::vec3(0, 0, 1) : glm::vec3(0.0f); });
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        std::uint16_t* texel = style.exemplars[0].picture.At(x, y);
+        const std::uint16_t tone = covered(x, y) ? static_cast<std::uint16_t>(50000 - 20 * x - 20 * y) : std::uint16_t{0};
+        texel[0] = texel[1] = texel[2] = tone, texel[3] = 65535;
+      }
+    }
+    style.transfer.shadow = ShadowMode::kPaint, style.transfer.rim = 0.0;
+    const auto prepared = Prepare(style, 100);
+    EXPECT_TRUE(prepared.ok());
+    const DarkPlace dark = *prepared->dark;
+    EXPECT_TRUE(prepared->exemplar->Usable(dark.center.x, dark.center.y)) << width << "×" << height;
+    return dark;
+  };
+  const DarkPlace wide = dark_place(400, 60, [](int, int) { return true; });
+  EXPECT_GT(wide.center.x, 380);
+  EXPECT_GT(wide.center.y, 50);
+  const DarkPlace tall = dark_place(60, 400, [](int, int) { return true; });
+  EXPECT_GT(tall.center.y, 380);
+  const DarkPlace dots = dark_place(90, 70, [](int x, int y) { return x % 3 == 0 && y % 3 == 0; });
+  EXPECT_EQ(dots.center, (Source{87, 69}));
+  EXPECT_EQ(dots.reach, 0);
 }
 
 }  // namespace

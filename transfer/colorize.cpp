@@ -56,18 +56,20 @@ float MeanLightness(const PreparedExemplar& exemplar, int index) {
   return weight > 0.0 ? static_cast<float>(sum / weight) : 0.0f;
 }
 
+void Tint::Apply(glm::vec3 albedo, int exemplar, std::uint16_t* texel) const {
+  const glm::vec3 paint = ToLinear(texel);
+  const glm::vec3 tinted = mode == ColorizeMode::kMultiply
+                               ? paint * ((1.0f - weight) + weight * albedo)
+                               : TintInOklab(paint, albedo, mean_lightness[std::size_t(exemplar)], weight);
+  for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(tinted[c]);
+}
+
 bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress) {
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = input.field.Index(x, y);
       if (!input.active[i]) continue;
-      std::uint16_t* texel = picture.At(x, y);
-      const glm::vec3 albedo = input.guides.Vec3(Layer::kAlbedo, i), paint = ToLinear(texel);
-      const glm::vec3 tinted =
-          input.mode == ColorizeMode::kMultiply
-              ? paint * ((1.0f - input.weight) + input.weight * albedo)
-              : TintInOklab(paint, albedo, input.mean_lightness[input.field.exemplar[i]], input.weight);
-      for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(tinted[c]);
+      input.tint.Apply(input.guides.Vec3(Layer::kAlbedo, i), input.field.exemplar[i], picture.At(x, y));
     }
   });
 }

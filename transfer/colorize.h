@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
@@ -14,19 +15,28 @@
 
 namespace scumble::internal {
 
+// How a style takes on base colours.
+struct Tint {
+  std::span<const float> mean_lightness;  // Oklab's, of each exemplar; for kOklab only
+  float weight = 0.0f;                    // 0 … 1
+  ColorizeMode mode = ColorizeMode::kMultiply;
+
+  bool active() const { return weight > 0.0f; }
+  // Changes one texel's colour, paint of that exemplar, in linear light; alpha stays. kMultiply: paint × (1 − w +
+  // w · albedo). kOklab: from the paint towards the scene's colour, whose lightness is varied by what the paint's differs
+  // from its exemplar's mean; chroma follows lightness and is reduced where the colour would leave the gamut.
+  void Apply(glm::vec3 albedo, int exemplar, std::uint16_t* texel) const;
+};
+
 struct ColorizeInput {
   const GuideSet& guides;                // with albedo
   std::span<const std::uint8_t> active;  // 1: a pixel that this style paints
   const SourceField& field;
-  std::span<const float> mean_lightness;  // Oklab's, of each exemplar
-  float weight = 0.0f;                    // 0 … 1
-  ColorizeMode mode = ColorizeMode::kMultiply;
+  Tint tint;
   Region region;
 };
 
-// Changes the colours of active pixels in place, in linear light; alpha stays. kMultiply: paint × (1 − w + w · albedo).
-// kOklab: from the paint towards the scene's colour, whose lightness is varied by what the paint's differs from its
-// exemplar's mean; chroma follows lightness and is reduced where the colour would leave the gamut. False: asked to stop.
+// Tints active pixels in place. False: asked to stop.
 bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress);
 
 // The mean of Oklab's L over the usable texels of an exemplar's picture, weighted by alpha.

@@ -213,13 +213,18 @@ class EdgePainter {
     const auto place = PlaceOf(x, y, widest_band);
     if (!place) return;
     const EdgePaint& paint = *PaintAt(place->owner);
-    const RimPaint& rim = paint.rims[std::min<std::size_t>(input_.field.exemplar[place->owner], paint.rims.size() - 1)];
+    const std::size_t exemplar = std::min<std::size_t>(input_.field.exemplar[place->owner], paint.rims.size() - 1);
+    const RimPaint& rim = paint.rims[exemplar];
     const float depth = place->distance / static_cast<float>(rim.band());  // of the place, in bands
     const float share = depth > 0.0f ? depth / kInkDepth : -depth;
     if (share >= 1.0f) return;
     const SeedGrid& seeds = seeds_[std::size_t(&paint - input_.paints.data())];
     const PixelPosition at = Choose(rim, seeds.Position(seeds.Nearest(x, y)), x, y, *place);
-    const std::uint16_t* texel = rim.At(at.x, at.y);
+    std::array<std::uint16_t, 4> texel;
+    std::copy_n(rim.At(at.x, at.y), 4, texel.begin());
+    if (paint.tint.active() && texel[3] > 0) {
+      paint.tint.Apply(input_.guides.Vec3(Layer::kAlbedo, place->owner), static_cast<int>(exemplar), texel.data());
+    }
     const float fade = 1.0f - share * share;
     const float opacity = static_cast<float>(texel[3]) / 65535.0f * fade;
     // What the silhouette itself leaves of the pixel, and rim paint over it.

@@ -9,6 +9,7 @@
 #include "image/guides.h"
 #include "image/picture.h"
 #include "image/style.h"
+#include "transfer/colorize.h"
 #include "transfer/parallel.h"
 #include "transfer/region.h"
 #include "transfer/seeds.h"
@@ -45,10 +46,11 @@ namespace scumble::internal {
 struct EdgePaint {
   std::span<const RimPaint> rims;  // by exemplar; empty: this style's silhouettes stay exact
   SeedRules seeds;
+  Tint tint;  // an edge has its object's colour as the paint inside it has
 };
 
 struct PaintedEdgeInput {
-  const GuideSet& guides;                // with object and depth
+  const GuideSet& guides;                // with object and depth; albedo where a style tints
   std::span<const std::uint16_t> style;  // per pixel; empty: style 0 everywhere
   std::span<const EdgePaint> paints;     // by style
   const SourceField& field;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "image/color.h"
 #include "image/hash.h"
@@ -11,20 +13,22 @@
 namespace scumble {
 
 DarkPlace DarkestPlace(const PreparedExemplar& exemplar) {
-  const int size = exemplar.size(), reach = std::max(1, size / 16), step = std::max(1, reach / 4);
-  DarkPlace darkest{{size / 2, size / 2}, 0, reach};
+  const auto luminance = [](const std::uint16_t* texel) {
+    return Luminance(Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2]));
+  };
+  const int reach = std::max(1, std::min(exemplar.width(), exemplar.height()) / 16), step = std::max(1, reach / 4);
+  std::optional<DarkPlace> darkest;
   double least = std::numeric_limits<double>::infinity();
   for (int e = 0; e < exemplar.count(); ++e) {
-    for (int y = reach; y < size - reach; y += step) {
-      for (int x = reach; x < size - reach; x += step) {
+    for (int y = reach; y < exemplar.height() - reach; y += step) {
+      for (int x = reach; x < exemplar.width() - reach; x += step) {
         double sum = 0.0, weight = 0.0;
         bool inside = true;
         for (int v = y - reach; v <= y + reach && inside; v += step) {
           for (int u = x - reach; u <= x + reach && inside; u += step) {
             inside = exemplar.Usable(u, v);
             const std::uint16_t* texel = exemplar.picture(e).At(u, v);
-            sum += static_cast<double>(texel[3]) *
-                   Luminance(Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2]));
+            sum += static_cast<double>(texel[3]) * luminance(texel);
             weight += texel[3];
           }
         }
@@ -32,7 +36,17 @@ DarkPlace DarkestPlace(const PreparedExemplar& exemplar) {
       }
     }
   }
-  return darkest;
+  if (darkest) return *darkest;
+  // Nowhere room for the square: one dark pixel.
+  const std::vector<Source> usable = exemplar.UsablePixels();
+  DarkPlace pixel{usable.front(), 0, 0};
+  for (int e = 0; e < exemplar.count(); ++e) {
+    for (const Source& source : usable) {
+      const std::uint16_t* texel = exemplar.picture(e).At(source.x, source.y);
+      if (texel[3] > 0 && luminance(texel) < least) least = luminance(texel), pixel = {source, e, 0};
+    }
+  }
+  return pixel;
 }
 
 }  // namespace scumble

@@ -20,8 +20,8 @@ struct DarkPlace {
   int reach = 0;  // pixels around the centre that count as dark
 };
 
-// The square of paint, an eighth of the exemplar wide, whose mean luminance is lowest, in any lighting condition; ties to
-// the first in (exemplar, y, x).
+// The square of usable paint, an eighth of the exemplar's shorter side wide, whose mean luminance is lowest, in any
+// lighting condition; ties to the first in (exemplar, y, x). A painting too broken up for that gives its darkest pixel.
 DarkPlace DarkestPlace(const PreparedExemplar& exemplar);
 
 }  // namespace scumble

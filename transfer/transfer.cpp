@@ -76,6 +76,10 @@ class Run {
     if (out.width != guides.width() || out.height != guides.height() || !options.region) {
       out = Picture(guides.width(), guides.height());
     }
+    // Pixels that no style paints must not show what the picture held before.
+    for (int y = region_.y0; y < region_.y1 && region_.x0 < region_.x1; ++y) {
+      std::fill(out.At(region_.x0, y), out.At(region_.x0, y) + 4 * (region_.x1 - region_.x0), std::uint16_t{0});
+    }
   }
 
   Status Paint(const PreparedStyle& style, int index, const Region& extent, double from, double to) {
@@ -126,7 +130,7 @@ class Run {
 
   Status PaintEdges(std::span<const PreparedStyle* const> styles, std::vector<float>& coverage) {
     std::vector<internal::EdgePaint> paints;
-    for (const PreparedStyle* style : styles) paints.push_back({style->rims, SeedsOf(*style)});
+    for (const PreparedStyle* style : styles) paints.push_back({style->rims, SeedsOf(*style), TintOf(*style)});
     internal::RowProgress progress(options_.progress, 1.0 - kComposeShare, 1.0 - kComposeShare / 2,
                                    std::max(1, region_.y1 - region_.y0));
     const std::span<const std::uint16_t> map = map_ ? std::span<const std::uint16_t>(map_->style)
@@ -139,6 +143,10 @@ class Run {
     const std::int64_t step =
         JitterStep(style.settings.jitter_fps, options_.frame, options_.fps_numerator, options_.fps_denominator);
     return {options_.seed, step, style.settings.jitter, style.settings.levels - style.levels};
+  }
+
+  static internal::Tint TintOf(const PreparedStyle& style) {
+    return {style.mean_lightness, static_cast<float>(style.settings.colorize), style.settings.colorize_mode};
   }
 
   void Activate(int index, const Region& extent) {
@@ -203,13 +211,7 @@ class Run {
 
     if (!(settings.colorize > 0.0)) return Ok();
     internal::RowProgress tint_progress(options_.progress, part(kMatchShare + kVoteShare), part(1.0), rows);
-    const internal::ColorizeInput tint{guides_,
-                                       scratch_.active,
-                                       scratch_.field,
-                                       style.mean_lightness,
-                                       static_cast<float>(settings.colorize),
-                                       settings.colorize_mode,
-                                       painted};
+    const internal::ColorizeInput tint{guides_, scratch_.active, scratch_.field, TintOf(style), painted};
     if (!internal::Colorize(tint, out_, tint_progress)) return CancelledError();
     scratch_.times.compose_ms += watch.Lap();
     return Ok();
