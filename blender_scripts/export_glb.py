@@ -121,5 +121,5 @@ def complete(document, flat, materials, lamps, cameras):
     for material in document.get("materials", []):
         entry = entries[material["name"]]
         material["name"] = entry["name"]
-        material["extras"] = {"scumble": entry["extras"]}
+        material["extras"] = {"scumble": {**entry["extras"], **style_of(entry["material"])}}
         material["doubleSided"] = True

@@ -13,10 +13,10 @@
 #include "cli/progress_bar.h"
 #include "cli/scene_frames.h"
 #include "cli/sequence.h"
+#include "cli/style_set.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/whole_output.h"
-#include "style/style_keyframes.h"
 
 namespace scumble {
 namespace {
@@ -66,14 +66,22 @@ FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const 
   return report;
 }
 
-Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& sequence, const LayerSet& layers,
-                                    const std::optional<Style>& style, const GuideWriteOptions& write,
+void NameStylesInPlan(std::vector<PlanItem>& plan, const std::optional<StyleSet>& styles) {
+  if (!styles) return;
+  for (const Style& style : styles->styles) NameStyleInPlan(plan, style);
+}
+
+Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& sequence, const LayersFor& layers_for,
+                                    bool motion, const std::optional<StyleSet>& styles, const GuideWriteOptions& write,
                                     const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
-  SceneFrames scene(verb.scene, layers, globals);
+  SceneFrames scene(verb.scene, layers_for, motion, globals);
   SequenceWork work;
-  work.check = [&](int, const std::string& output) {
-    return CheckWholeGuides(output, size.width, size.height, AlwaysWritten().Add(layers));
+  // What the scene wishes is in the file as well, so that nothing is loaded where nothing is left to make.
+  work.check = [&](int, const std::string& output) -> Status {
+    const Expected<GuideFileInfo> info = InspectGuides(output);
+    SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? WishesOf(info->header) : StyleWishes()));
+    return CheckWholeGuides(output, size.width, size.height, layers.Add(AlwaysWritten()));
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameReport> {
@@ -84,7 +92,7 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
     report.times = guides->times, report.plan = guides->plan, report.rays = guides->rays;
     report.samples = guides->samples, report.noise = guides->noise;
     report.times.emplace_back("write", watch.Lap());
-    if (style) NameStyleInPlan(report.plan, *style);
+    NameStylesInPlan(report.plan, styles);
     return ReportOf(verb, output, guides->guides, report);
   };
   ProgressBar bar("guidegen", globals.quiet);
@@ -92,32 +100,44 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
 }
 
 Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
-  SCUMBLE_ASSIGN(LayerSet layers, ParseLayers(verb.layers));
-  std::optional<Style> style;
+  SCUMBLE_ASSIGN(const LayerSet asked, ParseLayers(verb.layers));
+  const bool motion = asked.Has(Layer::kMotion);
+  std::optional<StyleSet> styles;
   if (!verb.style.style.empty()) {
-    SCUMBLE_ASSIGN(style, OpenStyle(verb.style));
-    SCUMBLE_ASSIGN(const LayerSet read, LayersOverTime(*style));
-    layers.Add(read);
+    SCUMBLE_ASSIGN(styles, OpenStyles(verb.style));
   }
+  const LayersFor layers_for = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
+    LayerSet layers = asked;
+    if (!styles) return layers;
+    SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, wishes, verb.scene.scene));
+    return layers.Add(read);
+  };
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.scene.blender.frame, verb.output));
-  if (verb.scene.blender.frame && !IsBlenderScene(verb.scene.scene)) {
-    return UsageError("--frame is for .blend scenes; " + verb.scene.scene + " is one moment: leave it out");
-  }
   const bool plan_only = verb.output.empty();
+  const std::optional<int> frame = verb.scene.blender.frame;
   if (plan_only && !verb.scene.explain)
     return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
   const GuideWriteOptions write{verb.scene.half, verb.compression};
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(verb.output, write));
   if (verb.style.style.empty() && !verb.style.sets.empty()) return UsageError("--set changes a style: give --style too");
-  if (sequence && !plan_only) return GuidegenSequence(verb, *sequence, layers, style, write, globals);
+  if (sequence && !plan_only) return GuidegenSequence(verb, *sequence, layers_for, motion, styles, write, globals);
   if (sequence && IsBlenderScene(verb.scene.scene)) verb.scene.blender.frame = sequence->frames.front();
   if (!sequence) {
     SCUMBLE_ASSIGN(verb.output, NameOfOne(verb.output, verb.scene.blender.frame));
   }
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.output));
   ProgressBar bar("guidegen", globals.quiet);
-  SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(verb.scene, layers, globals, bar.Part(0.0, 1.0), plan_only));
-  if (style) NameStyleInPlan(made.plan, *style);
+  SceneGuides made;
+  if (frame && !plan_only) {
+    SCUMBLE_ASSIGN(made, MakeGuidesAt(*frame, verb.scene, layers_for, motion, globals, bar.Part(0.0, 1.0)));
+  } else {
+    // A plan is the same at any time.
+    const bool timeless = plan_only && (frame || sequence);
+    SceneOptions scene = verb.scene;
+    if (timeless) scene.animation.clear();
+    SCUMBLE_ASSIGN(made, MakeGuidesAtRest(scene, layers_for, motion && !timeless, globals, bar.Part(0.0, 1.0), plan_only));
+  }
+  NameStylesInPlan(made.plan, styles);
   if (!plan_only) {
     Stopwatch watch;
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(verb.output, made.guides, write));
@@ -136,14 +156,18 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
       app.add_subcommand("guidegen", "scene -> guides: what a renderer tells the transfer about every pixel");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, false);
+  AddSceneStylesOption(*sub, verb->style);
   sub->add_option("--frame", verb->scene.blender.frame,
-                  "frame of a .blend scene; left out: the one it was saved at")
+                  "frame of a scene that moves; left out: of a .blend the one it was saved at, of glTF the nodes as "
+                  "they stand")
       ->type_name("N");
+  AddFpsOption(*sub, verb->scene.fps, "frames a second of a glTF animation, as 24 or 24000/1001; frame N is at N / RATE s");
   AddLightPathOptions(*sub, verb->scene);
   sub->add_option(
          "--layers", verb->layers,
          "layers on top of A, normal, depth, object and material, with commas between: position, pref, albedo, "
-         "luminance, shadow, lpe.full, lpe.LDE, lpe.LSE, lpe.LDDE, lpe.LD12E")
+         "luminance, shadow, lpe.full, lpe.LDE, lpe.LSE, lpe.LDDE, lpe.LD12E; with --frame or --frames motion, to the "
+         "next frame")
       ->type_name("LIST");
   sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless")
       ->type_name("NAME")

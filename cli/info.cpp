@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/json_text.h"
 #include "cli/options.h"
+#include "cli/style_set.h"
 #include "guidegen/load_scene.h"
 #include "io/guide_file.h"
 
@@ -37,13 +38,17 @@ Expected<Json> DescribeGuides(const std::string& path) {
   if (info.from_blender) json["note"] = BlenderNote(info);
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
+  for (const auto& [name, style] : WishesOf(info.header).objects) json["styles"][name] = style;
+  for (const auto& [name, style] : WishesOf(info.header).materials) json["material styles"][name] = style;
   if (info.header.camera) json["camera"] = info.header.camera->name;
   for (const auto& [name, value] : info.header.attributes) json[name] = value;
   return json;
 }
 
 Expected<Json> DescribeScene(const std::string& path) {
-  SCUMBLE_ASSIGN(const Scene scene, LoadScene(path));
+  Expected<AnimatedScene> animated = AnimatedScene::Load(path);
+  // An animation that cannot be played hides nothing of the scene at rest.
+  SCUMBLE_ASSIGN(const Scene scene, animated ? Expected<Scene>(animated->rest()) : LoadScene(path));
   std::size_t triangles = 0;
   for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangles.size();
   Json json{{"kind", "scene"}, {"triangles", triangles}, {"textures", scene.textures.size()}};
@@ -59,12 +64,20 @@ Expected<Json> DescribeScene(const std::string& path) {
     if (instance.pass_index != 0) json["pass_indices"][instance.object] = instance.pass_index;
   }
   names("materials", scene.materials, [](const Material& m) { return m.name; });
+  for (const Material& material : scene.materials) {
+    if (!material.style.empty()) json["material styles"][material.name] = material.style;
+  }
   names("cameras", scene.cameras, [](const Camera& c) { return c.name; });
   names("lights", scene.lights, [](const Light& light) {
     constexpr const char* kTypes[] = {"point", "spot", "sun", "area"};
     return light.name + " (" + kTypes[static_cast<int>(light.type)] + ")";
   });
+  if (animated && !animated->animations().empty()) {
+    json["animations"] = animated->animations();
+    json["seconds"] = animated->duration_seconds();
+  }
   json["warnings"] = scene.warnings;
+  if (!animated) json["warnings"].push_back(animated.error().message);
   return json;
 }
 

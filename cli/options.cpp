@@ -90,6 +90,11 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
           "look at the scene's centre instead of through a camera: AZIMUTH,ELEVATION[,DISTANCE] in degrees from "
           "+Z towards +X, degrees above the horizon, metres; without DISTANCE the scene is framed")
       ->type_name("AZ,EL[,DIST]");
+  verb.add_option("--animation", options.animation,
+                  "which animation of a .glb or .gltf scene to play, with --frame or --frames: its name, or * for all at "
+                  "once; left out: the first. scumble info lists them")
+      ->type_name("NAME")
+      ->check(RefuseEmpty);
   verb.add_option("--aa", options.aa, "N x N subsamples of the silhouette's coverage, 1 to 16")
       ->type_name("N")
       ->check(CLI::Range(1, 16))
@@ -154,9 +159,6 @@ void WarnIfNothingShows(const GuideSet& guides, const std::string& scene) {
 
 Expected<Scene> LoadAnyScene(const SceneOptions& options, const Globals& globals) {
   if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, options.blender, globals);
-  if (!options.blender.program.empty()) {
-    return UsageError("--blender is for .blend scenes; " + options.scene + " is read without Blender: leave it out");
-  }
   return LoadScene(options.scene);
 }
 
@@ -168,33 +170,41 @@ Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals) {
   return scene;
 }
 
-Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
-                                 const Progress& progress, bool plan_only) {
-  // Mistakes in the options come to light before a large scene is loaded.
+Status CheckSceneOptions(const SceneOptions& options) {
   SCUMBLE_RETURN_IF_ERROR(ParseSize(options.size));
   SCUMBLE_RETURN_IF_ERROR(ParseView(options.view));
-  Stopwatch watch;
-  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
-  const double load_ms = watch.Lap();
-  SCUMBLE_ASSIGN(SceneGuides result, MakeGuidesOf(scene, options, layers, globals, progress, plan_only));
-  result.times.insert(result.times.begin(), {"load", load_ms});
-  return result;
+  if (IsBlenderScene(options.scene)) {
+    if (options.animation.empty()) return Ok();
+    return UsageError("--animation is for glTF files; " + options.scene + " has a time of its own: leave it out");
+  }
+  if (options.blender.program.empty()) return Ok();
+  return UsageError("--blender is for .blend scenes; " + options.scene + " is read without Blender: leave it out");
 }
 
 Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneOptions& options, const LayerSet& layers,
                                    const Globals& globals, const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(const PreparedView prepared, ViewScene(scene, options, layers));
+  for (const std::string& note : prepared.notes) Say(globals, note);
+  return CastScene(scene, prepared.camera, nullptr, options, layers, globals, progress, plan_only);
+}
+
+Expected<PreparedView> ViewScene(Scene& scene, const SceneOptions& options, const LayerSet& layers) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
   SCUMBLE_ASSIGN(const auto view, ParseView(options.view));
-  SceneGuides result;
   const double aspect = static_cast<double>(size.width) / size.height;
   bool needs_light = layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow);
   for (const Layer layer : {Layer::kLpeFull, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E}) {
     needs_light = needs_light || layers.Has(layer);
   }
   needs_light = needs_light && options.key_light;
-  SCUMBLE_ASSIGN(const PreparedView prepared, PrepareView(scene, options.camera, view, aspect, needs_light));
-  for (const std::string& note : prepared.notes) Say(globals, note);
+  return PrepareView(scene, options.camera, view, aspect, needs_light);
+}
 
+Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const NextFrame* next,
+                                const SceneOptions& options, const LayerSet& layers, const Globals& globals,
+                                const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
+  SceneGuides result;
   GuidegenOptions guidegen;
   guidegen.width = size.width, guidegen.height = size.height;
   guidegen.layers = layers;
@@ -212,7 +222,8 @@ Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneOptions& options, co
   result.plan = PlanGuides(scene, guidegen);
   if (plan_only) return result;
 
-  SCUMBLE_ASSIGN(GuidegenResult rendered, RenderGuides(scene, prepared.camera, guidegen));
+  SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
+                                               : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);
   result.times.emplace_back("rays", rendered.render_ms);
   result.guides = std::move(rendered.guides);
@@ -287,17 +298,28 @@ std::vector<fs::path> DataRoots(const std::string& name) {
 
 std::vector<fs::path> StyleRoots() { return DataRoots("exemplars"); }
 
+void AddSceneStylesOption(CLI::App& verb, StyleOptions& options) {
+  verb.add_flag("!--no-scene-styles", options.scene_styles,
+                "do not heed the styles that the scene gives its objects and materials (custom property "
+                "scumble_style); --assign goes before them in any case");
+}
+
 Expected<Style> OpenStyle(const StyleOptions& options) {
+  SCUMBLE_ASSIGN(const fs::path found, FindStyle(options.style));
+  return LoadStyle(found, options.sets);
+}
+
+Expected<fs::path> FindStyle(const std::string& name, const fs::path& base) {
   std::error_code failed;
-  if (fs::exists(options.style, failed)) return LoadStyle(options.style, options.sets);
+  if (fs::exists(base / name, failed)) return base / name;
   std::string bundled;
   for (const fs::path& root : StyleRoots()) {
     for (const fs::path& style : FindStyles(root)) {
-      if (style.filename() == options.style) return LoadStyle(style, options.sets);
+      if (style.filename() == name) return style;
       bundled += (bundled.empty() ? "" : ", ") + style.filename().string();
     }
   }
-  return InputError("there is no style '" + options.style + "': expected a file, a folder, or " +
+  return InputError("there is no style '" + name + "': expected a file, a folder, or " +
                     (bundled.empty() ? "a bundled style, of which none are found beside this program"
                                      : "one of the bundled styles " + bundled));
 }

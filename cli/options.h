@@ -51,6 +51,8 @@ struct SceneOptions {
   bool half = false;
   bool explain = false;
   BlenderOptions blender;  // for .blend scenes
+  std::string animation;   // of a glTF file with several, as AnimationOptions has it
+  std::string fps = "24";
   // Light-path layers, as in GuidegenOptions.
   int samples = GuidegenOptions().samples;
   bool samples_given = false;  // then they are the most that noise or a time budget may take
@@ -80,14 +82,21 @@ struct SceneGuides {
 // Loads the scene, a .blend by way of Blender; warns of what the scene asks for in vain.
 Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals);
 
-// Casts the guides of an open scene; the key light, where one is needed, stays in it. Otherwise as MakeGuides.
+// Mistakes in the options come to light before a large scene is loaded.
+Status CheckSceneOptions(const SceneOptions& options);
+
+// How an open scene is seen; the key light, where a layer needs one, is added to it.
+Expected<PreparedView> ViewScene(Scene& scene, const SceneOptions& options, const LayerSet& layers);
+
+// Casts the guides of a scene that is ready. The layer motion wants `next`, which may be null otherwise.
+Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const NextFrame* next,
+                                const SceneOptions& options, const LayerSet& layers, const Globals& globals,
+                                const Progress& progress, bool plan_only);
+
+// Casts the guides of an open scene; the key light, where one is needed, stays in it. Says camera and
+// light decisions on stderr, and warns of a picture that shows nothing. With `plan_only` the guides stay empty.
 Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneOptions& options, const LayerSet& layers,
                                    const Globals& globals, const Progress& progress, bool plan_only);
-
-// Loads the scene and casts its guides; says camera and light decisions on stderr, warns of what the scene asks for in
-// vain and of a picture that shows nothing. With `plan_only` the guides stay empty.
-Expected<SceneGuides> MakeGuides(const SceneOptions& options, const LayerSet& layers, const Globals& globals,
-                                 const Progress& progress, bool plan_only);
 
 // Says in the plan which layers the style reads.
 void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style);
@@ -98,10 +107,17 @@ struct StyleOptions {
   std::string style;
   std::vector<std::string> sets;
   std::vector<std::string> assigned;  // "NAME=STYLE"
+  bool scene_styles = true;           // heed what the scene says
 };
 void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
 // For verbs that paint: several styles in one picture.
 void AddAssignOption(CLI::App& verb, StyleOptions& options);
+
+// For verbs that heed the styles which a scene gives its objects.
+void AddSceneStylesOption(CLI::App& verb, StyleOptions& options);
+
+// Where a style is: a path, relative to the folder `base`, or the name of a bundled one.
+Expected<std::filesystem::path> FindStyle(const std::string& name, const std::filesystem::path& base = {});
 
 // A path, or the name of a bundled style.
 Expected<Style> OpenStyle(const StyleOptions& options);

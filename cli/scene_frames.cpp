@@ -1,15 +1,54 @@
 #include "cli/scene_frames.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace scumble {
 
 Status SceneFrames::Start(std::span<const int> frames, const Progress& progress) {
-  if (IsBlenderScene(options_.scene)) {
-    SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, frames, globals_));
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options_));
+  SCUMBLE_ASSIGN(rate_, ParseFps(options_.fps));
+  return IsBlenderScene(options_.scene) ? StartBlender(frames) : StartFile(progress);
+}
+
+Status SceneFrames::StartBlender(std::span<const int> frames) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    place_[frames[i]] = static_cast<int>(i);
+    for (int frame = frames[i]; frame <= frames[i] + motion_; ++frame) {
+      if (!needed_by_.count(frame)) exported_.push_back(frame);
+      needed_by_[frame] = static_cast<int>(i);
+    }
+  }
+  SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, exported_, globals_));
+  return Ok();
+}
+
+Status SceneFrames::StartFile(const Progress& progress) {
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(film_, AnimatedScene::Load(options_.scene, {options_.animation}));
+  SCUMBLE_ASSIGN(now_, film_->SceneAt(0.0));
+  WarnOnce(now_);
+  SCUMBLE_ASSIGN(layers_, layers_for_(WishesOf(film_->objects(), film_->rest())));
+  SCUMBLE_ASSIGN(const PreparedView view, ViewScene(now_, options_, layers_));
+  for (const std::string& note : view.notes) Say(globals_, note);
+  const double load_ms = watch.Lap();
+  camera_ = view.camera;
+  if (film_->moves()) {
+    if (options_.view.empty()) {
+      for (std::size_t i = 0; i < now_.cameras.size(); ++i) {
+        if (now_.cameras[i].name == view.camera.name) by_file_ = static_cast<int>(i);
+      }
+    }
+    if (motion_) next_ = now_, next_.textures.clear();
+    load_ms_ = load_ms;
     return Ok();
   }
-  SCUMBLE_ASSIGN(guides_, MakeGuides(options_, layers_, globals_, progress, false));
+  const NextFrame next{now_, camera_};
+  SCUMBLE_ASSIGN(guides_, CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, globals_,
+                                    progress, false));
+  guides_.times.insert(guides_.times.begin(), {"load", load_ms});
+  film_.reset();
+  now_ = {};
   return guides_.guides.Validate(options_.scene);
 }
 
@@ -22,20 +61,105 @@ Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress
 Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progress) {
   if (used_) guides_.times.clear(), guides_.plan.clear();
   used_ = false;
-  if (!blender_ || frame_ == frame) return &guides_;
+  if ((!blender_ && !film_) || frame_ == frame) return &guides_;
   frame_.reset();
-  Stopwatch watch;
-  SCUMBLE_ASSIGN(Scene scene, blender_->Load(frame));
-  const double load_ms = watch.Lap();
-  for (const std::string& warning : scene.warnings) {
-    if (warned_.insert(warning).second) Warn(options_.scene + ": " + warning);
-  }
-  SCUMBLE_ASSIGN(guides_, MakeGuidesOf(scene, options_, layers_, spoken_ ? silent_ : globals_, progress, false));
+  SCUMBLE_ASSIGN(guides_, blender_ ? CastBlender(frame, progress) : CastFile(frame, progress));
   SCUMBLE_RETURN_IF_ERROR(guides_.guides.Validate(options_.scene));
-  guides_.times.insert(guides_.times.begin(), {"load", load_ms});
   if (spoken_) guides_.plan.clear();
   spoken_ = true, frame_ = frame;
   return &guides_;
+}
+
+Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress) {
+  Stopwatch watch;
+  SCUMBLE_RETURN_IF_ERROR(film_->MoveTo(SecondsAt(frame, rate_), now_));
+  if (motion_) SCUMBLE_RETURN_IF_ERROR(film_->MoveTo(SecondsAt(frame + 1, rate_), next_));
+  const double move_ms = watch.Lap();
+  const auto camera_of = [this](const Scene& scene) -> const Camera& {
+    return by_file_ ? scene.cameras[static_cast<std::size_t>(*by_file_)] : camera_;
+  };
+  const NextFrame next{next_, camera_of(next_)};
+  SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), motion_ ? &next : nullptr, options_, layers_,
+                                               globals_, progress, false));
+  guides.times.insert(guides.times.begin(), {"move", move_ms});
+  if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
+  load_ms_.reset();
+  return guides;
+}
+
+Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progress) {
+  const Globals& globals = spoken_ ? silent_ : globals_;
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(Scene* const loaded, BlenderFrame(frame));
+  const int place = place_.at(frame);
+  Scene scene = needed_by_.at(frame) <= place ? std::move(*loaded) : *loaded;
+  std::erase_if(scenes_, [&](const auto& kept) { return kept.first != frame + 1 && needed_by_.at(kept.first) <= place; });
+  const double load_ms = watch.Lap();
+  WarnOnce(scene);
+  SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(WishesOf(scene.instances, scene)));
+  SCUMBLE_ASSIGN(const PreparedView view, ViewScene(scene, options_, layers));
+  for (const std::string& note : view.notes) Say(globals, note);
+  std::optional<Scene> following;
+  PreparedView following_view;
+  if (motion_) {
+    SCUMBLE_ASSIGN(const Scene* const after, BlenderFrame(frame + 1));
+    following = *after, following->textures.clear();
+    SCUMBLE_ASSIGN(following_view, ViewScene(*following, options_, layers));
+  }
+  std::optional<NextFrame> next;
+  if (following) next.emplace(NextFrame{*following, following_view.camera});
+  SCUMBLE_ASSIGN(SceneGuides guides,
+                 CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, globals, progress, false));
+  guides.times.insert(guides.times.begin(), {"load", load_ms});
+  return guides;
+}
+
+Expected<Scene*> SceneFrames::BlenderFrame(int frame) {
+  // In the order of the export: where a frame failed, what it has not asked for stands in the way of the next one.
+  while (!scenes_.count(frame) && loaded_ < exported_.size()) {
+    const int following = exported_[loaded_++];
+    Expected<Scene> scene = blender_->Load(following);
+    if (!scene && following == frame) return scene.error();
+    if (scene) scenes_[following] = std::move(*scene);
+  }
+  const auto found = scenes_.find(frame);
+  if (found != scenes_.end()) return &found->second;
+  SCUMBLE_ASSIGN(Scene scene, blender_->Load(frame));  // says once more why there is none
+  return &(scenes_[frame] = std::move(scene));
+}
+
+void SceneFrames::WarnOnce(const Scene& scene) {
+  for (const std::string& warning : scene.warnings) {
+    if (warned_.insert(warning).second) Warn(options_.scene + ": " + warning);
+  }
+}
+
+Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                   const Globals& globals, const Progress& progress) {
+  if (IsBlenderScene(options.scene) && !motion) {
+    SceneOptions at = options;
+    at.blender.frame = frame;
+    return MakeGuidesAtRest(at, layers_for, motion, globals, progress, false);
+  }
+  SceneFrames scene(options, layers_for, motion, globals);
+  SCUMBLE_RETURN_IF_ERROR(scene.Start(std::span(&frame, 1), progress));
+  SCUMBLE_RETURN_IF_ERROR(scene.At(frame, progress));
+  return scene.Take();
+}
+
+Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                       const Globals& globals, const Progress& progress, bool plan_only) {
+  const std::string mend = ": give --frame N, or --frames for several";
+  if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
+  if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
+  SCUMBLE_ASSIGN(const LayerSet layers, layers_for(WishesOf(scene.instances, scene)));
+  const double load_ms = watch.Lap();
+  SCUMBLE_ASSIGN(SceneGuides result, MakeGuidesOf(scene, options, layers, globals, progress, plan_only));
+  result.times.insert(result.times.begin(), {"load", load_ms});
+  return result;
 }
 
 }  // namespace scumble

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cstdio>
 
 #include "cli/json_text.h"
@@ -37,6 +38,30 @@ Expected<std::optional<Sequence>> PlanSequence(const SequenceOptions& options, s
         output, sequence.frames.size(), output.substr(0, dot), dot == std::string::npos ? "" : output.substr(dot)));
   }
   return std::optional(std::move(sequence));
+}
+
+void AddFpsOption(CLI::App& verb, std::string& fps, const std::string& help) {
+  verb.add_option("--fps", fps, help)->type_name("RATE")->capture_default_str();
+}
+
+Expected<FrameRate> ParseFps(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto number = [](const std::string& part) {
+    double value = 0;
+    const auto [end, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return failure == std::errc() && end == part.data() + part.size() ? value : 0.0;
+  };
+  const double above = number(text.substr(0, slash));
+  const double below = slash == std::string::npos ? 1.0 : number(text.substr(slash + 1));
+  if (!(above > 0.0 && above <= 1e5 && below >= 1.0 && below <= 1e5)) {
+    return UsageError("--fps " + text + ": expected frames a second, as 24, 23.976 or 24000/1001");
+  }
+  return FrameRate{static_cast<std::int64_t>(above * 1000.0 + 0.5), static_cast<std::int64_t>(below * 1000.0 + 0.5)};
+}
+
+double SecondsAt(int frame, const FrameRate& rate) {
+  const double seconds = static_cast<double>(frame * rate.denominator) / static_cast<double>(rate.numerator);
+  return static_cast<double>(static_cast<float>(seconds));
 }
 
 Expected<std::string> NameOfOne(const std::string& name, std::optional<int> frame) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -22,6 +23,18 @@ struct SequenceOptions {
   bool resume = false;
 };
 void AddSequenceOptions(CLI::App& verb, SequenceOptions& options);
+
+// Frames a second as a fraction, in thousandths above and below: "24", "23.976" or "24000/1001".
+struct FrameRate {
+  std::int64_t numerator = 24;
+  std::int64_t denominator = 1;
+};
+void AddFpsOption(CLI::App& verb, std::string& fps, const std::string& help);
+Expected<FrameRate> ParseFps(const std::string& text);
+
+// When a frame is seen: frame / rate in seconds, rounded to float, because that is how files keep the times of their
+// keys. A pose that jumps at a frame's key has jumped in that frame.
+double SecondsAt(int frame, const FrameRate& rate);
 
 // What one frame's work has to tell.
 struct FrameReport {

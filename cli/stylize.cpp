@@ -87,13 +87,22 @@ struct TransferVerb {
   SequenceOptions sequence;
 };
 
-GuideReadOptions ReadOptions(const TransferVerb& verb, const StyleSet& styles, const LayerSet& required) {
+GuideReadOptions ReadOptions(const TransferVerb& verb, const StyleSet& styles) {
   GuideReadOptions read;
-  read.required = required;
   read.view_layer = verb.view_layer;
   read.blender_camera = verb.camera;
   if (styles.first().transfer.edge_aware) read.mend = "; --set transfer.edge_aware=false does without depth and object";
   return read;
+}
+
+// What the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks for
+// nothing here; reading it says why.
+Expected<LayerSet> RequiredOfFile(StyleSet& styles, const std::string& file) {
+  StyleWishes wishes;
+  if (styles.options.scene_styles) {
+    if (const Expected<GuideFileInfo> info = InspectGuides(file)) wishes = WishesOf(info->header);
+  }
+  return RequiredLayers(styles, wishes, file);
 }
 
 Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& sequence, StyleSet& styles,
@@ -108,6 +117,7 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
     if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}}};
     guides.reset();
     GuideReadOptions one = read;
+    SCUMBLE_ASSIGN(one.required, RequiredOfFile(styles, file));
     one.blender_camera = camera.At(frame);
     Stopwatch watch;
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
@@ -149,10 +159,10 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
     SCUMBLE_ASSIGN(verb.camera, NameOfOne(verb.camera, verb.picture.frame));
   }
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
-  SCUMBLE_ASSIGN(const LayerSet required, styles.Required());
-  const GuideReadOptions read = ReadOptions(verb, styles, required);
+  GuideReadOptions read = ReadOptions(verb, styles);
   if (sequence) return TransferSequence(verb, *sequence, styles, read, globals);
   Stopwatch watch;
+  SCUMBLE_ASSIGN(read.required, RequiredOfFile(styles, verb.guides));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
@@ -166,12 +176,16 @@ struct StylizeVerb {
   SequenceOptions sequence;
 };
 
+LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene) {
+  return [&styles, scene](const StyleWishes& wishes) { return RequiredLayers(styles, wishes, scene); };
+}
+
 Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequence, StyleSet& styles,
-                                   const LayerSet& required, const Globals& globals) {
+                                   const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
   SceneOptions options = verb.scene;
-  options.seed = verb.picture.seed;
-  SceneFrames scene(options, required, globals);
+  options.seed = verb.picture.seed, options.fps = verb.picture.fps;
+  SceneFrames scene(options, RequiredOfScene(styles, options.scene), false, globals);
   PictureSequence pictures(styles, verb.picture, globals);
   const auto source = [&](const SceneGuides& made) -> FrameGuides {
     GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>()};
@@ -192,10 +206,13 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
-    if (pictures.MustLookAhead(sequence) && wanted.front() != sequence.frames.front()) {
-      wanted.insert(wanted.begin(), sequence.frames.front());
-    }
+    const int first = sequence.frames.front();
+    // What a .blend wants is known when its first frame is there: it may be a style that is exposed.
+    const bool may_want = IsBlenderScene(options.scene) && verb.style.scene_styles && verb.picture.exposure == "auto";
+    const bool look = sequence.frames.size() > 1 && (may_want || pictures.MustLookAhead(sequence));
+    if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
     SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
+    if (look && !pictures.MustLookAhead(sequence) && !guides_ahead(first, {})) return Ok();  // said when it is made
     return pictures.Begin(sequence, guides_ahead, {});
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
@@ -212,14 +229,16 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   if (!sequence) SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
   Stopwatch watch;
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
-  SCUMBLE_ASSIGN(const LayerSet required, styles.Required());
   const double style_ms = watch.Lap();
-  if (sequence) return StylizeSequence(verb, *sequence, styles, required, globals);
+  if (sequence) return StylizeSequence(verb, *sequence, styles, globals);
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
-  scene.blender.frame = verb.picture.frame;
-  scene.seed = verb.picture.seed;
-  SCUMBLE_ASSIGN(SceneGuides made, MakeGuides(scene, required, globals, bar.Part(0.0, 0.5), false));
+  scene.seed = verb.picture.seed, scene.fps = verb.picture.fps;
+  const LayersFor layers_for = RequiredOfScene(styles, scene.scene);
+  const Progress progress = bar.Part(0.0, 0.5);
+  SCUMBLE_ASSIGN(SceneGuides made, verb.picture.frame
+                                       ? MakeGuidesAt(*verb.picture.frame, scene, layers_for, false, globals, progress)
+                                       : MakeGuidesAtRest(scene, layers_for, false, globals, progress, false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(verb.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
@@ -239,6 +258,7 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
   AddAssignOption(*sub, verb->style);
+  AddSceneStylesOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
   AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);
@@ -251,6 +271,7 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
   AddAssignOption(*sub, verb->style);
+  AddSceneStylesOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
   AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);

@@ -20,27 +20,6 @@
 namespace scumble {
 namespace {
 
-// Frames a second as a fraction: "24", "23.976" or "24000/1001".
-struct FrameRate {
-  std::int64_t numerator = 24;
-  std::int64_t denominator = 1;
-};
-
-Expected<FrameRate> ParseFps(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  const auto number = [](const std::string& part) {
-    double value = 0;
-    const auto [end, failure] = std::from_chars(part.data(), part.data() + part.size(), value);
-    return failure == std::errc() && end == part.data() + part.size() ? value : 0.0;
-  };
-  const double above = number(text.substr(0, slash));
-  const double below = slash == std::string::npos ? 1.0 : number(text.substr(slash + 1));
-  if (!(above > 0.0 && above <= 1e5 && below >= 1.0 && below <= 1e5)) {
-    return UsageError("--fps " + text + ": expected frames a second, as 24, 23.976 or 24000/1001");
-  }
-  return FrameRate{static_cast<std::int64_t>(above * 1000.0 + 0.5), static_cast<std::int64_t>(below * 1000.0 + 0.5)};
-}
-
 // One step's time over several runs.
 struct Spread {
   double median = 0, least = 0, most = 0;
@@ -131,12 +110,12 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
   verb.add_option("--frame", options.frame,
-                  "frame number, for transfer.jitter_fps, for keys of the style that change over time, and of a .blend "
-                  "scene; left out: 0, and the frame that the scene was saved at")
+                  "frame number, for transfer.jitter_fps, for keys of the style that change over time, and of a scene "
+                  "that moves; left out: 0, of a .blend the frame that it was saved at, of glTF the nodes as they stand")
       ->type_name("N");
-  verb.add_option("--fps", options.fps, "frames a second, for transfer.jitter_fps, as 24 or 24000/1001")
-      ->type_name("RATE")
-      ->capture_default_str();
+  AddFpsOption(verb, options.fps,
+               "frames a second, as 24 or 24000/1001, for transfer.jitter_fps, and of a glTF animation: frame N is at "
+               "N / RATE s");
   verb.add_option("--exposure", options.exposure,
                   "stops by which the scene's light is brightened for styles of several exemplars; auto fits it to "
                   "the brightest one and prints the stops that repeat it")
@@ -180,17 +159,12 @@ Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const G
   return stops;
 }
 
-Expected<std::vector<PreparedStyle>> PrepareAll(const StyleSet& styles, int height, int threads) {
+Expected<PreparedStyle> PrepareOne(const Style& style, int height, int threads) {
   FileCache cache = UserCache();
   PrepareOptions options;
   options.cache = &cache;
   options.threads = threads;
-  std::vector<PreparedStyle> prepared;
-  for (const Style& style : styles.styles) {
-    SCUMBLE_ASSIGN(PreparedStyle one, Prepare(style, height, options));
-    prepared.push_back(std::move(one));
-  }
-  return prepared;
+  return Prepare(style, height, options);
 }
 
 namespace {
@@ -210,17 +184,21 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
   const bool all = memory.prepared.empty() || memory.prepared.front().output_height != guides.height();
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     SCUMBLE_ASSIGN(const auto changed, SetStyleFrame(styles.styles[i], options.frame.value_or(0)));
-    if (all || changed.empty()) continue;
+    if (all || changed.empty() || i >= memory.prepared.size()) continue;
     if (std::all_of(changed.begin(), changed.end(), IsReadEachFrame)) {
       memory.prepared[i].settings = styles.styles[i].transfer;
       memory.prepared[i].required = RequiredLayers(styles.styles[i]);
       continue;
     }
-    SCUMBLE_ASSIGN(std::vector<PreparedStyle> one, PrepareAll({{styles.styles[i]}, {}}, guides.height(), globals.threads));
-    memory.prepared[i] = std::move(one.front());
+    SCUMBLE_ASSIGN(memory.prepared[i], PrepareOne(styles.styles[i], guides.height(), globals.threads));
   }
   if (all) {
-    SCUMBLE_ASSIGN(memory.prepared, PrepareAll(styles, guides.height(), globals.threads));
+    memory.prepared.clear();
+  }
+  // All of them, or those that the scene has asked for since.
+  for (std::size_t i = memory.prepared.size(); i < styles.styles.size(); ++i) {
+    SCUMBLE_ASSIGN(PreparedStyle one, PrepareOne(styles.styles[i], guides.height(), globals.threads));
+    memory.prepared.push_back(std::move(one));
   }
   if (!memory.exposure) {
     SCUMBLE_ASSIGN(memory.exposure, ExposureFor(memory.prepared, guides, options, globals));
@@ -254,7 +232,8 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, co
   std::vector<const PreparedStyle*> pointers;
   for (const PreparedStyle& one : prepared) pointers.push_back(&one);
   StyleMap map;
-  if (styles.NeedsMap()) {
+  const bool needs_map = styles.NeedsMap(guides);
+  if (needs_map) {
     SCUMBLE_ASSIGN(map, MapStyles(styles, guides));
   }
   times.emplace_back("prepare", watch.Lap());
@@ -273,8 +252,8 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, co
     if (progress) {
       transfer.progress = [&, run](double share) { return progress((run + share) / options.repeat); };
     }
-    SCUMBLE_RETURN_IF_ERROR(styles.NeedsMap() ? Transfer(pointers, map, guides, transfer, scratch, picture)
-                                              : Transfer(prepared.front(), guides, transfer, scratch, picture));
+    SCUMBLE_RETURN_IF_ERROR(needs_map ? Transfer(pointers, map, guides, transfer, scratch, picture)
+                                        : Transfer(prepared.front(), guides, transfer, scratch, picture));
     match.push_back(scratch.times.match_ms);
     vote.push_back(scratch.times.vote_ms);
     compose.push_back(scratch.times.compose_ms);

@@ -464,7 +464,7 @@ class GltfLoader {
 
   void WarnOfIgnoredParts() {
     if (!model_.animations.empty() && !animation_) {
-      warnings_.Add("animations are not played, the scene is seen as its nodes stand",
+      warnings_.Add("animations are not played without a frame's number, the scene is seen as its nodes stand",
                     std::to_string(model_.animations.size()) + " in the file");
     }
   }

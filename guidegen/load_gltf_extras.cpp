@@ -132,14 +132,31 @@ Status ReadBsdf(const tinygltf::Value& value, const std::string& where, Material
   return fields.Verdict();
 }
 
+constexpr const char* kStyleProperty = "scumble_style";
+
+// A style as our exporter writes it, or the custom property itself, which Blender's own exporter and others keep.
+Expected<std::string> ReadStyle(const tinygltf::Value& extras, const std::string& where) {
+  if (Find(extras, "style")) {
+    Fields fields(extras.Get("scumble"), where);
+    std::string style = fields.Text("style");
+    SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
+    return style;
+  }
+  if (!extras.IsObject() || !extras.Has(kStyleProperty)) return std::string();
+  const tinygltf::Value& value = extras.Get(kStyleProperty);
+  if (value.IsString()) return value.Get<std::string>();
+  return InputError(where + ": the property scumble_style is no text: give it the name of a style");
+}
+
 }  // namespace
 
 Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file, Scene& scene) {
   for (std::size_t i = 0; i < model.materials.size() && i < scene.materials.size(); ++i) {
     const tinygltf::Value* bsdf = Find(model.materials[i].extras, "bsdf");
-    if (!bsdf) continue;
     const std::string where =
         file + ": material " + std::to_string(i) + " '" + Excerpt(model.materials[i].name, 80) + "'";
+    SCUMBLE_ASSIGN(scene.materials[i].style, ReadStyle(model.materials[i].extras, where));
+    if (!bsdf) continue;
     SCUMBLE_RETURN_IF_ERROR(ReadBsdf(*bsdf, where, scene.materials[i]));
   }
   return Ok();
@@ -195,12 +212,10 @@ Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const 
 }
 
 Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance) {
-  const bool has_style = Find(node.extras, "style");
-  const bool has_index = Find(node.extras, "pass_index");
-  if (!has_style && !has_index) return Ok();
+  SCUMBLE_ASSIGN(instance.style, ReadStyle(node.extras, where));
+  if (!Find(node.extras, "pass_index")) return Ok();
   Fields fields(node.extras.Get("scumble"), where);
-  if (has_style) instance.style = fields.Text("style");
-  if (has_index) instance.pass_index = static_cast<int>(fields.Number("pass_index", 0.0, kLargestPassIndex));
+  instance.pass_index = static_cast<int>(fields.Number("pass_index", 0.0, kLargestPassIndex));
   return fields.Verdict();
 }
 

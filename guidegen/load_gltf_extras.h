@@ -17,6 +17,8 @@ class Node;
 
 namespace scumble {
 
+// Styles are also read from the custom property `scumble_style` itself, as other exporters write it.
+
 // Completes scene.materials, which holds the model's materials in their order.
 Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file, Scene& scene);
 

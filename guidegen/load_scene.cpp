@@ -98,6 +98,13 @@ Expected<AnimatedScene> AnimatedScene::Load(const std::filesystem::path& path, c
 
 bool AnimatedScene::moves() const { return rig_ != nullptr; }
 
+std::vector<Instance> AnimatedScene::objects() const {
+  if (!rig_) return rest_.instances;
+  std::vector<Instance> all;
+  for (const RigInstance& one : rig_->instances) all.push_back(one.instance);
+  return all;
+}
+
 double AnimatedScene::duration_seconds() const { return rig_ ? rig_->animation.duration_seconds() : 0.0; }
 
 Expected<Scene> AnimatedScene::SceneAt(double seconds) const {

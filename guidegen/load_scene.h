@@ -35,6 +35,8 @@ class AnimatedScene {
   static Expected<AnimatedScene> Load(const std::filesystem::path& path, const AnimationOptions& options = {});
 
   bool moves() const;
+  const Scene& rest() const { return rest_; }  // as LoadScene sees it
+  std::vector<Instance> objects() const;       // all that are seen at any time, as at rest
   double duration_seconds() const;  // of the last key, from 0; Blender puts frame N at N / fps
   const std::vector<std::string>& animations() const { return animations_; }  // the file's, by name
 

@@ -148,6 +148,12 @@ Expected<GuidegenResult> Render(const Scene& scene, const Camera& camera, const 
   SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(std::move(view), options));
   result.guides.object_names = NamesById(object_ids, object_names);
   result.guides.material_names = NamesById(material_ids, material_names);
+  for (std::size_t i = 0; i < object_ids.size(); ++i) {
+    if (!scene.instances[i].style.empty()) result.guides.object_styles[object_ids[i]] = scene.instances[i].style;
+  }
+  for (std::size_t i = 0; i < material_ids.size(); ++i) {
+    if (!scene.materials[i].style.empty()) result.guides.material_styles[material_ids[i]] = scene.materials[i].style;
+  }
   return result;
 }
 

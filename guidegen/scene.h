@@ -48,6 +48,7 @@ struct Material {
   TextureUse metallic_roughness_texture;  // linear: G multiplies the roughness, B the metalness
   glm::vec3 emission{0.0f};               // radiance, linear, from both sides
   TextureUse emission_texture;
+  std::string style{};  // as Instance::style, which goes before it
 };
 
 // One glTF primitive: a triangle list with one material. Every non-empty attribute has one value per position.

@@ -67,6 +67,9 @@ class GuideSet {
   std::map<std::string, std::string> attributes;
   std::map<std::uint32_t, std::string> object_names;
   std::map<std::uint32_t, std::string> material_names;
+  // What the scene's author wants some of them painted in, by id: names of styles, paths, or words of the command line.
+  std::map<std::uint32_t, std::string> object_styles;
+  std::map<std::uint32_t, std::string> material_styles;
   std::optional<GuideCamera> camera;
 
  private:

@@ -57,6 +57,10 @@ OIIO::ImageSpec SpecFor(const GuideSet& guides, const GuideWriteOptions& options
   for (const auto& [name, value] : guides.attributes) spec.attribute(name, value);
   if (!guides.object_names.empty()) spec.attribute("scumble:objects", internal::NamesToText(guides.object_names));
   if (!guides.material_names.empty()) spec.attribute("scumble:materials", internal::NamesToText(guides.material_names));
+  if (!guides.object_styles.empty()) spec.attribute("scumble:objectStyles", internal::NamesToText(guides.object_styles));
+  if (!guides.material_styles.empty()) {
+    spec.attribute("scumble:materialStyles", internal::NamesToText(guides.material_styles));
+  }
   if (guides.camera) {
     spec.attribute("scumble:camera", guides.camera->name);
     spec.attribute("scumble:viewFromWorld", internal::MatrixToText(guides.camera->view_from_world));
@@ -355,6 +359,8 @@ void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
   };
   guides.object_names = internal::NamesFromText(take("scumble:objects"));
   guides.material_names = internal::NamesFromText(take("scumble:materials"));
+  guides.object_styles = internal::NamesFromText(take("scumble:objectStyles"));
+  guides.material_styles = internal::NamesFromText(take("scumble:materialStyles"));
   const std::string camera = take("scumble:camera");
   const auto view = internal::MatrixFromText(take("scumble:viewFromWorld"));
   const auto clip = internal::MatrixFromText(take("scumble:clipFromView"));

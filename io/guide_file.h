@@ -15,7 +15,7 @@ struct GuideWriteOptions {
   std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
 };
 
-// Writes all layers of the set, object and material names, camera matrices (worldToCamera and worldToNDC in
+// Writes all layers of the set, object and material names and their styles, camera matrices (worldToCamera and worldToNDC in
 // OpenEXR's own conventions) and attributes.
 // Refuses a lossy compression. The file appears whole or not at all.
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options = {});

@@ -399,6 +399,7 @@ class BlenderVerbs : public CliTest {
     fs::create_directories(At("home/bin"));
     fs::copy_file(SCUMBLE_BINARY, At("home/bin/scumble"));
     fs::create_directory_symlink(Cases::Source("blender_scripts"), At("home/blender_scripts"));
+    fs::create_directory_symlink(Cases::Source("exemplars"), At("home/exemplars"));
     settings_.program = At("home/bin/scumble").string();
   }
   CommandResult RunHere(const Arguments& arguments) { return Run(arguments, settings_); }
@@ -469,6 +470,39 @@ TEST_F(BlenderVerbs, ARangeIsItsFramesByteForByte) {
   ExpectErrorHere(With(guidegen, {"--frames", "1-3", "-o", "s#.exr", "--blender", "no/blender"}), 5, {"no/blender"});
 }
 
+TEST_F(BlenderVerbs, MotionTakesTheNextFrameToo) {
+  const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30", "--layers", "motion"};
+  const CommandResult range = RunHere(With(guidegen, {"--frames", "5-1x-2,2", "-o", "m#.exr"}));
+  ASSERT_EQ(range.code, 0) << range.err;
+  EXPECT_THAT(range.err, HasSubstr("exports frames 5,6,3,4,1,2"));
+  ASSERT_EQ(RunHere(With(guidegen, {"--frame", "3", "-o", "one.exr"})).code, 0);
+  EXPECT_EQ(Bytes("one.exr"), Bytes("m3.exr"));
+  GuideReadOptions read;
+  read.required = AlwaysWritten().Add(Layer::kMotion);
+  const auto guides = ReadGuides(At("m2.exr"), read);
+  ASSERT_TRUE(guides) << guides.error().message;
+  const auto motion = guides->Plane(Layer::kMotion, 0);
+  EXPECT_TRUE(std::any_of(motion.begin(), motion.end(), [](float x) { return x != 0.0f; })) << "nothing moves";
+}
+
+// In objects.blend the object One wants oil, and the material Grey to be left as rendered.
+TEST_F(BlenderVerbs, StylesOfTheFileAreHeeded) {
+  WriteStyle("style");
+  const Arguments stylize = {"stylize", Blend("objects"), "--size", "64x36", "--view", "20,30", "--style", "style"};
+  const auto picture = [&](const Arguments& more) {
+    const CommandResult run = RunHere(With(With(stylize, more), {"-o", "p.png"}));
+    EXPECT_EQ(run.code, 0) << run.err;
+    return Bytes("p.png");
+  };
+  const std::string heeded = picture({}), plain = picture({"--no-scene-styles"});
+  EXPECT_NE(heeded, plain);
+  EXPECT_EQ(picture({"--no-scene-styles", "--assign", "Grey=rendered", "--assign", "One=oil"}), heeded);
+  EXPECT_EQ(picture({"--assign", "*=style"}), plain);
+  ASSERT_EQ(RunHere(With(stylize, {"--frames", "1-2", "-o", "r#.png"})).code, 0);
+  ASSERT_EQ(RunHere(With(stylize, {"--frame", "2", "-o", "p.png"})).code, 0);
+  EXPECT_EQ(Bytes("r2.png"), Bytes("p.png"));
+}
+
 TEST_F(BlenderVerbs, FailuresAreReadable) {
   const Arguments tail = {"--size", "32", "-o", "g.exr"};
   WriteText("bad.blend", "no scene at all");
@@ -488,7 +522,6 @@ TEST_F(BlenderVerbs, FailuresAreReadable) {
 TEST_F(BlenderVerbs, OptionsForBlenderNeedABlendFile) {
   WriteText("s.gltf", TriangleGltf(false));
   ExpectErrorHere({"guidegen", "s.gltf", "--blender", "blender", "-o", "g.exr"}, 2, {"--blender", "s.gltf"});
-  ExpectErrorHere({"guidegen", "s.gltf", "--frame", "3", "-o", "g.exr"}, 2, {"--frame", "s.gltf"});
 }
 
 TEST_F(BlenderVerbs, WithoutTheScriptTheyAreNotBuiltIn) {

@@ -12,10 +12,15 @@ std::uint16_t Find(const std::map<std::uint32_t, std::uint16_t>& styles, float i
 
 StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment) {
   StyleMap map{std::vector<std::uint16_t>(guides.pixel_count(), assignment.otherwise)};
+  AssignStyles(guides, assignment, map);
+  return map;
+}
+
+void AssignStyles(const GuideSet& guides, const StyleAssignment& assignment, StyleMap& map) {
   if (!assignment.of_material.empty()) {
     const auto material = guides.Plane(Layer::kMaterial);
     for (std::size_t i = 0; i < map.style.size(); ++i) {
-      map.style[i] = Find(assignment.of_material, material[i], assignment.otherwise);
+      map.style[i] = Find(assignment.of_material, material[i], map.style[i]);
     }
   }
   if (!assignment.of_object.empty()) {
@@ -24,7 +29,6 @@ StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment) {
       map.style[i] = Find(assignment.of_object, object[i], map.style[i]);
     }
   }
-  return map;
 }
 
 }  // namespace scumble

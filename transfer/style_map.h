@@ -28,4 +28,7 @@ struct StyleAssignment {
 // O(pixels · log assignments). The guides must hold the object layer if an object is named, and material likewise.
 StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment);
 
+// Likewise on top of a map, where what is not named keeps its style; `otherwise` is not looked at.
+void AssignStyles(const GuideSet& guides, const StyleAssignment& assignment, StyleMap& map);
+
 }  // namespace scumble

@@ -198,6 +198,7 @@ def materials():
 def objects():
     scene = bpy.context.scene
     plain = new_material("Grey", "ShaderNodeBsdfDiffuse")[0]
+    plain["scumble_style"] = "rendered"
     one = cube("One", (0, 0, 0), plain)
     one.pass_index = 5
     one["scumble_style"] = "oil"
