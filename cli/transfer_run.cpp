@@ -142,7 +142,9 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
                   "the brightest one and prints the stops that repeat it")
       ->type_name("auto|STOPS")
       ->capture_default_str();
-  verb.add_option("--seed", options.seed, "another seed, another pattern of chunks; the same seed, the same bytes")
+  verb.add_option("--seed", options.seed,
+                  "another seed, another pattern: where chunks begin, what paint flat surfaces, shadows and edges take, "
+                  "and the noise of a scene's soft lights; the same seed, the same bytes")
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
@@ -221,11 +223,23 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
   }
   if (all) {
     SCUMBLE_ASSIGN(memory.prepared, PrepareAll(styles, guides.height(), globals.threads));
+    for (std::size_t i = 0; i < styles.styles.size(); ++i) WarnOfEqualLight(styles.styles[i], memory.prepared[i]);
   }
   if (!memory.exposure) {
     SCUMBLE_ASSIGN(memory.exposure, ExposureFor(memory.prepared, guides, options, globals));
   }
   return Ok();
+}
+
+void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared) {
+  const auto luminances = prepared.illumination.luminances();
+  for (std::size_t later = 1; later < luminances.size(); ++later) {
+    const auto first = std::find(luminances.begin(), luminances.begin() + std::ptrdiff_t(later), luminances[later]);
+    const auto index = static_cast<std::size_t>(first - luminances.begin());
+    if (index == later) continue;
+    Warn(fmt::format("{} has the luminance {:.4g} as {} has, so it never shows: give each [[exemplar]] its own",
+                     style.exemplars[later].name, luminances[later], style.exemplars[index].name));
+  }
 }
 
 bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
