@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/json_text.h"
 #include "cli/options.h"
+#include "cli/transfer_run.h"
 #include "style/style_file.h"
 #include "style/style_keys.h"
 #include "transfer/ambiguity.h"
@@ -127,6 +128,7 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
   for (int k = 1; k < exemplar.count(); ++k) {
     WarnOfPaint(style.exemplars[std::size_t(k)].name, exemplar.is_sphere(), LookAtPaint(exemplar, k));
   }
+  WarnOfEqualLight(style, prepared);
   const AmbiguityReport report = MeasureAmbiguity(exemplar);
   WarnOfAmbiguity(path, report);
   const Picture& picture = style.exemplars.front().picture;

@@ -121,7 +121,9 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
                   "the brightest one and prints the stops that repeat it")
       ->type_name("auto|STOPS")
       ->capture_default_str();
-  verb.add_option("--seed", options.seed, "another seed, another pattern of chunks; the same seed, the same bytes")
+  verb.add_option("--seed", options.seed,
+                  "another seed, another pattern: where chunks begin, what paint flat surfaces, shadows and edges take, "
+                  "and the noise of a scene's soft lights; the same seed, the same bytes")
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
@@ -198,12 +200,24 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
   // All of them, or those that the scene has asked for since.
   for (std::size_t i = memory.prepared.size(); i < styles.styles.size(); ++i) {
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareOne(styles.styles[i], guides.height(), globals.threads));
+    WarnOfEqualLight(styles.styles[i], one);
     memory.prepared.push_back(std::move(one));
   }
   if (!memory.exposure) {
     SCUMBLE_ASSIGN(memory.exposure, ExposureFor(memory.prepared, guides, options, globals));
   }
   return Ok();
+}
+
+void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared) {
+  const auto luminances = prepared.illumination.luminances();
+  for (std::size_t later = 1; later < luminances.size(); ++later) {
+    const auto first = std::find(luminances.begin(), luminances.begin() + std::ptrdiff_t(later), luminances[later]);
+    const auto index = static_cast<std::size_t>(first - luminances.begin());
+    if (index == later) continue;
+    Warn(fmt::format("{} has the luminance {:.4g} as {} has, so it never shows: give each [[exemplar]] its own",
+                     style.exemplars[later].name, luminances[later], style.exemplars[index].name));
+  }
 }
 
 bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {

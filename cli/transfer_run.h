@@ -43,6 +43,9 @@ struct TransferMemory {
   TransferScratch scratch;
 };
 
+// Of two lighting conditions with one luminance only the first is ever chosen: warns of the other.
+void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared);
+
 // Brings the styles to options.frame and prepares what has changed since the last call; sets the exposure if
 // it is not set. TransferFrame does it by itself.
 Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptions& options, const Globals& globals,

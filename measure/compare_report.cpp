@@ -1,38 +1,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "measure/compare.h"
+#include "measure/json_number.h"
 
 namespace scumble {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json Number(double value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
-
 Json ToJson(const DifferenceStats& stats) {
   Json json = {{"values", stats.values},
                {"different", stats.different},
                {"incomparable", stats.incomparable},
-               {"mean", Number(stats.mean)},
-               {"rms", Number(stats.rms)},
-               {"psnr_db", Number(stats.psnr_db)},
-               {"peak", Number(stats.peak)},
+               {"mean", JsonNumber(stats.mean)},
+               {"rms", JsonNumber(stats.rms)},
+               {"psnr_db", JsonNumber(stats.psnr_db)},
+               {"peak", JsonNumber(stats.peak)},
                {"worst", nullptr}};
   if (stats.worst) {
     json["worst"] = {{"channel", stats.worst->channel},
                      {"x", stats.worst->x},
                      {"y", stats.worst->y},
-                     {"a", Number(stats.worst->a)},
-                     {"b", Number(stats.worst->b)},
-                     {"difference", Number(stats.worst->difference)}};
+                     {"a", JsonNumber(stats.worst->a)},
+                     {"b", JsonNumber(stats.worst->b)},
+                     {"difference", JsonNumber(stats.worst->difference)}};
   }
   return json;
 }
@@ -52,10 +46,10 @@ Json ToJson(const AngularStats& angles) {
 }
 
 Json ToJson(const DifferenceThresholds& thresholds) {
-  return {{"absolute", Number(thresholds.absolute)},
-          {"relative", Number(thresholds.relative)},
-          {"percent", Number(thresholds.percent)},
-          {"hard", Number(thresholds.hard)}};
+  return {{"absolute", JsonNumber(thresholds.absolute)},
+          {"relative", JsonNumber(thresholds.relative)},
+          {"percent", JsonNumber(thresholds.percent)},
+          {"hard", JsonNumber(thresholds.hard)}};
 }
 
 std::string Row(std::size_t name_width, const std::string& name, const DifferenceStats& stats) {

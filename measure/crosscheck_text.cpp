@@ -2,22 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "measure/crosscheck.h"
 #include "measure/crosscheck_parts.h"
+#include "measure/json_number.h"
 
 namespace scumble {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json Number(double value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
 
 std::string SetupText(const CrosscheckSetup& setup) {
   std::string text = fmt::format("{}×{}", setup.width, setup.height);
@@ -66,10 +60,10 @@ Json FigureJson(const CrosscheckFigure& figure) {
   Json json{{"layer", figure.layer},
             {"name", figure.name},
             {"unit", figure.unit},
-            {"value", Number(figure.value)},
-            {"error", Number(figure.error)},
-            {"limit", Number(figure.LimitInForce())},
-            {"built_in_limit", Number(figure.limit)},
+            {"value", JsonNumber(figure.value)},
+            {"error", JsonNumber(figure.error)},
+            {"limit", JsonNumber(figure.LimitInForce())},
+            {"built_in_limit", JsonNumber(figure.limit)},
             {"from_baseline", figure.TightenedByBaseline()},
             {"kept", figure.kept()},
             {"too_noisy", figure.TooNoisy()}};
@@ -81,13 +75,13 @@ Json NoiseJson(const CrosscheckNoise& noise) {
   Json json{{"layer", noise.layer}, {"no_such_light", noise.no_such_light}, {"free_of_noise", noise.free_of_noise}};
   if (noise.no_such_light) return json;
   json["samples"] = noise.samples;
-  for (const double value : noise.nrmse) json["nrmse"].push_back(Number(value));
-  json["slope"] = noise.slope ? Number(*noise.slope) : Json();
-  json["worst"] = {{"difference", Number(noise.worst)},
+  for (const double value : noise.nrmse) json["nrmse"].push_back(JsonNumber(value));
+  json["slope"] = noise.slope ? JsonNumber(*noise.slope) : Json();
+  json["worst"] = {{"difference", JsonNumber(noise.worst)},
                    {"x", noise.worst_x},
                    {"y", noise.worst_y},
-                   {"reference", Number(noise.worst_reference)},
-                   {"ours", Number(noise.worst_ours)}};
+                   {"reference", JsonNumber(noise.worst_reference)},
+                   {"ours", JsonNumber(noise.worst_ours)}};
   return json;
 }
 

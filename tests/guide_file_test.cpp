@@ -17,6 +17,7 @@
 #include "image/hash.h"
 #include "io/atomic_file.h"
 #include "io/guide_header.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {
@@ -71,16 +72,6 @@ void ExpectSameBits(const GuideSet& found, const GuideSet& expected) {
       const auto a = found.Plane(info.layer, c), b = expected.Plane(info.layer, c);
       EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size_bytes()), 0) << info.channels[c];
     }
-  }
-}
-
-template <class T>
-void ExpectRefusal(const Expected<T>& result, ErrorKind kind, const std::vector<std::string>& words) {
-  ASSERT_FALSE(result);
-  EXPECT_EQ(static_cast<int>(result.error().kind), static_cast<int>(kind)) << result.error().message;
-  for (const std::string& word : words) {
-    EXPECT_NE(result.error().message.find(word), std::string::npos)
-        << "'" << word << "' in: " << result.error().message;
   }
 }
 

@@ -19,6 +19,7 @@
 #include "image/color.h"
 #include "image/hash.h"
 #include "io/atomic_file.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {
@@ -48,15 +49,6 @@ void ExpectSame(const Picture& found, const Picture& expected, int tolerance = 0
   for (std::size_t i = 0; i < expected.rgba.size(); ++i) {
     ASSERT_LE(std::abs(int(found.rgba[i]) - int(expected.rgba[i])), tolerance)
         << "channel " << i % 4 << " of pixel " << i / 4 << ": " << found.rgba[i] << " for " << expected.rgba[i];
-  }
-}
-
-void ExpectRefusal(const Expected<Picture>& result, const std::vector<std::string>& words) {
-  ASSERT_FALSE(result);
-  EXPECT_EQ(static_cast<int>(result.error().kind), static_cast<int>(ErrorKind::kInput));
-  for (const std::string& word : words) {
-    EXPECT_NE(result.error().message.find(word), std::string::npos)
-        << "'" << word << "' in: " << result.error().message;
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "io/picture_file.h"
 #include "style/style_file.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {
@@ -40,13 +41,8 @@ class StyleKeyframes : public testing::Test {
     return style.transfer;
   }
   void ExpectRefusal(const std::string& lines, const std::vector<std::string>& words) {
-    const Expected<Style> style = Load(lines);
-    ASSERT_FALSE(style) << lines;
-    EXPECT_EQ(style.error().kind, ErrorKind::kInput) << style.error().message;
-    for (const std::string& word : words) {
-      EXPECT_NE(style.error().message.find(word), std::string::npos)
-          << "'" << word << "' in: " << style.error().message;
-    }
+    SCOPED_TRACE(lines);
+    scumble::ExpectRefusal(Load(lines), words);
   }
 
   TemporaryFolder folder_;

@@ -16,6 +16,7 @@
 #include "io/picture_file.h"
 #include "style/style_file.h"
 #include "style/style_keys.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {
@@ -31,16 +32,6 @@ Picture RandomPicture(int width, int height) {
     picture.rgba[i] = i % 4 == 3 ? 65535 : static_cast<std::uint16_t>(Hash(width, i) % 256 * 257);
   }
   return picture;
-}
-
-template <class T>
-void ExpectRefusal(const Expected<T>& result, ErrorKind kind, const std::vector<std::string>& words) {
-  ASSERT_FALSE(result) << "expected words like '" << (words.empty() ? "" : words.back()) << "'";
-  EXPECT_EQ(static_cast<int>(result.error().kind), static_cast<int>(kind)) << result.error().message;
-  for (const std::string& word : words) {
-    EXPECT_NE(result.error().message.find(word), std::string::npos)
-        << "'" << word << "' in: " << result.error().message;
-  }
 }
 
 void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {

@@ -1,0 +1,16 @@
+// Figures as JSON holds them.
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace scumble {
+
+// JSON has no word for what is no number or beyond all of them: "nan", "inf" and "-inf" as text.
+inline nlohmann::ordered_json JsonNumber(double value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+}  // namespace scumble

@@ -1,0 +1,205 @@
+// Trees over points and guides against brute force, and which pixels of a painted scene may be used.
+#include <cstring>
+#include <limits>
+
+#include "tests/scene_exemplar_fixtures.h"
+#include "transfer/guide_tree.h"
+#include "transfer/usable_mask.h"
+
+namespace scumble {
+namespace {
+
+using namespace testing;
+
+// ---- trees ---------------------------------------------------------------------------------------------------------
+
+double SquaredDistance(const float* a, const float* b, int dimensions) {
+  double sum = 0.0;
+  for (int d = 0; d < dimensions; ++d) sum += (double(a[d]) - b[d]) * (double(a[d]) - b[d]);
+  return sum;
+}
+
+// The first index with the least distance.
+std::uint32_t BruteForce(const std::vector<float>& points, const float* query, int dimensions) {
+  std::uint32_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < points.size() / dimensions; ++i) {
+    const double distance = SquaredDistance(points.data() + std::size_t(i) * dimensions, query, dimensions);
+    if (distance < least) least = distance, best = i;
+  }
+  return best;
+}
+
+void ExpectExact(const std::vector<float>& points, int dimensions, const std::vector<float>& queries) {
+  const PointTree tree(dimensions, points);
+  for (std::size_t q = 0; q + dimensions <= queries.size(); q += dimensions) {
+    ASSERT_EQ(tree.Nearest({queries.data() + q, std::size_t(dimensions)}),
+              BruteForce(points, queries.data() + q, dimensions))
+        << dimensions << " dimensions, query " << q / dimensions;
+  }
+}
+
+// Values on a lattice of `steps` (so that ties and repeats abound), or anywhere in [-1, 1] for 0.
+std::vector<float> Scatter(std::size_t count, int steps, std::uint64_t seed) {
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float u = UnitFloat(Hash(seed, i));
+    values[i] = steps > 0 ? std::floor(u * steps) : 2.0f * u - 1.0f;
+  }
+  return values;
+}
+
+TEST(PointTree, EqualsBruteForceOnRandomPoints) {
+  for (const int dimensions : {1, 2, 3, 4, 7, 16}) {
+    for (const int count : {1, 2, 13, 200, 1500}) {
+      const auto points = Scatter(std::size_t(count) * dimensions, 0, 11 + dimensions);
+      ExpectExact(points, dimensions, Scatter(std::size_t(200) * dimensions, 0, 5));
+      ExpectExact(points, dimensions, points);
+    }
+  }
+}
+
+TEST(PointTree, TiesGoToTheFirstPoint) {
+  for (const int dimensions : {1, 2, 3, 5}) {
+    for (const int steps : {1, 2, 3, 5}) {
+      const auto points = Scatter(std::size_t(900) * dimensions, steps, 3 + steps);
+      auto queries = Scatter(std::size_t(300) * dimensions, 2 * steps, 8);
+      for (float& value : queries) value *= 0.5f;  // half way between the lattice's points: up to 2^dimensions ties
+      ExpectExact(points, dimensions, queries);
+    }
+  }
+}
+
+TEST(PointTree, DegenerateSets) {
+  EXPECT_EQ(PointTree(3, std::vector<float>(3 * 5000, 0.25f)).distinct(), 1u);
+  ExpectExact(std::vector<float>(3 * 5000, 0.25f), 3, Scatter(30, 0, 1));
+  ExpectExact({0.0f, -0.0f, 0.0f, -0.0f, 0.0f, -0.0f}, 3, {0, 0, 0, 1, 1, 1});
+  EXPECT_EQ(PointTree(3, {0.0f, -0.0f, 0.0f, -0.0f, 0.0f, -0.0f}).distinct(), 1u);
+  std::vector<float> line;  // all on one line, exponentially ever closer, and a copy of each
+  for (int copy = 0; copy < 2; ++copy) {
+    for (int i = 0; i < 120; ++i) line.insert(line.end(), {std::ldexp(1.0f, -i), 0.0f, 0.0f});
+  }
+  ExpectExact(line, 3, line);
+  ExpectExact(line, 3, {0, 0, 0, 0.7f, 1e-3f, 0, -1, 0, 0, 0.75f, 0, 0, 1e30f, -1e30f, 1e30f});
+  ExpectExact({1e30f, 1e30f, 1e30f, -1e30f, 0, 0, 1e-40f, 0, 0, 0, 0, 0}, 3, {0, 0, 0, 1e30f, 0, 0, 1e-41f, 0, 0});
+}
+
+TEST(GuideTree, WeighsLayersAndEqualsBruteForce) {
+  GuideSet guides = HillGuides(40, 30);
+  for (const Layer layer : {Layer::kLuminance, Layer::kLpeLDE}) {
+    guides.Add(layer);
+    for (int c = 0; c < ChannelCount(layer); ++c) {
+      auto plane = guides.Plane(layer, c);
+      for (std::size_t i = 0; i < plane.size(); ++i)
+        plane[i] = std::floor(8.0f * UnitFloat(Hash(int(layer), c, i))) / 4.0f;
+    }
+  }
+  GuideSet target = guides;
+  for (float& value : target.Plane(Layer::kLuminance)) value = 2.0f - value;
+  const std::vector<std::vector<WeightedLayer>> choices = {
+      {{Layer::kNormal, 1.0f}},
+      {{Layer::kLuminance, 1.0f}},
+      {{Layer::kNormal, 1.0f}, {Layer::kLuminance, 0.3f}},
+      {{Layer::kNormal, 0.5f}, {Layer::kLuminance, 2.0f}, {Layer::kLpeLDE, 1.0f}},
+      {{Layer::kNormal, 0.0f}, {Layer::kLpeLDE, 0.0f}}};  // nothing counts: every pixel is equally near
+  for (const auto& layers : choices) {
+    const auto tree = GuideTree::Build(guides, layers, {}, "g.exr");
+    ASSERT_TRUE(tree.ok()) << tree.error().message;
+    const auto values = [&](const GuideSet& set, std::size_t i) {
+      std::vector<float> all;
+      for (const WeightedLayer& each : layers) {
+        for (int c = 0; c < ChannelCount(each.layer); ++c) all.push_back(set.Plane(each.layer, c)[i] * each.weight);
+      }
+      return all;
+    };
+    for (std::size_t p = 0; p < guides.pixel_count(); p += 7) {
+      const auto query = values(target, p);
+      double least = std::numeric_limits<double>::infinity();
+      Source best;
+      for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+        if (!(guides.Plane(Layer::kCoverage)[i] > 0.0f)) continue;
+        const double d = SquaredDistance(values(guides, i).data(), query.data(), int(query.size()));
+        if (d < least) least = d, best = {int(i) % 40, int(i) / 40};
+      }
+      ASSERT_EQ(tree->Nearest(target, p), best) << layers.size() << " layers, pixel " << p;
+    }
+  }
+}
+
+TEST(GuideTree, RefusesWhatHasNoDistance) {
+  GuideSet guides = HillGuides(8, 8);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto refusal = [&](const GuideSet& set, WeightedLayer layer) {
+    const auto tree = GuideTree::Build(set, {&layer, 1}, {}, "g.exr");
+    return tree.ok() ? std::string() : tree.error().message;
+  };
+  EXPECT_EQ(refusal(guides, {Layer::kNormal, 1.0f}), "");
+  EXPECT_NE(refusal(guides, {Layer::kLuminance, 1.0f}).find("g.exr has no layer luminance"), std::string::npos);
+  EXPECT_NE(refusal(guides, {Layer::kObject, 1.0f}).find("ids"), std::string::npos);
+  for (const float weight : {-1.0f, nan, std::numeric_limits<float>::infinity()}) {
+    EXPECT_NE(refusal(guides, {Layer::kNormal, weight}).find("weight"), std::string::npos) << weight;
+  }
+  GuideSet bad = guides;
+  bad.Plane(Layer::kNormal, 1)[2] = nan;
+  EXPECT_NE(refusal(bad, {Layer::kNormal, 1.0f}).find("NaN or infinite at (2, 0)"), std::string::npos);
+  bad.Plane(Layer::kCoverage)[2] = 0.0f;
+  EXPECT_EQ(refusal(bad, {Layer::kNormal, 1.0f}), "") << "not covered, not looked at";
+  EXPECT_NE(refusal(MakeGuides(4, 4, [](int, int) { return glm::vec3(0); }), {Layer::kNormal, 1.0f}).find("covered"),
+            std::string::npos);
+  EXPECT_FALSE(GuideTree::Build(guides, {}, {}, "g.exr").ok());
+  // A target's NaN counts as 0.
+  const WeightedLayer normal{Layer::kNormal, 1.0f};
+  const auto tree = GuideTree::Build(guides, {&normal, 1}, {}, "g.exr");
+  ASSERT_TRUE(tree.ok());
+  GuideSet target = guides, zero = guides;
+  target.Plane(Layer::kNormal, 0)[5] = nan, zero.Plane(Layer::kNormal, 0)[5] = 0.0f;
+  EXPECT_EQ(tree->Nearest(target, 5), tree->Nearest(zero, 5));
+}
+
+// ---- masks ---------------------------------------------------------------------------------------------------------
+
+TEST(UsableMask, EqualsBruteForce) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {40, 1}, {37, 53}, {64, 20}}) {
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+      const GuideSet guides = Blobs(width, height, seed);
+      const auto coverage = guides.Plane(Layer::kCoverage);
+      for (const double rim : {0.0, 1.0, 1.4, 1.5, 2.0, 3.7}) {
+        const auto mask = internal::UsableMask(guides, rim);
+        for (int i = 0; i < width * height; ++i) {
+          bool usable = coverage[i] > 0.0f;
+          for (int j = 0; j < width * height && usable; ++j) {
+            const double dx = i % width - j % width, dy = i / width - j / width;
+            if (!(coverage[j] > 0.0f) && dx * dx + dy * dy < rim * rim) usable = false;
+          }
+          ASSERT_EQ(mask[i], usable) << width << "×" << height << " rim " << rim << " at " << i % width << ", "
+                                     << i / width;
+        }
+      }
+    }
+  }
+}
+
+TEST(UsableMask, PaintIsExtendedFromTheNearestUsablePixel) {
+  Picture picture = NoisePicture(48);
+  const GuideSet guides = Blobs(48, 48, 3);
+  const auto mask = internal::UsableMask(guides, 2.0);
+  const Picture extended = internal::ExtendPaint(picture, mask);
+  for (int i = 0; i < 48 * 48; ++i) {
+    const std::uint16_t* texel = extended.At(i % 48, i / 48);
+    int nearest = std::numeric_limits<int>::max();
+    bool found = false;
+    for (int j = 0; j < 48 * 48; ++j) {
+      if (!mask[j]) continue;
+      const int dx = i % 48 - j % 48, dy = i / 48 - j / 48, distance = dx * dx + dy * dy;
+      const bool same = std::memcmp(texel, picture.At(j % 48, j / 48), 8) == 0;
+      if (distance < nearest)
+        nearest = distance, found = same;
+      else if (distance == nearest)
+        found |= same;
+    }
+    ASSERT_TRUE(found) << i % 48 << ", " << i / 48;
+  }
+}
+
+}  // namespace
+}  // namespace scumble
