@@ -12,8 +12,14 @@ trap 'rm -rf "$folder"' EXIT
 "$paint" --style all --size 192 --seed 2 -o "$folder/other" > /dev/null
 for style in "$folder"/first/*/; do
   name=$(basename "$style")
-  cmp "$style/lit.png" "$folder/second/$name/lit.png"
-  cmp "$style/paper.png" "$folder/second/$name/paper.png"
-  if cmp -s "$style/lit.png" "$folder/other/$name/lit.png"; then echo "$name: the seed changes nothing"; exit 1; fi
-  "$program" styles check "$style/lit.png"
+  for picture in "$style"/*.png; do
+    file=$name/$(basename "$picture")
+    cmp "$picture" "$folder/second/$file"
+    case $file in */paper.png) continue ;; esac
+    if cmp -s "$picture" "$folder/other/$file"; then echo "$file: the seed changes nothing"; exit 1; fi
+    "$program" styles check "$picture"
+  done
+done
+for name in chiaroscuro plein-air; do
+  for light in lit half shade; do [ -s "$folder/first/$name/$light.png" ] || { echo "$name: no $light.png"; exit 1; }; done
 done
