@@ -7,9 +7,12 @@ program=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-"$paint" --style all --size 192 --seed 1 -o "$folder/first" > /dev/null
-"$paint" --style all --size 192 --seed 1 -o "$folder/second" > /dev/null
-"$paint" --style all --size 192 --seed 2 -o "$folder/other" > /dev/null
+painters=()
+for each in first:1 second:1 other:2; do
+  "$paint" --style all --size 128 --seed "${each#*:}" -o "$folder/${each%:*}" > /dev/null &
+  painters+=($!)
+done
+for painter in "${painters[@]}"; do wait "$painter"; done
 for style in "$folder"/first/*/; do
   name=$(basename "$style")
   for picture in "$style"/*.png; do
