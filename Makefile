@@ -48,9 +48,9 @@ scenes: ## make the sample scenes again (Blender)
 	@.ci/install test
 	@blender -b -noaudio --factory-startup -P blender_scripts/make_scenes.py -- --output scenes
 
-gallery: build ## make the pictures of README and docs/ again
+gallery: build ## make the pictures of README and docs/ again; ONLY="edge colorize" makes those, "materials" takes minutes
 	@.ci/install test
-	@.ci/gallery
+	@.ci/gallery $(ONLY)
 
 format: ## clang-format every C++ file
 	@.ci/install format

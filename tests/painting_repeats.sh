@@ -7,13 +7,22 @@ program=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-"$paint" --style all --size 192 --seed 1 -o "$folder/first" > /dev/null
-"$paint" --style all --size 192 --seed 1 -o "$folder/second" > /dev/null
-"$paint" --style all --size 192 --seed 2 -o "$folder/other" > /dev/null
+painters=()
+for each in first:1 second:1 other:2; do
+  "$paint" --style all --size 128 --seed "${each#*:}" -o "$folder/${each%:*}" > /dev/null &
+  painters+=($!)
+done
+for painter in "${painters[@]}"; do wait "$painter"; done
 for style in "$folder"/first/*/; do
   name=$(basename "$style")
-  cmp "$style/lit.png" "$folder/second/$name/lit.png"
-  cmp "$style/paper.png" "$folder/second/$name/paper.png"
-  if cmp -s "$style/lit.png" "$folder/other/$name/lit.png"; then echo "$name: the seed changes nothing"; exit 1; fi
-  "$program" styles check "$style/lit.png"
+  for picture in "$style"/*.png; do
+    file=$name/$(basename "$picture")
+    cmp "$picture" "$folder/second/$file"
+    case $file in */paper.png) continue ;; esac
+    if cmp -s "$picture" "$folder/other/$file"; then echo "$file: the seed changes nothing"; exit 1; fi
+    "$program" styles check "$picture"
+  done
+done
+for name in chiaroscuro plein-air; do
+  for light in lit half shade; do [ -s "$folder/first/$name/$light.png" ] || { echo "$name: no $light.png"; exit 1; }; done
 done

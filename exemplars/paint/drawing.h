@@ -20,7 +20,8 @@ class Drawing {
 
   // A touch that presses in proportion to what is missing from `target`, the darkness wanted there in [0, 1], in the
   // drawing as it stands now: `eagerness` times the difference, `heaviest` at most. Seen with half-closed eyes, that is
-  // blurred, so it answers to tone and not to single strokes. Ends a little way past the rim.
+  // blurred, so it answers to tone and not to single strokes. Ends a little way past the rim. A negative eagerness is
+  // for chalk: it presses where the drawing is still too dark.
   Touch Missing(const Touch& target, float eagerness, float heaviest) const;
 
  private:

@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "exemplars/paint/styles.h"
+#include "image/hash.h"
 #include "io/picture_file.h"
 
 namespace {
 
 using namespace scumble;
+using paint::Light;
 
 enum ExitCode { kOk = 0, kUsage = 2, kInput = 3, kOutput = 4 };
 
@@ -38,14 +40,24 @@ Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, con
     return OutputError(style_folder.string() + " cannot be made: " + failure.message() +
                        "; choose another folder with -o");
   }
-  SCUMBLE_ASSIGN(const Picture paper, style.paper(studio));
-  SCUMBLE_ASSIGN(const Picture sphere, style.paint(studio));
   PictureWriteOptions options;
   options.png_level = 9;
-  for (const auto& [name, picture] : {std::pair("paper.png", &paper), std::pair("lit.png", &sphere)}) {
+  const auto write = [&](const char* name, const Expected<Picture>& picture) -> Status {
+    if (!picture) return picture.error();
     const std::filesystem::path file = style_folder / name;
     SCUMBLE_RETURN_IF_ERROR(WritePicture(file, *picture, options));
     std::cout << file.string() << "\n";
+    return Ok();
+  };
+  SCUMBLE_RETURN_IF_ERROR(write("paper.png", style.paper(studio)));
+  SCUMBLE_RETURN_IF_ERROR(write("lit.png", style.paint(studio)));
+  if (!style.three_lights) return Ok();
+  for (const auto& [name, light] : {std::pair("half.png", Light::kGrazing), std::pair("shade.png", Light::kSky)}) {
+    // Another sheet, other strokes.
+    paint::Studio other = studio;
+    other.light = light;
+    other.seed = Hash(studio.seed, static_cast<std::uint64_t>(light));
+    SCUMBLE_RETURN_IF_ERROR(write(name, style.paint(other)));
   }
   return Ok();
 }
@@ -65,7 +77,9 @@ int main(int argc, char** argv) {
   std::vector<std::string> names{"all"};
   for (const paint::StyleEntry& style : paint::kStyles) names.emplace_back(style.name);
 
-  CLI::App app{"Paints spheres and papers in the styles that come with Scumble: FOLDER/NAME/lit.png and paper.png"};
+  CLI::App app{
+      "Paints spheres and papers in the styles that come with Scumble: FOLDER/NAME/lit.png and paper.png, and "
+      "half.png and shade.png for styles that are painted for three lights"};
   app.add_option("--style", chosen, "Which one")->check(CLI::IsMember(names))->capture_default_str();
   app.add_option("--size", studio.size, "Pixels along a side")->check(CLI::Range(64, 8192))->capture_default_str();
   app.add_option("--seed", studio.seed, "The same number paints the same picture")->capture_default_str();

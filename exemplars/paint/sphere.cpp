@@ -16,17 +16,41 @@ glm::vec3 NormalAt(glm::vec2 at) {
 
 glm::vec2 PlaceOf(glm::vec3 normal) { return {kRadius + kRadius * normal.x, kRadius - kRadius * normal.y}; }
 
-Shading ShadingOf(glm::vec3 normal) {
+glm::vec3 Towards(Light light) {
+  switch (light) {
+    case Light::kGrazing:
+      return glm::normalize(kKeyLight + glm::vec3(0.0f, -0.1f, 0.5f));
+    case Light::kSky:
+      return glm::normalize(glm::vec3(-0.25f, 0.85f, 0.35f));
+    default:
+      return kKeyLight;
+  }
+}
+
+Shading ShadingOf(glm::vec3 normal, Light light) {
   static const glm::vec3 kHalfway = glm::normalize(kKeyLight + glm::vec3(0, 0, 1));
   static const glm::vec3 kBounce = glm::normalize(glm::vec3(0.60f, -0.78f, -0.12f));
   Shading shading{};
-  shading.light = std::max(glm::dot(normal, kKeyLight), 0.0f);
-  shading.highlight = std::pow(std::max(glm::dot(normal, kHalfway), 0.0f), 90.0f);
+  const float facing = glm::dot(normal, Towards(light));
   const float bounce = std::max(glm::dot(normal, kBounce), 0.0f);
   shading.reflected = bounce * bounce;
-  shading.value =
-      glm::clamp(0.05f + 0.80f * std::pow(shading.light, 0.85f) + 0.24f * shading.reflected + 0.30f * shading.highlight,
-                 0.0f, 1.0f);
+  switch (light) {
+    case Light::kKey:
+      shading.light = std::max(facing, 0.0f);
+      shading.highlight = std::pow(std::max(glm::dot(normal, kHalfway), 0.0f), 90.0f);
+      shading.value =
+          0.05f + 0.80f * std::pow(shading.light, 0.85f) + 0.24f * shading.reflected + 0.30f * shading.highlight;
+      break;
+    case Light::kGrazing:
+      shading.light = std::max(facing, 0.0f);
+      shading.value = 0.06f + 0.58f * std::pow(shading.light, 0.85f) + 0.20f * shading.reflected;
+      break;
+    case Light::kSky:
+      shading.light = std::pow(std::max(0.5f + 0.5f * facing, 0.0f), 1.4f);
+      shading.value = 0.05f + 0.26f * shading.light + 0.10f * shading.reflected;
+      break;
+  }
+  shading.value = glm::clamp(shading.value, 0.0f, 1.0f);
   return shading;
 }
 

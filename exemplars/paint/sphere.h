@@ -20,16 +20,26 @@ glm::vec3 NormalAt(glm::vec2 at);
 // The inverse, for normals that face the viewer.
 glm::vec2 PlaceOf(glm::vec3 normal);
 
+// What a ball is painted for.
+enum class Light {
+  kKey,      // the key light in full
+  kGrazing,  // the same light, weaker, more from the front and softer: half-tones
+  kSky,      // none of it: what the sky gives from above and the ground from below
+};
+
+// The unit direction towards the light; for the sky nearly straight up, leaning to the key light's side.
+glm::vec3 Towards(Light light);
+
 // What a painter looks for in a lit ball. All in [0, 1].
 struct Shading {
-  float value;      // overall lightness
-  float light;      // direct light, the cosine
+  float value;      // overall lightness, the same scale in every light
+  float light;      // how far it faces the light that there is: the cosine, 0 … 1 over the whole ball under the sky
   float highlight;  // mirror image of the light
   float reflected;  // light that comes back from below right into the shade
 };
-Shading ShadingOf(glm::vec3 normal);
-inline Shading ShadingAt(glm::vec2 at) { return ShadingOf(NormalAt(at)); }
+Shading ShadingOf(glm::vec3 normal, Light light = Light::kKey);
+inline Shading ShadingAt(glm::vec2 at, Light light = Light::kKey) { return ShadingOf(NormalAt(at), light); }
 // 1 − value.
-inline float DarknessAt(glm::vec2 at) { return 1.0f - ShadingAt(at).value; }
+inline float DarknessAt(glm::vec2 at, Light light = Light::kKey) { return 1.0f - ShadingAt(at, light).value; }
 
 }  // namespace scumble::paint
