@@ -135,7 +135,8 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
     const bool timeless = plan_only && (frame || sequence);
     SceneOptions scene = verb.scene;
     if (timeless) scene.animation.clear();
-    SCUMBLE_ASSIGN(made, MakeGuidesAtRest(scene, layers_for, motion && !timeless, globals, bar.Part(0.0, 1.0), plan_only));
+    SCUMBLE_ASSIGN(made, MakeGuidesAtRest(scene, layers_for, motion && !timeless, globals, bar.Part(0.0, 1.0),
+                                          plan_only));
   }
   NameStylesInPlan(made.plan, styles);
   if (!plan_only) {

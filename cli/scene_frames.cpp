@@ -93,7 +93,9 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
   SCUMBLE_ASSIGN(Scene* const loaded, BlenderFrame(frame));
   const int place = place_.at(frame);
   Scene scene = needed_by_.at(frame) <= place ? std::move(*loaded) : *loaded;
-  std::erase_if(scenes_, [&](const auto& kept) { return kept.first != frame + 1 && needed_by_.at(kept.first) <= place; });
+  std::erase_if(scenes_, [&](const auto& kept) {
+    return kept.first != frame + 1 && needed_by_.at(kept.first) <= place;
+  });
   const double load_ms = watch.Lap();
   WarnOnce(scene);
   SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(WishesOf(scene.instances, scene)));

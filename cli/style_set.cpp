@@ -61,8 +61,6 @@ namespace {
 
 // The place of a style in the set, which is opened if it is new.
 Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
-  if (name == kRendered) return StyleMap::kLeave;
-  if (name == kCatcher) return StyleMap::kCatch;
   SCUMBLE_ASSIGN(const std::filesystem::path found, FindStyle(name, base));
   std::error_code failed;
   const std::string path = std::filesystem::weakly_canonical(found, failed).string();
@@ -71,6 +69,13 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   SCUMBLE_ASSIGN(Style style, LoadStyle(found, set.options.sets));
   set.styles.push_back(std::move(style));
   return set.opened[path] = static_cast<std::uint16_t>(set.styles.size() - 1);
+}
+
+// The same, or what the reserved words mean.
+Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
+  if (name == kRendered) return StyleMap::kLeave;
+  if (name == kCatcher) return StyleMap::kCatch;
+  return PlaceOf(set, name, base);
 }
 
 bool IsAssigned(const StyleSet& set, const std::string& name) {
@@ -87,9 +92,10 @@ Status AddWishes(StyleSet& set, const std::map<std::string, std::string>& wishes
       read.insert(known->second);
       continue;
     }
-    const std::string who = file + ": " + kind + " '" + name + "' wants the style '" + wish + "' (property scumble_style)";
+    const std::string who = file + ": " + kind + " '" + name + "' wants the style '" + wish +
+                            "' (property scumble_style)";
     const std::string mend = "; mend the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
-    const Expected<std::uint16_t> place = PlaceOf(set, wish, std::filesystem::path(file).parent_path());
+    const Expected<std::uint16_t> place = PlaceOrWord(set, wish, std::filesystem::path(file).parent_path());
     if (!place) return Error{place.error().kind, who + ": " + place.error().message + mend};
     if (*place == StyleMap::kCatch && set.first().transfer.shadow == ShadowMode::kNone) {
       return InputError(who + ", and the style of the picture paints no shadows that it could catch: give --set " +
@@ -166,6 +172,7 @@ Expected<StyleSet> OpenStyles(const StyleOptions& options) {
   StyleSet set;
   set.options = options;
   SCUMBLE_RETURN_IF_ERROR(PlaceOf(set, options.style, {}));
+  std::map<std::string, std::uint16_t> by_name;  // thousands of options name few styles
   for (const std::string& text : options.assigned) {
     // The last '=': names of objects are anyone's, names of styles rarely hold one.
     const std::size_t equals = text.rfind('=');
@@ -173,7 +180,10 @@ Expected<StyleSet> OpenStyles(const StyleOptions& options) {
       return UsageError("--assign " + text + ": expected NAME=STYLE, as in 'Tree*=charcoal' or Glass=rendered");
     }
     const std::string pattern = text.substr(0, equals), name = text.substr(equals + 1);
-    SCUMBLE_ASSIGN(const std::uint16_t place, PlaceOf(set, name, {}));
+    if (!by_name.count(name)) {
+      SCUMBLE_ASSIGN(by_name[name], PlaceOrWord(set, name, {}));
+    }
+    const std::uint16_t place = by_name[name];
     set.assigned.push_back({pattern, place});
     if (place == StyleMap::kCatch && set.first().transfer.shadow == ShadowMode::kNone) {
       return UsageError("--assign " + text + ": the style paints no shadows that it could catch; give --set " +

@@ -194,9 +194,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
     }
     SCUMBLE_ASSIGN(memory.prepared[i], PrepareOne(styles.styles[i], guides.height(), globals.threads));
   }
-  if (all) {
-    memory.prepared.clear();
-  }
+  if (all) memory.prepared.clear();
   // All of them, or those that the scene has asked for since.
   for (std::size_t i = memory.prepared.size(); i < styles.styles.size(); ++i) {
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareOne(styles.styles[i], guides.height(), globals.threads));
@@ -267,7 +265,7 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, co
       transfer.progress = [&, run](double share) { return progress((run + share) / options.repeat); };
     }
     SCUMBLE_RETURN_IF_ERROR(needs_map ? Transfer(pointers, map, guides, transfer, scratch, picture)
-                                        : Transfer(prepared.front(), guides, transfer, scratch, picture));
+                                      : Transfer(prepared.front(), guides, transfer, scratch, picture));
     match.push_back(scratch.times.match_ms);
     vote.push_back(scratch.times.vote_ms);
     compose.push_back(scratch.times.compose_ms);

@@ -474,7 +474,7 @@ TEST_F(BlenderVerbs, MotionTakesTheNextFrameToo) {
   const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30", "--layers", "motion"};
   const CommandResult range = RunHere(With(guidegen, {"--frames", "5-1x-2,2", "-o", "m#.exr"}));
   ASSERT_EQ(range.code, 0) << range.err;
-  EXPECT_THAT(range.err, HasSubstr("exports frames 5,6,3,4,1,2"));
+  EXPECT_THAT(range.err, HasSubstr("exports frames 5-6,3-4,1-2"));
   ASSERT_EQ(RunHere(With(guidegen, {"--frame", "3", "-o", "one.exr"})).code, 0);
   EXPECT_EQ(Bytes("one.exr"), Bytes("m3.exr"));
   GuideReadOptions read;

@@ -71,11 +71,15 @@ TEST_F(CliMoving, AFrameIsTheSameHoweverTheRangeIsCut) {
   std::filesystem::remove(At("g.0003.exr"));
   WriteText("g.0005.exr", "");
   const CommandResult resumed = RunOk(With(guidegen, {"--frames", "1-6", "--resume", "-o", "g.####.exr", "--json"}));
-  EXPECT_EQ(resumed.Json()["kept"], 4);
-  EXPECT_EQ(resumed.Json()["frames"][2]["state"], "made");
-  EXPECT_TRUE(resumed.Json()["frames"][2]["ms"].contains("load"));
-  EXPECT_TRUE(resumed.Json()["frames"][4]["ms"].contains("move"));
-  EXPECT_FALSE(resumed.Json()["frames"][4]["ms"].contains("load")) << "the file is read once";
+  const nlohmann::json report = resumed.Json();
+  EXPECT_EQ(report["kept"], 4);
+  for (const auto& frame : report["frames"]) {
+    const bool made = frame["frame"] == 3 || frame["frame"] == 5;
+    EXPECT_EQ(frame["state"], made ? "made" : "kept");
+    if (!made) continue;
+    EXPECT_TRUE(frame["ms"].contains("move"));
+    EXPECT_EQ(frame["ms"].contains("load"), frame["frame"] == 3) << "the file is read once";
+  }
   RunOk(With(guidegen, {"--frame", "5", "-o", "one.exr"}));
   EXPECT_EQ(Bytes("one.exr"), Bytes("g.0005.exr"));
 
@@ -142,9 +146,8 @@ TEST_F(CliMoving, MotionIsInPixelsToTheNextFrame) {
   WriteGlb("still.glb", still);
   RunOk({"guidegen", "still.glb", "--size", "20", "--layers", "motion", "--frames", "1-2", "-o", "q#.exr"});
   EXPECT_EQ(Bytes("q1.exr"), Bytes("q2.exr"));
-  for (const float value : Read("q1.exr", AlwaysWritten().Add(Layer::kMotion)).Plane(Layer::kMotion, 0)) {
-    ASSERT_EQ(value, 0.0f);
-  }
+  const GuideSet none = Read("q1.exr", AlwaysWritten().Add(Layer::kMotion));
+  for (const float value : none.Plane(Layer::kMotion, 0)) ASSERT_EQ(value, 0.0f);
   ExpectError({"guidegen", "wall.glb", "--layers", "motion", "-o", "x.exr"}, 2, {"motion", "--frame N", "--frames"});
 }
 
@@ -179,7 +182,7 @@ TEST_F(CliMoving, CameraAndKeyLightAreDecidedAtTimeZero) {
 
 TEST_F(CliMoving, SeveralAnimationsInOneFile) {
   GltfBuilder b = Wall();
-  b.Animate(0, "translation", {1, 2}, {0, 0, 0, 0, 3, 0});
+  b.Animate(0, "translation", {1, 2}, {0, 0, 0, 0, 1, 0});
   nlohmann::json& first = b.json["animations"][0];
   b.json["animations"].push_back({{"name", "Rise"},
                                   {"channels", {{{"sampler", 0}, {"target", first["channels"][1]["target"]}}}},

@@ -151,7 +151,7 @@ TEST_F(CliSceneStyles, WishesThatCannotBeGranted) {
   b.json["materials"][0].erase("extras");
   WriteGlb("scene/s.glb", b);
   const CommandResult run = RunOk(With(stylize, {"--frame", "1", "--assign", "Tree*=scene/green"}));
-  for (const char* words : {"--assign Tree*", "no such object or material", "Tile0, Tile1"}) {
+  for (const char* words : {"--assign Tree*", "no such object or material", "Tile0", "Tile1"}) {
     EXPECT_NE(run.Warning().find(words), std::string::npos) << run.err;
   }
 }
