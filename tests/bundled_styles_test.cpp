@@ -38,7 +38,7 @@ GuideSet StillLife() {
 struct Variant {
   const char* name;
   std::function<void(TransferSettings&)> set;
-  bool lit = false;     // the first exemplar a second time, painted for less light
+  bool lit = false;     // where the style has one exemplar: that a second time, painted for less light
   bool mapped = false;  // the floor catches shadows, one object is left out, another has a style of its own
 };
 
@@ -63,7 +63,7 @@ std::vector<Variant> Variants() {
       {"varied", pixels([](TransferSettings& s) { s.variety = 15.0, s.jitter_fps = 12.0; })},
       {"Lit Sphere", pixels([](TransferSettings& s) { s.method = Method::kLitSphere; })},
       {"brute force", pixels([](TransferSettings& s) { s.method = Method::kBruteForce; })},
-      {"lit", pixels([](TransferSettings&) {}), true},
+      {"lit", pixels([](TransferSettings& s) { s.luminance_weight = 2.0f; }), true},
       {"mapped", pixels([](TransferSettings& s) { s.shadow = ShadowMode::kPaint; }), false, true},
       {"all at once", pixels([=](TransferSettings& s) {
          edge(s), oklab(s);
