@@ -41,8 +41,8 @@ struct GuidegenOptions {
   // Light-path layers only. Above 0: samples are doubled, to 16 at least, until the estimated error, root mean square
   // over mean, of each layer's luminance is not larger than this; `samples` does not count then.
   double noise = 0.0;
-  // Light-path layers only. Above 0: samples are taken until this time is over, or `noise` is reached. One sample is the
-  // least there is, however long it takes; no pass is begun that would last longer at the speed so far. The clock
+  // Light-path layers only. Above 0: samples are taken until this time is over, or `noise` is reached. One sample is
+  // the least there is, however long it takes; no pass is begun that would last longer at the speed so far. The clock
   // decides, so the picture may differ from run to run; GuidegenResult::samples repeats it.
   double time_budget_seconds = 0.0;
   int max_samples = kMaxSamples;  // that `noise` and the time budget may take, 1 … kMaxSamples

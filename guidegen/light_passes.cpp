@@ -33,8 +33,13 @@ class LightPasses {
  public:
   LightPasses(const LightPathTracer& tracer, const PathFollower& follower,
               const std::vector<std::vector<PathPixel>>& pixels, std::uint64_t seed, GuideSet& guides)
-      : tracer_(tracer), follower_(follower), pixels_(pixels), guides_(guides),
-        seed_(seed), layers_(follower.layers().size()), statistics_(pixels.size()) {}
+      : tracer_(tracer),
+        follower_(follower),
+        pixels_(pixels),
+        guides_(guides),
+        seed_(seed),
+        layers_(follower.layers().size()),
+        statistics_(pixels.size()) {}
 
   // Keeps what was sampled, so that a next pass can go on.
   void KeepSums() {
@@ -49,7 +54,8 @@ class LightPasses {
       PassStatistics& statistics = statistics_[list] = {};
       for (std::size_t i = 0; i < pixels_[list].size(); ++i) {
         PathSums sums{};
-        const auto kept = kept_.empty() ? std::span<glm::dvec3>() : std::span(kept_[list]).subspan(i * layers_, layers_);
+        const auto kept =
+            kept_.empty() ? std::span<glm::dvec3>() : std::span(kept_[list]).subspan(i * layers_, layers_);
         std::copy(kept.begin(), kept.end(), sums.begin());
         Shade(pixels_[list][i], done, wanted, sums, statistics);
         std::copy_n(sums.begin(), kept.size(), kept.begin());
@@ -117,7 +123,7 @@ class LightPasses {
   const std::uint64_t seed_;
   const std::size_t layers_;
   std::vector<std::vector<glm::dvec3>> kept_;  // by list; of each pixel its layers' sums
-  std::vector<PassStatistics> statistics_;  // by list, so that sums do not depend on the order of work
+  std::vector<PassStatistics> statistics_;     // by list, so that sums do not depend on the order of work
   RayCounts rays_;
 };
 

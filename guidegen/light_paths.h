@@ -3,13 +3,13 @@
 //
 // Each reflection chooses one lobe, so that every path has one string of events, and what it carries goes to exactly
 // the layers whose expression matches. On the first surface lamps without extent are summed, not sampled: where nothing
-// else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few; everywhere
-// else one light is chosen.
+// else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few;
+// everywhere else one light is chosen.
 //
-// No path's light is clamped. The result is biased all the same, as Cycles' is by default ("filter glossy" at 1): after a
-// wide reflection, specular lobes are made rougher. Caustics, light that a mirror or a smooth metal throws on a diffuse
-// surface, are blurred by it, and so is what a diffuse surface's light sees in them; no number of samples makes them
-// sharp. What the eye sees first keeps its roughness.
+// No path's light is clamped. The result is biased all the same, as Cycles' is by default ("filter glossy" at 1): after
+// a wide reflection, specular lobes are made rougher. Caustics, light that a mirror or a smooth metal throws on a
+// diffuse surface, are blurred by it, and so is what a diffuse surface's light sees in them; no number of samples makes
+// them sharp. What the eye sees first keeps its roughness.
 #pragma once
 
 #include <array>

@@ -51,8 +51,7 @@ bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDr
   const glm::dvec3 way = draw.target - origin;
   if (draw.object == LightDraw::kNoObject) return Occluded(among, origin, way, kShadowReach, {});
   const double near_end = std::clamp(1.0 - draw.rounding / glm::length(way), 0.0, kShadowReach);
-  return Occluded(among, origin, way, kShadowReach,
-                  {&scene.objects()[draw.object], draw.primitive, float(near_end)});
+  return Occluded(among, origin, way, kShadowReach, {&scene.objects()[draw.object], draw.primitive, float(near_end)});
 }
 
 RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {

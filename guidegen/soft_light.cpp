@@ -88,7 +88,8 @@ struct Sample {
     bool near_emitter = false;
     lights.VisitEmitters(origin, direction, [&](int light) { near_emitter = near_emitter || LooksFor(light); });
     if (near_emitter) ++rays.shadow;
-    const double emitted = near_emitter ? Emitted(CastAmongEmitters(scene, origin, direction), direction, reflected) : 0.0;
+    const double emitted =
+        near_emitter ? Emitted(CastAmongEmitters(scene, origin, direction), direction, reflected) : 0.0;
     const double unoccluded = met_before(kInfinity) + emitted;
     if (!(unoccluded > 0.0)) return;
     sum.unoccluded += unoccluded;
@@ -107,8 +108,7 @@ struct Sample {
     const int light = lights.EmitterOf(hit.hit.geomID);
     if (light < 0 || !LooksFor(light)) return 0.0;
     const PlacedObject& object = scene.objects()[hit.hit.geomID];
-    const SurfacePoint met =
-        FindSurfacePoint(object, hit.hit.primID, {hit.hit.u, hit.hit.v}, {origin, direction});
+    const SurfacePoint met = FindSurfacePoint(object, hit.hit.primID, {hit.hit.u, hit.hit.v}, {origin, direction});
     const glm::dvec3 radiance = SurfaceEmission(object, hit.hit.primID, met.barycentric);
     return Weighed(light, radiance, lights.EmitterDensity(light, point.position, met), reflected);
   }

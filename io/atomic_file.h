@@ -13,8 +13,8 @@ namespace scumble {
 
 // Writes to a temporary name in the same folder, flushes it to disk, then renames: an interrupted run leaves the old
 // file or none. Links are followed, and a target that is no regular file (a device, a pipe) is written to directly.
-// A missing folder is an error: on a farm it is a share that is not mounted. A replaced file keeps its permissions. Every failure is an error with
-// the file's name and the system's reason.
+// A missing folder is an error: on a farm it is a share that is not mounted. A replaced file keeps its permissions.
+// Every failure is an error with the file's name and the system's reason.
 Status WriteFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
 

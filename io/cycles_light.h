@@ -26,9 +26,10 @@ struct CyclesLight {
 // file or a pass is missing, two view layers hold it, the files differ in size.
 Expected<CyclesLight> ReadCyclesLight(const std::filesystem::path& stem, int samples);
 
-// Adds the GlossCol pass of the data file to the albedo of `guides`, which was read from it: for us the base colour of a
-// specular surface is albedo too, while DiffCol is black there. Returns, by pixel, 1 where the surface only shines: its
-// Emit is not black and its albedo is, so that there is nothing to compare. Errors: a pass is missing, another size.
+// Adds the GlossCol pass of the data file to the albedo of `guides`, which was read from it: for us the base colour of
+// a specular surface is albedo too, while DiffCol is black there. Returns, by pixel, 1 where the surface only shines:
+// its Emit is not black and its albedo is, so that there is nothing to compare. Errors: a pass is missing, another
+// size.
 Expected<std::vector<std::uint8_t>> CompleteAlbedo(const std::filesystem::path& file, GuideSet& guides);
 
 }  // namespace scumble

@@ -11,9 +11,12 @@ std::string NamesToText(const std::map<std::uint32_t, std::string>& names) {
   for (const auto& [id, name] : names) {
     text += std::to_string(id) + ' ';
     for (char c : name) {
-      if (c == '\\') text += "\\\\";
-      else if (c == '\n') text += "\\n";
-      else text += c;
+      if (c == '\\')
+        text += "\\\\";
+      else if (c == '\n')
+        text += "\\n";
+      else
+        text += c;
     }
     text += '\n';
   }

@@ -38,7 +38,8 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   if (!std::filesystem::exists(status)) return InputError("cannot read " + path.string() + ": there is no such file");
   if (std::filesystem::is_directory(status)) return InputError("cannot read " + path.string() + ": it is a folder");
   // A pipe would be waited for without end, and the readers seek.
-  if (!std::filesystem::is_regular_file(status)) return InputError("cannot read " + path.string() + ": it is no regular file");
+  if (!std::filesystem::is_regular_file(status))
+    return InputError("cannot read " + path.string() + ": it is no regular file");
   if (std::filesystem::file_size(path, failed) == 0) {
     return InputError("cannot read " + path.string() + ": the file is empty");
   }
@@ -60,7 +61,8 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemRea
 
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name) {
   const std::string reason = input.geterror();
-  return InputError("cannot read " + name + ": " + (reason.empty() ? "the pixel data is damaged" : LibraryReason(reason)));
+  return InputError("cannot read " + name + ": " +
+                    (reason.empty() ? "the pixel data is damaged" : LibraryReason(reason)));
 }
 
 Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::ImageSpec& spec,

@@ -81,7 +81,8 @@ struct Decoder {
 
 // Reads in the file's own numbers, `T`, and hands each pixel and its place in `picture` to `decode`.
 template <class T, class Decode>
-Status ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, Picture& picture, Decode decode) {
+Status ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, Picture& picture,
+                  Decode decode) {
   const OIIO::ImageSpec spec = input.spec();
   std::vector<T> pixels(std::size_t(spec.nchannels) * spec.width * spec.height);
   if (!input.read_image(0, 0, 0, spec.nchannels, type, pixels.data()) || input.has_error()) {
@@ -125,12 +126,13 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
   const Decoder decoder{channels, spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};
   Picture picture(display.width, display.height);
   if (IsLinear(spec)) {
-    SCUMBLE_RETURN_IF_ERROR(ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, picture,
-                                              [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); }));
-  } else {
     SCUMBLE_RETURN_IF_ERROR(
-        ReadPixels<std::uint16_t>(input, name, OIIO::TypeDesc::UINT16, picture,
-                                  [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); }));
+        ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, picture,
+                          [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); }));
+  } else {
+    SCUMBLE_RETURN_IF_ERROR(ReadPixels<std::uint16_t>(
+        input, name, OIIO::TypeDesc::UINT16, picture,
+        [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); }));
   }
   return picture;
 }

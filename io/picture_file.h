@@ -19,7 +19,8 @@ namespace scumble {
 // an error, JPEG included. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
-// The same from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in messages.
+// The same from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
+// messages.
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 
 struct PictureWriteOptions {

@@ -212,7 +212,8 @@ void AddCoverage(const GuideSet& a, const GuideSet& b, CrosscheckReport& report)
 }
 
 // Objects of which no pixel is compared are named: wires and leaves are narrower than what the erosion takes off.
-void CountCovered(const GuideSet& a, const GuideSet& b, const std::vector<std::size_t>& mask, CrosscheckReport& report) {
+void CountCovered(const GuideSet& a, const GuideSet& b, const std::vector<std::size_t>& mask,
+                  CrosscheckReport& report) {
   const auto covered_a = a.Plane(Layer::kCoverage), covered_b = b.Plane(Layer::kCoverage);
   const auto object = b.Plane(Layer::kObject);
   std::set<float> seen, compared;
@@ -246,7 +247,7 @@ CrosscheckOutcome CrosscheckReport::Outcome() const {
     return CrosscheckOutcome::kDiffers;
   }
   return any([](const CrosscheckFigure& figure) { return figure.TooNoisy(); }) ? CrosscheckOutcome::kNotProved
-                                                                              : CrosscheckOutcome::kAgrees;
+                                                                               : CrosscheckOutcome::kAgrees;
 }
 
 bool CrosscheckReport::KeepsBuiltInLimits() const {

@@ -47,7 +47,8 @@ struct CrosscheckPictures {
   Picture difference;
   std::string look;        // how both are shown, in words; empty where it goes without saying
   std::string full_scale;  // what the colours of the difference mean, in words
-  // The colours of the difference from the least to the most, for CSS, and what stands at evenly spaced places below them.
+  // The colours of the difference from the least to the most, for CSS, and what stands at evenly spaced places below
+  // them.
   std::vector<std::string> scale_colors = {};
   std::vector<std::string> scale_labels = {};
 };
@@ -84,7 +85,7 @@ inline constexpr std::size_t kLeastCompared = 100;
 
 enum class CrosscheckOutcome {
   kAgrees,
-  kNotProved,    // nothing speaks against it but figures that are too noisy
+  kNotProved,  // nothing speaks against it but figures that are too noisy
   kDiffers,
   kNotCompared,  // a side could not be made
 };
@@ -93,21 +94,22 @@ struct CrosscheckReport {
   std::string scene;
   std::string failure = {};  // why it could not be compared; then the rest is empty but for the set-up
   CrosscheckSetup setup;
-  std::size_t covered = 0;   // pixels where both sides show something
-  std::size_t compared = 0;  // of these, inside the eroded masks
+  std::size_t covered = 0;    // pixels where both sides show something
+  std::size_t compared = 0;   // of these, inside the eroded masks
   std::string too_thin = {};  // objects of which no pixel is compared, for people
-  bool glossy = false;       // the reference shows a specular surface
+  bool glossy = false;        // the reference shows a specular surface
   std::vector<CrosscheckFigure> figures;
   std::vector<CrosscheckNoise> noise;
   std::vector<CrosscheckPictures> pictures;
-  std::vector<std::string> skipped;   // layers that one side lacks: they fail the verdict
-  std::vector<std::string> problems;  // whatever else fails the verdict, one sentence each
+  std::vector<std::string> skipped;      // layers that one side lacks: they fail the verdict
+  std::vector<std::string> problems;     // whatever else fails the verdict, one sentence each
   std::vector<std::string> unsupported;  // what one side or both do not express, one sentence each
   std::vector<std::string> warnings;     // what is not compared as authored, on purpose
   std::string scumble_version = {};      // of this program
   std::string blender_version = {};      // of the reference; empty where it is not known
-  std::string baseline_mismatch = {};    // why the baseline does not judge this scene; empty where it does or there is none
-  bool KeepsBuiltInLimits() const;       // the verdict without any baseline
+  std::string baseline_mismatch =
+      {};                           // why the baseline does not judge this scene; empty where it does or there is none
+  bool KeepsBuiltInLimits() const;  // the verdict without any baseline
   CrosscheckOutcome Outcome() const;
   bool passed() const { return Outcome() == CrosscheckOutcome::kAgrees; }
 };
@@ -115,7 +117,8 @@ struct CrosscheckReport {
 struct CrosscheckOptions {
   int erode_pixels = 2;  // compared are pixels whose neighbourhood shows one and the same object in both
   bool make_pictures = true;
-  // By pixel: 1 where albedo is not compared, because the reference's surface has none and shines instead. Empty: nowhere.
+  // By pixel: 1 where albedo is not compared, because the reference's surface has none and shines instead. Empty:
+  // nowhere.
   std::vector<std::uint8_t> without_albedo = {};
 };
 
@@ -135,15 +138,18 @@ struct CrosscheckLight {
 
 // Adds the light layers to the report of the data layers `reference` and `ours`, whose masks they share. `light` is in
 // ascending order of samples; figures and pictures are those of the last. Each layer has two figures:
-//   - "mean difference": Σ|mean ours − mean reference| / Σ mean reference over the three channels, in percent. Its error is
+//   - "mean difference": Σ|mean ours − mean reference| / Σ mean reference over the three channels, in percent. Its
+//   error is
 //     the sum of the channels' standard errors, so it holds however the channels' noise hangs together. Limits: LDE
 //     0.5%, LSE 2%, the others 1.5% where nothing is glossy and 2% else.
-//   - "8x8 tiles": the root mean square difference of the means of tiles of 8 × 8 pixels over the mean, in percent, with
-//     what the noise adds taken off: light that is in the wrong place. Limit 5%; layers whose noise hides more than that
-//     are not judged by it.
-// Noise is told from real differences by the change of each pixel's difference from one sample count to the last; with a
-// single count by its spread. `indirect` is full − LDE − LSE where the surface itself does not shine. Zero in both is "no such light"; zero in one alone breaks. Every value of ours must be finite
-// and not negative. A layer that either side lacks is skipped, and fails the verdict. Errors: sizes differ.
+//   - "8x8 tiles": the root mean square difference of the means of tiles of 8 × 8 pixels over the mean, in percent,
+//   with
+//     what the noise adds taken off: light that is in the wrong place. Limit 5%; layers whose noise hides more than
+//     that are not judged by it.
+// Noise is told from real differences by the change of each pixel's difference from one sample count to the last; with
+// a single count by its spread. `indirect` is full − LDE − LSE where the surface itself does not shine. Zero in both is
+// "no such light"; zero in one alone breaks. Every value of ours must be finite and not negative. A layer that either
+// side lacks is skipped, and fails the verdict. Errors: sizes differ.
 Status CrosscheckLightLayers(const GuideSet& reference, const GuideSet& ours, const std::vector<CrosscheckLight>& light,
                              const CrosscheckOptions& options, CrosscheckReport& report);
 

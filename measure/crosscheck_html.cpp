@@ -173,7 +173,8 @@ std::string NoiseTable(const std::vector<CrosscheckNoise>& noise) {
   }
   if (!measured) return "";
   std::string html = "<table><tr><th>layer</th>";
-  for (const int count : measured->samples) html += "<th class=\"number\">" + internal::Counted(count, "sample") + "</th>";
+  for (const int count : measured->samples)
+    html += "<th class=\"number\">" + internal::Counted(count, "sample") + "</th>";
   html += "<th class=\"number\">slope</th><th>largest difference of a pixel</th></tr>\n";
   for (const CrosscheckNoise& layer : noise) {
     html += "<tr><td class=\"first\">" + Escape(layer.layer) + "</td>";
@@ -237,7 +238,8 @@ Expected<std::string> PictureRows(const CrosscheckReport& report) {
     html += "<h3>" + Escape(pictures.layer);
     if (!pictures.look.empty())
       html += " <span class=\"soft\" style=\"font-weight:400\">" + Escape(pictures.look) + "</span>";
-    html += "</h3>\n<div class=\"row\">\n" + reference + ours + "<div>" + difference + ColorScale(pictures) + "</div></div>\n";
+    html += "</h3>\n<div class=\"row\">\n" + reference + ours + "<div>" + difference + ColorScale(pictures) +
+            "</div></div>\n";
   }
   return html;
 }
@@ -267,8 +269,8 @@ Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& repo
     const std::vector<std::string> reasons = WhyCrosscheckFails(report);
     if (!reasons.empty()) {
       const bool differs = report.Outcome() == CrosscheckOutcome::kDiffers;
-      html += fmt::format("<div class=\"fails\"><b>Why it {}</b>", differs ? "differs" : "is not proved") + List(reasons) +
-              "</div>\n";
+      html += fmt::format("<div class=\"fails\"><b>Why it {}</b>", differs ? "differs" : "is not proved") +
+              List(reasons) + "</div>\n";
     }
     if (!report.baseline_mismatch.empty()) {
       html += "<p>Judged by the built-in limits alone: " + Escape(report.baseline_mismatch) + ".</p>\n";

@@ -101,9 +101,9 @@ void ForgetRounding(const LightMeasure& measure, const CrosscheckLight& light, L
   sums.ours_zero = std::fabs(Total(sums.ours)) <= kRounding * full_ours;
 }
 
-// What the noise adds to the square of each masked pixel's difference, by channel, in the mask's order. A pixel's mean of
-// N samples holds those of M samples before, so the two differ by noise alone, whose variance is σ²(1/M − 1/N); that of
-// the pixel itself is σ²/N. What both sides really disagree about does not change and drops out.
+// What the noise adds to the square of each masked pixel's difference, by channel, in the mask's order. A pixel's mean
+// of N samples holds those of M samples before, so the two differ by noise alone, whose variance is σ²(1/M − 1/N); that
+// of the pixel itself is σ²/N. What both sides really disagree about does not change and drops out.
 std::vector<glm::dvec3> NoiseVariances(const LightMeasure& measure, const std::vector<CrosscheckLight>& light) {
   std::vector<glm::dvec3> variances;
   variances.reserve(measure.mask.size());

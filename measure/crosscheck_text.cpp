@@ -132,8 +132,8 @@ std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report) {
     const std::string limit = fmt::format("the {}limit of {:.3g} {}", figure.TightenedByBaseline() ? "baseline's " : "",
                                           figure.LimitInForce(), figure.unit);
     if (figure.TooNoisy()) {
-      reasons.push_back(fmt::format("{}: {:.3g} give or take {:.3g} does not show whether {} is kept: raise --samples", what,
-                                    figure.value, 2.0 * figure.error, limit));
+      reasons.push_back(fmt::format("{}: {:.3g} give or take {:.3g} does not show whether {} is kept: raise --samples",
+                                    what, figure.value, 2.0 * figure.error, limit));
     } else {
       reasons.push_back(fmt::format("{}: {:.3g} is above {}", what, figure.value, limit) +
                         (figure.note.empty() ? "" : ", " + figure.note));
@@ -169,9 +169,9 @@ std::string CrosscheckVerdict(const CrosscheckReport& report) {
                           noisy == 1 ? "1 figure is" : fmt::format("{} figures are", noisy));
   }
   if (!report.unsupported.empty() && count([](const CrosscheckFigure& figure) { return figure.broken(); }) > 0) {
-    verdict += fmt::format(", {} not expressed: see the list “not expressed”",
-                           report.unsupported.size() == 1 ? "1 thing is"
-                                                          : fmt::format("{} things are", report.unsupported.size()));
+    verdict += fmt::format(
+        ", {} not expressed: see the list “not expressed”",
+        report.unsupported.size() == 1 ? "1 thing is" : fmt::format("{} things are", report.unsupported.size()));
   }
   if (report.setup.samples == 0) return verdict + ", data layers alone: light was not compared (--samples 0)";
   return report.setup.max_bounces > 0 ? verdict : verdict + ", direct light alone (--max-bounces 0)";
@@ -179,9 +179,8 @@ std::string CrosscheckVerdict(const CrosscheckReport& report) {
 
 std::string CrosscheckToText(const CrosscheckReport& report) {
   if (!report.failure.empty()) return report.scene + "\n  verdict: " + CrosscheckVerdict(report) + "\n";
-  std::string text =
-      fmt::format("{}  {}, {} of {} covered pixels compared\n", report.scene, SetupText(report.setup),
-                  report.compared, report.covered);
+  std::string text = fmt::format("{}  {}, {} of {} covered pixels compared\n", report.scene, SetupText(report.setup),
+                                 report.compared, report.covered);
   for (const CrosscheckFigure& figure : report.figures) text += FigureLine(figure);
   text += NoiseText(report.noise);
   const auto list = [&text](const char* title, const std::vector<std::string>& lines) {

@@ -46,7 +46,8 @@ ExplainColor Mixed(ExplainColor a, ExplainColor b, float share) {
 
 // Lighting conditions, told apart by any eye (Okabe and Ito's palette).
 ExplainColor ExemplarColor(int exemplar) {
-  constexpr std::array<std::array<int, 3>, 4> kColors = {{{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {204, 121, 167}}};
+  constexpr std::array<std::array<int, 3>, 4> kColors = {
+      {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {204, 121, 167}}};
   const auto& c = kColors[static_cast<std::size_t>(exemplar) % kColors.size()];
   return {static_cast<std::uint16_t>(c[0] * 257), static_cast<std::uint16_t>(c[1] * 257),
           static_cast<std::uint16_t>(c[2] * 257)};
@@ -75,20 +76,25 @@ class Painter {
 
   ExplainColor Color(Explanation what, std::size_t i, int x, int y) const {
     switch (what) {
-      case Explanation::kSources: return SourceColor(i);
+      case Explanation::kSources:
+        return SourceColor(i);
       case Explanation::kChunks: {
         const ExplainColor chunk = HashedColor(ChunkAt(i, x, y), 0.6f, 0.85f);
         return Border(i, x, y) ? Mixed(chunk, {}, 0.72f) : chunk;
       }
-      case Explanation::kLevels: return LevelColor(planes_.level[i]);
-      case Explanation::kError: return ErrorColor(planes_.error[i], planes_.threshold[StyleAt(i)]);
-      case Explanation::kExemplar: return ExemplarColor(planes_.exemplar[i]);
+      case Explanation::kLevels:
+        return LevelColor(planes_.level[i]);
+      case Explanation::kError:
+        return ErrorColor(planes_.error[i], planes_.threshold[StyleAt(i)]);
+      case Explanation::kExemplar:
+        return ExemplarColor(planes_.exemplar[i]);
       // The golden ratio keeps the hues of few and of many styles apart.
       case Explanation::kStyles: {
         const double turns = 0.16 + 0.6180339887 * static_cast<double>(StyleAt(i));
         return FromHue(0.72f, 0.13f, static_cast<float>(turns - std::floor(turns)));
       }
-      case Explanation::kBorders: break;
+      case Explanation::kBorders:
+        break;
     }
     return {};
   }

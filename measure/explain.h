@@ -36,15 +36,15 @@ struct ExplainPlanes {
   std::span<const float> coverage;         // 0 … 1, becomes the alpha
   std::span<const std::int16_t> source_x;  // exemplar pixels
   std::span<const std::int16_t> source_y;
-  std::span<const std::int8_t> level;      // below 0: not painted
+  std::span<const std::int8_t> level;  // below 0: not painted
   std::span<const std::uint8_t> exemplar;
-  std::span<const std::uint16_t> style;    // kNoStyle: left as it was; empty: there is one style, 0
-  std::span<const float> error;            // guide distance, 0 or more
+  std::span<const std::uint16_t> style;  // kNoStyle: left as it was; empty: there is one style, 0
+  std::span<const float> error;          // guide distance, 0 or more
   // By style.
-  std::vector<int> exemplar_size;          // side of the resized exemplar, pixels
+  std::vector<int> exemplar_size;  // side of the resized exemplar, pixels
   std::vector<int> exemplar_count;
   std::vector<float> threshold;
-  const Picture* result = nullptr;         // for kBorders
+  const Picture* result = nullptr;  // for kBorders
 };
 
 // Pixels that are not painted are transparent, save in kBorders, which is the result. Deterministic, O(pixels).
@@ -60,8 +60,8 @@ struct ExplainColor {
 // with colour-blind eyes too; the same level has the same colour in every picture. 7 and above are alike.
 ExplainColor LevelColor(int level);
 
-// Black at 0, orange at the threshold, white at twice that and above, both halves straight in Oklab. With a threshold of
-// infinity the scale ends at 2, the largest distance of unit vectors; with 0 any error is white.
+// Black at 0, orange at the threshold, white at twice that and above, both halves straight in Oklab. With a threshold
+// of infinity the scale ends at 2, the largest distance of unit vectors; with 0 any error is white.
 ExplainColor ErrorColor(float error, float threshold);
 
 }  // namespace scumble

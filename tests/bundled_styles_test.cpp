@@ -38,7 +38,7 @@ GuideSet StillLife() {
 struct Variant {
   const char* name;
   std::function<void(TransferSettings&)> set;
-  bool lit = false;     // the first exemplar a second time, painted for less light
+  bool lit = false;     // where the style has one exemplar: that a second time, painted for less light
   bool mapped = false;  // the floor catches shadows, one object is left out, another has a style of its own
 };
 
@@ -61,12 +61,15 @@ std::vector<Variant> Variants() {
       {"painted edge", pixels(edge)},
       {"painted edge, tinted", pixels([=](TransferSettings& s) { edge(s), oklab(s); })},
       {"varied", pixels([](TransferSettings& s) { s.variety = 15.0, s.jitter_fps = 12.0; })},
-      {"lit", pixels([](TransferSettings&) {}), true},
+      {"Lit Sphere", pixels([](TransferSettings& s) { s.method = Method::kLitSphere; })},
+      {"brute force", pixels([](TransferSettings& s) { s.method = Method::kBruteForce; })},
+      {"lit", pixels([](TransferSettings& s) { s.luminance_weight = 2.0f; }), true},
       {"mapped", pixels([](TransferSettings& s) { s.shadow = ShadowMode::kPaint; }), false, true},
       {"all at once", pixels([=](TransferSettings& s) {
          edge(s), oklab(s);
          s.blend_radius = 3, s.variety = 10.0, s.shadow = ShadowMode::kPaint, s.jitter_fps = 12.0;
-       }), true, true},
+       }),
+       true, true},
   };
 }
 
@@ -170,8 +173,10 @@ TEST(BundledStyles, SameBytesForAnyThreadsAndRegions) {
       ASSERT_FALSE(painter.styles.empty());
       with_edge += !painter.prepared.front().rims.empty();
       const Picture whole = painter.Paint(guides, 1, {});
-      if (std::string(variant.name) == "plain pixels") plain = whole.rgba;
-      else EXPECT_TRUE(whole.rgba != plain) << "it does nothing, so nothing is tested";
+      if (std::string(variant.name) == "plain pixels")
+        plain = whole.rgba;
+      else
+        EXPECT_TRUE(whole.rgba != plain) << "it does nothing, so nothing is tested";
       ExpectSame(painter.Paint(guides, 4, {}), whole, "4 threads");
       for (const auto& [width, height] : {std::pair{17, 13}, {40, 31}, {kWidth, 1}, {1, kHeight}}) {
         ExpectSame(painter.Paint(guides, 1, Tiles(width, height)), whole,

@@ -160,34 +160,37 @@ struct Neutral {
 };
 
 std::vector<Neutral> Neutrals() {
-  const auto set = [](auto field, auto value) {
-    return [=](Style& style) { style.transfer.*field = value; };
-  };
+  const auto set = [](auto field, auto value) { return [=](Style& style) { style.transfer.*field = value; }; };
   using T = TransferSettings;
   const float infinity = std::numeric_limits<float>::infinity();
   return {
-      {"one exemplar, whatever its light counts", [=](Style& s) {
+      {"one exemplar, whatever its light counts",
+       [=](Style& s) {
          s.exemplars[0].luminance = 0.3;
          s.transfer.luminance_weight = infinity, s.transfer.luminance_error = LuminanceError::kPublished;
        }},
-      {"weight 0 and the same paint for every light", [](Style& s) {
+      {"weight 0 and the same paint for every light",
+       [](Style& s) {
          s.exemplars.push_back(s.exemplars[0]), s.exemplars.push_back(s.exemplars[0]);
          s.exemplars[0].luminance = 0.1, s.exemplars[1].luminance = 0.8, s.exemplars[2].luminance = 0.4;
          s.transfer.luminance_weight = 0.0f;
        }},
-      {"weight 0 by the published error", [](Style& s) {
+      {"weight 0 by the published error",
+       [](Style& s) {
          s.exemplars.push_back(s.exemplars[0]);
          s.exemplars[0].luminance = 0.1, s.exemplars[1].luminance = 0.8;
          s.transfer.luminance_weight = 0.0f, s.transfer.luminance_error = LuminanceError::kPublished;
        }},
-      {"the same paint for the same light", [](Style& s) {
+      {"the same paint for the same light",
+       [](Style& s) {
          s.exemplars.push_back(s.exemplars[0]);
          s.exemplars[0].luminance = s.exemplars[1].luminance = 0.5;
          s.transfer.luminance_weight = 9.0f;
        }},
       {"colorize 0 in Oklab", set(&T::colorize_mode, ColorizeMode::kOklab)},
       {"a jitter rate at frame 0", set(&T::jitter_fps, -1.0)},
-      {"a painted edge that the paint has not", [](Style& s) {
+      {"a painted edge that the paint has not",
+       [](Style& s) {
          s.paper.color.reset();
          s.transfer.edge = EdgeMode::kExemplar;
        }},
@@ -195,7 +198,8 @@ std::vector<Neutral> Neutrals() {
       {"a map of one style", [](Style&) {}, [](Style&) {}, true},
       {"the search by formula", set(&T::nearest, NearestSearch::kAnalytic)},
       {"a reference height that is the picture's", set(&T::reference_height, kHeight)},
-      {"a scale of 1 of the picture's height", [](Style& s) { s.transfer.reference_height = kHeight, s.transfer.scale = 1.0; }},
+      {"a scale of 1 of the picture's height",
+       [](Style& s) { s.transfer.reference_height = kHeight, s.transfer.scale = 1.0; }},
       {"edges, where votes reach no one", set(&T::edge_aware, false), set(&T::blend_radius, 0)},
       {"a crease without edges", set(&T::crease, 1.0), set(&T::edge_aware, false)},
       {"a depth tolerance without edges", set(&T::depth_tolerance, 0.0), set(&T::edge_aware, false)},
@@ -214,8 +218,8 @@ TEST(Neutral, ValuesThatMakeNoDifference) {
   }
 }
 
-// Where everything is one object, a tolerance of its whole distance and creases that none is let every vote through: the
-// largest values that a style can have are those of edge_aware = false.
+// Where everything is one object, a tolerance of its whole distance and creases that none is let every vote through:
+// the largest values that a style can have are those of edge_aware = false.
 TEST(Neutral, TheWidestEdgesAreNone) {
   for (GuideSet guides : {Hills(), Wall()}) {
     for (float& id : guides.Plane(Layer::kObject)) id = id > 0.0f ? kOneObject : 0.0f;
@@ -230,10 +234,12 @@ TEST(Neutral, TheWidestEdgesAreNone) {
   EXPECT_FALSE(Painted(Base(), Hills()).rgba == Painted(none, Hills()).rgba);
 }
 
-// Each extension does something as soon as it leaves its neutral value, so that the tests above compare what could differ.
+// Each extension does something as soon as it leaves its neutral value, so that the tests above compare what could
+// differ.
 TEST(Neutral, BeyondItEveryExtensionShows) {
   const std::vector<std::pair<const char*, std::function<void(Style&)>>> changes = {
-      {"light", [](Style& s) {
+      {"light",
+       [](Style& s) {
          s.exemplars.push_back(s.exemplars[0]);
          s.exemplars[0].luminance = 0.1, s.exemplars[1].luminance = 0.8;
          s.transfer.luminance_weight = 0.5f;
