@@ -21,6 +21,7 @@ class Placed:
     mesh: object = None
     slots: tuple = ()  # original materials, None where there is none
     exported: str = ""  # the name that the exporter sees
+    is_own_shape: bool = False  # the mesh is the source's, and no geometry nodes made it up for an instance
 
 
 @dataclass
@@ -212,6 +213,7 @@ def place_mesh(flat, meshes, placed, instance, depsgraph):
     if meshes[key] is None:
         return
     placed.mesh = meshes[key]
+    placed.is_own_shape = thing.type == "MESH" and not is_generated(instance, depsgraph)
     materials = [slot.material.original if slot.material else None for slot in thing.material_slots]
     placed.slots = tuple(materials or [None])
     for material in placed.slots:

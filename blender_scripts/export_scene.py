@@ -33,6 +33,7 @@ import export_flat  # noqa: E402
 import export_glb  # noqa: E402
 import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
+import export_rest  # noqa: E402
 import export_stretch  # noqa: E402
 from blend_common import Unsupported, check_version, choose_layer, choose_scene, fail  # noqa: E402
 
@@ -41,6 +42,7 @@ def export(scene, output, unsupported):
     """Everything is decided before the glTF exporter runs: it gets plain objects with short names of ours, so that
     what it writes can be found again and completed."""
     flat = export_flat.flatten(scene, unsupported)
+    has_rest = export_rest.add_rest_positions(flat, choose_layer(scene))
     materials = export_materials.simplify(flat.materials, unsupported)
     world = export_lamps.world_radiance(scene, unsupported)
     lamps = [export_lamps.describe_lamp(lamp, unsupported) for lamp in flat.lamps]
@@ -51,7 +53,8 @@ def export(scene, output, unsupported):
         bpy.ops.export_scene.gltf(
             filepath=str(raw), export_format="GLB", use_active_scene=True, export_yup=True, export_apply=False,
             export_cameras=False, export_lights=False, export_animations=False, export_skins=False, export_morph=False,
-            export_colors=True, export_tangents=False, export_extras=False, export_image_format="AUTO")
+            export_colors=True, export_tangents=False, export_extras=False, export_attributes=has_rest,
+            export_image_format="AUTO")
         document, binary = export_glb.read(raw)
     export_glb.complete(document, flat, materials, lamps, cameras)
     binary = export_stretch.bake(document, binary, document.get("nodes", []))

@@ -6,9 +6,12 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/json_text.h"
 #include "cli/options.h"
 #include "io/channel_file.h"
+#include "io/guide_file.h"
 #include "io/picture_file.h"
+#include "measure/flicker.h"
 #include "measure/heat_map.h"
 
 namespace scumble {
@@ -19,9 +22,43 @@ struct CompareVerb {
   std::string b;
   CompareOptions options;
   std::string heat_map;
+  std::string motion;
+  std::string motion_next;
 };
 
+// The guides that flicker is measured along; what is not there is not looked at.
+Expected<GuideSet> ReadMotionGuides(const std::string& path, LayerSet required) {
+  GuideReadOptions options;
+  options.required = required.Add(Layer::kCoverage);
+  options.optional = {Layer::kDepth, Layer::kObject, Layer::kPref};
+  return ReadGuides(path, options);
+}
+
+Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
+  SCUMBLE_ASSIGN(const Picture a, ReadPicture(verb.a));
+  SCUMBLE_ASSIGN(const Picture b, ReadPicture(verb.b));
+  SCUMBLE_ASSIGN(const GuideSet guides, ReadMotionGuides(verb.motion, {Layer::kMotion}));
+  GuideSet next;
+  if (!verb.motion_next.empty()) {
+    SCUMBLE_ASSIGN(next, ReadMotionGuides(verb.motion_next, {}));
+  }
+  SCUMBLE_ASSIGN(const FlickerReport report,
+                 MeasureFlicker(a, b, guides, verb.motion_next.empty() ? nullptr : &next));
+  const nlohmann::ordered_json json = {{"a", verb.a},
+                                       {"b", verb.b},
+                                       {"flicker", report.mean},
+                                       {"floor", report.floor},
+                                       {"pixels", report.pixels},
+                                       {"hidden", report.hidden}};
+  Print(globals.json ? JsonText(json)
+                     : fmt::format("flicker {:.3f} of 255 along the motion; {:.3f} is what resampling alone costs\n"
+                                   "{} pixels stay in sight, {} do not\n",
+                                   report.mean, report.floor, report.pixels, report.hidden));
+  return ExitCode::kOk;
+}
+
 Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& globals) {
+  if (!verb.motion.empty()) return RunFlicker(verb, globals);
   SCUMBLE_ASSIGN(const ChannelImage a, ReadChannels(verb.a));
   SCUMBLE_ASSIGN(const ChannelImage b, ReadChannels(verb.b));
   SCUMBLE_ASSIGN(const CompareReport report, Compare(a, b, verb.options));
@@ -67,6 +104,20 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("-o,--heat-map", verb->heat_map,
                   "picture of the differences to write: dark where equal, yellow where most")
       ->type_name("FILE");
+  CLI::Option* motion =
+      sub->add_option("--motion", verb->motion,
+                      "guides of the first picture's frame, with layer motion: measure how the colours of what stays in "
+                      "sight change on the way to the second picture, the next frame, and nothing else")
+          ->type_name("FILE");
+  sub->add_option("--motion-next", verb->motion_next, "guides of the second picture's frame: what is hidden there is left out")
+      ->type_name("FILE")
+      ->needs(motion);
+  for (const CLI::Option* option : sub->get_options()) {
+    const std::string name = option->get_name();
+    if (name.starts_with("--") && !name.starts_with("--motion") && name != "--help") {
+      motion->excludes(sub->get_option(name));
+    }
+  }
   sub->footer("Thresholds are idiff's, which may be written with one dash: -fail 0.01 -failpercent 1.\n\n" +
               app.get_footer());
   AddGlobalOptions(*sub, globals);

@@ -174,7 +174,7 @@ namespace {
 // What a transfer reads from the settings themselves, frame by frame: when nothing else changes, exemplars stay prepared.
 bool IsReadEachFrame(const std::string& key) {
   static const std::set<std::string> kKeys = {"transfer.threshold", "transfer.threshold_metric", "transfer.jitter",
-                                              "transfer.jitter_fps", "transfer.variety", "transfer.crease",
+                                              "transfer.jitter_fps", "transfer.coherent", "transfer.variety", "transfer.crease",
                                               "transfer.depth_tolerance"};
   return kKeys.count(key) > 0;
 }

@@ -54,6 +54,7 @@ void DropUnusedVertices(Mesh& mesh, MeshDeformation& deformation) {
   gather(mesh.uvs[1]);
   gather(mesh.tangents);
   gather(mesh.colors);
+  gather(mesh.rest_positions);
   for (MorphTarget& target : deformation.targets) {
     gather(target.positions);
     gather(target.normals);
@@ -97,12 +98,18 @@ class PrimitiveLoader {
       SCUMBLE_ASSIGN(corners, AccessorCount(model_, file_, primitive_.indices, name_ + ", indices"));
     }
     SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, vertices, TriangleCount(primitive_.mode, corners)));
-    SCUMBLE_RETURN_IF_ERROR(ReadPositions(position));
+    SCUMBLE_RETURN_IF_ERROR(ReadPlaces(position, "POSITION", mesh_.positions));
     SCUMBLE_RETURN_IF_ERROR(ReadTriangles());
     SCUMBLE_RETURN_IF_ERROR(ReadAttributes());
     if (request_) {
       SCUMBLE_RETURN_IF_ERROR(ReadTargets());
       SCUMBLE_RETURN_IF_ERROR(ReadInfluences());
+    } else if (const int rest = Accessor("_SCUMBLE_REST"); rest >= 0) {
+      SCUMBLE_RETURN_IF_ERROR(ReadPlaces(rest, "_SCUMBLE_REST", mesh_.rest_positions));
+      if (mesh_.rest_positions.size() != mesh_.positions.size()) {
+        return InputError(file_ + ": " + name_ + ", _SCUMBLE_REST: " + std::to_string(mesh_.rest_positions.size()) +
+                          " elements for " + std::to_string(mesh_.positions.size()) + " positions; expected as many");
+      }
     }
     SCUMBLE_RETURN_IF_ERROR(ChooseMaterial());
     if (mesh_.triangles.size() < mesh_.positions.size() / 4) {
@@ -131,17 +138,18 @@ class PrimitiveLoader {
     return it == primitive_.attributes.end() ? -1 : it->second;
   }
 
-  Status ReadPositions(int accessor) {
-    SCUMBLE_ASSIGN(const FloatTable table, ReadFloats(model_, file_, accessor, name_ + ", POSITION"));
-    if (table.components != 3) return InputError(file_ + ": " + name_ + ", POSITION: expected three components");
-    mesh_.positions.resize(table.count);
+  Status ReadPlaces(int accessor, const std::string& attribute, std::vector<glm::vec3>& places) {
+    const std::string where = file_ + ": " + name_ + ", " + attribute;
+    SCUMBLE_ASSIGN(const FloatTable table, ReadFloats(model_, file_, accessor, name_ + ", " + attribute));
+    if (table.components != 3) return InputError(where + ": expected three components");
+    places.resize(table.count);
     for (std::size_t i = 0; i < table.count; ++i) {
-      const glm::vec3 position(table.values[3 * i], table.values[3 * i + 1], table.values[3 * i + 2]);
-      if (!IsFinite(position)) {
-        return InputError(file_ + ": " + name_ + ", POSITION: accessor " + std::to_string(accessor) +
-                          " has NaN or infinity at vertex " + std::to_string(i) + "; expected finite numbers");
+      const glm::vec3 place(table.values[3 * i], table.values[3 * i + 1], table.values[3 * i + 2]);
+      if (!IsFinite(place)) {
+        return InputError(where + ": accessor " + std::to_string(accessor) + " has NaN or infinity at vertex " +
+                          std::to_string(i) + "; expected finite numbers");
       }
-      mesh_.positions[i] = position;
+      places[i] = place;
     }
     return Ok();
   }

@@ -25,7 +25,8 @@ struct GltfLoad {
 };
 
 // Loads the primitives of one glTF mesh into scene.meshes and returns their indices. Points, lines and primitives
-// without positions are left out with a warning; the list may be empty. scene.materials must hold the file's.
+// without positions are left out with a warning; the list may be empty. The attribute _SCUMBLE_REST, which our Blender export
+// writes, becomes rest_positions. scene.materials must hold the file's.
 Expected<std::vector<int>> LoadGltfMesh(const GltfLoad& load, int mesh_index);
 
 // A mesh that is to be deformed. Its scene.meshes have rest_positions.

@@ -8,6 +8,9 @@ LayerSet RequiredLayers(const Style& style) {
   const bool votes_stop_at_edges = settings.edge_aware && settings.blend_radius > 0;
   if (votes_stop_at_edges || settings.variety > 0.0) layers.Add(Layer::kObject);
   if (votes_stop_at_edges) layers.Add(Layer::kDepth);
+  if (settings.coherent && settings.method == Method::kStyleBlit) {
+    layers.Add(Layer::kObject).Add(Layer::kDepth).Add(Layer::kPref);
+  }
   if (style.exemplars.size() > 1) layers.Add(Layer::kLuminance);
   if (settings.shadow == ShadowMode::kPaint) layers.Add(Layer::kShadow);
   if (settings.edge == EdgeMode::kExemplar) layers.Add(Layer::kObject).Add(Layer::kDepth);

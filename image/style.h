@@ -66,6 +66,7 @@ struct TransferSettings {
   int levels = 7;            // seed grids of 2^(levels-1) … 1 pixels, 1 … 16
   float jitter = 1.0f;       // 0 … 1, how far seeds leave their grid
   double jitter_fps = 0.0;   // renewals a second; 0 frozen, -1 every frame
+  bool coherent = false;     // seeds live on the surface instead of the screen; for kStyleBlit
   int blend_radius = 1;      // voting window of (2r + 1)² pixels, 0 … 64
   bool edge_aware = true;    // votes do not cross object borders, depth steps and creases
   double crease = 60.0;      // 0 … 180 degrees between normals, from which on an edge is a crease; 180: none is

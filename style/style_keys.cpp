@@ -149,16 +149,6 @@ Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path
   return Ok();
 }
 
-// A key whose feature is still to come: the default is harmless, anything else is refused by name.
-StyleKey ToCome(const std::string& name, KeyValue neutral, const std::string& help) {
-  const std::string default_value = ToText(neutral);
-  return {"transfer." + name, default_value, help, false, [=](Style&, const KeyValue& value, const auto&) -> Status {
-            if (value == neutral) return Ok();
-            if (const auto a = AsNumber(value), b = AsNumber(neutral); a && b && *a == *b) return Ok();
-            return UnavailableError("not built into this version, only " + default_value + " is");
-          }};
-}
-
 std::vector<StyleKey> MakeKeys() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   using T = TransferSettings;
@@ -174,7 +164,7 @@ std::vector<StyleKey> MakeKeys() {
       {"transfer.levels", "7", "seed grids of 2^(levels-1) to 1 pixels, 1 to 16", true, Whole(&T::levels, 1, 16)},
       {"transfer.jitter", "1.0", "how far seeds leave their grid, 0 to 1", true, Number(&T::jitter, 0.0, 1.0)},
       {"transfer.jitter_fps", "0", "renewals of the jitter a second; 0 frozen, -1 every frame", true, SetJitterFps},
-      ToCome("coherent", false, "seeds live on the surface instead of the screen"),
+      {"transfer.coherent", "false", "pieces stick to surfaces that move, instead of the screen", true, Flag(&T::coherent)},
       {"transfer.blend_radius", "1", "voting window, pixels, 0 to 64", true, Whole(&T::blend_radius, 0, 64)},
       {"transfer.edge_aware", "true", "votes do not cross object borders, depth steps and creases", true,
        Flag(&T::edge_aware)},

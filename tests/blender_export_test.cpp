@@ -34,8 +34,9 @@ class Cases : public testing::Environment {
   void SetUp() override {
     folder_ = new TemporaryFolder;
     Shell(kBlender + ("-P " + Source("tests/blender/make_cases.py")) + " -- --output " + folder_->path().string());
-    for (const char* name : {"lamps", "materials", "objects", "cameras", "rendered", "broken"}) Export(name, "", name);
+    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken"}) Export(name, "", name);
     Export("objects", " --frame 6", "objects6");
+    Export("deformed", " --frame 6", "deformed6");
     expected_ = nlohmann::json::parse(std::ifstream(*folder_ / "expected.json"), nullptr, false);
     ASSERT_TRUE(expected_.is_object()) << "make_cases.py wrote no expected.json";
   }
@@ -90,6 +91,33 @@ void ExpectClose(double found, double expected, const std::string& what) {
 }
 void ExpectColor(const glm::vec3& found, const glm::vec3& expected, const std::string& what) {
   for (int i = 0; i < 3; ++i) ExpectClose(found[i], expected[i], what);
+}
+
+// What `pref` holds stays where it is while modifiers and shape keys move the vertices.
+TEST(BlenderMeshes, RestPositionsDoNotMove) {
+  const Scene first = Loaded("deformed"), sixth = Loaded("deformed6");
+  const auto mesh = [](const Scene& scene, const std::string& object) {
+    for (const Instance& instance : scene.instances) {
+      if (instance.object == object) return scene.meshes[std::size_t(instance.mesh)];
+    }
+    ADD_FAILURE() << "there is no " << object;
+    return Mesh();
+  };
+  EXPECT_TRUE(mesh(first, "Plain").rest_positions.empty());
+  for (const std::string object : {"Bent", "Shaped"}) {
+    SCOPED_TRACE(object);
+    const Mesh a = mesh(first, object), b = mesh(sixth, object);
+    ASSERT_EQ(a.rest_positions.size(), a.positions.size());
+    EXPECT_EQ(a.rest_positions, b.rest_positions);
+    EXPECT_NE(a.positions, b.positions);
+    glm::vec3 low(1e30f), high(-1e30f);
+    for (const glm::vec3& place : a.rest_positions) low = glm::min(low, place), high = glm::max(high, place);
+    // Cubes of 1 m, three of them side by side; not bent, and not stretched by the object's scale.
+    EXPECT_EQ(low, glm::vec3(-0.5f));
+    EXPECT_EQ(high, object == "Bent" ? glm::vec3(2.5f, 0.5f, 0.5f) : glm::vec3(0.5f));
+  }
+  // At value 0 the shape is that of the basis, vertex by vertex: the axes are glTF's.
+  EXPECT_EQ(mesh(first, "Shaped").rest_positions, mesh(first, "Shaped").positions);
 }
 
 TEST(BlenderLamps, PointsAndSpots) {

@@ -191,8 +191,8 @@ TEST_F(CliBadContent, UnknownStyles) {
   ExpectError(Transfer("g.exr", "bad"), 3, {"bad/style.toml:2", "unknown key transfer.bogus", "blend_radius"});
   WriteText("syntax/style.toml", "name = \"x\"\nlicence\n");
   ExpectError(Transfer("g.exr", "syntax"), 3, {"syntax/style.toml:2", "not valid TOML"});
-  WriteText("later/style.toml", "[transfer]\ncoherent = true\n");
-  ExpectError(Transfer("g.exr", "later"), 5, {"later/style.toml:2", "transfer.coherent", "not built"});
+  WriteText("later/style.toml", "[transfer]\nmethod = \"stylit\"\n");
+  ExpectError(Transfer("g.exr", "later"), 5, {"later/style.toml:2", "transfer.method", "not built"});
 }
 
 TEST_F(CliBadContent, ScenesThatShowNothing) {

@@ -166,7 +166,7 @@ TEST_F(CliPictures, SetWinsOverTheStyle) {
   ExpectError(With(transfer, {"--set", "transfer.threshold=nan"}), 2, {"transfer.threshold", "0 or more"});
   ExpectError(With(transfer, {"--set", "transfer.method=bogus"}), 2, {"litsphere", "styleblit", "bruteforce"});
   ExpectError(With(transfer, {"--set", "transfer.method=stylit"}), 5, {"stylit", "not built"});
-  ExpectError(With(transfer, {"--set", "transfer.coherent=true"}), 5, {"transfer.coherent", "not built"});
+  ExpectError(With(transfer, {"--set", "transfer.coherent=true"}), 3, {"pref"});
   ExpectError(With(transfer, {"--set", "transfer.paper=no.png"}), 3, {"transfer.paper", "no.png", "no such file"});
 }
 
@@ -218,6 +218,32 @@ TEST_F(CliCompare, WhatCannotBeCompared) {
   WriteText("text.png", "no picture");
   ExpectError({"compare", "a.png", "text.png"}, 3, {"text.png"});
   EXPECT_EQ(Run({"compare", "g.exr", "g.exr", "--layer", "normal"}).code, 0);
+}
+
+TEST_F(CliCompare, FlickerAlongTheMotion) {
+  WritePainted("a.png", 24, 24);
+  GuideSet guides = Ball(24);
+  guides.Add(Layer::kMotion);
+  for (float& x : guides.Plane(Layer::kMotion, 0)) x = 2.0f;
+  WriteGuideFile("g.exr", guides);
+  WriteGuideFile("next.exr", Ball(24));
+  const Picture a = *ReadPicture(At("a.png"));
+  Picture b = a;
+  for (int y = 0; y < 24; ++y) std::copy(a.At(0, y), a.At(22, y), b.At(2, y));
+  ASSERT_TRUE(WritePicture(At("b.png"), b));
+  const CommandResult moved = RunOk({"compare", "a.png", "b.png", "--motion", "g.exr", "--json"});
+  EXPECT_EQ(moved.Json()["flicker"], 0.0);
+  EXPECT_EQ(moved.Json()["floor"], 0.0);
+  EXPECT_GT(moved.Json()["pixels"], 100);
+  const CommandResult still = RunOk({"compare", "a.png", "a.png", "--motion", "g.exr", "--motion-next", "next.exr", "--json"});
+  EXPECT_GT(still.Json()["flicker"], 1.0);
+  EXPECT_LT(still.Json()["pixels"], moved.Json()["pixels"]);  // beyond the ball's edge the next frame shows nothing
+  EXPECT_TRUE(Contains(RunOk({"compare", "a.png", "a.png", "--motion", "g.exr"}).out, "flicker "));
+  ExpectError({"compare", "a.png", "b.png", "--motion", "next.exr"}, 3, {"next.exr", "motion"});
+  ExpectError({"compare", "a.png", "b.png", "--motion-next", "g.exr"}, 2, {"--motion-next", "--motion"});
+  ExpectError({"compare", "a.png", "b.png", "--motion", "g.exr", "-fail", "1"}, 2, {"--motion", "--fail"});
+  WritePainted("small.png", 20, 24);
+  ExpectError({"compare", "a.png", "small.png", "--motion", "g.exr"}, 3, {"second picture is 20×24", "24×24"});
 }
 
 TEST_F(CliCompare, HeatMapAndJson) {

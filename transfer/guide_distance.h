@@ -36,6 +36,9 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < left;
   }
 
+  // About what the threshold is between unit normals, by the Euclidean metric.
+  float EuclideanThreshold() const { return metric_ == ThresholdMetric::kL2 ? threshold_ : threshold_ * (2.0f / 3.0f); }
+
  private:
   float threshold_;
   ThresholdMetric metric_;

@@ -47,6 +47,10 @@ bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& pr
 // its level. If no level accepts, p takes its own u*.
 bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress);
 
+// The same with seeds that live on the surface (transfer/surface_seeds.h): guides need pref, depth and object ids. Seeds
+// depend on all active pixels of the picture, whatever the region.
+bool MatchCoherent(const MatchInput& input, SourceField& field, RowProgress& progress);
+
 // Sýkora's algorithm 1: the first free pixel in row order is the next anchor; its u* is offered to every free pixel of
 // the picture by the same rule. One thread, O(chunks × pixels).
 bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& progress);

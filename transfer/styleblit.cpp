@@ -4,25 +4,32 @@
 #include <vector>
 
 #include "image/hash.h"
-#include "transfer/match.h"
+#include "transfer/seed_offer.h"
 #include "transfer/variety.h"
 
 namespace scumble::internal {
-namespace {
 
-// What a seed offers to the pixels around it.
-struct SeedOffer {
-  Offer offer;
-  // What `variety` moved the source's guide by: a pixel is compared as if its own guide were moved by the same.
-  glm::vec3 moved{0.0f};
-};
+void Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made) {
+  if (!(input.variety_degrees > 0.0) || !IsFlat(input, q, std::max(input.flat_reach, 1 << level))) return;
+  const Source own = made.offer.source;
+  made.offer.source = ChooseAlike(input, own, hash);
+  made.moved += input.exemplar.Normal(made.offer.source.x, made.offer.source.y) - input.exemplar.Normal(own.x, own.y);
+}
+
+std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, PixelPosition q, PixelPosition p,
+                               glm::vec3 guide, float light) {
+  const Source candidate{seed.offer.source.x + (p.x - q.x), seed.offer.source.y + (p.y - q.y)};
+  if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
+  const float extra = input.illumination.Error(light, seed.offer.exemplar);
+  if (!input.test.Alike(guide + seed.moved, input.exemplar.Normal(candidate.x, candidate.y), extra)) return std::nullopt;
+  return Offer{candidate, seed.offer.exemplar};
+}
+
+namespace {
 
 SeedOffer MakeOffer(const MatchInput& input, int level, PixelPosition q, std::size_t pixel) {
   SeedOffer made{OwnOffer(input, pixel)};
-  if (!(input.variety_degrees > 0.0) || !IsFlat(input, q, std::max(input.flat_reach, 1 << level))) return made;
-  const Source own = made.offer.source;
-  made.offer.source = ChooseAlike(input, own, Hash(input.seeds.seed, input.seeds.time_step, level, q.x, q.y, 0x7a));
-  made.moved = input.exemplar.Normal(made.offer.source.x, made.offer.source.y) - input.exemplar.Normal(own.x, own.y);
+  Vary(input, level, q, Hash(input.seeds.seed, input.seeds.time_step, level, q.x, q.y, 0x7a), made);
   return made;
 }
 
@@ -46,13 +53,7 @@ struct Level {
 std::optional<Offer> Accept(const MatchInput& input, const Level& level, int x, int y, glm::vec3 guide, float light) {
   const std::size_t s = level.grid.Nearest(x, y);
   if (!level.offers[s]) return std::nullopt;
-  const SeedOffer& seed = *level.offers[s];
-  const PixelPosition q = level.grid.Position(s);
-  const Source candidate{seed.offer.source.x + (x - q.x), seed.offer.source.y + (y - q.y)};
-  if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
-  const float extra = input.illumination.Error(light, seed.offer.exemplar);
-  if (!input.test.Alike(guide + seed.moved, input.exemplar.Normal(candidate.x, candidate.y), extra)) return std::nullopt;
-  return Offer{candidate, seed.offer.exemplar};
+  return TakeOffer(input, *level.offers[s], level.grid.Position(s), {x, y}, guide, light);
 }
 
 }  // namespace

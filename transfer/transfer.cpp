@@ -194,7 +194,7 @@ class Run {
     Stopwatch watch;
     const auto part = [&](double share) { return from + (to - from) * share; };
     internal::RowProgress match_progress(options_.progress, part(0.0), part(kMatchShare), matched.y1 - matched.y0);
-    if (!Match(settings.method, input, match_progress)) return CancelledError();
+    if (!Match(settings, input, match_progress)) return CancelledError();
     scratch_.times.match_ms += watch.Lap();
 
     std::optional<internal::EdgeTest> edges;
@@ -217,10 +217,12 @@ class Run {
     return Ok();
   }
 
-  bool Match(Method method, const internal::MatchInput& input, internal::RowProgress& progress) {
-    switch (method) {
+  bool Match(const TransferSettings& settings, const internal::MatchInput& input, internal::RowProgress& progress) {
+    switch (settings.method) {
       case Method::kLitSphere: return internal::MatchLitSphere(input, scratch_.field, progress);
-      case Method::kStyleBlit: return internal::MatchStyleBlit(input, scratch_.field, progress);
+      case Method::kStyleBlit:
+        return settings.coherent ? internal::MatchCoherent(input, scratch_.field, progress)
+                                 : internal::MatchStyleBlit(input, scratch_.field, progress);
       case Method::kBruteForce: return internal::MatchBruteForce(input, scratch_.field, progress);
     }
     return false;

@@ -256,6 +256,31 @@ def objects():
     return result
 
 
+def deformed():
+    """Bent by a modifier behind one that adds vertices, and by a shape key; both move from frame 1 to 6."""
+    plain = new_material("Grey", "ShaderNodeBsdfDiffuse")[0]
+    cube("Plain", (0, 0, 0), plain)
+    bent = cube("Bent", (4, 0, 0), plain)
+    bent.scale = (1, 1, 2)
+    bent.modifiers.new("Array", "ARRAY").count = 3
+    bend = bent.modifiers.new("Bend", "SIMPLE_DEFORM")
+    bend.deform_method = "BEND"
+    for frame, angle in ((1, 0.3), (6, 1.2)):
+        bend.angle = angle
+        bend.keyframe_insert("angle", frame=frame)
+    shaped = cube("Shaped", (0, 4, 0), plain)
+    shaped.shape_key_add(name="Basis")
+    key = shaped.shape_key_add(name="Up")
+    for vertex in key.data:
+        vertex.co.z += 2.0 * vertex.co.x
+    for frame, value in ((1, 0.0), (6, 0.75)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
+    shaped.data.attributes.new("other", "FLOAT", "CORNER")
+    bpy.context.scene.frame_set(1)
+    return None
+
+
 def bounds():
     """Names, triangles, and corners of the boxes in Blender's world, as the render has them: evaluated with the
     render's modifiers set by hand, in a way that owes nothing to the export."""
@@ -418,7 +443,7 @@ def broken(folder):
     return {}
 
 
-CASES = {"lamps": lamps, "materials": materials, "objects": objects, "cameras": cameras, "rendered": rendered}
+CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras, "rendered": rendered}
 FILES = {"broken": broken}  # these write their files themselves
 
 

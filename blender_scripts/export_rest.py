@@ -1,0 +1,79 @@
+"""The shape that nothing has deformed, which paint sticks to: part of export_scene.py.
+
+Armatures, shape keys and the like are applied as for a render, so what the exporter sees has no rest pose any more. It is
+made once more with everything switched off that only moves vertices; where that gives as many of them, each of the
+exported ones gets its place at rest as the attribute `_SCUMBLE_REST`, in the axes of glTF.
+"""
+
+import numpy as np
+
+ATTRIBUTE = "scumble_rest"  # the exporter makes it upper case and puts a _ before it
+DEFORMERS = {"ARMATURE", "CAST", "CLOTH", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM",
+             "LAPLACIANSMOOTH", "LATTICE", "MESH_CACHE", "MESH_DEFORM", "MESH_SEQUENCE_CACHE", "SHRINKWRAP",
+             "SIMPLE_DEFORM", "SMOOTH", "SOFT_BODY", "SURFACE_DEFORM", "VOLUME_DISPLACE", "WARP", "WAVE"}
+
+
+def is_deformed(thing):
+    if thing.type != "MESH" or thing.data is None:
+        return False
+    return thing.data.shape_keys is not None or any(modifier.type in DEFORMERS and modifier.show_viewport
+                                                    for modifier in thing.modifiers)
+
+
+def relax(thing):
+    """Returns what brings the deformation back."""
+    switched = [modifier for modifier in thing.modifiers if modifier.type in DEFORMERS and modifier.show_viewport]
+    for modifier in switched:
+        modifier.show_viewport = False
+    pinned, active = thing.show_only_shape_key, thing.active_shape_key_index
+    if thing.data.shape_keys:
+        thing.active_shape_key_index, thing.show_only_shape_key = 0, True
+
+    def bring_back():
+        for modifier in switched:
+            modifier.show_viewport = True
+        thing.active_shape_key_index, thing.show_only_shape_key = active, pinned
+    return bring_back
+
+
+def drop_other_attributes(mesh):
+    """The exporter is to write ours, and would write every other one as well."""
+    colors = {attribute.name for attribute in mesh.color_attributes}
+    for name in [attribute.name for attribute in mesh.attributes]:
+        if name in colors or name == ATTRIBUTE:
+            continue
+        try:
+            mesh.attributes.remove(mesh.attributes[name])
+        except RuntimeError:
+            pass  # one of Blender's own, which the exporter knows
+
+
+def write_rest(mesh, thing, depsgraph):
+    relaxed = thing.evaluated_get(depsgraph)
+    shape = relaxed.to_mesh()
+    if len(shape.vertices) == len(mesh.vertices) and len(shape.loops) == len(mesh.loops):
+        places = np.empty(3 * len(shape.vertices), np.float32)
+        shape.vertices.foreach_get("co", places)
+        places = places.reshape(-1, 3)
+        turned = np.stack([places[:, 0], places[:, 2], -places[:, 1]], axis=1)
+        attribute = mesh.attributes.new(ATTRIBUTE, "FLOAT_VECTOR", "POINT")
+        attribute.data.foreach_set("vector", turned.ravel())
+    relaxed.to_mesh_clear()
+
+
+def add_rest_positions(flat, view_layer):
+    """Returns whether there are any. The meshes are the export's own copies; objects are left as they were."""
+    shown = {placed.mesh.name: placed for placed in flat.meshes if placed.is_own_shape}
+    wanted = [placed for placed in shown.values() if is_deformed(placed.source)]
+    if not wanted:
+        return False
+    bring_back = [relax(thing) for thing in {placed.source.name_full: placed.source for placed in wanted}.values()]
+    view_layer.update()
+    for placed in wanted:
+        write_rest(placed.mesh, placed.source, view_layer.depsgraph)
+    for undo in bring_back:
+        undo()
+    view_layer.update()
+    for mesh in {placed.mesh.name: placed.mesh for placed in flat.meshes}.values():
+        drop_other_attributes(mesh)
+    return True
