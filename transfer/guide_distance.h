@@ -36,6 +36,13 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < left;
   }
 
+  // ‖a - b‖ as the test takes it.
+  float Distance(glm::vec3 a, glm::vec3 b) const {
+    const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz);
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
+  }
+
  private:
   float threshold_;
   ThresholdMetric metric_;
