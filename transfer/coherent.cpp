@@ -108,9 +108,10 @@ class CoherentMatch {
     return ForEachRow(region, progress, [&](int y) {
       for (int x = region.x0; x < region.x1; ++x) {
         const std::size_t i = field_.Index(x, y);
-        if (!input_.active[i] || settled_[i]) continue;
+        if (!input_.Wants(i) || settled_[i]) continue;
         const Offer own = OwnOffer(input_, i);
         field_.Set(i, own.source.x, own.source.y, own.exemplar, 0);
+        if (!field_.moved.empty()) field_.moved[i] = glm::vec3(0.0f);
       }
     });
   }
@@ -161,7 +162,7 @@ class CoherentMatch {
     Rows(input_.region, [&](int y) {
       for (int x = input_.region.x0; x < input_.region.x1 && !wanted.load(std::memory_order_relaxed); ++x) {
         const std::size_t i = field_.Index(x, y);
-        if (!settled_[i] && Takes(i, exponent)) wanted = true;
+        if (input_.Wants(i) && !settled_[i] && Takes(i, exponent)) wanted = true;
       }
     });
     return wanted;
@@ -202,13 +203,14 @@ class CoherentMatch {
     std::optional<Seed> seed;
     for (int x = input_.region.x0; x < input_.region.x1; ++x) {
       const std::size_t i = field_.Index(x, y);
-      if (key_[i] == 0 || settled_[i]) continue;
+      if (key_[i] == 0 || settled_[i] || !input_.Wants(i)) continue;
       if (key_[i] != last) last = key_[i], seed = MakeSeed(exponent, last, seeds.Pixel(last));
       if (!seed) continue;
       const auto taken = TakeOffer(input_, seed->made, seed->q, {x, y}, input_.guides.Vec3(Layer::kNormal, i),
                                    input_.LuminanceAt(i));
       if (!taken) continue;
       field_.Set(i, taken->source.x, taken->source.y, taken->exemplar, seed->level);
+      if (!field_.moved.empty()) field_.moved[i] = taken->moved;
       settled_[i] = 1;
     }
   }
@@ -222,7 +224,7 @@ class CoherentMatch {
   // Nothing where the piece is too small or too large to take part.
   std::optional<Seed> MakeSeed(int exponent, std::uint64_t key, std::size_t pixel) const {
     const int level = exponent - static_cast<int>(std::floor(octaves_[pixel] + PieceChance(key, 0)));
-    if (level < 1 || level >= input_.levels) return std::nullopt;
+    if (level < input_.least_level || level >= input_.levels) return std::nullopt;
     const int width = input_.guides.width();
     Seed seed{{OwnOffer(input_, pixel)}, {static_cast<int>(pixel % width), static_cast<int>(pixel / width)}, level};
     Source& source = seed.made.offer.source;
