@@ -14,8 +14,7 @@ namespace {
 // Inside, shares of the band: how deep rim paint lies over an object's own, and how deep gaps in it may cut.
 constexpr float kInkDepth = 0.5f, kCutDepth = 0.2f;
 constexpr float kFadeFrom = 0.6f;  // of the depth, on either side
-// Shares of the full width: narrower than the first an edge is not painted, from the second on with its full strength.
-constexpr float kNarrowest = 0.06f, kFirm = 0.2f;
+constexpr float kFirm = 0.2f;     // of the full width: narrower edges grow faint
 
 using Texel = std::array<std::uint16_t, 4>;
 
@@ -38,7 +37,6 @@ class EdgePainter {
     const std::int32_t nearest = silhouettes_.Nearest(x, y);
     if (nearest == Silhouettes::kNone) return;
     const OutlinePixel& outline = silhouettes_.outline()[std::size_t(nearest)];
-    if (!(outline.width > kNarrowest)) return;
     const std::size_t p = input_.guides.Index(x, y);
     const bool inside = silhouettes_.Inside(outline, p);
     const std::size_t owner = inside ? p : input_.guides.Index(outline.x, outline.y);
@@ -49,7 +47,7 @@ class EdgePainter {
     const float distance = Distance(outline, x, y, inside) / outline.width;  // where it would be at the full width
     const float depth = distance / static_cast<float>(rim.band()), share = depth > 0.0f ? depth / kInkDepth : -depth;
     if (share >= 1.0f) return;
-    const float firm = SmoothStep(kNarrowest, kFirm, outline.width);
+    const float firm = SmoothStep(Silhouettes::kNarrowest, kFirm, outline.width);
     Texel texel = RimAt(rim, pieces_[std::size_t(nearest)], {x + 0.5f, y + 0.5f}, distance, outline.width);
     if (paint.tint.active() && texel[3] > 0) {
       paint.tint.Apply(input_.guides.Vec3(Layer::kAlbedo, owner), static_cast<int>(exemplar), texel.data());

@@ -20,6 +20,8 @@ constexpr double kRingFrom = 0.93, kLeastPaintOnRing = 0.05;
 
 using Texel = std::array<std::uint16_t, 4>;
 
+double Length(double x, double y) { return std::sqrt(x * x + y * y); }
+
 // a + (b - a) · share, colours weighted by alpha.
 Texel Mixed(const std::uint16_t* a, const std::uint16_t* b, double share) {
   const double alpha_a = a[3] * (1.0 - share), alpha_b = b[3] * share, alpha = alpha_a + alpha_b;
@@ -35,7 +37,7 @@ Texel Mixed(const std::uint16_t* a, const std::uint16_t* b, double share) {
 RimPaint::RimPaint(const Picture& picture, int size)
     : size_(size), band_(std::max(1, static_cast<int>(std::ceil(kBand * 0.5 * size)))), margin_(band_ + 2) {
   const BarePaper paper = FindBarePaper(picture);
-  const Picture lifted = LiftPaint(paper, Resample(picture, size, size));
+  Picture lifted = Resample(picture, size, size);
   const int side = size + 2 * margin_;
   const double half = 0.5 * size;
   const auto inside = [&](double x, double y) {
@@ -43,12 +45,19 @@ RimPaint::RimPaint(const Picture& picture, int size)
     const int v = std::clamp(static_cast<int>(std::floor(y + half)), 0, size - 1);
     return lifted.At(u, v);
   };
+  // Nothing deeper inside is ever looked at.
+  const double from = half - 2.0 * band_ - 2.0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      if (Length(x + 0.5 - half, y + 0.5 - half) >= from) LiftPaint(paper, lifted.At(x, y));
+    }
+  }
   paint_ = Picture(side, side);
   double paint = 0.0, count = 0.0;
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      const double dx = x + 0.5 - 0.5 * side, dy = y + 0.5 - 0.5 * side, r = std::sqrt(dx * dx + dy * dy);
-      if (r > half + band_ + 1.0) continue;
+      const double dx = x + 0.5 - 0.5 * side, dy = y + 0.5 - 0.5 * side, r = Length(dx, dy);
+      if (r < from + 1.0 || r > half + band_ + 1.0) continue;
       Texel texel{};
       const double to_side = half - std::max(std::fabs(dx), std::fabs(dy));
       const double shown = r <= half ? 1.0 : std::clamp(to_side / std::max(1.0, kMelt * band_), 0.0, 1.0);

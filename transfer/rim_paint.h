@@ -20,7 +20,7 @@ class RimPaint {
   // How far from the rim the edge is looked for, pixels on either side; at least 1.
   int band() const { return band_; }
   // Colour and, as alpha, opacity, at a position from the sphere's centre in pixels, y down. Transparent further out than
-  // the band.
+  // the band, and deeper inside than two.
   const std::uint16_t* At(float x, float y) const;
 
  private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "transfer/nearest_feature.h"
 #include "transfer/style_map.h"
@@ -79,6 +80,7 @@ bool Silhouettes::Behind(const OutlinePixel& outline, std::size_t pixel) const {
 }
 
 bool Silhouettes::Concerns(const OutlinePixel& outline, int x, int y) const {
+  if (!(outline.width > kNarrowest)) return false;
   const int dx = outline.x - x, dy = outline.y - y;
   const float reach = outline.width * static_cast<float>(BandOf(outline)) + 1.5f;
   if (static_cast<float>(dx * dx + dy * dy) > reach * reach) return false;
@@ -180,12 +182,19 @@ void Silhouettes::SmoothWidths() {
 }
 
 void Silhouettes::FindNearest() {
+  row_reach_.assign(row_.size(), 0);
+  for (const OutlinePixel& outline : outline_) {
+    if (!(outline.width > kNarrowest)) continue;
+    int& reach = row_reach_[std::size_t(outline.y - around_.y0)];
+    reach = std::max(reach, static_cast<int>(outline.width * static_cast<float>(BandOf(outline)) + 1.5f));
+  }
   const Region& region = input_.region;
   const Region near = region.GrownBy(widest_ + 2, input_.guides.width(), input_.guides.height());
   const int width = near.x1 - near.x0, height = near.y1 - near.y0, columns = region.x1 - region.x0;
   nearest_.assign(std::size_t(columns) * std::size_t(region.y1 - region.y0), kNone);
   std::vector<std::int32_t> at(std::size_t(width) * height, kNone);
   for (std::size_t k = 0; k < outline_.size(); ++k) {
+    if (!(outline_[k].width > kNarrowest)) continue;
     const int x = outline_[k].x - near.x0, y = outline_[k].y - near.y0;
     if (x >= 0 && y >= 0 && x < width && y < height) at[std::size_t(y) * width + x] = static_cast<std::int32_t>(k);
   }
@@ -205,13 +214,25 @@ void Silhouettes::FindNearest() {
 std::int32_t Silhouettes::Search(int x, int y) const {
   std::int32_t best = kNone;
   int least = 0;
-  ForNear(x, y, widest_ + 2, [&](std::size_t k) {
-    const OutlinePixel& outline = outline_[k];
-    const int squared = (outline.x - x) * (outline.x - x) + (outline.y - y) * (outline.y - y);
-    if (best != kNone && (squared > least || (squared == least && outline.x >= outline_[std::size_t(best)].x))) return;
-    if (!Concerns(outline, x, y)) return;
-    least = squared, best = static_cast<std::int32_t>(k);
-  });
+  const auto look = [&](int row, int reach) {
+    ForNearInRow(x, row, reach, [&](std::size_t k) {
+      const OutlinePixel& outline = outline_[k];
+      const int squared = (outline.x - x) * (outline.x - x) + (row - y) * (row - y);
+      if (best != kNone) {
+        const OutlinePixel& other = outline_[std::size_t(best)];
+        if (squared > least || (squared == least && std::tie(outline.x, row) > std::tie(other.x, other.y))) return;
+      }
+      if (!Concerns(outline, x, y)) return;
+      least = squared, best = static_cast<std::int32_t>(k);
+    });
+  };
+  for (int dy = 0; dy <= widest_ + 2 && (best == kNone || dy * dy <= least); ++dy) {
+    if (row_reach_.empty()) break;
+    for (int sign = -1; sign <= (dy > 0 ? 1 : -1); sign += 2) {
+      const int row = y + sign * dy, in_row = row >= around_.y0 && row < around_.y1 ? row_reach_[std::size_t(row - around_.y0)] : 0;
+      if (in_row >= dy && in_row > 0) look(row, in_row);
+    }
+  }
   return best;
 }
 

@@ -35,7 +35,7 @@ struct SilhouetteInput {
 //
 // `width` falls with the thickness of the object there, full from 8 bands on and 0 below one band, where the outline stays
 // exact; and with the gap to the next thing that is not behind, full from 3 bands on and 0 below half a band. It is averaged
-// over a band along the outline.
+// over a band along the outline. Below kNarrowest nothing is painted.
 class Silhouettes {
  public:
   explicit Silhouettes(const SilhouetteInput& input);
@@ -47,6 +47,7 @@ class Silhouettes {
   template <class Visit>
   void ForNear(int x, int y, int reach, const Visit& visit) const;
 
+  static constexpr float kNarrowest = 0.06f;  // what is narrower is no edge
   static constexpr std::int32_t kNone = -1;
   // The nearest outline pixel that concerns pixel (x, y) of the region: one of its own object, or one of an object that
   // stands before it, no further off than its width of its band and a pixel; kNone if there is none.
@@ -57,6 +58,8 @@ class Silhouettes {
   std::size_t StyleOf(const OutlinePixel& outline) const { return StyleOf(input_.guides.Index(outline.x, outline.y)); }
 
  private:
+  template <class Visit>
+  void ForNearInRow(int x, int y, int reach, const Visit& visit) const;
   std::size_t StyleOf(std::size_t i) const { return input_.style.empty() ? 0 : input_.style[i]; }
   bool Painted(std::size_t i) const;
   int Band(std::size_t i) const;
@@ -75,22 +78,26 @@ class Silhouettes {
   Region around_;
   std::vector<OutlinePixel> outline_;
   std::vector<std::uint32_t> row_;     // of the first outline pixel of each row of around_, and one more
+  std::vector<int> row_reach_;         // by row of around_: the furthest that an edge in it reaches
   std::vector<std::int32_t> nearest_;  // by pixel of the region
   int widest_ = 0;
 };
 
 template <class Visit>
-void Silhouettes::ForNear(int x, int y, int reach, const Visit& visit) const {
-  for (int v = std::max(around_.y0, y - reach); v <= std::min(around_.y1 - 1, y + reach); ++v) {
-    const std::uint32_t end = row_[std::size_t(v - around_.y0) + 1];
-    std::uint32_t from = row_[std::size_t(v - around_.y0)], count = end - from;
-    while (count > 0) {  // the first that is not left of the square
-      const std::uint32_t half = count / 2;
-      if (outline_[from + half].x < x - reach) from += half + 1, count -= half + 1;
-      else count = half;
-    }
-    for (; from < end && outline_[from].x <= x + reach; ++from) visit(from);
+void Silhouettes::ForNearInRow(int x, int y, int reach, const Visit& visit) const {
+  const std::uint32_t end = row_[std::size_t(y - around_.y0) + 1];
+  std::uint32_t from = row_[std::size_t(y - around_.y0)], count = end - from;
+  while (count > 0) {  // the first that is not too far left
+    const std::uint32_t half = count / 2;
+    if (outline_[from + half].x < x - reach) from += half + 1, count -= half + 1;
+    else count = half;
   }
+  for (; from < end && outline_[from].x <= x + reach; ++from) visit(from);
+}
+
+template <class Visit>
+void Silhouettes::ForNear(int x, int y, int reach, const Visit& visit) const {
+  for (int v = std::max(around_.y0, y - reach); v <= std::min(around_.y1 - 1, y + reach); ++v) ForNearInRow(x, v, reach, visit);
 }
 
 }  // namespace scumble::internal
