@@ -10,7 +10,8 @@ namespace {
 
 using Texel = std::array<std::uint16_t, 4>;
 
-// Porter and Duff's "over" with straight alpha, colours blended in linear light.
+}  // namespace
+
 void BlendOver(std::uint16_t* front, const Texel& back) {
   if (front[3] == 65535 || back[3] == 0) return;
   if (front[3] == 0) {
@@ -26,8 +27,6 @@ void BlendOver(std::uint16_t* front, const Texel& back) {
   }
   front[3] = static_cast<std::uint16_t>(std::min(65535.0f, alpha * 65535.0f + 0.5f));
 }
-
-}  // namespace
 
 bool Compose(std::span<const float> coverage, const Background& background, const Region& region, Picture& picture,
              RowProgress& progress) {

@@ -2,49 +2,23 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
 #include "image/guides.h"
 #include "image/picture.h"
-#include "image/style.h"
 #include "transfer/colorize.h"
 #include "transfer/parallel.h"
 #include "transfer/region.h"
+#include "transfer/rim_paint.h"
 #include "transfer/seeds.h"
 #include "transfer/source_field.h"
-
-namespace scumble {
-
-// What an exemplar shows around its rim: paint with the opacity that it has there. Immutable.
-class RimPaint {
- public:
-  // `picture` is square, its sphere fills it; resized to `size`. Opacity is alpha times the distance from the paper's
-  // colour: that of `paper`, or without one the median of the picture's corners.
-  RimPaint(const Picture& picture, const Paper& paper, int size);
-
-  // Whether the paint ends near the rim. A sheet that is painted all over has no edge that could continue.
-  bool HasEdge() const { return has_edge_; }
-  int size() const { return size_; }
-  // How far from the rim the edge is looked for, pixels on either side; at least 1.
-  int band() const { return band_; }
-  // Colour and, as alpha, opacity; transparent outside the picture.
-  const std::uint16_t* At(int x, int y) const;
-
- private:
-  int size_ = 0, band_ = 1;
-  bool has_edge_ = false;
-  Picture picture_;
-};
-
-}  // namespace scumble
 
 namespace scumble::internal {
 
 // A style as the painted edge sees it.
 struct EdgePaint {
-  std::span<const RimPaint> rims;  // by exemplar; empty: this style's silhouettes stay exact
+  std::span<const RimPaint> rims;  // by exemplar, all of one size; empty: this style's silhouettes stay exact
   SeedRules seeds;
   Tint tint;  // an edge has its object's colour as the paint inside it has
 };
@@ -53,14 +27,18 @@ struct PaintedEdgeInput {
   const GuideSet& guides;                // with object and depth; albedo where a style tints
   std::span<const std::uint16_t> style;  // per pixel; empty: style 0 everywhere
   std::span<const EdgePaint> paints;     // by style
-  const SourceField& field;
+  const SourceField& field;              // of the region and EdgeReach around it
   Region region;
 };
 
+// How far from a pixel the object may be that its edge belongs to, for a rim with that band.
+constexpr int EdgeReach(int band) { return band + 2; }
+
 // Lays rim paint over both sides of silhouettes and borders with things further away, and thins `coverage` where the
 // painting thins out before nothing. What the rim shows at a distance from the sphere's edge goes to the same distance from
-// the silhouette, on the side that faces the same way; along the silhouette it is copied in pieces around seeds. Reads coverage from the guides, changes `coverage` and `picture` inside the
-// region. False: asked to stop.
+// the silhouette, in the direction that rim_pieces.h chooses; on thin things (silhouettes.h) all distances shrink, and the
+// line with them. Reads coverage from the guides, changes `coverage` and `picture` inside the region. Colours meet in linear
+// light. O(pixels of the region + outline pixels · band²). False: asked to stop.
 bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress);
 
 }  // namespace scumble::internal

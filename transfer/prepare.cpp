@@ -210,7 +210,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
                         style.exemplars.front().name + " is another scene: set it to \"exact\"");
     }
     const int size = prepared.exemplar->size();
-    for (const Exemplar& exemplar : style.exemplars) prepared.rims.emplace_back(exemplar.picture, style.paper, size);
+    for (const Exemplar& exemplar : style.exemplars) prepared.rims.emplace_back(exemplar.picture, size);
     const auto has_edge = [](const RimPaint& rim) { return rim.HasEdge(); };
     if (!std::all_of(prepared.rims.begin(), prepared.rims.end(), has_edge)) prepared.rims.clear();
   }

@@ -88,7 +88,7 @@ class Run {
     Region painted = Intersection(region_, extent);
     int reach = style.blend_radius;  // the pixels around whose sources decide what is painted
     // A painted edge may stand in the region while its object does not.
-    for (const RimPaint& rim : style.rims) reach = std::max(reach, rim.band());
+    for (const RimPaint& rim : style.rims) reach = std::max(reach, internal::EdgeReach(rim.band()));
     const Region near = Intersection(extent, region_.GrownBy(reach, guides_.width(), guides_.height()));
     if (painted.empty() && (style.rims.empty() || near.empty())) return Ok();
     if (painted.empty()) painted = {};

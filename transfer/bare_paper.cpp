@@ -1,0 +1,98 @@
+#include "transfer/bare_paper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "image/color.h"
+#include "image/oklab.h"
+
+namespace scumble {
+namespace {
+
+// Distances in Oklab: below the first is the paper's own grain, above the second is full paint.
+constexpr float kGrain = 0.06f, kFullPaint = 0.30f;
+constexpr double kCornersFrom = 1.15, kMostPaintInCorners = 0.25;
+
+glm::vec3 Linear(const std::uint16_t* texel) {
+  return {Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])};
+}
+
+float SmoothStep(float from, float to, float value) {
+  const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+glm::vec3 Median(std::vector<glm::vec3> colors) {
+  glm::vec3 median(0.0f);
+  const auto middle = colors.begin() + std::ptrdiff_t(colors.size() / 2);
+  for (int c = 0; c < 3; ++c) {
+    std::nth_element(colors.begin(), middle, colors.end(), [c](glm::vec3 a, glm::vec3 b) { return a[c] < b[c]; });
+    median[c] = (*middle)[c];
+  }
+  return median;
+}
+
+// 0 for paper, 1 for paint that hides it.
+float Opacity(glm::vec3 color, glm::vec3 paper) {
+  const glm::vec3 off = OklabFromLinear(color) - OklabFromLinear(paper);
+  return SmoothStep(kGrain, kFullPaint, std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z));
+}
+
+}  // namespace
+
+BarePaper FindBarePaper(const Picture& picture) {
+  std::vector<const std::uint16_t*> corners;
+  double alpha = 0.0;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const double dx = 2.0 * x + 1 - picture.width, dy = 2.0 * y + 1 - picture.height;
+      if (std::sqrt(dx * dx + dy * dy) < kCornersFrom * picture.width) continue;
+      corners.push_back(picture.At(x, y));
+      alpha += picture.At(x, y)[3] / 65535.0;
+    }
+  }
+  if (corners.empty()) return {};
+  const auto count = static_cast<double>(corners.size());
+  if (alpha < kMostPaintInCorners * count) return {BarePaper::Kind::kTransparent, glm::vec3(0.0f)};
+  std::vector<glm::vec3> colors;
+  for (const std::uint16_t* texel : corners) {
+    if (texel[3] > 32767) colors.push_back(Linear(texel));
+  }
+  // A sheet that is half see-through is no paper.
+  if (static_cast<double>(colors.size()) < (1.0 - kMostPaintInCorners) * count) return {};
+  const glm::vec3 paper = Median(colors);
+  double paint = 0.0;
+  for (const glm::vec3 color : colors) paint += Opacity(color, paper);
+  if (paint >= kMostPaintInCorners * static_cast<double>(colors.size())) return {};
+  return {BarePaper::Kind::kPaper, paper};
+}
+
+void LiftPaint(const BarePaper& paper, std::uint16_t* texel) {
+  if (paper.kind != BarePaper::Kind::kPaper) return;
+  const glm::vec3 color = Linear(texel);
+  const float by_distance = Opacity(color, paper.color);
+  if (!(by_distance > 0.0f)) {
+    texel[3] = 0;
+    return;
+  }
+  // With less opacity than this not even black or white paint over the paper makes the colour.
+  float least = 0.0f;
+  for (int c = 0; c < 3; ++c) {
+    const float off = color[c] - paper.color[c], room = off < 0.0f ? paper.color[c] : 1.0f - paper.color[c];
+    if (room > 0.0f) least = std::max(least, std::min(1.0f, std::fabs(off) / room));
+  }
+  // Out of the grain it rises to that steadily, so that no grey speck appears at once.
+  const float opacity = std::max(by_distance, least * std::min(1.0f, 4.0f * by_distance));
+  for (int c = 0; c < 3; ++c) {
+    texel[c] = Srgb16FromLinear(paper.color[c] + (color[c] - paper.color[c]) / opacity);
+  }
+  texel[3] = static_cast<std::uint16_t>(static_cast<float>(texel[3]) * opacity + 0.5f);
+}
+
+Picture LiftPaint(const BarePaper& paper, Picture picture) {
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) LiftPaint(paper, picture.rgba.data() + i);
+  return picture;
+}
+
+}  // namespace scumble

@@ -1,0 +1,31 @@
+// What an exemplar is painted on, and the paint without it.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "image/picture.h"
+
+namespace scumble {
+
+// The ground round a painted sphere, as the corners of its picture show it.
+struct BarePaper {
+  enum class Kind {
+    kPaper,        // one colour, but for its grain
+    kTransparent,  // nothing: alpha tells where paint is
+    kCovered,      // paint goes on into the corners: where it ends is unknown
+  };
+  Kind kind = Kind::kCovered;
+  glm::vec3 color{0.0f};  // linear; for kPaper
+};
+
+// `picture` is square and its sphere fills it. The corners are what lies beyond 1.15 radii of it. They are bare where at most
+// a quarter of them is painted: opaque, or of another colour than their median.
+BarePaper FindBarePaper(const Picture& picture);
+
+// The paint alone: alpha becomes its opacity, and the colour what it must be so that the paint over the paper is again what
+// the picture shows, as far as colours reach. Paper as it is between strokes becomes transparent, its grain included. Without
+// a paper colour alpha is opacity already and the texel stays.
+void LiftPaint(const BarePaper& paper, std::uint16_t* texel);
+Picture LiftPaint(const BarePaper& paper, Picture picture);
+
+}  // namespace scumble
