@@ -29,7 +29,7 @@ struct CompareVerb {
 // The guides that flicker is measured along; what is not there is not looked at.
 Expected<GuideSet> ReadMotionGuides(const std::string& path, LayerSet required) {
   GuideReadOptions options;
-  options.required = required.Add(Layer::kCoverage);
+  options.required = required.Add(Layer::kCoverage).Add(Layer::kNormal);
   options.optional = {Layer::kDepth, Layer::kObject, Layer::kPref};
   return ReadGuides(path, options);
 }

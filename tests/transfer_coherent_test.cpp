@@ -166,7 +166,7 @@ class PlainCoherent {
 
   // The seed's normal in the middle of its cell of Lambert's map of equal areas.
   glm::vec3 Steady(glm::vec3 n, std::uint64_t key) const {
-    const float cell = std::min(0.25f, settings_.threshold);
+    const float cell = 0.5f * std::min(0.25f, settings_.threshold);
     const float to_map = std::sqrt(2.0f / (1.0f + n.z));
     const auto round = [&](float v, int purpose) {
       const float shift = UnitFloat(Hash(key, purpose));
@@ -197,12 +197,11 @@ class PlainCoherent {
       const int level = e - int(std::floor(float(octave_[q]) + UnitFloat(Hash(keys[i], 0))));
       if (level < 1 || level >= settings_.levels) continue;
       const glm::vec3 normal = guides_.Vec3(Layer::kNormal, q);
-      const Source own = exemplar_.NearestNeighbour(normal), u = exemplar_.NearestNeighbour(Steady(normal, keys[i]));
-      const glm::vec3 moved = exemplar_.Normal(u.x, u.y) - exemplar_.Normal(own.x, own.y);
+      const Source u = exemplar_.NearestNeighbour(Steady(normal, keys[i]));
       const int width = guides_.width();
       const Source s{u.x + int(i) % width - int(q) % width, u.y + int(i) / width - int(q) / width};
       if (!exemplar_.Usable(s.x, s.y)) continue;
-      if (!test_.Alike(guides_.Vec3(Layer::kNormal, i) + moved, exemplar_.Normal(s.x, s.y))) continue;
+      if (!test_.Alike(guides_.Vec3(Layer::kNormal, i), exemplar_.Normal(s.x, s.y))) continue;
       field.Set(i, s.x, s.y, 0, level);
     }
   }
@@ -331,13 +330,13 @@ GuideSet Wall(int size, float turned_degrees, float pixels_per_unit = 100.0f, fl
   });
 }
 
-// A quarter of a degree is one and a half exemplar pixels, and a thirtieth of a cell: that many pieces change.
+// A quarter of a degree is one and a half exemplar pixels, and a fourteenth of a cell: that many pieces change.
 TEST(Coherent, PaintDoesNotSlideWhileTheSurfaceTurns) {
   Style style = CoherentStyle(700, 6);
   style.transfer.rim = 0.0;
   const GuideSet before = Wall(200, 10.0f), after = Wall(200, 10.25f);
   const auto share = [&] { return ShareKept(MustTransfer(style, before).field, MustTransfer(style, after).field, 0, 0); };
-  EXPECT_GT(share(), 0.9);
+  EXPECT_GT(share(), 0.8);
   EXPECT_LT(share(), 0.999);
   style.transfer.coherent = false;
   EXPECT_LT(share(), 0.1);

@@ -11,8 +11,7 @@ namespace scumble::internal {
 
 struct SeedOffer {
   Offer offer;
-  // What the source's guide was moved by, by `variety` or so that paint sticks: a pixel is compared as if its own guide
-  // were moved by the same.
+  // What `variety` moved the source's guide by: a pixel is compared as if its own guide were moved by the same.
   glm::vec3 moved{0.0f};
 };
 
