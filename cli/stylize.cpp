@@ -128,7 +128,9 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   work.check = [&](int frame, const std::string& output) -> Status {
     PictureShape shape{0, 0, PictureChannels(output)};
     // Guides that are gone cannot say how large their picture was to be.
-    if (const auto info = InspectGuides(guides_name.At(frame))) shape.width = info->width, shape.height = info->height;
+    if (const auto info = InspectGuides(guides_name.At(frame))) {
+      shape.width = info->width * verb.picture.upsample, shape.height = info->height * verb.picture.upsample;
+    }
     return CheckWholePicture(output, shape);
   };
   work.begin = [&](std::span<const int>, const Progress& progress) { return pictures.Begin(sequence, guides_at, progress); };
@@ -180,6 +182,21 @@ LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene) {
   return [&styles, scene](const StyleWishes& wishes) { return RequiredLayers(styles, wishes, scene); };
 }
 
+// The guides' size for a picture of --size that is painted upsampled.
+Status ShrinkGuides(StylizeVerb& verb) {
+  const int factor = verb.picture.upsample;
+  if (factor == 1) return Ok();
+  SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
+  if (size.width % factor || size.height % factor) {
+    return UsageError(fmt::format("--size {} with --upsample {}: the guides are {} times smaller, so both sides must be "
+                                  "multiples of {}; take --size {}x{}",
+                                  verb.scene.size, factor, factor, factor, (size.width + factor - 1) / factor * factor,
+                                  (size.height + factor - 1) / factor * factor));
+  }
+  verb.scene.size = fmt::format("{}x{}", size.width / factor, size.height / factor);
+  return Ok();
+}
+
 Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequence, StyleSet& styles,
                                    const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
@@ -202,7 +219,8 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   };
   SequenceWork work;
   work.check = [&](int, const std::string& output) {
-    return CheckWholePicture(output, {size.width, size.height, PictureChannels(output)});
+    const int factor = verb.picture.upsample;
+    return CheckWholePicture(output, {size.width * factor, size.height * factor, PictureChannels(output)});
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
@@ -223,6 +241,7 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
 }
 
 Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
+  SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(verb));
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.picture.frame, verb.picture.output));
   if (!sequence) SCUMBLE_RETURN_IF_ERROR(NameOne(verb.picture));

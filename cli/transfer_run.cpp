@@ -16,6 +16,7 @@
 #include "measure/coherence.h"
 #include "style/style_keyframes.h"
 #include "transfer/transfer.h"
+#include "transfer/upsample_guides.h"
 
 namespace scumble {
 namespace {
@@ -59,6 +60,7 @@ nlohmann::ordered_json ToJson(const Style& style, const PreparedStyle& prepared,
   json["style"] = style.name;
   json["width"] = field.width;
   json["height"] = field.height;
+  json["upsample"] = options.upsample;
   const PreparedExemplar& exemplar = *prepared.exemplar;
   json["exemplar_size"] = exemplar.size();  // the longer side
   json["exemplar_width"] = exemplar.width();
@@ -87,8 +89,9 @@ Expected<std::optional<Picture>> ReadOver(const PictureOptions& options, const G
   if (options.over.empty()) return std::optional<Picture>();
   SCUMBLE_ASSIGN(Picture over, ReadPicture(options.over));
   if (over.width != guides.width() || over.height != guides.height()) {
-    return InputError(fmt::format("--over {} is {}×{}, {} is {}×{}: render both at one size", options.over, over.width,
-                                  over.height, guides_name, guides.width(), guides.height()));
+    return InputError(fmt::format("--over {} is {}×{}, {} {} {}×{}: render both at one size", options.over, over.width,
+                                  over.height, guides_name, options.upsample > 1 ? "upsampled is" : "is",
+                                  guides.width(), guides.height()));
   }
   return std::optional(std::move(over));
 }
@@ -132,6 +135,12 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
                   "their borders, their size, the guide error, which exemplar, which style")
       ->type_name("WHAT")
       ->check(CLI::IsMember(ExplanationNames()));
+  verb.add_option("--upsample", options.upsample,
+                  "the picture is N times as wide and high as the guides: they are quicker to make and to match, and the "
+                  "paint has its full size")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxUpsampling))
+      ->capture_default_str();
   verb.add_option("--repeat", options.repeat, "times to run the transfer, to report the median time and its spread")
       ->type_name("N")
       ->check(CLI::Range(1, 10000))
@@ -175,7 +184,7 @@ namespace {
 bool IsReadEachFrame(const std::string& key) {
   static const std::set<std::string> kKeys = {"transfer.threshold", "transfer.threshold_metric", "transfer.jitter",
                                               "transfer.jitter_fps", "transfer.coherent", "transfer.variety", "transfer.crease",
-                                              "transfer.depth_tolerance"};
+                                              "transfer.depth_tolerance", "transfer.match_step"};
   return kKeys.count(key) > 0;
 }
 
@@ -183,7 +192,8 @@ bool IsReadEachFrame(const std::string& key) {
 
 Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptions& options, const Globals& globals,
                     TransferMemory& memory) {
-  const bool all = memory.prepared.empty() || memory.prepared.front().output_height != guides.height();
+  const int height = guides.height() * options.upsample;
+  const bool all = memory.prepared.empty() || memory.prepared.front().output_height != height;
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     SCUMBLE_ASSIGN(const auto changed, SetStyleFrame(styles.styles[i], options.frame.value_or(0)));
     if (all || changed.empty() || i >= memory.prepared.size()) continue;
@@ -192,12 +202,12 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
       memory.prepared[i].required = RequiredLayers(styles.styles[i]);
       continue;
     }
-    SCUMBLE_ASSIGN(memory.prepared[i], PrepareOne(styles.styles[i], guides.height(), globals.threads));
+    SCUMBLE_ASSIGN(memory.prepared[i], PrepareOne(styles.styles[i], height, globals.threads));
   }
   if (all) memory.prepared.clear();
   // All of them, or those that the scene has asked for since.
   for (std::size_t i = memory.prepared.size(); i < styles.styles.size(); ++i) {
-    SCUMBLE_ASSIGN(PreparedStyle one, PrepareOne(styles.styles[i], guides.height(), globals.threads));
+    SCUMBLE_ASSIGN(PreparedStyle one, PrepareOne(styles.styles[i], height, globals.threads));
     WarnOfEqualLight(styles.styles[i], one);
     memory.prepared.push_back(std::move(one));
   }
@@ -231,15 +241,21 @@ Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const G
   return ExitCode::kOk;
 }
 
-Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, const GuideSource& source,
                                     const PictureOptions& options, const Globals& globals, const Progress& progress,
                                     TransferMemory& memory) {
   SCUMBLE_ASSIGN(const FrameRate fps, ParseFps(options.fps));
   StepTimes times = source.times;
   Stopwatch watch;
+  std::optional<GuideSet> larger;
+  if (options.upsample > 1) {
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, options.upsample, globals.threads));
+    times.emplace_back("upsample", watch.Lap());
+  }
+  const GuideSet& guides = larger ? *larger : given;
   SCUMBLE_ASSIGN(const std::optional<Picture> over, ReadOver(options, guides, source.name));
   if (over) times.emplace_back("over", watch.Lap());
-  SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles, guides, options, globals, memory));
+  SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles, given, options, globals, memory));
   const std::vector<PreparedStyle>& prepared = memory.prepared;
   std::vector<const PreparedStyle*> pointers;
   for (const PreparedStyle& one : prepared) pointers.push_back(&one);
@@ -256,6 +272,7 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, co
   transfer.fps_numerator = fps.numerator, transfer.fps_denominator = fps.denominator;
   transfer.exposure = *memory.exposure;
   transfer.threads = globals.threads;
+  transfer.match_step = options.upsample;
   transfer.over = over ? &*over : nullptr;
   TransferScratch& scratch = memory.scratch;
   Picture picture;

@@ -25,6 +25,7 @@ struct PictureOptions {
   std::string exposure = "auto";
   std::uint64_t seed = 0;
   int repeat = 1;
+  int upsample = 1;  // the picture is so many times as wide and high as the guides
   std::string show;  // an explanation's name; empty: the result itself
 };
 void AddPictureOptions(CLI::App& verb, PictureOptions& options);

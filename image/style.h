@@ -76,6 +76,10 @@ struct TransferSettings {
   double colorize = 0.0;     // 0 … 1: how much of the scene's base colour the paint takes on
   ColorizeMode colorize_mode = ColorizeMode::kMultiply;
   double variety = 0.0;      // 0 … 90 degrees: how far from its own normal a seed on a flat surface may take its paint
+  double hybrid = 0.0;       // 0 or more, infinity allowed: sigma, in pixels of the first exemplar's file, of the Gaussian
+                             // that splits tone, laid as by the Lit Sphere, from texture, copied in chunks; 0: no split
+  int match_step = 1;        // 1 … kMaxMatchStep: one pixel of so many, by column and by row, is matched; the others take
+                             // on what those around them were matched to
   double scale = 1.0;        // exemplar size, above 0
   double rim = 2.0;          // exemplar pixels at the painted edge that are never used
   EdgeMode edge = EdgeMode::kExact;
@@ -95,6 +99,7 @@ struct Exemplar {
 };
 
 inline constexpr int kMaxExemplars = 4;
+inline constexpr int kMaxMatchStep = 8;
 
 // What is behind the stylised objects.
 struct Paper {

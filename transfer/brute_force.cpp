@@ -14,7 +14,7 @@ void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Offer&
   for (int y = anchor_y; y < y1; ++y) {  // rows above the anchor have no free pixel left
     for (int x = x0; x < x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (field.level[i] != SourceField::kNoSource || !input.active[i]) continue;
+      if (field.level[i] != SourceField::kNoSource || !input.Wants(i)) continue;
       const Source candidate{anchor.x + (x - anchor_x), anchor.y + (y - anchor_y)};
       if (!input.exemplar.Usable(candidate.x, candidate.y)) continue;
       const glm::vec3 guide = input.guides.Vec3(Layer::kNormal, i);
@@ -31,7 +31,7 @@ bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& p
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (field.level[i] != SourceField::kNoSource || !input.active[i]) continue;
+      if (field.level[i] != SourceField::kNoSource || !input.Wants(i)) continue;
       const Offer own = OwnOffer(input, i);
       field.Set(i, own.source.x, own.source.y, own.exemplar, 0);
       GrowChunk(input, x, y, own, field);

@@ -98,7 +98,10 @@ class CoherentMatch {
         object_(input.guides.Plane(Layer::kObject)),
         octaves_(SurfaceOctaves(input.guides, input.active)),
         cell_(kSteadiness * std::min(kLargestCell, input.test.EuclideanThreshold())),
-        settled_(input.guides.pixel_count(), 0) {}
+        settled_(input.guides.pixel_count(), 0) {
+    // Pixels that are not wanted belong to pieces as all do, but take nothing.
+    for (std::size_t i = 0; i < input.wanted.size(); ++i) settled_[i] = !input.wanted[i];
+  }
 
   bool Run(RowProgress& progress) {
     const Region& region = input_.region;
@@ -111,6 +114,7 @@ class CoherentMatch {
         if (!input_.active[i] || settled_[i]) continue;
         const Offer own = OwnOffer(input_, i);
         field_.Set(i, own.source.x, own.source.y, own.exemplar, 0);
+        if (!field_.moved.empty()) field_.moved[i] = own.moved;
       }
     });
   }
@@ -209,6 +213,7 @@ class CoherentMatch {
                                    input_.LuminanceAt(i));
       if (!taken) continue;
       field_.Set(i, taken->source.x, taken->source.y, taken->exemplar, seed->level);
+      if (!field_.moved.empty()) field_.moved[i] = taken->moved;
       settled_[i] = 1;
     }
   }
@@ -222,7 +227,7 @@ class CoherentMatch {
   // Nothing where the piece is too small or too large to take part.
   std::optional<Seed> MakeSeed(int exponent, std::uint64_t key, std::size_t pixel) const {
     const int level = exponent - static_cast<int>(std::floor(octaves_[pixel] + PieceChance(key, 0)));
-    if (level < 1 || level >= input_.levels) return std::nullopt;
+    if (level < input_.least_level || level >= input_.levels) return std::nullopt;
     const int width = input_.guides.width();
     Seed seed{{OwnOffer(input_, pixel)}, {static_cast<int>(pixel % width), static_cast<int>(pixel / width)}, level};
     Source& source = seed.made.offer.source;

@@ -67,9 +67,9 @@ void Tint::Apply(glm::vec3 albedo, int exemplar, std::uint16_t* texel) const {
 bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress) {
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
-      const std::size_t i = input.field.Index(x, y);
+      const std::size_t i = std::size_t(y) * input.width + x;
       if (!input.active[i]) continue;
-      input.tint.Apply(input.guides.Vec3(Layer::kAlbedo, i), input.field.exemplar[i], picture.At(x, y));
+      input.tint.Apply(input.guides.Vec3(Layer::kAlbedo, i), input.exemplar[i], picture.At(x, y));
     }
   });
 }

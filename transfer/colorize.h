@@ -11,7 +11,6 @@
 #include "image/style.h"
 #include "transfer/parallel.h"
 #include "transfer/prepared_exemplar.h"
-#include "transfer/source_field.h"
 
 namespace scumble::internal {
 
@@ -31,7 +30,8 @@ struct Tint {
 struct ColorizeInput {
   const GuideSet& guides;                // with albedo
   std::span<const std::uint8_t> active;  // 1: a pixel that this style paints
-  const SourceField& field;
+  int width = 0;                           // of the picture
+  std::span<const std::uint8_t> exemplar;  // by pixel: whose tone it has
   Tint tint;
   Region region;
 };

@@ -39,6 +39,13 @@ class GuideTest {
   // About what the threshold is between unit normals, by the Euclidean metric.
   float EuclideanThreshold() const { return metric_ == ThresholdMetric::kL2 ? threshold_ : threshold_ * (2.0f / 3.0f); }
 
+  // ‖a - b‖ as the test takes it.
+  float Distance(glm::vec3 a, glm::vec3 b) const {
+    const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz);
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
+  }
+
  private:
   float threshold_;
   ThresholdMetric metric_;

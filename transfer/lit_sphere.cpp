@@ -13,7 +13,7 @@ bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& pr
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (!input.active[i]) continue;
+      if (!input.Wants(i)) continue;
       const Offer own = OwnOffer(input, i);
       field.Set(i, own.source.x, own.source.y, own.exemplar, 0);
     }

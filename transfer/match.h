@@ -1,5 +1,5 @@
-// Three ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region`, and
-// leave the others as they are. False: the progress callback asked to stop.
+// Three ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that are
+// wanted, and leave the others as they are. False: the progress callback asked to stop.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,9 @@ struct MatchInput {
   double variety_degrees = 0.0;
   int flat_reach = 16;  // pixels around a seed that must be flat for `variety`
   Region region;
+  std::span<const std::uint8_t> wanted = {};  // 1: active pixels that are to be matched; empty: all of them are
 
+  bool Wants(std::size_t i) const { return wanted.empty() ? active[i] != 0 : wanted[i] != 0; }
   float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }
 };
 
@@ -36,6 +38,7 @@ struct MatchInput {
 struct Offer {
   Source source;
   int exemplar = 0;
+  glm::vec3 moved{0.0f};  // by what the seed moved the source's guide: a pixel's own counts as if moved by the same
 };
 Offer OwnOffer(const MatchInput& input, std::size_t pixel);
 

@@ -5,6 +5,7 @@
 
 #include "image/check.h"
 #include "transfer/colorize.h"
+#include "transfer/hybrid.h"
 #include "transfer/resample.h"
 #include "transfer/transfer.h"
 #include "transfer/usable_mask.h"
@@ -47,6 +48,10 @@ Status CheckSettings(const TransferSettings& settings) {
   if (!(settings.luminance_weight >= 0.0f)) return UsageError("transfer.luminance_weight must be 0 or more");
   if (!(settings.colorize >= 0.0 && settings.colorize <= 1.0)) return UsageError("transfer.colorize must be 0 to 1");
   if (!(settings.variety >= 0.0 && settings.variety <= 90.0)) return UsageError("transfer.variety must be 0 to 90 degrees");
+  if (!(settings.hybrid >= 0.0)) return UsageError("transfer.hybrid must be 0 or more, infinity included");
+  if (settings.match_step < 1 || settings.match_step > kMaxMatchStep) {
+    return UsageError("transfer.match_step must be 1 to " + std::to_string(kMaxMatchStep));
+  }
   if (!(settings.scale > 0.0 && settings.scale <= 64.0)) return UsageError("transfer.scale must be above 0, at most 64");
   if (!(settings.rim >= 0.0 && std::isfinite(settings.rim))) return UsageError("transfer.rim must be 0 or more");
   if (settings.reference_height < 0) return UsageError("transfer.reference_height must be 0 or more");
@@ -191,6 +196,12 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     for (int k = 0; k < prepared.exemplar->count(); ++k) {
       prepared.mean_lightness.push_back(internal::MeanLightness(*prepared.exemplar, k));
     }
+  }
+  if (settings.hybrid > 0.0) {
+    // In pixels of the file; the exemplar was resized by scale and height, and the tone with it.
+    const Picture& file = style.exemplars.front().picture;
+    const double ratio = static_cast<double>(prepared.exemplar->size()) / std::max(file.width, file.height);
+    prepared.tones = MakeTones(*prepared.exemplar, settings.hybrid * ratio);
   }
   if (settings.shadow == ShadowMode::kPaint) prepared.dark = DarkestPlace(*prepared.exemplar);
   if (settings.edge == EdgeMode::kExemplar) {

@@ -196,7 +196,7 @@ Status PreparedExemplar::SearchBy(NearestSearch search, int resolution, TableCac
 
 Source PreparedExemplar::Searched(glm::vec3 normal) const { return search_->Find(FacingDirection(normal)); }
 
-Source PreparedExemplar::Analytic(glm::vec3 normal) const {
+glm::vec2 PreparedExemplar::OnDisc(glm::vec3 normal) const {
   SCUMBLE_DCHECK(is_sphere());
   float nx = normal.x, ny = normal.y;
   float length = std::sqrt(nx * nx + ny * ny);
@@ -206,6 +206,12 @@ Source PreparedExemplar::Analytic(glm::vec3 normal) const {
     nx = nx / length * usable_radius_;
     ny = ny / length * usable_radius_;
   }
+  return {nx, ny};
+}
+
+Source PreparedExemplar::Analytic(glm::vec3 normal) const {
+  const glm::vec2 place = OnDisc(normal);
+  const float nx = place.x, ny = place.y;
   // A position on the border of two pixels is equally near to both: the lower index wins, hence ceil - 1.
   const float half = 0.5f * static_cast<float>(size_);
   const int x = std::clamp(static_cast<int>(std::ceil(nx * half + half)) - 1, 0, size_ - 1);

@@ -75,6 +75,10 @@ class PreparedExemplar {
   // Any finite or NaN input gives a usable pixel.
   Source NearestNeighbour(glm::vec3 normal) const { return search_ ? Searched(normal) : Analytic(normal); }
 
+  // Where on the sphere a normal lies, x and y of the unit disc, y up: as the analytic search has it before it goes to
+  // pixels, so never beyond the usable disc. For spheres only.
+  glm::vec2 OnDisc(glm::vec3 normal) const;
+
   // The usable pixels in row order.
   std::vector<Source> UsablePixels() const;
 

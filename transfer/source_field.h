@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 namespace scumble {
@@ -19,11 +20,13 @@ struct SourceField {
   std::vector<std::int16_t> y;
   std::vector<std::int8_t> level;
   std::vector<std::uint8_t> exemplar;
+  std::vector<glm::vec3> moved;  // by what each seed moved its source's guide (variety); empty where nobody asks
 
   void Reset(int new_width, int new_height) {
     width = new_width, height = new_height;
     const std::size_t count = std::size_t(width) * height;
     x.assign(count, 0), y.assign(count, 0), level.assign(count, kNoSource), exemplar.assign(count, 0);
+    moved.clear();
   }
   void Set(std::size_t i, int source_x, int source_y, int source_exemplar, int settled) {
     x[i] = static_cast<std::int16_t>(source_x), y[i] = static_cast<std::int16_t>(source_y);

@@ -22,7 +22,7 @@ std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, P
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   const float extra = input.illumination.Error(light, seed.offer.exemplar);
   if (!input.test.Alike(guide + seed.moved, input.exemplar.Normal(candidate.x, candidate.y), extra)) return std::nullopt;
-  return Offer{candidate, seed.offer.exemplar};
+  return Offer{candidate, seed.offer.exemplar, seed.moved};
 }
 
 namespace {
@@ -65,7 +65,7 @@ bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& pr
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (!input.active[i]) continue;
+      if (!input.Wants(i)) continue;
       const glm::vec3 guide = input.guides.Vec3(Layer::kNormal, i);
       const float light = input.LuminanceAt(i);
       std::optional<Offer> offer;
@@ -78,6 +78,7 @@ bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& pr
       }
       if (!offer) offer = OwnOffer(input, i);
       field.Set(i, offer->source.x, offer->source.y, offer->exemplar, settled);
+      if (!field.moved.empty()) field.moved[i] = offer->moved;
     }
   });
 }

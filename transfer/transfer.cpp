@@ -8,7 +8,9 @@
 #include "image/stopwatch.h"
 #include "transfer/colorize.h"
 #include "transfer/compose.h"
+#include "transfer/hybrid.h"
 #include "transfer/match.h"
+#include "transfer/upsample.h"
 #include "transfer/vote.h"
 
 namespace scumble {
@@ -193,8 +195,10 @@ class Run {
         matched};
     Stopwatch watch;
     const auto part = [&](double share) { return from + (to - from) * share; };
-    internal::RowProgress match_progress(options_.progress, part(0.0), part(kMatchShare), matched.y1 - matched.y0);
-    if (!Match(settings, input, match_progress)) return CancelledError();
+    const int step = std::max(settings.match_step, options_.match_step);
+    const Status done = step > 1 ? MatchCoarsely(settings, input, step, part(0.0), part(kMatchShare))
+                                 : MatchAll(settings, input, part(0.0), part(kMatchShare));
+    if (!done) return done;
     scratch_.times.match_ms += watch.Lap();
 
     std::optional<internal::EdgeTest> edges;
@@ -206,15 +210,46 @@ class Run {
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
     const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
                                      edges ? &*edges : nullptr, painted};
-    if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
+    std::vector<std::uint8_t> own_exemplar;  // where it is not that of the field
+    if (style.tones.empty()) {
+      if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
+    } else {
+      if (style.illumination.active()) own_exemplar.assign(guides_.pixel_count(), 0);
+      const internal::HybridInput hybrid{votes, guides_, style.illumination, input.luminance, style.tones};
+      if (!internal::VoteHybrid(hybrid, own_exemplar, out_, vote_progress)) return CancelledError();
+    }
     scratch_.times.vote_ms += watch.Lap();
 
     if (!(settings.colorize > 0.0)) return Ok();
     internal::RowProgress tint_progress(options_.progress, part(kMatchShare + kVoteShare), part(1.0), rows);
-    const internal::ColorizeInput tint{guides_, scratch_.active, scratch_.field, TintOf(style), painted};
+    const std::span<const std::uint8_t> tones_of = own_exemplar.empty() ? scratch_.field.exemplar : own_exemplar;
+    const internal::ColorizeInput tint{guides_, scratch_.active, guides_.width(), tones_of, TintOf(style), painted};
     if (!internal::Colorize(tint, out_, tint_progress)) return CancelledError();
     scratch_.times.compose_ms += watch.Lap();
     return Ok();
+  }
+
+  Status MatchAll(const TransferSettings& settings, const internal::MatchInput& input, double from, double to) {
+    internal::RowProgress progress(options_.progress, from, to, input.region.y1 - input.region.y0);
+    return Match(settings, input, progress) ? Ok() : CancelledError();
+  }
+
+  // Matches one pixel of each block and lets the others take it on.
+  Status MatchCoarsely(const TransferSettings& settings, const internal::MatchInput& input, int step, double from,
+                       double to) {
+    internal::MatchInput coarse = input;
+    coarse.region = input.region.GrownBy(internal::CoarseReach(step), guides_.width(), guides_.height());
+    const internal::CoarseGrid grid(scratch_.active, guides_.width(), guides_.height(), step, coarse.region);
+    wanted_.resize(guides_.pixel_count());
+    scratch_.field.moved.resize(guides_.pixel_count());
+    grid.Mark(1, guides_.width(), wanted_);
+    coarse.wanted = wanted_;
+    const double middle = 0.5 * (from + to);
+    const Status done = MatchAll(settings, coarse, from, middle);
+    grid.Mark(0, guides_.width(), wanted_);
+    if (!done) return done;
+    internal::RowProgress progress(options_.progress, middle, to, input.region.y1 - input.region.y0);
+    return internal::UpsampleField(input, grid, scratch_.field, progress) ? Ok() : CancelledError();
   }
 
   bool Match(const TransferSettings& settings, const internal::MatchInput& input, internal::RowProgress& progress) {
@@ -235,6 +270,7 @@ class Run {
   Picture& out_;
   Region region_;
   std::vector<float> luminance_;
+  std::vector<std::uint8_t> wanted_;
   std::optional<internal::DepthSlopes> slopes_;
 };
 

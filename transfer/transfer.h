@@ -33,6 +33,7 @@ struct PreparedStyle {
   std::shared_ptr<const PreparedExemplar> exemplar;
   Illumination illumination;
   std::vector<float> mean_lightness;  // Oklab's, by exemplar; only where the style tints in Oklab
+  std::vector<Picture> tones;         // by exemplar, see MakeTones; only where transfer.hybrid is above 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
   std::vector<RimPaint> rims;
@@ -61,6 +62,8 @@ struct TransferOptions {
   std::int64_t fps_denominator = 1;
   double exposure = 0.0;            // stops by which the scene's luminance is brightened; see MeasureExposure
   int threads = 0;                  // 0: all
+  int match_step = 1;               // the least step of the match, whatever the style's is: for guides that UpsampleGuides
+                                    // made, which hold nothing finer
   const Picture* over = nullptr;    // composited underneath instead of the paper; the guides' size
   std::optional<Region> region;     // only these pixels of the result are made; empty: all
   Progress progress;

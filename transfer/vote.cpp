@@ -23,26 +23,14 @@ struct Ballot {
 }  // namespace
 
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress) {
-  const SourceField& field = input.field;
-  const int radius = input.radius;
   return ForEachRow(input.region, progress, [&](int y) {
-    const int y0 = std::max(0, y - radius), y1 = std::min(field.height - 1, y + radius);
     for (int x = input.region.x0; x < input.region.x1; ++x) {
-      const std::size_t p = field.Index(x, y);
-      if (!input.active[p]) continue;
-      const int x0 = std::max(0, x - radius), x1 = std::min(field.width - 1, x + radius);
+      if (!input.active[input.field.Index(x, y)]) continue;
       Ballot ballot;
-      for (int v = y0; v <= y1; ++v) {
-        for (int u = x0; u <= x1; ++u) {
-          const std::size_t q = field.Index(u, v);
-          if (!input.active[q]) continue;
-          const int sx = field.x[q] + (x - u), sy = field.y[q] + (y - v);
-          if (!input.exemplar.Usable(sx, sy)) continue;
-          if (input.edges && !input.edges->SameSurface(p, q, u - x, v - y)) continue;
-          ballot.Add(input.exemplar.picture(field.exemplar[q]).At(sx, sy));
-        }
-      }
-      ballot.Count(out.At(x, y));  // p's own vote always counts
+      ForEachVote(input, x, y, [&](int exemplar, Source source) {
+        ballot.Add(input.exemplar.picture(exemplar).At(source.x, source.y));
+      });
+      ballot.Count(out.At(x, y));
     }
   });
 }

@@ -22,10 +22,30 @@ struct VoteInput {
   Region region;
 };
 
-// Every active pixel p of the region becomes the mean of what the chunks around it would put there: for each pixel q
-// of the (2·radius + 1)² window the texel S(q) + (p - q), where it is usable and, with `edges`, where q shows the same
-// surface. Inside a chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha.
-// Writes straight alpha into `out` (the picture's size); other pixels are left alone. False: asked to stop.
+// Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every pixel q of the (2·radius + 1)²
+// window the texel S(q) + (p - q), where it is usable and, with `edges`, where q shows the same surface. The pixel's own
+// vote is always among them.
+template <class Visit>
+void ForEachVote(const VoteInput& input, int x, int y, const Visit& visit) {
+  const SourceField& field = input.field;
+  const std::size_t p = field.Index(x, y);
+  const int x0 = std::max(0, x - input.radius), x1 = std::min(field.width - 1, x + input.radius);
+  const int y0 = std::max(0, y - input.radius), y1 = std::min(field.height - 1, y + input.radius);
+  for (int v = y0; v <= y1; ++v) {
+    for (int u = x0; u <= x1; ++u) {
+      const std::size_t q = field.Index(u, v);
+      if (!input.active[q]) continue;
+      const Source source{field.x[q] + (x - u), field.y[q] + (y - v)};
+      if (!input.exemplar.Usable(source.x, source.y)) continue;
+      if (input.edges && !input.edges->SameSurface(p, q, u - x, v - y)) continue;
+      visit(int(field.exemplar[q]), source);
+    }
+  }
+}
+
+// Every active pixel of the region becomes the mean of its votes: of what the chunks around it would put there. Inside a
+// chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha. Writes straight alpha
+// into `out` (the picture's size); other pixels are left alone. False: asked to stop.
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

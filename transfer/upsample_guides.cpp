@@ -1,0 +1,173 @@
+#include "transfer/upsample_guides.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "image/check.h"
+#include "transfer/edges.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kCreaseDegrees = 60.0, kDepthTolerance = 0.002;
+constexpr float kCreaseCosine = 0.5f;
+constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;  // as in pictures that are read or made
+
+// The neighbours along one axis that a sample at offset k of a block lies between: the pixel itself and the one on the
+// side that k is on, with its weight in [0, 1/2).
+struct Side {
+  int step = 0;  // -1, 0 or 1
+  float weight = 0.0f;
+};
+Side SideOf(int k, int factor) {
+  const int off = 2 * k + 1 - factor;  // from the pixel's centre, in half samples
+  return {off < 0 ? -1 : off > 0 ? 1 : 0, static_cast<float>(std::abs(off)) / static_cast<float>(2 * factor)};
+}
+
+class Upsampler {
+ public:
+  Upsampler(const GuideSet& from, int factor, GuideSet& to)
+      : from_(from), factor_(factor), to_(to), coverage_(from.Plane(Layer::kCoverage)) {
+    if (!from.Has(Layer::kNormal) || !from.Has(Layer::kDepth) || !from.Has(Layer::kObject)) return;
+    slopes_.emplace(from);
+    edges_.emplace(from, *slopes_, kCreaseDegrees, kDepthTolerance);
+  }
+
+  void Row(int y) {
+    for (int x = 0; x < from_.width(); ++x) {
+      if (!(coverage_[from_.Index(x, y)] > 0.0f)) continue;
+      for (int v = 0; v < factor_; ++v) {
+        for (int u = 0; u < factor_; ++u) Sample(x, y, u, v);
+      }
+      Cover(x, y);
+    }
+  }
+
+ private:
+  bool SameSurface(std::size_t p, std::size_t q, int dx, int dy) const {
+    if (p == q) return true;
+    if (!(coverage_[q] > 0.0f)) return false;
+    if (edges_) return edges_->SameSurface(p, q, dx, dy);
+    if (from_.Has(Layer::kObject) && from_.Plane(Layer::kObject)[p] != from_.Plane(Layer::kObject)[q]) return false;
+    if (!from_.Has(Layer::kNormal)) return true;
+    const glm::vec3 a = from_.Vec3(Layer::kNormal, p), b = from_.Vec3(Layer::kNormal, q);
+    return a.x * b.x + a.y * b.y + a.z * b.z > kCreaseCosine;
+  }
+
+  void Sample(int x, int y, int u, int v) {
+    const std::size_t p = from_.Index(x, y), target = to_.Index(x * factor_ + u, y * factor_ + v);
+    const Side across = SideOf(u, factor_), down = SideOf(v, factor_);
+    std::size_t taps[4];
+    float weights[4], total = 0.0f;
+    int count = 0;
+    for (int corner = 0; corner < 4; ++corner) {
+      const int dx = corner & 1 ? across.step : 0, dy = corner >> 1 ? down.step : 0;
+      const float weight = (corner & 1 ? across.weight : 1.0f - across.weight) *
+                           (corner >> 1 ? down.weight : 1.0f - down.weight);
+      const int qx = x + dx, qy = y + dy;
+      if (!(weight > 0.0f) || qx < 0 || qy < 0 || qx >= from_.width() || qy >= from_.height()) continue;
+      const std::size_t q = from_.Index(qx, qy);
+      if (!SameSurface(p, q, dx, dy)) continue;
+      taps[count] = q, weights[count++] = weight;
+      total += weight;
+    }
+    for (const LayerInfo& info : AllLayers()) {
+      if (!from_.Has(info.layer) || info.layer == Layer::kCoverage) continue;
+      const bool is_id = info.layer == Layer::kObject || info.layer == Layer::kMaterial;
+      for (int c = 0; c < ChannelCount(info.layer); ++c) {
+        const auto source = from_.Plane(info.layer, c);
+        float value = source[p];
+        if (!is_id && count > 1) {
+          value = 0.0f;
+          for (int t = 0; t < count; ++t) value += weights[t] * source[taps[t]];
+          value /= total;
+        }
+        if (info.layer == Layer::kMotion) value *= static_cast<float>(factor_);
+        to_.Plane(info.layer, c)[target] = value;
+      }
+    }
+    if (from_.Has(Layer::kNormal) && count > 1) Normalise(target);
+  }
+
+  void Normalise(std::size_t target) {
+    const glm::vec3 n = to_.Vec3(Layer::kNormal, target);
+    const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
+    if (!(length > 0.0f)) return;  // cannot be: all are within the crease angle of one
+    for (int c = 0; c < 3; ++c) to_.Plane(Layer::kNormal, c)[target] /= length;
+  }
+
+  // Coverage between the centres of pixels; beyond the picture's edge it goes on as it is.
+  float Between(int x, int y, int u, int v) const {
+    const Side across = SideOf(u, factor_), down = SideOf(v, factor_);
+    const auto at = [&](int qx, int qy) {
+      return coverage_[from_.Index(std::clamp(qx, 0, from_.width() - 1), std::clamp(qy, 0, from_.height() - 1))];
+    };
+    const float above = (1.0f - across.weight) * at(x, y) + across.weight * at(x + across.step, y);
+    const float below = (1.0f - across.weight) * at(x, y + down.step) + across.weight * at(x + across.step, y + down.step);
+    return (1.0f - down.weight) * above + down.weight * below;
+  }
+
+  // Covered is what lies above a threshold, softened over one sample; the threshold is the one that gives the block the
+  // pixel's coverage.
+  void Cover(int x, int y) {
+    const float share = std::min(coverage_[from_.Index(x, y)], 1.0f);
+    float contour[kMaxUpsampling * kMaxUpsampling];
+    const int count = factor_ * factor_;
+    for (int k = 0; k < count; ++k) contour[k] = Between(x, y, k % factor_, k / factor_);
+    const auto covered = [&](int k, double threshold) {
+      return std::clamp((contour[k] - threshold) * factor_ + 0.5, 0.0, 1.0);
+    };
+    double low = -1.0, high = 2.0;  // everything is covered, nothing is
+    for (int step = 0; step < 40 && share < 1.0f; ++step) {
+      const double middle = 0.5 * (low + high);
+      double sum = 0.0;
+      for (int k = 0; k < count; ++k) sum += covered(k, middle);
+      (sum > static_cast<double>(share) * count ? low : high) = middle;
+    }
+    const auto out = to_.Plane(Layer::kCoverage);
+    for (int k = 0; k < count; ++k) {
+      out[to_.Index(x * factor_ + k % factor_, y * factor_ + k / factor_)] = static_cast<float>(covered(k, low));
+    }
+  }
+
+  const GuideSet& from_;
+  const int factor_;
+  GuideSet& to_;
+  std::span<const float> coverage_;
+  std::optional<internal::DepthSlopes> slopes_;
+  std::optional<internal::EdgeTest> edges_;
+};
+
+}  // namespace
+
+Expected<GuideSet> UpsampleGuides(const GuideSet& guides, int factor, int threads) {
+  SCUMBLE_CHECK(factor >= 1 && factor <= kMaxUpsampling);
+  if (factor == 1) return guides;
+  if (std::max(guides.width(), guides.height()) > kMaxImageSide / factor ||
+      std::int64_t(guides.pixel_count()) > kMaxPixels / (factor * factor)) {
+    return UsageError("guides of " + std::to_string(guides.width()) + "×" + std::to_string(guides.height()) +
+                      " cannot be upsampled " + std::to_string(factor) + " times: a picture has at most " +
+                      std::to_string(kMaxPixels) + " pixels, " + std::to_string(kMaxImageSide) +
+                      " a side; take a smaller factor");
+  }
+  GuideSet larger(guides.width() * factor, guides.height() * factor);
+  for (const LayerInfo& info : AllLayers()) {
+    if (guides.Has(info.layer)) larger.Add(info.layer);
+  }
+  larger.attributes = guides.attributes;
+  larger.object_names = guides.object_names, larger.material_names = guides.material_names;
+  larger.camera = guides.camera;
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    Upsampler upsampler(guides, factor, larger);
+    tbb::parallel_for(0, guides.height(), [&](int y) { upsampler.Row(y); });
+  });
+  return larger;
+}
+
+}  // namespace scumble
