@@ -1,5 +1,5 @@
-// What coarse matching and upsampled guides cost and change, against matching every pixel of a picture of the same size:
-// time of the match, guide error, and how many pixels keep their source. Prints the tables of docs/resolution.md.
+// What coarse matching and upsampled guides cost and change, against matching every pixel of a picture of the same
+// size: time of the match, guide error, and how many pixels keep their source. Prints the tables of docs/resolution.md.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -96,7 +96,8 @@ void Measure(const std::string& scene, const std::string& style_name) {
     upsampled.push_back({std::move(larger), small.ms + watch.Lap()});
   }
   std::vector<Way> ways;
-  for (const int step : {1, 2, 4, 8}) ways.push_back({"match_step " + std::to_string(step), &full.guides, step, full.ms});
+  for (const int step : {1, 2, 4, 8})
+    ways.push_back({"match_step " + std::to_string(step), &full.guides, step, full.ms});
   ways.push_back({"--upsample 2", &upsampled[0].guides, 2, upsampled[0].ms});
   ways.push_back({"--upsample 4", &upsampled[1].guides, 4, upsampled[1].ms});
   TransferScratch scratch;
@@ -115,8 +116,8 @@ void Measure(const std::string& scene, const std::string& style_name) {
   for (const Way& way : ways) {
     const Error error = GuideError(full.guides, *prepared.exemplar, way.field);
     std::printf("| %s | %s | %s | %.0f | %.2f | %.0f | %.1f° | %.1f° | %.1f%% |\n", scene.c_str(), style_name.c_str(),
-                way.name.c_str(), Median(way.match_ms), Median(way.match_ms) / base, way.guides_ms, error.mean, error.most,
-                SameSources(ways[0].field, way.field));
+                way.name.c_str(), Median(way.match_ms), Median(way.match_ms) / base, way.guides_ms, error.mean,
+                error.most, SameSources(ways[0].field, way.field));
     std::fflush(stdout);
   }
 }
@@ -125,7 +126,8 @@ void Measure(const std::string& scene, const std::string& style_name) {
 }  // namespace scumble
 
 int main() {
-  std::printf("| scene | style | way | match, ms | of step 1 | guides, ms | error, mean | 99%% below | same source |\n");
+  std::printf(
+      "| scene | style | way | match, ms | of step 1 | guides, ms | error, mean | 99%% below | same source |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (const char* scene : {"suzanne", "stilllife"}) {
     for (const char* style : {"charcoal", "oil"}) scumble::Measure(scene, style);

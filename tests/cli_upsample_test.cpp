@@ -11,8 +11,8 @@ TEST_F(Upsample, StylizeIsTheTwoStepsThroughFiles) {
   const std::string scene = Scene("suzanne.glb");
   RunOk({"stylize", scene, "--style", "style", "--size", "120x80", "--aa", "4", "--upsample", "2", "-o", "one.png"});
   RunOk({"guidegen", scene, "--size", "60x40", "--aa", "4", "-o", "guides.exr"});
-  const CommandResult made =
-      RunOk({"transfer", "guides.exr", "--style", "style", "--upsample", "2", "--threads", "1", "--json", "-o", "two.png"});
+  const CommandResult made = RunOk(
+      {"transfer", "guides.exr", "--style", "style", "--upsample", "2", "--threads", "1", "--json", "-o", "two.png"});
   EXPECT_EQ(Bytes("one.png"), Bytes("two.png"));
   EXPECT_EQ(made.Json()["width"], 120);
   EXPECT_EQ(made.Json()["height"], 80);
@@ -44,8 +44,8 @@ TEST_F(Upsample, SizesThatCannotBeAreRefused) {
 TEST_F(Upsample, ASequenceIsResumedAtThePicturesSize) {
   WriteStyle("style");
   WriteGuideFile("g.0001.exr", Ball(32)), WriteGuideFile("g.0002.exr", Ball(32));
-  const Arguments transfer{"transfer", "g.####.exr", "--style", "style", "--upsample", "2", "--frames", "1-2", "-o",
-                           "p.####.png"};
+  const Arguments transfer{"transfer", "g.####.exr", "--style", "style", "--upsample",
+                           "2",        "--frames",   "1-2",     "-o",    "p.####.png"};
   RunOk(transfer);
   const std::string first = Bytes("p.0001.png");
   std::filesystem::remove(At("p.0002.png"));

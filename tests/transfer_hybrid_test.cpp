@@ -21,7 +21,8 @@ Picture AnyPicture(int width, int height, std::uint64_t seed, int least_alpha) {
   Picture picture(width, height);
   for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
     const std::uint64_t hash = Hash(seed, i);
-    picture.rgba[i] = static_cast<std::uint16_t>(i % 4 < 3 ? hash & 0xffff : least_alpha + hash % (65536 - least_alpha));
+    picture.rgba[i] =
+        static_cast<std::uint16_t>(i % 4 < 3 ? hash & 0xffff : least_alpha + hash % (65536 - least_alpha));
   }
   return picture;
 }
@@ -36,7 +37,8 @@ std::vector<std::uint8_t> AnyMask(int width, int height) {
   return mask;
 }
 
-// ---- The blur --------------------------------------------------------------------------------------------------------
+// ---- The blur
+// --------------------------------------------------------------------------------------------------------
 
 // The kernel by its definition: the box of weights 1 and, at either end, one below 1, whose variance is a quarter of
 // sigma², four times convolved with itself.
@@ -70,7 +72,8 @@ TEST(MaskedBlur, ItsKernelIsNearlyTheGaussianOfThatSigma) {
     const double peak = 1.0 / (sigma * std::sqrt(2 * 3.14159265358979));
     for (int i = -reach; i <= reach; ++i) {
       variance += kernel[std::size_t(i + reach)] * i * i;
-      worst = std::max(worst, std::fabs(kernel[std::size_t(i + reach)] - peak * std::exp(-0.5 * i * i / sigma / sigma)) / peak);
+      worst = std::max(
+          worst, std::fabs(kernel[std::size_t(i + reach)] - peak * std::exp(-0.5 * i * i / sigma / sigma)) / peak);
     }
     EXPECT_NEAR(variance, sigma * sigma, 1e-9 * sigma * sigma);
     EXPECT_LT(worst, sigma >= 2.0 ? 0.05 : 1.0) << sigma;
@@ -95,7 +98,8 @@ TEST(MaskedBlur, IsTheQuotientOfPlainConvolutions) {
             const double w = weight(u - x) * weight(v - y);
             total += w;
             const std::uint16_t* texel = picture.At(u, v);
-            for (int c = 0; c < 4; ++c) sum[c] += w * (c < 3 ? std::floor(texel[c] * double(texel[3]) / 65535 + 0.5) : texel[3]);
+            for (int c = 0; c < 4; ++c)
+              sum[c] += w * (c < 3 ? std::floor(texel[c] * double(texel[3]) / 65535 + 0.5) : texel[3]);
           }
         }
         const bool inside = mask[std::size_t(y) * width + x];
@@ -129,7 +133,8 @@ TEST(MaskedBlur, KeepsAFlatToneAndBecomesTheMean) {
   }
 }
 
-// ---- The transfer ----------------------------------------------------------------------------------------------------
+// ---- The transfer
+// ----------------------------------------------------------------------------------------------------
 
 TEST(Hybrid, ZeroIsThePlainEngineAndAnEvenToneToo) {
   const GuideSet guides = HillGuides(120, 90);
@@ -160,7 +165,8 @@ TEST(Hybrid, ASphereBecomesItsExemplar) {
   const auto prepared = Prepare(style, 96);
   int count = 0;
   for (const Source at : prepared->exemplar->UsablePixels()) {
-    if (result.field.x[std::size_t(at.y) * 96 + at.x] != at.x) continue;  // some seeds are on the rim, which is not used
+    if (result.field.x[std::size_t(at.y) * 96 + at.x] != at.x)
+      continue;  // some seeds are on the rim, which is not used
     if (result.field.y[std::size_t(at.y) * 96 + at.x] != at.y) continue;
     ++count;
     ASSERT_EQ(result.picture.At(at.x, at.y)[0], style.exemplars[0].picture.At(at.x, at.y)[0]) << at.x << ", " << at.y;
@@ -272,7 +278,8 @@ Picture RampPicture(int size, int texture) {
       const double nx = (2.0 * x + 1 - size) / size;
       // Strokes of three texels, so that their mean over a few is near 0.
       const int noise = texture ? static_cast<int>(Hash(x / 3, y / 3) % std::uint64_t(2 * texture + 1)) - texture : 0;
-      for (int c = 0; c < 3; ++c) picture.At(x, y)[c] = static_cast<std::uint16_t>(32768.0 + 20000.0 * nx + noise + 0.5);
+      for (int c = 0; c < 3; ++c)
+        picture.At(x, y)[c] = static_cast<std::uint16_t>(32768.0 + 20000.0 * nx + noise + 0.5);
       picture.At(x, y)[3] = 65535;
     }
   }
@@ -283,7 +290,8 @@ struct Departure {
   double worst = 0.0, mean_square = 0.0, worst_local_mean = 0.0;
 };
 
-// From the formula, where the hills are not too steep: there the blur does not reach the rim, where a mean leans inward.
+// From the formula, where the hills are not too steep: there the blur does not reach the rim, where a mean leans
+// inward.
 Departure FromTheRamp(const Transferred& result, const GuideSet& guides) {
   Departure departure;
   const int width = guides.width(), height = guides.height(), reach = 7;

@@ -39,7 +39,8 @@ Style TwoLights(int size) {
   return style;
 }
 
-// ---- The rule, from its words ----------------------------------------------------------------------------------------
+// ---- The rule, from its words
+// ----------------------------------------------------------------------------------------
 
 struct Stand {
   int x, y;
@@ -59,7 +60,8 @@ std::optional<Stand> StandOf(const GuideSet& guides, int column, int row, int st
   return best;
 }
 
-// `full` is matched pixel by pixel; a pixel that stands for a block is matched as it is there.
+// `full` is matched pixel by pixel; a pixel that stands for a block is matched as it is there, but for grids of seeds
+// that are not coarser than the blocks.
 SourceField FieldByTheRule(const Style& style, const GuideSet& guides, const SourceField& full, int step) {
   const auto prepared = Prepare(style, guides.height());
   const PreparedExemplar& exemplar = *prepared->exemplar;
@@ -88,16 +90,23 @@ SourceField FieldByTheRule(const Style& style, const GuideSet& guides, const Sou
         const auto stand = StandOf(guides, column, row, step);
         if (!stand) continue;
         const std::size_t q = guides.Index(stand->x, stand->y);
-        const Source source{full.x[q] + x - stand->x, full.y[q] + y - stand->y};
+        Source own{full.x[q], full.y[q]};
+        int level = full.level[q], of = full.exemplar[q];
+        if (level > 0 && 1 << level <= step) {
+          own = exemplar.NearestNeighbour(guides.Vec3(Layer::kNormal, q)), level = 0;
+          of = prepared->illumination.Choose(guides.Plane(Layer::kLuminance)[q]);
+        }
+        const Source source{own.x + x - stand->x, own.y + y - stand->y};
         if (!exemplar.Usable(source.x, source.y)) continue;
-        const float extra = prepared->illumination.Error(light, full.exemplar[q]);
+        const float extra = prepared->illumination.Error(light, of);
         const glm::vec3 there = exemplar.Normal(source.x, source.y);
         if (!test.Alike(guide, there, extra)) continue;
         const float error = glm::length(guide - there) + extra;
-        if (best && (full.level[q] < best_level || (full.level[q] == best_level && error >= best_error - 1e-6f))) continue;
-        best = source, best_level = full.level[q], best_exemplar = full.exemplar[q], best_error = error;
+        if (best && (level < best_level || (level == best_level && error >= best_error - 1e-6f))) continue;
+        best = source, best_level = level, best_exemplar = of, best_error = error;
       }
-      if (!best) best = exemplar.NearestNeighbour(guide), best_level = 0, best_exemplar = prepared->illumination.Choose(light);
+      if (!best)
+        best = exemplar.NearestNeighbour(guide), best_level = 0, best_exemplar = prepared->illumination.Choose(light);
       field.Set(p, best->x, best->y, best_exemplar, best_level);
     }
   }
@@ -190,9 +199,8 @@ TEST(MatchStep, KnowsWhatVarietyMoved) {
 
 TEST(MatchStep, AnySizeOfPictureWillDo) {
   for (const auto& [width, height] : std::vector<std::pair<int, int>>{{1, 1}, {1, 9}, {7, 1}, {2, 3}, {9, 8}}) {
-    const GuideSet guides = MakeGuides(width, height, [](int x, int y) {
-      return glm::normalize(glm::vec3(0.1f * x - 0.3f, 0.2f - 0.05f * y, 1.0f));
-    });
+    const GuideSet guides = MakeGuides(
+        width, height, [](int x, int y) { return glm::normalize(glm::vec3(0.1f * x - 0.3f, 0.2f - 0.05f * y, 1.0f)); });
     for (const Method method : {Method::kStyleBlit, Method::kLitSphere, Method::kBruteForce}) {
       Style style = PlainStyle(NoisePicture(16));
       style.transfer.method = method;

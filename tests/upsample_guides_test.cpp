@@ -24,7 +24,8 @@ std::vector<float> CoverageOf(const std::function<bool(double, double)>& inside,
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       int hits = 0;
-      for (int k = 0; k < 256; ++k) hits += inside((x + (k % 16 + 0.5) / 16) / scale, (y + (k / 16 + 0.5) / 16) / scale);
+      for (int k = 0; k < 256; ++k)
+        hits += inside((x + (k % 16 + 0.5) / 16) / scale, (y + (k / 16 + 0.5) / 16) / scale);
       coverage[std::size_t(y) * width + x] = static_cast<float>(hits) / 256.0f;
     }
   }
@@ -65,7 +66,8 @@ TEST(UpsampleGuides, CoverageKeepsItsArea) {
       for (int x = 0; x < width; ++x) {
         double sum = 0.0;
         for (int k = 0; k < factor * factor; ++k) {
-          const float a = larger.Plane(Layer::kCoverage)[larger.Index(x * factor + k % factor, y * factor + k / factor)];
+          const float a =
+              larger.Plane(Layer::kCoverage)[larger.Index(x * factor + k % factor, y * factor + k / factor)];
           ASSERT_TRUE(a >= 0.0f && a <= 1.0f);
           sum += a;
         }
@@ -134,7 +136,8 @@ TEST(UpsampleGuides, WhatIsLinearOnASurfaceStaysLinear) {
         ASSERT_NEAR(larger.Plane(Layer::kDepth)[i], value, 1e-4);
         ASSERT_NEAR(larger.Plane(Layer::kAlbedo, 1)[i], value, 1e-4);
         ASSERT_NEAR(larger.Plane(Layer::kMotion)[i], factor * value, 1e-3) << "in the larger picture's pixels";
-        ASSERT_EQ(larger.Plane(Layer::kMaterial)[i], guides.Plane(Layer::kMaterial)[guides.Index(x / factor, y / factor)]);
+        ASSERT_EQ(larger.Plane(Layer::kMaterial)[i],
+                  guides.Plane(Layer::kMaterial)[guides.Index(x / factor, y / factor)]);
         ASSERT_NEAR(glm::length(larger.Vec3(Layer::kNormal, i)), 1.0, 1e-6);
       }
     }

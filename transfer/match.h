@@ -29,6 +29,7 @@ struct MatchInput {
   int flat_reach = 16;  // pixels around a seed that must be flat for `variety`
   Region region;
   std::span<const std::uint8_t> wanted = {};  // 1: active pixels that are to be matched; empty: all of them are
+  int least_level = 1;  // finer grids of seeds are left out
 
   bool Wants(std::size_t i) const { return wanted.empty() ? active[i] != 0 : wanted[i] != 0; }
   float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }

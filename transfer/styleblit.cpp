@@ -61,7 +61,7 @@ std::optional<Offer> Accept(const MatchInput& input, const Level& level, int x, 
 bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress) {
   // Level 0 has a seed on every pixel, so its offer is the pixel's own nearest neighbour, accepted or not.
   std::vector<Level> levels;
-  for (int level = input.levels - 1; level >= 1; --level) levels.emplace_back(input, level);
+  for (int level = input.levels - 1; level >= input.least_level; --level) levels.emplace_back(input, level);
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);

@@ -210,19 +210,19 @@ class Run {
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
     const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
                                      edges ? &*edges : nullptr, painted};
-    std::vector<std::uint8_t> own_exemplar;  // where it is not that of the field
+    std::span<const std::uint8_t> tones_of = scratch_.field.exemplar;
     if (style.tones.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
-      if (style.illumination.active()) own_exemplar.assign(guides_.pixel_count(), 0);
+      own_exemplar_.resize(guides_.pixel_count());
+      tones_of = own_exemplar_;
       const internal::HybridInput hybrid{votes, guides_, style.illumination, input.luminance, style.tones};
-      if (!internal::VoteHybrid(hybrid, own_exemplar, out_, vote_progress)) return CancelledError();
+      if (!internal::VoteHybrid(hybrid, own_exemplar_, out_, vote_progress)) return CancelledError();
     }
     scratch_.times.vote_ms += watch.Lap();
 
     if (!(settings.colorize > 0.0)) return Ok();
     internal::RowProgress tint_progress(options_.progress, part(kMatchShare + kVoteShare), part(1.0), rows);
-    const std::span<const std::uint8_t> tones_of = own_exemplar.empty() ? scratch_.field.exemplar : own_exemplar;
     const internal::ColorizeInput tint{guides_, scratch_.active, guides_.width(), tones_of, TintOf(style), painted};
     if (!internal::Colorize(tint, out_, tint_progress)) return CancelledError();
     scratch_.times.compose_ms += watch.Lap();
@@ -244,6 +244,7 @@ class Run {
     scratch_.field.moved.resize(guides_.pixel_count());
     grid.Mark(1, guides_.width(), wanted_);
     coarse.wanted = wanted_;
+    coarse.least_level = internal::CoarseLeastLevel(step);
     const double middle = 0.5 * (from + to);
     const Status done = MatchAll(settings, coarse, from, middle);
     grid.Mark(0, guides_.width(), wanted_);
@@ -270,7 +271,7 @@ class Run {
   Picture& out_;
   Region region_;
   std::vector<float> luminance_;
-  std::vector<std::uint8_t> wanted_;
+  std::vector<std::uint8_t> wanted_, own_exemplar_;
   std::optional<internal::DepthSlopes> slopes_;
 };
 

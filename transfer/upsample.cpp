@@ -43,6 +43,16 @@ class MatchedGrid {
       matched_[b] = Matched{*pixel, {field.x[i], field.y[i]}, field.exemplar[i], field.level[i]};
       if (!field.moved.empty()) matched_[b]->moved = field.moved[i];
     }
+    in_one_piece_.resize(matched_.size());
+    for (std::size_t b = 0; b + columns_ + 1 < matched_.size(); ++b) {
+      const std::optional<Matched>& first = matched_[b];
+      const auto agrees = [&](std::size_t other) { return matched_[other] && first->SameChunk(*matched_[other]); };
+      in_one_piece_[b] = first && agrees(b + 1) && agrees(b + columns_) && agrees(b + columns_ + 1);
+    }
+  }
+  // Whether a block, the one right of it and the two below them were matched to one piece of paint.
+  bool InOnePiece(int column, int row) const {
+    return in_one_piece_[std::size_t(row - first_row_) * columns_ + (column - first_column_)] != 0;
   }
   const std::optional<Matched>& At(int column, int row) const {
     return matched_[std::size_t(row - first_row_) * columns_ + (column - first_column_)];
@@ -51,11 +61,11 @@ class MatchedGrid {
  private:
   int first_column_, first_row_, columns_ = 0;
   std::vector<std::optional<Matched>> matched_;
+  std::vector<std::uint8_t> in_one_piece_;
 };
 
 // The four blocks around a pixel, its own first.
-std::array<PixelPosition, 4> BlocksAround(int x, int y, int step) {
-  const int column = BlockBefore(x, step), row = BlockBefore(y, step);
+std::array<PixelPosition, 4> BlocksAround(int x, int y, int column, int row, int step) {
   const PixelPosition own{x / step, y / step};
   std::array<PixelPosition, 4> blocks{own};
   int count = 1;
@@ -67,15 +77,34 @@ std::array<PixelPosition, 4> BlocksAround(int x, int y, int step) {
 }
 
 // What p takes from a block, if its guide is like p's there.
-std::optional<Offer> Accept(const MatchInput& input, const Matched& matched, int x, int y, glm::vec3 guide, float light,
-                            float& error) {
+std::optional<Offer> Accept(const MatchInput& input, const Matched& matched, int x, int y, glm::vec3 guide,
+                            float light) {
   const Source candidate{matched.source.x + (x - matched.pixel.x), matched.source.y + (y - matched.pixel.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   const float extra = input.illumination.Error(light, matched.exemplar);
-  const glm::vec3 there = input.exemplar.Normal(candidate.x, candidate.y);
-  if (!input.test.Alike(guide + matched.moved, there, extra)) return std::nullopt;
-  error = input.test.Distance(guide + matched.moved, there) + extra;
-  return Offer{candidate, matched.exemplar};
+  if (!input.test.Alike(guide + matched.moved, input.exemplar.Normal(candidate.x, candidate.y), extra))
+    return std::nullopt;
+  return Offer{candidate, matched.exemplar, matched.moved};
+}
+
+// What p takes from the blocks around it, and the level of that.
+std::optional<Offer> Best(const MatchInput& input, const MatchedGrid& matched,
+                          const std::array<PixelPosition, 4>& blocks, int x, int y, glm::vec3 guide, float light,
+                          int& level) {
+  std::optional<Offer> best;
+  float least = 0.0f;
+  for (const PixelPosition& block : blocks) {
+    const std::optional<Matched>& there = matched.At(block.x, block.y);
+    if (!there || (best && there->level < level)) continue;
+    const auto offer = Accept(input, *there, x, y, guide, light);
+    if (!offer) continue;
+    const glm::vec3 normal = input.exemplar.Normal(offer->source.x, offer->source.y);
+    const float error =
+        input.test.Distance(guide + offer->moved, normal) + input.illumination.Error(light, offer->exemplar);
+    if (best && there->level == level && !(error < least)) continue;
+    best = offer, level = there->level, least = error;
+  }
+  return best;
 }
 
 }  // namespace
@@ -117,29 +146,26 @@ void CoarseGrid::Mark(std::uint8_t value, int width, std::vector<std::uint8_t>& 
 bool UpsampleField(const MatchInput& input, const CoarseGrid& grid, SourceField& field, RowProgress& progress) {
   if (input.region.empty()) return !progress.cancelled();
   const MatchedGrid matched(grid, field, input.region);
+  const int step = grid.step();
   return ForEachRow(input.region, progress, [&](int y) {
+    const int row = BlockBefore(y, step);
+    int column = BlockBefore(input.region.x0, step);
     for (int x = input.region.x0; x < input.region.x1; ++x) {
+      if (2 * x + 1 - step >= 2 * step * (column + 1)) ++column;
       const std::size_t i = field.Index(x, y);
       if (!input.active[i]) continue;
       const glm::vec3 guide = input.guides.Vec3(Layer::kNormal, i);
       const float light = input.LuminanceAt(i);
       std::optional<Offer> best;
-      int best_level = 0;
-      float best_error = 0.0f;
-      const Matched* seen[4];  // in one piece of paint all four agree
-      int seen_count = 0;
-      for (const PixelPosition& block : BlocksAround(x, y, grid.step())) {
-        const std::optional<Matched>& there = matched.At(block.x, block.y);
-        if (!there || (best && there->level < best_level)) continue;
-        if (std::any_of(seen, seen + seen_count, [&](const Matched* other) { return other->SameChunk(*there); })) continue;
-        seen[seen_count++] = &*there;
-        float error = 0.0f;
-        const auto offer = Accept(input, *there, x, y, guide, light, error);
-        if (!offer || (best && there->level == best_level && !(error < best_error))) continue;
-        best = offer, best_level = there->level, best_error = error;
+      int level = 0;
+      if (matched.InOnePiece(column, row)) {
+        const Matched& one = *matched.At(column, row);
+        best = Accept(input, one, x, y, guide, light), level = one.level;
+      } else {
+        best = Best(input, matched, BlocksAround(x, y, column, row, step), x, y, guide, light, level);
       }
-      if (!best) best = OwnOffer(input, i), best_level = 0;
-      field.Set(i, best->source.x, best->source.y, best->exemplar, best_level);
+      if (!best) best = OwnOffer(input, i), level = 0;
+      field.Set(i, best->source.x, best->source.y, best->exemplar, level);
     }
   });
 }

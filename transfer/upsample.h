@@ -1,6 +1,7 @@
 // The source field matched at some pixels and taken on by those between: positions are upsampled, paint is not blurred.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,6 +31,10 @@ class CoarseGrid {
 
 // How far from a pixel the pixels of its blocks may be; a match that covers so many pixels around a region has them.
 constexpr int CoarseReach(int step) { return 2 * step; }
+
+// The finest grid of seeds worth a look: one whose cells are larger than a block. On finer ones every block is its own
+// seed, or nearly so, which is what taking its own nearest neighbour means.
+constexpr int CoarseLeastLevel(int step) { return std::bit_width(static_cast<unsigned>(step)); }
 
 // Fills the active pixels of input.region. `field` holds what the pixels of `grid` were matched to. A pixel p looks at
 // the four blocks whose centres are nearest, at the picture's edge fewer: each with its pixel q offers S(q) + (p - q),

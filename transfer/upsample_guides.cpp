@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "image/check.h"
 #include "transfer/edges.h"
@@ -29,10 +30,27 @@ Side SideOf(int k, int factor) {
   return {off < 0 ? -1 : off > 0 ? 1 : 0, static_cast<float>(std::abs(off)) / static_cast<float>(2 * factor)};
 }
 
+// One plane of a layer, small and large.
+struct PlanePair {
+  std::span<const float> from;
+  std::span<float> to;
+  bool is_id = false;
+  float factor = 1.0f;
+};
+
 class Upsampler {
  public:
   Upsampler(const GuideSet& from, int factor, GuideSet& to)
       : from_(from), factor_(factor), to_(to), coverage_(from.Plane(Layer::kCoverage)) {
+    for (int k = 0; k < factor; ++k) sides_.push_back(SideOf(k, factor));
+    for (const LayerInfo& info : AllLayers()) {
+      if (!from.Has(info.layer) || info.layer == Layer::kCoverage) continue;
+      const bool is_id = info.layer == Layer::kObject || info.layer == Layer::kMaterial;
+      const float scale = info.layer == Layer::kMotion ? static_cast<float>(factor) : 1.0f;
+      for (int c = 0; c < ChannelCount(info.layer); ++c) {
+        planes_.push_back({from.Plane(info.layer, c), to.Plane(info.layer, c), is_id, scale});
+      }
+    }
     if (!from.Has(Layer::kNormal) || !from.Has(Layer::kDepth) || !from.Has(Layer::kObject)) return;
     slopes_.emplace(from);
     edges_.emplace(from, *slopes_, kCreaseDegrees, kDepthTolerance);
@@ -40,9 +58,17 @@ class Upsampler {
 
   void Row(int y) {
     for (int x = 0; x < from_.width(); ++x) {
-      if (!(coverage_[from_.Index(x, y)] > 0.0f)) continue;
+      const std::size_t p = from_.Index(x, y);
+      if (!(coverage_[p] > 0.0f)) continue;
+      bool same[3][3];  // which neighbours show this pixel's surface
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const bool inside = x + dx >= 0 && y + dy >= 0 && x + dx < from_.width() && y + dy < from_.height();
+          same[dy + 1][dx + 1] = inside && SameSurface(p, from_.Index(x + dx, y + dy), dx, dy);
+        }
+      }
       for (int v = 0; v < factor_; ++v) {
-        for (int u = 0; u < factor_; ++u) Sample(x, y, u, v);
+        for (int u = 0; u < factor_; ++u) Sample(x, y, u, v, same);
       }
       Cover(x, y);
     }
@@ -59,39 +85,30 @@ class Upsampler {
     return a.x * b.x + a.y * b.y + a.z * b.z > kCreaseCosine;
   }
 
-  void Sample(int x, int y, int u, int v) {
+  void Sample(int x, int y, int u, int v, const bool (&same)[3][3]) {
     const std::size_t p = from_.Index(x, y), target = to_.Index(x * factor_ + u, y * factor_ + v);
-    const Side across = SideOf(u, factor_), down = SideOf(v, factor_);
+    const Side across = sides_[std::size_t(u)], down = sides_[std::size_t(v)];
     std::size_t taps[4];
     float weights[4], total = 0.0f;
     int count = 0;
     for (int corner = 0; corner < 4; ++corner) {
       const int dx = corner & 1 ? across.step : 0, dy = corner >> 1 ? down.step : 0;
-      const float weight = (corner & 1 ? across.weight : 1.0f - across.weight) *
-                           (corner >> 1 ? down.weight : 1.0f - down.weight);
-      const int qx = x + dx, qy = y + dy;
-      if (!(weight > 0.0f) || qx < 0 || qy < 0 || qx >= from_.width() || qy >= from_.height()) continue;
-      const std::size_t q = from_.Index(qx, qy);
-      if (!SameSurface(p, q, dx, dy)) continue;
-      taps[count] = q, weights[count++] = weight;
+      const float weight =
+          (corner & 1 ? across.weight : 1.0f - across.weight) * (corner >> 1 ? down.weight : 1.0f - down.weight);
+      if (!(weight > 0.0f) || !same[dy + 1][dx + 1]) continue;
+      taps[count] = from_.Index(x + dx, y + dy), weights[count++] = weight;
       total += weight;
     }
-    for (const LayerInfo& info : AllLayers()) {
-      if (!from_.Has(info.layer) || info.layer == Layer::kCoverage) continue;
-      const bool is_id = info.layer == Layer::kObject || info.layer == Layer::kMaterial;
-      for (int c = 0; c < ChannelCount(info.layer); ++c) {
-        const auto source = from_.Plane(info.layer, c);
-        float value = source[p];
-        if (!is_id && count > 1) {
-          value = 0.0f;
-          for (int t = 0; t < count; ++t) value += weights[t] * source[taps[t]];
-          value /= total;
-        }
-        if (info.layer == Layer::kMotion) value *= static_cast<float>(factor_);
-        to_.Plane(info.layer, c)[target] = value;
+    for (const PlanePair& plane : planes_) {
+      float value = plane.from[p];
+      if (!plane.is_id && count > 1) {
+        value = 0.0f;
+        for (int t = 0; t < count; ++t) value += weights[t] * plane.from[taps[t]];
+        value /= total;
       }
+      plane.to[target] = value * plane.factor;
     }
-    if (from_.Has(Layer::kNormal) && count > 1) Normalise(target);
+    if (count > 1 && from_.Has(Layer::kNormal)) Normalise(target);
   }
 
   void Normalise(std::size_t target) {
@@ -103,12 +120,13 @@ class Upsampler {
 
   // Coverage between the centres of pixels; beyond the picture's edge it goes on as it is.
   float Between(int x, int y, int u, int v) const {
-    const Side across = SideOf(u, factor_), down = SideOf(v, factor_);
+    const Side across = sides_[std::size_t(u)], down = sides_[std::size_t(v)];
     const auto at = [&](int qx, int qy) {
       return coverage_[from_.Index(std::clamp(qx, 0, from_.width() - 1), std::clamp(qy, 0, from_.height() - 1))];
     };
     const float above = (1.0f - across.weight) * at(x, y) + across.weight * at(x + across.step, y);
-    const float below = (1.0f - across.weight) * at(x, y + down.step) + across.weight * at(x + across.step, y + down.step);
+    const float below =
+        (1.0f - across.weight) * at(x, y + down.step) + across.weight * at(x + across.step, y + down.step);
     return (1.0f - down.weight) * above + down.weight * below;
   }
 
@@ -116,6 +134,12 @@ class Upsampler {
   // pixel's coverage.
   void Cover(int x, int y) {
     const float share = std::min(coverage_[from_.Index(x, y)], 1.0f);
+    const auto out = to_.Plane(Layer::kCoverage);
+    const auto target = [&](int k) { return to_.Index(x * factor_ + k % factor_, y * factor_ + k / factor_); };
+    if (share >= 1.0f) {
+      for (int k = 0; k < factor_ * factor_; ++k) out[target(k)] = 1.0f;
+      return;
+    }
     float contour[kMaxUpsampling * kMaxUpsampling];
     const int count = factor_ * factor_;
     for (int k = 0; k < count; ++k) contour[k] = Between(x, y, k % factor_, k / factor_);
@@ -123,22 +147,21 @@ class Upsampler {
       return std::clamp((contour[k] - threshold) * factor_ + 0.5, 0.0, 1.0);
     };
     double low = -1.0, high = 2.0;  // everything is covered, nothing is
-    for (int step = 0; step < 40 && share < 1.0f; ++step) {
+    for (int step = 0; step < 40; ++step) {
       const double middle = 0.5 * (low + high);
       double sum = 0.0;
       for (int k = 0; k < count; ++k) sum += covered(k, middle);
       (sum > static_cast<double>(share) * count ? low : high) = middle;
     }
-    const auto out = to_.Plane(Layer::kCoverage);
-    for (int k = 0; k < count; ++k) {
-      out[to_.Index(x * factor_ + k % factor_, y * factor_ + k / factor_)] = static_cast<float>(covered(k, low));
-    }
+    for (int k = 0; k < count; ++k) out[target(k)] = static_cast<float>(covered(k, low));
   }
 
   const GuideSet& from_;
   const int factor_;
   GuideSet& to_;
   std::span<const float> coverage_;
+  std::vector<Side> sides_;
+  std::vector<PlanePair> planes_;
   std::optional<internal::DepthSlopes> slopes_;
   std::optional<internal::EdgeTest> edges_;
 };
