@@ -197,6 +197,31 @@ TEST(MatchStep, KnowsWhatVarietyMoved) {
   EXPECT_GT(SameSources(full, MustTransfer(style, guides).field), 0.9);
 }
 
+TEST(MatchStep, SeedsOnTheSurfaceAreTheSameForAll) {
+  GuideSet guides = HillGuides(200, 160);
+  guides.Add(Layer::kPref);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kPref, 0)[i] = 0.01f * static_cast<float>(i % 200);
+    guides.Plane(Layer::kPref, 1)[i] = -0.01f * static_cast<float>(i / 200);
+  }
+  Style style = PlainStyle(NoisePicture(300));
+  style.transfer.coherent = true;
+  const SourceField full = MustTransfer(style, guides).field;
+  style.transfer.match_step = 2;
+  const Transferred coarse = MustTransfer(style, guides);
+  EXPECT_GT(SameSources(full, coarse.field), 0.8);
+  const auto prepared = Prepare(style, 160);
+  ASSERT_TRUE(prepared.ok());
+  Picture tiled;
+  TransferScratch scratch;
+  TransferOptions options;
+  for (int y = 0; y < 160; y += 53) {
+    options.region = Region{0, y, 200, y + 53};
+    ASSERT_TRUE(Transfer(*prepared, guides, options, scratch, tiled).ok());
+  }
+  EXPECT_EQ(tiled.rgba, coarse.picture.rgba);
+}
+
 TEST(MatchStep, AnySizeOfPictureWillDo) {
   for (const auto& [width, height] : std::vector<std::pair<int, int>>{{1, 1}, {1, 9}, {7, 1}, {2, 3}, {9, 8}}) {
     const GuideSet guides = MakeGuides(

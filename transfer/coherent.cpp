@@ -98,7 +98,10 @@ class CoherentMatch {
         object_(input.guides.Plane(Layer::kObject)),
         octaves_(SurfaceOctaves(input.guides, input.active)),
         cell_(kSteadiness * std::min(kLargestCell, input.test.EuclideanThreshold())),
-        settled_(input.guides.pixel_count(), 0) {}
+        settled_(input.guides.pixel_count(), 0) {
+    // Pixels that are not wanted belong to pieces as all do, but take nothing.
+    for (std::size_t i = 0; i < input.wanted.size(); ++i) settled_[i] = !input.wanted[i];
+  }
 
   bool Run(RowProgress& progress) {
     const Region& region = input_.region;
@@ -111,7 +114,7 @@ class CoherentMatch {
         if (!input_.Wants(i) || settled_[i]) continue;
         const Offer own = OwnOffer(input_, i);
         field_.Set(i, own.source.x, own.source.y, own.exemplar, 0);
-        if (!field_.moved.empty()) field_.moved[i] = glm::vec3(0.0f);
+        if (!field_.moved.empty()) field_.moved[i] = own.moved;
       }
     });
   }

@@ -235,7 +235,8 @@ class Run {
   }
 
   // Matches one pixel of each block and lets the others take it on.
-  Status MatchCoarsely(const TransferSettings& settings, const internal::MatchInput& input, int step, double from, double to) {
+  Status MatchCoarsely(const TransferSettings& settings, const internal::MatchInput& input, int step, double from,
+                       double to) {
     internal::MatchInput coarse = input;
     coarse.region = input.region.GrownBy(internal::CoarseReach(step), guides_.width(), guides_.height());
     const internal::CoarseGrid grid(scratch_.active, guides_.width(), guides_.height(), step, coarse.region);
