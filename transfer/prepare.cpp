@@ -192,7 +192,11 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
       prepared.mean_lightness.push_back(internal::MeanLightness(*prepared.exemplar, k));
     }
   }
-  if (settings.shadow == ShadowMode::kPaint) prepared.dark = DarkestPlace(*prepared.exemplar);
+  if (settings.shadow == ShadowMode::kPaint) {
+    std::vector<const Picture*> pictures;
+    for (const Exemplar& exemplar : style.exemplars) pictures.push_back(&exemplar.picture);
+    prepared.shadow.emplace(prepared.exemplar, pictures);
+  }
   if (settings.edge == EdgeMode::kExemplar) {
     if (!style.exemplars.front().is_sphere) {
       return UsageError("transfer.edge = \"exemplar\" continues the painted edge of a sphere; " +
