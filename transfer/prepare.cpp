@@ -203,7 +203,11 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     const double ratio = static_cast<double>(prepared.exemplar->size()) / std::max(file.width, file.height);
     prepared.tones = MakeTones(*prepared.exemplar, settings.hybrid * ratio);
   }
-  if (settings.shadow == ShadowMode::kPaint) prepared.dark = DarkestPlace(*prepared.exemplar);
+  if (settings.shadow == ShadowMode::kPaint) {
+    std::vector<const Picture*> pictures;
+    for (const Exemplar& exemplar : style.exemplars) pictures.push_back(&exemplar.picture);
+    prepared.shadow.emplace(prepared.exemplar, pictures);
+  }
   if (settings.edge == EdgeMode::kExemplar) {
     if (!style.exemplars.front().is_sphere) {
       return UsageError("transfer.edge = \"exemplar\" continues the painted edge of a sphere; " +

@@ -1,4 +1,4 @@
-// Stylised ground shadows: what `catcher` objects catch, laid over the background in the style's darkest paint.
+// Stylised ground shadows: what `catcher` objects catch, laid over the background in the style's own strokes.
 #pragma once
 
 #include <cstdint>
@@ -7,38 +7,26 @@
 #include "image/guides.h"
 #include "image/picture.h"
 #include "transfer/parallel.h"
-#include "transfer/prepared_exemplar.h"
 #include "transfer/region.h"
 #include "transfer/seeds.h"
-
-namespace scumble {
-
-// The darkest piece of an exemplar.
-struct DarkPlace {
-  Source center;
-  int exemplar = 0;
-  int reach = 0;  // pixels around the centre that count as dark
-};
-
-// The square of usable paint, an eighth of the exemplar's shorter side wide, whose mean luminance is lowest, in any
-// lighting condition; ties to the first in (exemplar, y, x). A painting too broken up for that gives its darkest pixel.
-DarkPlace DarkestPlace(const PreparedExemplar& exemplar);
-
-}  // namespace scumble
+#include "transfer/shadow_paint.h"
 
 namespace scumble::internal {
 
 struct ShadowInput {
   const GuideSet& guides;                // with shadow
   std::span<const std::uint16_t> style;  // StyleMap::kCatch: a pixel that catches shadows
-  const PreparedExemplar& exemplar;
-  DarkPlace dark;
+  const ShadowPaint& paint;
   SeedRules seeds;
   Region region;
 };
 
-// Writes dark paint with alpha = its own × shadow into the catching pixels of the region. The paint is copied in pieces
-// around seeds, each from another spot of the dark place. False: asked to stop.
+// Writes shadow paint into the catching pixels of the region. It is copied in pieces around seeds, each of a place whose tone
+// suits the strength, in steps of a sixteenth that every piece rounds in its own way, so that no contour shows.
+//
+// The layer is sampled once a pixel, so its outlines have steps. The tone is that of the strongest shadow in the 5 × 5 pixels
+// around, and alpha carries what their binomial mean is less: over some four pixels a hard outline fades evenly in the same
+// paint, and the mean strength stays. Only pixels that catch count. False: asked to stop.
 bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

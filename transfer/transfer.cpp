@@ -10,6 +10,8 @@
 #include "transfer/compose.h"
 #include "transfer/hybrid.h"
 #include "transfer/match.h"
+#include "transfer/painted_edge.h"
+#include "transfer/shadow.h"
 #include "transfer/upsample.h"
 #include "transfer/vote.h"
 
@@ -102,7 +104,7 @@ class Run {
 
   Status Finish(std::span<const PreparedStyle* const> styles) {
     Stopwatch watch;
-    if (styles.front()->dark && map_) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
+    if (styles.front()->shadow && map_) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
     std::span<const float> coverage = guides_.Plane(Layer::kCoverage);
     std::vector<float> edged;
     if (std::any_of(styles.begin(), styles.end(), [](const PreparedStyle* style) { return !style->rims.empty(); })) {
@@ -126,7 +128,7 @@ class Run {
   Status PaintShadows(const PreparedStyle& style) {
     const Progress unheard;  // far quicker than anything else
     internal::RowProgress progress(unheard, 0.0, 1.0, std::max(1, region_.y1 - region_.y0));
-    const internal::ShadowInput input{guides_, map_->style, *style.exemplar, *style.dark, SeedsOf(style), region_};
+    const internal::ShadowInput input{guides_, map_->style, *style.shadow, SeedsOf(style), region_};
     return internal::PaintShadows(input, out_, progress) ? Ok() : CancelledError();
   }
 

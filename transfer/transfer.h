@@ -17,10 +17,10 @@
 #include "image/style.h"
 #include "transfer/illumination.h"
 #include "transfer/look_up_table.h"
-#include "transfer/painted_edge.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/region.h"
-#include "transfer/shadow.h"
+#include "transfer/rim_paint.h"
+#include "transfer/shadow_paint.h"
 #include "transfer/source_field.h"
 #include "transfer/style_map.h"
 
@@ -37,7 +37,7 @@ struct PreparedStyle {
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
   std::vector<RimPaint> rims;
-  std::optional<DarkPlace> dark;  // only where transfer.shadow is "paint"
+  std::optional<ShadowPaint> shadow;  // only where transfer.shadow is "paint"
   int output_height = 0;
   int levels = 1;        // settings.levels at the output's height
   int blend_radius = 0;  // settings.blend_radius at the output's height
