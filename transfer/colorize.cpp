@@ -9,36 +9,47 @@
 namespace scumble::internal {
 namespace {
 
+constexpr float kBrightest = 0.98f;  // of a channel that lighter paint leads to, so that none is clipped
+
 glm::vec3 ToLinear(const std::uint16_t* texel) {
   return {Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2])};
 }
 
-bool InGamut(glm::vec3 c) {
+bool InGamut(glm::vec3 c, float top) {
   constexpr float kSlack = 1e-4f;
-  return c.r >= -kSlack && c.g >= -kSlack && c.b >= -kSlack && c.r <= 1.0f + kSlack && c.g <= 1.0f + kSlack &&
-         c.b <= 1.0f + kSlack;
+  const float low = -kSlack, high = top + kSlack;
+  return c.r >= low && c.g >= low && c.b >= low && c.r <= high && c.g <= high && c.b <= high;
 }
 
-// The colour itself, or the same lightness and hue with as much chroma as the gamut has.
-glm::vec3 FitGamut(glm::vec3 lab) {
-  const glm::vec3 whole = LinearFromOklab(lab);
-  if (InGamut(whole)) return whole;
+// How much of a colour's chroma keeps its channels within 0 … top at its lightness.
+float ChromaThatFits(glm::vec3 lab, float top) {
+  if (InGamut(LinearFromOklab(lab), top)) return 1.0f;
   float inside = 0.0f, outside = 1.0f;
   for (int step = 0; step < 10; ++step) {
     const float middle = 0.5f * (inside + outside);
-    (InGamut(LinearFromOklab({lab.x, middle * lab.y, middle * lab.z})) ? inside : outside) = middle;
+    (InGamut(LinearFromOklab({lab.x, middle * lab.y, middle * lab.z}), top) ? inside : outside) = middle;
   }
-  return LinearFromOklab({lab.x, inside * lab.y, inside * lab.z});
+  return inside;
 }
 
-glm::vec3 TintInOklab(glm::vec3 paint, glm::vec3 albedo, float mean_lightness, float weight) {
-  constexpr float kBlack = 1e-3f, kMostChroma = 1.5f;
-  const glm::vec3 own = OklabFromLinear(paint), scene = OklabFromLinear(glm::clamp(albedo, 0.0f, 1.0f));
-  const float lightness = std::clamp(scene.x + (own.x - mean_lightness), 0.0f, 1.0f);
-  // Chroma in proportion to lightness, as light itself does it; a dark colour made light must not begin to glow.
-  const float chroma = std::min(lightness / std::max(scene.x, kBlack), kMostChroma);
-  const glm::vec3 target(lightness, scene.y * chroma, scene.z * chroma);
-  return FitGamut(own + (target - own) * weight);
+glm::vec3 WithChroma(glm::vec3 lab, float factor) { return {lab.x, factor * lab.y, factor * lab.z}; }
+
+// What a paint of lightness `own` becomes on an albedo, whose largest channel is `brightest`.
+glm::vec3 Target(glm::vec3 scene, float brightest, float own, float reference) {
+  constexpr float kLeast = 1e-6f;
+  if (own <= reference) return scene * (own / std::max(reference, kLeast));
+  const float room = std::max(1.0f - std::min(reference, scene.x), kLeast);
+  const float rise = std::min((own - reference) / room, 1.0f);
+  const glm::vec3 lighter = WithChroma({scene.x + rise * (1.0f - scene.x), scene.y, scene.z}, 1.0f - rise * rise);
+  return WithChroma(lighter, ChromaThatFits(lighter, std::max(kBrightest, brightest)));
+}
+
+glm::vec3 TintInOklab(glm::vec3 paint, glm::vec3 albedo, float reference, float weight) {
+  const glm::vec3 base = glm::clamp(albedo, 0.0f, 1.0f);
+  const glm::vec3 own = OklabFromLinear(paint), scene = OklabFromLinear(base);
+  const float brightest = std::max({base.r, base.g, base.b});
+  const glm::vec3 mixed = own + (Target(scene, brightest, own.x, reference) - own) * weight;
+  return LinearFromOklab(WithChroma(mixed, ChromaThatFits(mixed, 1.0f)));
 }
 
 }  // namespace
@@ -56,20 +67,25 @@ float MeanLightness(const PreparedExemplar& exemplar, int index) {
   return weight > 0.0 ? static_cast<float>(sum / weight) : 0.0f;
 }
 
-void Tint::Apply(glm::vec3 albedo, int exemplar, std::uint16_t* texel) const {
+float ReferenceLightness(const PreparedExemplar& exemplar) {
+  float reference = 0.0f;
+  for (int k = 0; k < exemplar.count(); ++k) reference = std::max(reference, MeanLightness(exemplar, k));
+  return reference;
+}
+
+void Tint::Apply(glm::vec3 albedo, std::uint16_t* texel) const {
   const glm::vec3 paint = ToLinear(texel);
-  const glm::vec3 tinted = mode == ColorizeMode::kMultiply
-                               ? paint * ((1.0f - weight) + weight * albedo)
-                               : TintInOklab(paint, albedo, mean_lightness[std::size_t(exemplar)], weight);
+  const glm::vec3 tinted = mode == ColorizeMode::kMultiply ? paint * ((1.0f - weight) + weight * albedo)
+                                                           : TintInOklab(paint, albedo, reference_lightness, weight);
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(tinted[c]);
 }
 
 bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress) {
   return ForEachRow(input.region, progress, [&](int y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
-      const std::size_t i = std::size_t(y) * input.width + x;
+      const std::size_t i = input.guides.Index(x, y);
       if (!input.active[i]) continue;
-      input.tint.Apply(input.guides.Vec3(Layer::kAlbedo, i), input.exemplar[i], picture.At(x, y));
+      input.tint.Apply(input.guides.Vec3(Layer::kAlbedo, i), picture.At(x, y));
     }
   });
 }

@@ -68,7 +68,7 @@ void Store(const Color& color, std::uint16_t* out) {
 
 }  // namespace
 
-bool VoteHybrid(const HybridInput& input, std::span<std::uint8_t> own_exemplar, Picture& out, RowProgress& progress) {
+bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
   const VoteInput& votes = input.votes;
   const PreparedExemplar& exemplar = votes.exemplar;
   return ForEachRow(votes.region, progress, [&](int y) {
@@ -84,7 +84,6 @@ bool VoteHybrid(const HybridInput& input, std::span<std::uint8_t> own_exemplar, 
         ++count;
       });
       const int own = input.illumination.Choose(input.luminance.empty() ? 0.0f : input.luminance[p]);
-      if (!own_exemplar.empty()) own_exemplar[p] = static_cast<std::uint8_t>(own);
       Color color = ToneFor(exemplar, input.tones[std::size_t(own)], input.guides.Vec3(Layer::kNormal, p));
       for (int c = 0; c < 4; ++c) color[c] += FloorDivide(texture[c] + count / 2, count);
       Store(color, out.At(x, y));

@@ -35,8 +35,8 @@ struct HybridInput {
 // light, plus the mean of the textures that the chunks around it vote for: the same votes as Vote's. On a sphere the
 // tone is read between texels (bilinearly, in 1/256 of a texel), elsewhere at the nearest neighbour itself. Sums are
 // integers with premultiplied colours; nothing is clamped before the end. Where the tone is the same everywhere and the
-// paint opaque, this is Vote to the bit. `own_exemplar` gets whose tone a pixel has; it is empty or has the picture's
-// size. Writes straight alpha into `out`; other pixels are left alone. False: asked to stop.
-bool VoteHybrid(const HybridInput& input, std::span<std::uint8_t> own_exemplar, Picture& out, RowProgress& progress);
+// paint opaque, this is Vote to the bit. Writes straight alpha into `out`; other pixels are left alone. False: asked to
+// stop.
+bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

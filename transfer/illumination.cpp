@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "image/color.h"
+#include "image/exact_math.h"
 
 namespace scumble {
 
@@ -66,7 +67,7 @@ double MeasureExposure(const GuideSet& guides, std::span<const float> luminances
   const auto place = lit.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(lit.begin(), place, lit.end());
   if (!(*place > 0.0f)) return 0.0;
-  return std::round(100.0 * std::log2(static_cast<double>(brightest) / *place)) / 100.0;
+  return std::round(100.0 * Log2(static_cast<double>(brightest) / *place)) / 100.0;
 }
 
 }  // namespace scumble

@@ -50,7 +50,7 @@ class EdgePainter {
     const float firm = SmoothStep(Silhouettes::kNarrowest, kFirm, outline.width);
     Texel texel = RimAt(rim, pieces_[std::size_t(nearest)], {x + 0.5f, y + 0.5f}, distance, outline.width);
     if (paint.tint.active() && texel[3] > 0) {
-      paint.tint.Apply(input_.guides.Vec3(Layer::kAlbedo, owner), static_cast<int>(exemplar), texel.data());
+      paint.tint.Apply(input_.guides.Vec3(Layer::kAlbedo, owner), texel.data());
     }
     const float opacity = static_cast<float>(texel[3]) / 65535.0f * (1.0f - SmoothStep(kFadeFrom, 1.0f, share)) * firm;
     // What the silhouette itself leaves of the pixel, and rim paint over it.

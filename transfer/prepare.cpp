@@ -193,9 +193,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
   prepared.illumination = Illumination(luminances, settings.luminance_weight, settings.luminance_error);
   if (settings.colorize > 0.0 && settings.colorize_mode == ColorizeMode::kOklab) {
-    for (int k = 0; k < prepared.exemplar->count(); ++k) {
-      prepared.mean_lightness.push_back(internal::MeanLightness(*prepared.exemplar, k));
-    }
+    prepared.reference_lightness = internal::ReferenceLightness(*prepared.exemplar);
   }
   if (settings.hybrid > 0.0) {
     // In pixels of the file; the exemplar was resized by scale and height, and the tone with it.

@@ -6,23 +6,13 @@
 #include <numbers>
 #include <vector>
 
+#include "image/exact_math.h"
+
 namespace scumble {
 namespace {
 
 constexpr int kWeightBits = 14;
 constexpr double kLobes = 3.0;
-
-// sin(π x) by range reduction and its series to the 21st power, exact to the last bits of a double. A libm's sine
-// differs from one processor to the next.
-double SinPi(double x) {
-  x -= 2.0 * std::floor(0.5 * x + 0.5);       // [-1, 1)
-  if (x > 0.5) x = 1.0 - x;
-  else if (x < -0.5) x = -1.0 - x;            // [-1/2, 1/2]
-  const double angle = std::numbers::pi * x;
-  double term = angle, sum = angle;
-  for (int n = 2; n <= 20; n += 2) sum += term *= -angle * angle / (n * (n + 1));
-  return sum;
-}
 
 double Lanczos(double x) {
   x = std::fabs(x);

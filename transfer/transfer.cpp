@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "image/check.h"
+#include "image/exact_math.h"
 #include "image/stopwatch.h"
 #include "transfer/colorize.h"
 #include "transfer/compose.h"
@@ -150,7 +151,7 @@ class Run {
   }
 
   static internal::Tint TintOf(const PreparedStyle& style) {
-    return {style.mean_lightness, static_cast<float>(style.settings.colorize), style.settings.colorize_mode};
+    return {style.reference_lightness, static_cast<float>(style.settings.colorize), style.settings.colorize_mode};
   }
 
   void Activate(int index, const Region& extent) {
@@ -174,7 +175,7 @@ class Run {
   std::span<const float> ExposedLuminance() {
     if (luminance_.empty()) {
       const auto plane = guides_.Plane(Layer::kLuminance);
-      const float factor = static_cast<float>(std::exp2(options_.exposure));
+      const float factor = static_cast<float>(Exp2(options_.exposure));
       luminance_.assign(plane.begin(), plane.end());
       for (float& value : luminance_) value *= factor;
     }
@@ -204,28 +205,27 @@ class Run {
     scratch_.times.match_ms += watch.Lap();
 
     std::optional<internal::EdgeTest> edges;
+    std::optional<internal::JoinedWindow> joined;
     if (settings.edge_aware && style.blend_radius > 0) {
       if (!slopes_) slopes_.emplace(guides_);
       edges.emplace(guides_, *slopes_, settings.crease, settings.depth_tolerance);
+      joined.emplace(*edges, guides_, style.blend_radius, painted);
     }
     const int rows = painted.y1 - painted.y0;
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
     const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
-                                     edges ? &*edges : nullptr, painted};
-    std::span<const std::uint8_t> tones_of = scratch_.field.exemplar;
+                                     joined ? &*joined : nullptr, painted};
     if (style.tones.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
-      own_exemplar_.resize(guides_.pixel_count());
-      tones_of = own_exemplar_;
       const internal::HybridInput hybrid{votes, guides_, style.illumination, input.luminance, style.tones};
-      if (!internal::VoteHybrid(hybrid, own_exemplar_, out_, vote_progress)) return CancelledError();
+      if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
     }
     scratch_.times.vote_ms += watch.Lap();
 
     if (!(settings.colorize > 0.0)) return Ok();
     internal::RowProgress tint_progress(options_.progress, part(kMatchShare + kVoteShare), part(1.0), rows);
-    const internal::ColorizeInput tint{guides_, scratch_.active, guides_.width(), tones_of, TintOf(style), painted};
+    const internal::ColorizeInput tint{guides_, scratch_.active, TintOf(style), painted};
     if (!internal::Colorize(tint, out_, tint_progress)) return CancelledError();
     scratch_.times.compose_ms += watch.Lap();
     return Ok();
@@ -273,7 +273,7 @@ class Run {
   Picture& out_;
   Region region_;
   std::vector<float> luminance_;
-  std::vector<std::uint8_t> wanted_, own_exemplar_;
+  std::vector<std::uint8_t> wanted_;
   std::optional<internal::DepthSlopes> slopes_;
 };
 

@@ -32,7 +32,7 @@ struct PreparedStyle {
   LayerSet required;  // of the guides
   std::shared_ptr<const PreparedExemplar> exemplar;
   Illumination illumination;
-  std::vector<float> mean_lightness;  // Oklab's, by exemplar; only where the style tints in Oklab
+  float reference_lightness = 0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
   std::vector<Picture> tones;         // by exemplar, see MakeTones; only where transfer.hybrid is above 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.

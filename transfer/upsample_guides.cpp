@@ -78,7 +78,7 @@ class Upsampler {
   bool SameSurface(std::size_t p, std::size_t q, int dx, int dy) const {
     if (p == q) return true;
     if (!(coverage_[q] > 0.0f)) return false;
-    if (edges_) return edges_->SameSurface(p, q, dx, dy);
+    if (edges_) return edges_->SameSurface(edges_->At(p), edges_->At(q), dx, dy);
     if (from_.Has(Layer::kObject) && from_.Plane(Layer::kObject)[p] != from_.Plane(Layer::kObject)[q]) return false;
     if (!from_.Has(Layer::kNormal)) return true;
     const glm::vec3 a = from_.Vec3(Layer::kNormal, p), b = from_.Vec3(Layer::kNormal, q);

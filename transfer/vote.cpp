@@ -1,5 +1,7 @@
 #include "transfer/vote.h"
 
+#include "transfer/chunk_interiors.h"
+
 namespace scumble::internal {
 namespace {
 
@@ -23,13 +25,20 @@ struct Ballot {
 }  // namespace
 
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress) {
-  return ForEachRow(input.region, progress, [&](int y) {
-    for (int x = input.region.x0; x < input.region.x1; ++x) {
-      if (!input.active[input.field.Index(x, y)]) continue;
+  const SourceField& field = input.field;
+  const Region& region = input.region;
+  const std::vector<std::uint8_t> inside = ChunkInteriors(field, input.active, input.radius, region);
+  return ForEachRow(region, progress, [&](int y) {
+    const std::uint8_t* copied = inside.data() + std::size_t(y - region.y0) * (region.x1 - region.x0);
+    for (int x = region.x0; x < region.x1; ++x) {
+      const std::size_t p = field.Index(x, y);
+      if (!input.active[p]) continue;
       Ballot ballot;
-      ForEachVote(input, x, y, [&](int exemplar, Source source) {
+      const auto add = [&](int exemplar, Source source) {
         ballot.Add(input.exemplar.picture(exemplar).At(source.x, source.y));
-      });
+      };
+      if (copied[x - region.x0]) add(field.exemplar[p], {field.x[p], field.y[p]});  // all votes would be this one
+      else ForEachVote(input, x, y, add);
       ballot.Count(out.At(x, y));
     }
   });

@@ -1,6 +1,7 @@
 // From sources to colours: neighbouring chunks vote (Sýkora et al. 2019, section 3.3).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -18,28 +19,29 @@ struct VoteInput {
   std::span<const std::uint8_t> active;  // 1: a pixel that this style paints; others neither vote nor are painted
   const PreparedExemplar& exemplar;
   int radius = 0;
-  const EdgeTest* edges = nullptr;  // null: plain voting
+  const JoinedWindow* edges = nullptr;  // of that radius and region; null: plain voting
   Region region;
 };
 
 // Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every pixel q of the (2·radius + 1)²
-// window the texel S(q) + (p - q), where it is usable and, with `edges`, where q shows the same surface. The pixel's own
-// vote is always among them.
+// window the texel S(q) + (p - q), where it is usable and, with `edges`, where q is joined to p. The pixel's own vote is
+// always among them.
 template <class Visit>
 void ForEachVote(const VoteInput& input, int x, int y, const Visit& visit) {
   const SourceField& field = input.field;
-  const std::size_t p = field.Index(x, y);
+  const auto offer = [&](std::size_t q, int dx, int dy) {
+    if (!input.active[q]) return;
+    const Source source{field.x[q] - dx, field.y[q] - dy};
+    if (input.exemplar.Usable(source.x, source.y)) visit(int(field.exemplar[q]), source);
+  };
+  if (input.edges) {
+    input.edges->ForEach(x, y, offer);
+    return;
+  }
   const int x0 = std::max(0, x - input.radius), x1 = std::min(field.width - 1, x + input.radius);
   const int y0 = std::max(0, y - input.radius), y1 = std::min(field.height - 1, y + input.radius);
   for (int v = y0; v <= y1; ++v) {
-    for (int u = x0; u <= x1; ++u) {
-      const std::size_t q = field.Index(u, v);
-      if (!input.active[q]) continue;
-      const Source source{field.x[q] + (x - u), field.y[q] + (y - v)};
-      if (!input.exemplar.Usable(source.x, source.y)) continue;
-      if (input.edges && !input.edges->SameSurface(p, q, u - x, v - y)) continue;
-      visit(int(field.exemplar[q]), source);
-    }
+    for (int u = x0; u <= x1; ++u) offer(field.Index(u, v), u - x, v - y);
   }
 }
 
