@@ -175,7 +175,12 @@ Expected<PreparedStyle> PrepareOne(const Style& style, int height, int threads) 
   PrepareOptions options;
   options.cache = &cache;
   options.threads = threads;
-  return Prepare(style, height, options);
+  SCUMBLE_ASSIGN(PreparedStyle prepared, Prepare(style, height, options));
+  if (style.transfer.edge == EdgeMode::kExemplar && prepared.rims.empty()) {
+    Warn("style " + style.name + ": transfer.edge is \"exemplar\", but the exemplar has no painted edge, because its paint does "
+         "not end near the rim on bare paper; outlines stay exact. Leave paper free in the corners, or set it to \"exact\"");
+  }
+  return prepared;
 }
 
 namespace {

@@ -54,6 +54,14 @@ TEST_F(CliOneStepOrTwo, SameBytesHoweverItIsAsked) {
   EXPECT_EQ(ExpectSameBytes("style", {{"--half"}, {}}), plain);  // a style of normals has no colour layer to round
 }
 
+TEST_F(CliPictures, AnEdgeThatTheExemplarHasNotIsWarnedOf) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(64));
+  const Arguments transfer = {"transfer", "g.exr", "--style", "style", "--set", "transfer.edge=exemplar", "-o", "e.png"};
+  EXPECT_TRUE(Contains(RunOk(transfer).err, "has no painted edge"));
+  EXPECT_FALSE(Contains(RunOk({"transfer", "g.exr", "--style", "style", "-o", "e.png"}).err, "painted edge"));
+}
+
 TEST_F(CliPictures, EveryFormatHoldsThePicture) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(64));

@@ -9,7 +9,6 @@
 namespace scumble::internal {
 namespace {
 
-constexpr float kToneSteps = 16.0f;
 constexpr float kBinomial[5] = {1.0f, 4.0f, 6.0f, 4.0f, 1.0f};
 
 struct Strength {
@@ -53,10 +52,10 @@ bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress)
       // The cell and not the position: a preview of half the size has the same.
       const std::uint64_t hash = Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset, q.x >> level,
                                       q.y >> level, 0x5d);
-      const float tone = std::min(1.0f, std::floor(strength.strongest * kToneSteps + UnitFloat(hash)) / kToneSteps);
-      if (!(tone > 0.0f)) continue;
+      const int step = std::min(ShadowPaint::kSteps, static_cast<int>(strength.strongest * ShadowPaint::kSteps + UnitFloat(hash)));
+      if (step == 0) continue;
       std::uint16_t* pixel = out.At(x, y);
-      input.paint.Sample(input.paint.PlaceFor(tone, Mix64(hash)), x - q.x, y - q.y, tone, pixel);
+      input.paint.Sample(input.paint.PlaceFor(step, Mix64(hash)), x - q.x, y - q.y, step, pixel);
       const float share = std::min(1.0f, strength.mean / strength.strongest);
       pixel[3] = static_cast<std::uint16_t>(static_cast<float>(pixel[3]) * share + 0.5f);
     }

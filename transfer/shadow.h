@@ -22,7 +22,7 @@ struct ShadowInput {
 };
 
 // Writes shadow paint into the catching pixels of the region. It is copied in pieces around seeds, each of a place whose tone
-// suits the strength, in steps of a sixteenth that every piece rounds in its own way, so that no contour shows.
+// suits the strength, in steps (ShadowPaint::kSteps) to which every piece rounds in its own way, so that no contour shows.
 //
 // The layer is sampled once a pixel, so its outlines have steps. The tone is that of the strongest shadow in the 5 × 5 pixels
 // around, and alpha carries what their binomial mean is less: over some four pixels a hard outline fades evenly in the same

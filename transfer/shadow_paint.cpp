@@ -15,7 +15,7 @@ namespace {
 // Places this near to a strength are as good as the nearest, and at least so many are to choose from.
 constexpr float kSameTone = 0.03f;
 constexpr std::size_t kLeastChoice = 12;
-constexpr float kFull = 0.97f;     // from there on a shadow is the darkest paint
+constexpr int kSquares = 16;       // a side of the picture that is divided by chance
 constexpr float kByRank = 0.6f;  // how much of the opacity is a texel's own, by its rank; the rest is the same for all
 
 // How much a texel of that rank, 0 … 1, shows. Over all ranks the mean is the strength.
@@ -116,6 +116,7 @@ void ShadowPaint::FindTones(std::span<const BarePaper> papers) {
   }
   std::stable_sort(tones_.begin(), tones_.end(), [](const Tone& a, const Tone& b) { return a.strength < b.strength; });
   if (tones_.empty()) RankDarkPaint();
+  else FindPlaces();
 }
 
 // The share of the texels around each that are darker: the order in which they appear as a shadow grows stronger. Around the
@@ -144,27 +145,44 @@ void ShadowPaint::RankDarkPaint() {
   }
 }
 
-ShadowPaint::Place ShadowPaint::PlaceFor(float strength, std::uint64_t hash) const {
-  if (tones_.empty() || strength >= kFull) {
-    const int reach = dark_.reach;
-    const auto spread = [&](std::uint64_t bits) { return static_cast<int>(bits % std::uint64_t(reach + 1)) - reach / 2; };
-    return {{dark_.center.x + spread(hash), dark_.center.y + spread(Mix64(hash))}, dark_.exemplar};
-  }
+// By step and by square of the sphere's picture the suitable place nearest to the square's middle: chance chooses a square
+// and not a place, because an exemplar of half the size has other places, and a preview must show the same ones.
+void ShadowPaint::FindPlaces() {
   const auto below = [](const Tone& tone, float value) { return tone.strength < value; };
   const auto at = [&](float value) {
     return static_cast<std::size_t>(std::lower_bound(tones_.begin(), tones_.end(), value, below) - tones_.begin());
   };
-  std::size_t first = at(strength - kSameTone), last = at(strength + kSameTone);
-  if (last - first < kLeastChoice) {
-    const std::size_t own = at(strength);
-    last = std::min(tones_.size(), std::max(last, own + kLeastChoice / 2));
-    first = std::min(first, last > kLeastChoice ? last - kLeastChoice : 0);
+  for (int step = 0; step < kSteps; ++step) {
+    const float strength = static_cast<float>(step) / kSteps;
+    std::size_t first = at(strength - kSameTone), last = at(strength + kSameTone);
+    if (last - first < kLeastChoice) {
+      last = std::min(tones_.size(), std::max(last, at(strength) + kLeastChoice / 2));
+      first = std::min(first, last > kLeastChoice ? last - kLeastChoice : 0);
+    }
+    for (int square = 0; square < kSquares * kSquares; ++square) {
+      const int x = (2 * (square % kSquares) + 1) * exemplar_->width() / (2 * kSquares);
+      const int y = (2 * (square / kSquares) + 1) * exemplar_->height() / (2 * kSquares);
+      const auto squared = [&](const Tone& tone) {
+        const std::int64_t dx = tone.center.x - x, dy = tone.center.y - y;
+        return dx * dx + dy * dy;
+      };
+      const auto nearer = [&](const Tone& a, const Tone& b) { return squared(a) < squared(b); };
+      const auto nearest = std::min_element(tones_.begin() + std::ptrdiff_t(first), tones_.begin() + std::ptrdiff_t(last), nearer);
+      places_.push_back({nearest->center, nearest->exemplar});
+    }
   }
-  const Tone& tone = tones_[first + hash % (last - first)];
-  return {tone.center, tone.exemplar};
 }
 
-void ShadowPaint::Sample(const Place& place, int dx, int dy, float strength, std::uint16_t* texel) const {
+ShadowPaint::Place ShadowPaint::PlaceFor(int step, std::uint64_t hash) const {
+  if (!places_.empty() && step < kSteps) {
+    return places_[std::size_t(std::max(0, step)) * kSquares * kSquares + hash % std::uint64_t(kSquares * kSquares)];
+  }
+  const float reach = static_cast<float>(dark_.reach);
+  const auto spread = [&](std::uint64_t bits) { return static_cast<int>(std::floor((UnitFloat(bits) - 0.5f) * reach + 0.5f)); };
+  return {{dark_.center.x + spread(hash), dark_.center.y + spread(Mix64(hash))}, dark_.exemplar};
+}
+
+void ShadowPaint::Sample(const Place& place, int dx, int dy, int step, std::uint16_t* texel) const {
   Source source{place.center.x + dx, place.center.y + dy};
   if (!exemplar_->Usable(source.x, source.y)) source = exemplar_->Usable(place.center.x, place.center.y) ? place.center : dark_.center;
   if (!pictures_.empty()) {
@@ -175,7 +193,7 @@ void ShadowPaint::Sample(const Place& place, int dx, int dy, float strength, std
   const int reach = ranks_width_ / 2, u = source.x - dark_.center.x + reach, v = source.y - dark_.center.y + reach;
   const bool ranked = u >= 0 && v >= 0 && u < ranks_width_ && v < ranks_width_;
   const float rank = ranked ? ranks_[std::size_t(v) * ranks_width_ + u] : 0.5f;
-  texel[3] = static_cast<std::uint16_t>(static_cast<float>(texel[3]) * Shown(rank, strength) + 0.5f);
+  texel[3] = static_cast<std::uint16_t>(static_cast<float>(texel[3]) * Shown(rank, static_cast<float>(step) / kSteps) + 0.5f);
 }
 
 }  // namespace scumble

@@ -43,10 +43,11 @@ class ShadowPaint {
     Source center;
     int exemplar = 0;
   };
-  // One of the places that suit a strength; the hash chooses.
-  Place PlaceFor(float strength, std::uint64_t hash) const;
-  // The paint (dx, dy) from a place, opacity as its alpha, for a strength.
-  void Sample(const Place& place, int dx, int dy, float strength, std::uint16_t* texel) const;
+  static constexpr int kSteps = 16;
+  // One of the places that suit a strength of step / kSteps; the hash chooses.
+  Place PlaceFor(int step, std::uint64_t hash) const;
+  // The paint (dx, dy) from a place, opacity as its alpha, for that strength.
+  void Sample(const Place& place, int dx, int dy, int step, std::uint16_t* texel) const;
 
  private:
   struct Tone {
@@ -56,6 +57,7 @@ class ShadowPaint {
   };
   float ToneAt(int exemplar, int x, int y, int reach, float paper) const;
   void FindTones(std::span<const BarePaper> papers);
+  void FindPlaces();
   void RankDarkPaint();
 
   std::shared_ptr<const PreparedExemplar> exemplar_;
@@ -63,6 +65,7 @@ class ShadowPaint {
   int level_ = 0;
   std::vector<Picture> pictures_;  // lifted, by exemplar; empty: the exemplar's own with ranks_
   std::vector<Tone> tones_;        // by rising strength
+  std::vector<Place> places_;      // by step and square
   std::vector<float> ranks_;       // 0 … 1 by pixel around the dark place
   int ranks_width_ = 0;
 };

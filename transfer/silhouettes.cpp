@@ -34,11 +34,9 @@ Silhouettes::Silhouettes(const SilhouetteInput& input)
   for (const int band : input.bands) widest_ = std::max(widest_, band);
   if (around_.empty()) return;
   Find();
-  tbb::parallel_for(std::size_t(0), outline_.size(), [&](std::size_t k) {
-    Straighten(outline_[k]);
-    outline_[k].width *= Room(outline_[k]);
-  });
-  SmoothWidths();
+  tbb::parallel_for(std::size_t(0), outline_.size(), [&](std::size_t k) { Straighten(outline_[k]); });
+  tbb::parallel_for(std::size_t(0), outline_.size(), [&](std::size_t k) { outline_[k].width *= Room(outline_[k]); });
+  Smooth();
   FindNearest();
 }
 
@@ -166,19 +164,29 @@ float Silhouettes::Room(const OutlinePixel& pixel) const {
   return std::clamp(std::min(by_thickness, by_gap), 0.0f, 1.0f);
 }
 
-void Silhouettes::SmoothWidths() {
-  std::vector<float> widths(outline_.size());
+// Directions and widths, by those of the same side of the object nearby.
+void Silhouettes::Smooth() {
+  struct Smoothed {
+    glm::vec2 outward;
+    float width;
+  };
+  std::vector<Smoothed> smoothed(outline_.size());
   tbb::parallel_for(std::size_t(0), outline_.size(), [&](std::size_t k) {
     const OutlinePixel& own = outline_[k];
     const std::uint32_t object = ObjectOf(own);
-    float sum = 0.0f, weight = 0.0f;
-    ForNear(own.x, own.y, BandOf(own), [&](std::size_t other) {
-      if (ObjectOf(outline_[other]) != object || glm::dot(outline_[other].outward, own.outward) < 0.5f) return;
-      sum += outline_[other].width, weight += 1.0f;
+    const int band = BandOf(own), turning = std::max(3, band / 2);
+    glm::vec2 outward(0.0f);
+    float width = 0.0f, count = 0.0f;
+    ForNear(own.x, own.y, std::max(band, turning), [&](std::size_t other) {
+      const OutlinePixel& at = outline_[other];
+      if (ObjectOf(at) != object || glm::dot(at.outward, own.outward) < 0.5f) return;
+      if (std::max(std::abs(at.x - own.x), std::abs(at.y - own.y)) <= turning) outward += at.outward;
+      if (std::max(std::abs(at.x - own.x), std::abs(at.y - own.y)) <= band) width += at.width, count += 1.0f;
     });
-    widths[k] = weight > 0.0f ? sum / weight : own.width;
+    const float length = std::sqrt(outward.x * outward.x + outward.y * outward.y);
+    smoothed[k] = {length > 0.0f ? outward / length : own.outward, count > 0.0f ? width / count : own.width};
   });
-  for (std::size_t k = 0; k < widths.size(); ++k) outline_[k].width = widths[k];
+  for (std::size_t k = 0; k < smoothed.size(); ++k) outline_[k].outward = smoothed[k].outward, outline_[k].width = smoothed[k].width;
 }
 
 void Silhouettes::FindNearest() {

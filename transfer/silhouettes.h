@@ -52,6 +52,8 @@ class Silhouettes {
   // The nearest outline pixel that concerns pixel (x, y) of the region: one of its own object, or one of an object that
   // stands before it, no further off than its width of its band and a pixel; kNone if there is none.
   std::int32_t Nearest(int x, int y) const;
+  // Whether an edge along the outline reaches the pixel, and nothing stands before it there.
+  bool Concerns(const OutlinePixel& outline, int x, int y) const;
   // Whether the pixel shows the object that the outline belongs to, so is inside of it.
   bool Inside(const OutlinePixel& outline, std::size_t pixel) const;
   int BandOf(const OutlinePixel& outline) const { return Band(input_.guides.Index(outline.x, outline.y)); }
@@ -65,11 +67,10 @@ class Silhouettes {
   int Band(std::size_t i) const;
   float Step(std::size_t front, std::size_t behind) const;
   bool Behind(const OutlinePixel& outline, std::size_t pixel) const;
-  bool Concerns(const OutlinePixel& outline, int x, int y) const;
   void Find();
   void Straighten(OutlinePixel& pixel) const;
   float Room(const OutlinePixel& pixel) const;
-  void SmoothWidths();
+  void Smooth();
   void FindNearest();
   std::int32_t Search(int x, int y) const;
 
