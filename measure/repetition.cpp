@@ -25,6 +25,42 @@ bool SameChunk(const SourcePlanes& planes, std::size_t a, std::size_t b, int dx,
          ExemplarAt(planes, a) == ExemplarAt(planes, b);
 }
 
+// The region's Oklab lightness, in row order.
+std::vector<float> Lightness(const Picture& picture, const PictureRegion& region) {
+  SCUMBLE_CHECK(region.x >= 0 && region.y >= 0 && region.x + region.width <= picture.width &&
+                region.y + region.height <= picture.height);
+  std::vector<float> tones;
+  for (int y = 0; y < region.height; ++y) {
+    for (int x = 0; x < region.width; ++x) tones.push_back(LabAt(picture, region.x + x, region.y + y).x);
+  }
+  return tones;
+}
+
+// One direction of a Gaussian blur; what lies outside has no weight.
+std::vector<float> BlurredAlong(const std::vector<float>& tones, int count, int stride, int lines, int line_stride,
+                                const std::vector<double>& weights) {
+  const int reach = static_cast<int>(weights.size()) - 1;
+  std::vector<float> out(tones.size());
+  for (int line = 0; line < lines; ++line) {
+    for (int i = 0; i < count; ++i) {
+      double sum = 0.0, weight = 0.0;
+      for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k) {
+        const double w = weights[std::size_t(std::abs(k - i))];
+        sum += w * tones[std::size_t(line) * line_stride + std::size_t(k) * stride], weight += w;
+      }
+      out[std::size_t(line) * line_stride + std::size_t(i) * stride] = static_cast<float>(sum / weight);
+    }
+  }
+  return out;
+}
+
+std::vector<float> Blurred(const std::vector<float>& tones, int width, int height, double sigma) {
+  if (!(sigma > 0.0)) return tones;
+  std::vector<double> weights;
+  for (int k = 0; k <= std::ceil(4.0 * sigma); ++k) weights.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
+  return BlurredAlong(BlurredAlong(tones, width, 1, height, width, weights), height, width, width, 1, weights);
+}
+
 // Pearson's correlation of the tones with themselves, (dx, dy) away, where both are inside.
 double Correlation(const std::vector<float>& tones, int width, int height, int dx, int dy) {
   double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
@@ -53,19 +89,21 @@ double SourceRepetition(const SourcePlanes& planes) {
   return sources.empty() ? 0.0 : covered / static_cast<double>(sources.size());
 }
 
-AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const PictureRegion& region, int least_shift, int step) {
-  SCUMBLE_CHECK(region.x >= 0 && region.y >= 0 && region.x + region.width <= picture.width &&
-                region.y + region.height <= picture.height && step >= 1);
-  std::vector<float> tones;
-  for (int y = 0; y < region.height; ++y) {
-    for (int x = 0; x < region.width; ++x) tones.push_back(LabAt(picture, region.x + x, region.y + y).x);
+AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const PictureRegion& region,
+                                           const AutocorrelationOptions& options) {
+  const int step = options.step;
+  SCUMBLE_CHECK(step >= 1);
+  std::vector<float> tones = Lightness(picture, region);
+  if (options.subtract_sigma > 0.0) {
+    const std::vector<float> blurred = Blurred(tones, region.width, region.height, options.subtract_sigma);
+    for (std::size_t i = 0; i < tones.size(); ++i) tones[i] -= blurred[i];
   }
   AutocorrelationPeak peak{-1.0, 0, 0};
   bool any = false;
   // The other half plane holds the same shifts turned round.
   for (int dy = 0; dy <= region.height / 2; dy += step) {
     for (int dx = -(region.width / 2 / step) * step; dx <= region.width / 2; dx += step) {
-      if (std::max(std::abs(dx), dy) <= least_shift || (dy == 0 && dx < 0)) continue;
+      if (std::max(std::abs(dx), dy) <= options.least_shift || (dy == 0 && dx < 0)) continue;
       const double value = Correlation(tones, region.width, region.height, dx, dy);
       if (!any || value > peak.value) peak = {value, dx, dy}, any = true;
     }
@@ -73,10 +111,19 @@ AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const Picture
   return any ? peak : AutocorrelationPeak{};
 }
 
+double ToneSpread(const Picture& picture, const PictureRegion& region, double sigma) {
+  const std::vector<float> tones = Blurred(Lightness(picture, region), region.width, region.height, sigma);
+  if (tones.empty()) return 0.0;
+  double mean = 0.0, variance = 0.0;
+  for (const float tone : tones) mean += tone;
+  mean /= static_cast<double>(tones.size());
+  for (const float tone : tones) variance += (tone - mean) * (tone - mean);
+  return std::sqrt(variance / static_cast<double>(tones.size()));
+}
+
 SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes) {
   SCUMBLE_CHECK(picture.width == planes.width && picture.height == planes.height);
   double across = 0.0, within = 0.0;
-  std::size_t inside_pairs = 0;
   SeamStrength seams;
   const auto add = [&](int x, int y, int dx, int dy) {
     if (x + dx >= planes.width || y + dy >= planes.height) return;
@@ -84,14 +131,14 @@ SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes) {
     if (!planes.covered[a] || !planes.covered[b]) return;
     const glm::vec3 d = LabAt(picture, x, y) - LabAt(picture, x + dx, y + dy);
     const double length = std::sqrt(double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z);
-    if (SameChunk(planes, a, b, dx, dy)) within += length, ++inside_pairs;
+    if (SameChunk(planes, a, b, dx, dy)) within += length, ++seams.inside_pairs;
     else across += length, ++seams.border_pairs;
   };
   for (int y = 0; y < planes.height; ++y) {
     for (int x = 0; x < planes.width; ++x) add(x, y, 1, 0), add(x, y, 0, 1);
   }
   if (seams.border_pairs > 0) seams.along_borders = across / static_cast<double>(seams.border_pairs);
-  if (inside_pairs > 0) seams.inside = within / static_cast<double>(inside_pairs);
+  if (seams.inside_pairs > 0) seams.inside = within / static_cast<double>(seams.inside_pairs);
   if (seams.border_pairs > 0 && seams.inside > 0.0) seams.excess = seams.along_borders / seams.inside - 1.0;
   return seams;
 }

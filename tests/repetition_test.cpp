@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "image/hash.h"
@@ -39,6 +40,54 @@ TEST(Autocorrelation, ARandomPictureHasNoPeakAndAFlatOneNone) {
   Picture flat(64, 64);
   EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 64, 64}).value, 0.0);
   EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 4, 4}).value, 0.0) << "no shift is left";
+}
+
+// Squares of `side` pixels of one grey each, and on them noise that never comes back, or does so every `tile` pixels.
+Picture Patches(int size, int side, int tile) {
+  Picture picture(size, size);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const std::uint64_t patch = Hash(x / side, y / side, 1) % 15000, grain = Hash(tile ? x % tile : x, y) % 6000;
+      std::uint16_t* pixel = picture.At(x, y);
+      pixel[0] = pixel[1] = pixel[2] = static_cast<std::uint16_t>(15000 + patch + grain), pixel[3] = 65535;
+    }
+  }
+  return picture;
+}
+
+TEST(Autocorrelation, SubtractingABlurLeavesRepeatedStrokesAndDropsPatchesOfTone) {
+  const PictureRegion all{0, 0, 128, 128};
+  AutocorrelationOptions high;
+  high.subtract_sigma = 2.0;
+  const Picture patches = Patches(128, 40, 0);
+  EXPECT_GT(HighestAutocorrelation(patches, all).value, 0.6) << "patches alone look like repetition";
+  EXPECT_LT(HighestAutocorrelation(patches, all, high).value, 0.25);
+  // White noise that comes back keeps its peak: both copies lose the same blur, but at the rim.
+  const AutocorrelationPeak tiled = HighestAutocorrelation(Noise(128, 20, 300), all, high);
+  EXPECT_GT(tiled.value, 0.99);
+  EXPECT_EQ(std::abs(tiled.dx) % 20, 0);
+  EXPECT_LT(HighestAutocorrelation(Noise(128, 0, 0), all, high).value, 0.1);
+  Picture flat(64, 64);
+  EXPECT_EQ(HighestAutocorrelation(flat, {0, 0, 64, 64}, high).value, 0.0);
+}
+
+TEST(ToneSpread, IsTheDeviationOfTheBlurredLightness) {
+  // Two halves, of L = 0 and 1: the deviation is 1/2, less at the border, where the blur mixes them.
+  Picture halves(200, 100);
+  for (int y = 0; y < 100; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      std::uint16_t* pixel = halves.At(x, y);
+      pixel[0] = pixel[1] = pixel[2] = x < 100 ? 0 : 65535, pixel[3] = 65535;
+    }
+  }
+  EXPECT_NEAR(ToneSpread(halves, {0, 0, 200, 100}, 0.0), 0.5, 1e-4);
+  // A step under a Gaussian is the normal distribution Φ(x / σ); the mean of 1/4 − (Φ − 1/2)² over all x is σ / √π.
+  EXPECT_NEAR(ToneSpread(halves, {0, 0, 200, 100}, 8.0), std::sqrt(0.25 - 8.0 / std::sqrt(3.14159265) / 200.0), 2e-3);
+  // White noise keeps 1 / (2 σ √π) of its deviation.
+  const PictureRegion all{0, 0, 256, 256};
+  const double noise = ToneSpread(Noise(256, 0, 0), all, 0.0);
+  EXPECT_NEAR(ToneSpread(Noise(256, 0, 0), all, 3.0) / noise, 1.0 / (2.0 * 3.0 * std::sqrt(3.14159265)), 0.012);
+  EXPECT_EQ(ToneSpread(Picture(50, 50), {5, 5, 40, 40}, 4.0), 0.0);
 }
 
 // Chunks of `side` pixels; each takes its paint from where `from` says, an exemplar of noise.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <optional>
 
 #include "image/check.h"
 #include "image/hash.h"
+#include "transfer/alternatives.h"
 #include "transfer/guide_tree.h"
 #include "transfer/look_up_table.h"
 #include "transfer/resample.h"
@@ -65,7 +67,16 @@ Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
 
 }  // namespace
 
-PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size) : size_(size) {
+struct PreparedExemplar::LateAlternatives {
+  std::once_flag made;
+  std::optional<Alternatives> value;
+};
+
+PreparedExemplar::PreparedExemplar() : alternatives_(std::make_shared<LateAlternatives>()) {}
+
+PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size)
+    : PreparedExemplar() {
+  size_ = size;
   SCUMBLE_CHECK(!pictures.empty() && size >= 1 && size <= 32767);
   const auto fraction = [rim](const Picture& picture) { return 1.0 - rim / (0.5 * picture.width); };
   limit_ = std::numeric_limits<std::int64_t>::max();
@@ -119,6 +130,11 @@ Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* co
   }
   exemplar.scene_ = std::move(scene);
   return exemplar;
+}
+
+const Alternatives& PreparedExemplar::alternatives() const {
+  std::call_once(alternatives_->made, [this] { alternatives_->value.emplace(*this); });
+  return *alternatives_->value;
 }
 
 std::vector<Source> PreparedExemplar::UsablePixels() const {

@@ -19,6 +19,7 @@
 
 namespace scumble {
 
+class Alternatives;
 class ExemplarSearch;
 
 // Either the sphere that fills the N × N picture (centre N/2, radius N/2), whose positions inside radius 1 - rim are
@@ -79,6 +80,9 @@ class PreparedExemplar {
   // pixels, so never beyond the usable disc. For spheres only.
   glm::vec2 OnDisc(glm::vec3 normal) const;
 
+  // Where else there is paint for a normal; made at the first call, by whichever thread is first.
+  const Alternatives& alternatives() const;
+
   // The usable pixels in row order.
   std::vector<Source> UsablePixels() const;
 
@@ -94,7 +98,9 @@ class PreparedExemplar {
     }
   };
 
-  PreparedExemplar() = default;
+  struct LateAlternatives;
+
+  PreparedExemplar();
   Source Analytic(glm::vec3 normal) const;
   Source Searched(glm::vec3 normal) const;
   // The usable pixel nearest to (nx, ny) of the unit disc, near pixel (x, y).
@@ -108,6 +114,7 @@ class PreparedExemplar {
   std::vector<Picture> pictures_;
   std::shared_ptr<const Scene> scene_;            // null: the sphere
   std::shared_ptr<const ExemplarSearch> search_;  // null: analytic
+  std::shared_ptr<LateAlternatives> alternatives_;
 };
 
 // N for a picture of `size` pixels at `scale`, for an output of `output_height` pixels; `reference_height` 0 means that

@@ -15,8 +15,8 @@ struct SeedOffer {
   glm::vec3 moved{0.0f};
 };
 
-// `variety` may choose another source by the hash, where the surface around q is flat.
-void Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made);
+// `variety` may choose another source by the hash, where the surface around q is flat; whether it is.
+bool Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made);
 
 // What p may take of the seed at q, if anything: u + (p - q), where that is usable and its guide like p's, light
 // included.

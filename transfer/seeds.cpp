@@ -48,4 +48,26 @@ std::size_t SeedGrid::Nearest(int x, int y) const {
   return best;
 }
 
+SeedGrid::Two SeedGrid::NearestTwo(int x, int y) const {
+  constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max();
+  const int column = (x >> level_) - first_column_ - 1, first_row = (y >> level_) - first_row_ - 1;
+  std::size_t best = 0, second = 0;
+  std::int64_t best_distance = kFar, second_distance = kFar;
+  for (int dy = 0; dy < 3; ++dy) {
+    const std::size_t row = static_cast<std::size_t>(first_row + dy) * columns_ + column;
+    for (int dx = 0; dx < 3; ++dx) {
+      const PixelPosition seed = seeds_[row + dx];
+      const std::int64_t ex = seed.x - x, ey = seed.y - y;
+      const std::int64_t distance = ex * ex + ey * ey;
+      if (distance < best_distance) {
+        second_distance = best_distance, second = best;
+        best_distance = distance, best = row + dx;
+      } else if (distance < second_distance) {
+        second_distance = distance, second = row + dx;
+      }
+    }
+  }
+  return {best, second, second_distance - best_distance};
+}
+
 }  // namespace scumble

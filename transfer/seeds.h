@@ -38,6 +38,14 @@ class SeedGrid {
   // distance; ties to the first in row order.
   std::size_t Nearest(int x, int y) const;
 
+  // The same and the nearest of the others among those cells, by the same rule.
+  struct Two {
+    std::size_t nearest;
+    std::size_t second;
+    std::int64_t excess;  // how much larger the squared distance of the second is
+  };
+  Two NearestTwo(int x, int y) const;
+
  private:
   int level_;
   int first_column_, first_row_;  // cells; one more on each side than the region needs

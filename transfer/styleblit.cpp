@@ -4,16 +4,18 @@
 #include <vector>
 
 #include "image/hash.h"
+#include "transfer/alternatives.h"
 #include "transfer/seed_offer.h"
 #include "transfer/variety.h"
 
 namespace scumble::internal {
 
-void Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made) {
-  if (!(input.variety_degrees > 0.0) || !IsFlat(input, q, std::max(input.flat_reach, 1 << level))) return;
+bool Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made) {
+  if (!HasFreedom(input, level, q)) return false;
   const Source own = made.offer.source;
-  made.offer.source = ChooseAlike(input, own, hash);
+  made.offer.source = ChooseAlike(input, made.offer, level, hash);
   made.moved += input.exemplar.Normal(made.offer.source.x, made.offer.source.y) - input.exemplar.Normal(own.x, own.y);
+  return true;
 }
 
 std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, PixelPosition q, PixelPosition p,
@@ -27,16 +29,16 @@ std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, P
 
 namespace {
 
-SeedOffer MakeOffer(const MatchInput& input, int level, PixelPosition q, std::size_t pixel) {
-  SeedOffer made{OwnOffer(input, pixel)};
-  Vary(input, level, q, Hash(input.seeds.seed, input.seeds.time_step, level, q.x, q.y, 0x7a), made);
-  return made;
-}
+// What a seed on the screen offers.
+struct GridOffer : SeedOffer {
+  int flat = -1;  // which of the level's tones is wanted here; -1: the surface is not flat, or variety is 0
+};
 
 // The seeds of one level with what they offer; thousands of pixels share each.
 struct Level {
   SeedGrid grid;
-  std::vector<std::optional<SeedOffer>> offers;  // empty: outside the picture, or not to be painted
+  std::vector<std::optional<GridOffer>> offers;  // empty: outside the picture, or not to be painted
+  std::vector<Alternatives::Tone> tones;         // of the seeds on flat surfaces: that of the paint which fits them best
 
   Level(const MatchInput& input, int level)
       : grid(input.seeds, level, input.region), offers(grid.size()) {
@@ -44,16 +46,36 @@ struct Level {
       const PixelPosition q = grid.Position(s);
       if (q.x < 0 || q.y < 0 || q.x >= input.guides.width() || q.y >= input.guides.height()) continue;
       const std::size_t i = input.guides.Index(q.x, q.y);
-      if (input.active[i]) offers[s] = MakeOffer(input, level, q, i);
+      if (!input.active[i]) continue;
+      const Offer own = OwnOffer(input, i);
+      GridOffer& made = offers[s].emplace(GridOffer{{own}});
+      const std::uint64_t hash = Hash(input.seeds.seed, input.seeds.time_step, level, q.x, q.y, 0x7a);
+      if (!Vary(input, level, q, hash, made)) continue;
+      made.flat = static_cast<int>(tones.size());
+      tones.push_back(WantedTone(input, own, level));
     }
   }
 };
 
-// What p may take from its nearest seed on this level, if anything.
-std::optional<Offer> Accept(const MatchInput& input, const Level& level, int x, int y, glm::vec3 guide, float light) {
-  const std::size_t s = level.grid.Nearest(x, y);
+// What p may take from seed s of this level, if anything.
+std::optional<Offer> AcceptFrom(const MatchInput& input, const Level& level, std::size_t s, int x, int y,
+                                glm::vec3 guide, float light) {
   if (!level.offers[s]) return std::nullopt;
   return TakeOffer(input, *level.offers[s], level.grid.Position(s), {x, y}, guide, light);
+}
+
+// What p may take from its nearest seed; near the border of two seeds of a flat surface, from the one that suits it better.
+std::optional<Offer> Accept(const MatchInput& input, const Level& level, int x, int y, glm::vec3 guide, float light) {
+  if (level.tones.empty()) return AcceptFrom(input, level, level.grid.Nearest(x, y), x, y, guide, light);
+  const auto [s, t, excess] = level.grid.NearestTwo(x, y);
+  const std::optional<Offer> nearest = AcceptFrom(input, level, s, x, y, guide, light);
+  if (!InBorderBand(level.grid.level(), excess)) return nearest;
+  if (!nearest || level.offers[s]->flat < 0 || !level.offers[t] || level.offers[t]->flat < 0) return nearest;
+  const std::optional<Offer> other = AcceptFrom(input, level, t, x, y, guide, light);
+  if (!other) return nearest;
+  const int nearest_off = ToneError(input, *nearest, level.tones[std::size_t(level.offers[s]->flat)]);
+  const int other_off = ToneError(input, *other, level.tones[std::size_t(level.offers[t]->flat)]);
+  return SecondWins(level.grid.level(), excess, nearest_off - other_off) ? other : nearest;
 }
 
 }  // namespace

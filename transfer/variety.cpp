@@ -1,15 +1,18 @@
 #include "transfer/variety.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "image/hash.h"
+#include <cstdlib>
 
 namespace scumble::internal {
 namespace {
 
 constexpr float kFlatCosine = 0.99996192f;  // half a degree
-constexpr int kTries = 24;                  // the box around the cone is at most twice its area where the sphere faces us
+// Where a surface is flat for the 16 pixels that IsFlat looks at, a seed of this level has been taken already, so choosing
+// for the many seeds of finer levels would be for nothing. Small pictures have no level as coarse: their coarsest counts.
+constexpr int kLeastLevel = 4;
+// So much less error of tone (summed over channels of 0 … 65535) is worth the whole band, which is a quarter of the
+// level's grid on either side of a border between seeds one grid step apart.
+constexpr std::int64_t kToneRange = 19661;
 
 }  // namespace
 
@@ -30,23 +33,34 @@ bool IsFlat(const MatchInput& input, PixelPosition at, int reach) {
   return true;
 }
 
-Source ChooseAlike(const MatchInput& input, Source own, std::uint64_t hash) {
-  if (!(input.variety_degrees > 0.0)) return own;
-  const PreparedExemplar& exemplar = input.exemplar;
-  const double radians = input.variety_degrees * (3.14159265358979323846 / 180.0);
-  const float cosine = static_cast<float>(std::cos(radians));
-  const int reach = std::max(1, static_cast<int>(std::ceil(0.5 * exemplar.size() * std::sin(std::min(radians, 1.57)))));
-  const glm::vec3 normal = exemplar.Normal(own.x, own.y);
-  for (int attempt = 0; attempt < kTries; ++attempt) {
-    const std::uint64_t a = Mix64(hash + 2 * attempt), b = Mix64(hash + 2 * attempt + 1);
-    const int side = 2 * reach + 1;
-    const Source source{own.x - reach + static_cast<int>(a % static_cast<std::uint64_t>(side)),
-                        own.y - reach + static_cast<int>(b % static_cast<std::uint64_t>(side))};
-    if (!exemplar.Usable(source.x, source.y)) continue;
-    const glm::vec3 other = exemplar.Normal(source.x, source.y);
-    if (normal.x * other.x + normal.y * other.y + normal.z * other.z >= cosine) return source;
-  }
-  return own;
+bool HasFreedom(const MatchInput& input, int level, PixelPosition seed) {
+  if (!(input.variety_degrees > 0.0) || level < std::min(kLeastLevel, input.levels - 1)) return false;
+  return IsFlat(input, seed, std::max(input.flat_reach, 1 << level));
+}
+
+Source ChooseAlike(const MatchInput& input, const Offer& own, int level, std::uint64_t hash) {
+  return input.exemplar.alternatives().Choose(
+      input.exemplar, {own.source, own.exemplar, input.variety_degrees, 1 << (level - 1), hash});
+}
+
+Alternatives::Tone WantedTone(const MatchInput& input, const Offer& own, int level) {
+  const Alternatives& alternatives = input.exemplar.alternatives();
+  // The square rounds to whole cells, so that of a source at the rim may hold none that is usable.
+  return alternatives.ToneAround(own.source, own.exemplar, 1 << (level - 1))
+      .value_or(alternatives.ToneAt(own.source, own.exemplar));
+}
+
+bool InBorderBand(int level, std::int64_t excess) { return 2 * excess < std::int64_t{1} << (2 * level); }
+
+int ToneError(const MatchInput& input, const Offer& offer, const Alternatives::Tone& wanted) {
+  const Alternatives::Tone tone = input.exemplar.alternatives().ToneAt(offer.source, offer.exemplar);
+  int sum = 0;
+  for (int c = 0; c < 4; ++c) sum += std::abs(tone[c] - wanted[c]);
+  return sum;
+}
+
+bool SecondWins(int level, std::int64_t excess, int gain_of_tone) {
+  return 2 * excess * kToneRange < gain_of_tone * (std::int64_t{1} << (2 * level));
 }
 
 }  // namespace scumble::internal

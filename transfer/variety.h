@@ -1,6 +1,7 @@
 // Freedom of choice on flat surfaces: a wall has one normal, so each of its seeds would offer the same piece of paint.
 #pragma once
 
+#include "transfer/alternatives.h"
 #include "transfer/match.h"
 
 namespace scumble::internal {
@@ -10,8 +11,22 @@ namespace scumble::internal {
 // active does.
 bool IsFlat(const MatchInput& input, PixelPosition at, int reach);
 
-// A source whose normal is within input.variety_degrees of that of `own`, chosen evenly among the exemplar's pixels by the
-// hash; `own` where variety is 0 or chance finds none.
-Source ChooseAlike(const MatchInput& input, Source own, std::uint64_t hash);
+// Whether a seed may take other paint than its own: variety is not 0, the level is coarse enough to matter, and the
+// surface is flat as far as the seed's chunk reaches.
+bool HasFreedom(const MatchInput& input, int level, PixelPosition seed);
+
+// Another source for such a seed, within input.variety_degrees of its own one and of like tone (see Alternatives).
+Source ChooseAlike(const MatchInput& input, const Offer& own, int level, std::uint64_t hash);
+
+// The tone of the paint that fits a seed best, which all paint around it should have.
+Alternatives::Tone WantedTone(const MatchInput& input, const Offer& own, int level);
+
+// Chunk borders that follow the paint. Between two seeds of a flat surface a straight border would cut strokes where it
+// happens to lie. Near it each pixel weighs distance against tone: it takes the seed whose paint, there, is nearer to the
+// wanted tone. So the border runs where both agree, and what stands out from either is cut off. Each pixel decides by
+// itself; the order of work cannot matter. `excess`: of the second nearest seed's squared distance.
+bool InBorderBand(int level, std::int64_t excess);
+int ToneError(const MatchInput& input, const Offer& offer, const Alternatives::Tone& wanted);
+bool SecondWins(int level, std::int64_t excess, int gain_of_tone);
 
 }  // namespace scumble::internal
