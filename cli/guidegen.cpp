@@ -120,6 +120,9 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
   const GuideWriteOptions write{verb.scene.half, verb.compression};
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(verb.output, write));
   if (verb.style.style.empty() && !verb.style.sets.empty()) return UsageError("--set changes a style: give --style too");
+  if (verb.style.style.empty() && !verb.style.assigned.empty()) {
+    return UsageError("--assign goes with a style for all the rest: give --style too");
+  }
   if (sequence && !plan_only) return GuidegenSequence(verb, *sequence, layers_for, motion, styles, write, globals);
   if (sequence && IsBlenderScene(verb.scene.scene)) verb.scene.blender.frame = sequence->frames.front();
   if (!sequence) {
@@ -157,7 +160,6 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
       app.add_subcommand("guidegen", "scene -> guides: what a renderer tells the transfer about every pixel");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, false);
-  AddSceneStylesOption(*sub, verb->style);
   sub->add_option("--frame", verb->scene.blender.frame,
                   "frame of a scene that moves; left out: of a .blend the one it was saved at, of glTF the nodes as "
                   "they stand")

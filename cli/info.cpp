@@ -9,6 +9,7 @@
 #include "cli/json_text.h"
 #include "cli/options.h"
 #include "cli/style_set.h"
+#include "cli/transfer_run.h"
 #include "guidegen/load_scene.h"
 #include "io/guide_file.h"
 
@@ -45,10 +46,7 @@ Expected<Json> DescribeGuides(const std::string& path) {
   return json;
 }
 
-Expected<Json> DescribeScene(const std::string& path) {
-  Expected<AnimatedScene> animated = AnimatedScene::Load(path);
-  // An animation that cannot be played hides nothing of the scene at rest.
-  SCUMBLE_ASSIGN(const Scene scene, animated ? Expected<Scene>(animated->rest()) : LoadScene(path));
+Json DescribeScene(const Scene& scene) {
   std::size_t triangles = 0;
   for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangles.size();
   Json json{{"kind", "scene"}, {"triangles", triangles}, {"textures", scene.textures.size()}};
@@ -72,6 +70,14 @@ Expected<Json> DescribeScene(const std::string& path) {
     constexpr const char* kTypes[] = {"point", "spot", "sun", "area"};
     return light.name + " (" + kTypes[static_cast<int>(light.type)] + ")";
   });
+  return json;
+}
+
+Expected<Json> DescribeSceneFile(const std::string& path) {
+  Expected<AnimatedScene> animated = AnimatedScene::Load(path);
+  // An animation that cannot be played hides nothing of the scene at rest.
+  SCUMBLE_ASSIGN(const Scene scene, animated ? Expected<Scene>(animated->rest()) : LoadScene(path));
+  Json json = DescribeScene(scene);
   if (animated && !animated->animations().empty()) {
     json["animations"] = animated->animations();
     json["seconds"] = animated->duration_seconds();
@@ -80,6 +86,18 @@ Expected<Json> DescribeScene(const std::string& path) {
   if (!animated) json["warnings"].push_back(animated.error().message);
   return json;
 }
+
+Expected<Json> DescribeBlenderScene(const std::string& path, const BlenderOptions& blender, const Globals& globals) {
+  SCUMBLE_ASSIGN(const Scene scene, LoadBlenderScene(path, blender, globals));
+  Json json = DescribeScene(scene);
+  json["warnings"] = scene.warnings;
+  return json;
+}
+
+struct InfoVerb {
+  std::string path;
+  BlenderOptions blender;
+};
 
 Expected<Json> DescribeStyle(const std::string& path) {
   SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
@@ -91,8 +109,9 @@ Expected<Json> DescribeStyle(const std::string& path) {
   json["blend_radius"] = style.transfer.blend_radius;
   json["scale"] = style.transfer.scale;
   for (const Exemplar& exemplar : style.exemplars) {
-    json["exemplars"].push_back(
-        fmt::format("{} {}×{}", exemplar.name, exemplar.picture.width, exemplar.picture.height));
+    std::string text = fmt::format("{} {}×{}", exemplar.name, exemplar.picture.width, exemplar.picture.height);
+    if (style.exemplars.size() > 1) text += ", " + LightInWords(exemplar, style.transfer.rim);
+    json["exemplars"].push_back(std::move(text));
   }
   return json;
 }
@@ -104,7 +123,9 @@ std::string ToText(const Json& json) {
   for (const auto& [key, value] : json.items()) {
     std::string shown;
     if (value.is_array()) {
-      for (const Json& item : value) shown += (shown.empty() ? "" : ", ") + item.get<std::string>();
+      // Exemplars say more than their names: one a line.
+      const std::string between = key == "exemplars" ? "\n" + std::string(widest + 2, ' ') : ", ";
+      for (const Json& item : value) shown += (shown.empty() ? "" : between) + item.get<std::string>();
       if (shown.empty()) shown = "none";
     } else if (value.is_object()) {
       for (const auto& [name, item] : value.items()) {
@@ -118,15 +139,14 @@ std::string ToText(const Json& json) {
   return text;
 }
 
-Expected<Json> Describe(const std::string& path) {
+Expected<Json> Describe(const InfoVerb& verb, const Globals& globals) {
+  const std::string& path = verb.path;
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   if (ending == ".exr") return DescribeGuides(path);
-  if (ending == ".blend") {
-    return InputError(path + ": info does not run Blender, which alone reads it: make guides with `scumble guidegen " + path +
-                      " -o guides.exr`, or a picture with `scumble stylize`");
-  }
-  if (ending == ".glb" || ending == ".gltf" || ending == ".obj" || ending == ".ply") return DescribeScene(path);
+  if (ending == ".blend") return DescribeBlenderScene(path, verb.blender, globals);
+  if (!verb.blender.program.empty()) return UsageError("--blender is for .blend scenes; leave it out for " + path);
+  if (ending == ".glb" || ending == ".gltf" || ending == ".obj" || ending == ".ply") return DescribeSceneFile(path);
   return DescribeStyle(path);
 }
 
@@ -134,15 +154,20 @@ Expected<Json> Describe(const std::string& path) {
 
 void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("info", "what is in a guide file, a scene or a style");
-  auto path = std::make_shared<std::string>();
-  sub->add_option("file", *path,
-                  "guide file (.exr), scene (.glb, .gltf, .obj, .ply), style, or picture of a painted sphere")
+  auto verb = std::make_shared<InfoVerb>();
+  sub->add_option("file", verb->path,
+                  "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first), style, "
+                  "or picture of a painted sphere")
       ->type_name("FILE")
       ->required();
+  sub->add_option("--blender", verb->blender.program,
+                  "the Blender that exports a .blend scene; left out: blender in PATH")
+      ->type_name("PATH")
+      ->check(RefuseEmpty);
   AddGlobalOptions(*sub, globals);
   sub->callback([=, &globals, &chosen] {
     chosen = [=, &globals]() -> Expected<ExitCode> {
-      SCUMBLE_ASSIGN(const Json json, Describe(*path));
+      SCUMBLE_ASSIGN(const Json json, Describe(*verb, globals));
       Print(globals.json ? JsonText(json) : ToText(json));
       return ExitCode::kOk;
     };

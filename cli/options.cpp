@@ -268,20 +268,23 @@ void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
   auto* style = verb.add_option("--style", options.style, required ? what : what + "; adds the layers that it needs");
   style->type_name("STYLE");
   if (required) style->required();
-  verb.add_option(
-          "--set", options.sets,
-          "overrides a key of style.toml, as transfer.blend_radius=0; repeatable. scumble styles --keys lists them")
-      ->type_name("KEY=VALUE")
+  verb.add_option("--set", options.sets,
+                  "overrides a key of style.toml, as transfer.blend_radius=0, in all styles of the picture; "
+                  "NAME:transfer.scale=0.5 only in the one that --style or --assign gives as NAME; repeatable, the later "
+                  "wins. scumble styles --keys lists them")
+      ->type_name("[NAME:]KEY=VALUE")
       ->allow_extra_args(false);
-}
-
-void AddAssignOption(CLI::App& verb, StyleOptions& options) {
   verb.add_option("--assign", options.assigned,
                   "another style for an object or material, * stands for any text, as 'Tree*=charcoal'; "
-                  "NAME=rendered leaves it as it is, for --over; NAME=catcher shows only the shadows on it, with transfer.shadow=paint; repeatable")
+                  "NAME=rendered leaves it as it is, for --over; NAME=catcher shows only the shadows on it, with "
+                  "transfer.shadow=paint; @FILE reads one such assignment a line, # begins a comment; repeatable, the "
+                  "later wins")
       ->type_name("NAME=STYLE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_flag("!--no-scene-styles", options.scene_styles,
+                "do not heed the styles that the scene gives its objects and materials (custom property "
+                "scumble_style); --assign goes before them in any case");
 }
 
 std::vector<fs::path> DataRoots(const std::string& name) {
@@ -297,12 +300,6 @@ std::vector<fs::path> DataRoots(const std::string& name) {
 }
 
 std::vector<fs::path> StyleRoots() { return DataRoots("exemplars"); }
-
-void AddSceneStylesOption(CLI::App& verb, StyleOptions& options) {
-  verb.add_flag("!--no-scene-styles", options.scene_styles,
-                "do not heed the styles that the scene gives its objects and materials (custom property "
-                "scumble_style); --assign goes before them in any case");
-}
 
 Expected<Style> OpenStyle(const StyleOptions& options) {
   SCUMBLE_ASSIGN(const fs::path found, FindStyle(options.style));

@@ -106,15 +106,11 @@ nlohmann::ordered_json PlanToJson(const std::vector<PlanItem>& plan);
 struct StyleOptions {
   std::string style;
   std::vector<std::string> sets;
-  std::vector<std::string> assigned;  // "NAME=STYLE"
+  std::vector<std::string> assigned;  // "NAME=STYLE", or "@FILE" of such lines
   bool scene_styles = true;           // heed what the scene says
 };
+// One group for verbs that paint and for those that make what is painted on, so that the two steps take what the one takes.
 void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
-// For verbs that paint: several styles in one picture.
-void AddAssignOption(CLI::App& verb, StyleOptions& options);
-
-// For verbs that heed the styles which a scene gives its objects.
-void AddSceneStylesOption(CLI::App& verb, StyleOptions& options);
 
 // Where a style is: a path, relative to the folder `base`, or the name of a bundled one.
 Expected<std::filesystem::path> FindStyle(const std::string& name, const std::filesystem::path& base = {});

@@ -107,15 +107,17 @@ class Tally {
     failed_.push_back(frame);
   }
 
-  void PrintTotals(double total_ms) {
+  void PrintTotals(double total_ms, const nlohmann::ordered_json& more) {
     bar_.Clear();
     const std::size_t all = sequence_.frames.size();
     if (globals_.json) {
-      Print(JsonText(nlohmann::ordered_json{{"frames", std::move(entries_)},
-                                            {"made", made_},
-                                            {"kept", kept_},
-                                            {"failed", failed_.size()},
-                                            {"total_ms", total_ms}}));
+      nlohmann::ordered_json json{{"frames", std::move(entries_)},
+                                  {"made", made_},
+                                  {"kept", kept_},
+                                  {"failed", failed_.size()},
+                                  {"total_ms", total_ms}};
+      json.update(more);
+      Print(JsonText(json));
       return;
     }
     std::string text = fmt::format("{} frame{}: {} made", all, all == 1 ? "" : "s", made_);
@@ -181,7 +183,8 @@ Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& wor
       return Error{report.error().kind, fmt::format("frame {}: {}", frames[i], report.error().message)};
     }
   }
-  tally.PrintTotals(watch.Lap());
+  const nlohmann::ordered_json more = work.end ? work.end() : nlohmann::ordered_json::object();
+  tally.PrintTotals(watch.Lap(), more);
   return tally.Result();
 }
 

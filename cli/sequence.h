@@ -64,6 +64,8 @@ struct SequenceWork {
   std::function<Status(std::span<const int> frames, const Progress& progress)> begin;
   // Makes the frame and writes it.
   std::function<Expected<FrameReport>(int frame, const std::string& output, const Progress& progress)> make;
+  // Called once when all is done; what --json tells of the whole. May be null.
+  std::function<nlohmann::ordered_json()> end = nullptr;
 };
 
 // Makes the frames one after the other and prints a line for each and one for all; under --json one object with an

@@ -1,7 +1,10 @@
 // scumble sphere: the artist's kit.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <memory>
+#include <string_view>
 
 #include "cli/command.h"
 #include "cli/json_text.h"
@@ -16,6 +19,7 @@ namespace {
 struct SphereVerb {
   int size = 1024;
   std::vector<std::string> lights;
+  std::vector<std::string> names;  // none, or one a light
   int aa = 4;
   std::string isa;
   std::string output;
@@ -38,12 +42,38 @@ Expected<KitLight> RenderLight(const SphereVerb& verb, const std::string& text, 
   return KitLight{angles[0], angles[1], std::move(rendered.guides)};
 }
 
+// Names of pictures to be painted, which must not be those of files that are written.
+Status CheckNames(const SphereVerb& verb, std::size_t lights) {
+  if (verb.names.empty()) return Ok();
+  if (verb.names.size() != lights) {
+    return UsageError(fmt::format("{} --name for {} --light: expected one each", verb.names.size(), lights));
+  }
+  for (const std::string& name : verb.names) {
+    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+      return std::isalnum(c) || c == '-' || c == '_' || c >= 0x80;
+    });
+    constexpr std::string_view kTemplate = "template";
+    const bool ours = name.size() >= kTemplate.size() &&
+                      name.compare(name.size() - kTemplate.size(), kTemplate.size(), kTemplate) == 0;
+    if (name.empty() || name[0] == '-' || !plain || ours) {
+      return UsageError("--name " + name + ": expected the name of the painting without its ending, of letters, digits, "
+                        "- and _, that does not end in 'template'");
+    }
+    if (std::count(verb.names.begin(), verb.names.end(), name) > 1) {
+      return UsageError("--name " + name + " stands there twice: each light has a painting of its own");
+    }
+  }
+  return Ok();
+}
+
 Expected<ExitCode> RunSphereVerb(const SphereVerb& verb, const Globals& globals) {
   std::vector<std::string> texts = verb.lights;
   if (texts.empty()) texts = {KeyLightText()};
+  SCUMBLE_RETURN_IF_ERROR(CheckNames(verb, texts.size()));
   std::vector<KitLight> lights;
   for (const std::string& text : texts) {
     SCUMBLE_ASSIGN(KitLight light, RenderLight(verb, text, globals));
+    if (!verb.names.empty()) light.name = verb.names[lights.size()];
     lights.push_back(std::move(light));
   }
   SCUMBLE_ASSIGN(const auto files, WriteSphereKit(verb.output, std::move(lights)));
@@ -53,7 +83,9 @@ Expected<ExitCode> RunSphereVerb(const SphereVerb& verb, const Globals& globals)
     Print(JsonText(json));
   } else {
     for (const auto& file : files) Print(file.string() + "\n");
-    Say(globals, "paint over template.png, save it as lit.png in the same folder; HOWTO.txt says how");
+    const std::string drawn = verb.names.empty() ? "template.png" : verb.names[0] + "-template.png";
+    const std::string painting = verb.names.empty() ? "lit.png" : verb.names[0] + ".png";
+    Say(globals, "paint over " + drawn + ", save it as " + painting + " in the same folder; HOWTO.txt says how");
   }
   return ExitCode::kOk;
 }
@@ -75,6 +107,12 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
              KeyLightText() + ", upper left over the shoulder. Repeat it for one template per light")
       ->type_name("AZ,EL")
       ->allow_extra_args(false);
+  sub->add_option("--name", verb->names,
+                  "what the painting for a light will be called: shade for shade.png, to be painted over "
+                  "shade-template.png; once for each --light; style.toml lists it, also one that is there already. Left "
+                  "out: lit, lit-2 and so on")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   sub->add_option("--aa", verb->aa, "N x N subsamples of the silhouette's coverage, 1 to 16")
       ->type_name("N")
       ->check(CLI::Range(1, 16))
@@ -82,7 +120,7 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--isa", verb->isa,
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine")
       ->type_name("NAME");
-  sub->add_option("-o,--output", verb->output, "folder to write to; a style.toml that is there already is kept")
+  sub->add_option("-o,--output", verb->output, "folder to write to; what is painted there is kept")
       ->type_name("FOLDER")
       ->required();
   AddGlobalOptions(*sub, globals);

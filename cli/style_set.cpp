@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/assignments.h"
 #include "cli/command.h"
 #include "style/style_file.h"
 #include "style/style_keyframes.h"
@@ -15,59 +16,30 @@ namespace {
 
 constexpr const char *kRendered = "rendered", *kCatcher = "catcher";
 
-std::map<std::uint32_t, std::uint16_t> Assign(const std::vector<StyleSet::Assigned>& assigned,
-                                              const std::map<std::uint32_t, std::string>& names,
-                                              std::vector<bool>& used) {
-  std::map<std::uint32_t, std::uint16_t> styles;
-  for (std::size_t a = 0; a < assigned.size(); ++a) {
-    for (const auto& [id, name] : names) {
-      if (!FitsPattern(name, assigned[a].pattern)) continue;
-      styles[id] = assigned[a].style;
-      used[a] = true;
-    }
-  }
-  return styles;
+std::string PathOf(const std::filesystem::path& found) {
+  std::error_code failed;
+  return std::filesystem::weakly_canonical(found, failed).string();
 }
 
-std::string SomeNames(const GuideSet& guides) {
-  std::string list;
-  int named = 0;
-  for (const auto& [id, name] : guides.object_names) {
-    if (++named > 12) return list + ", …";
-    list += (list.empty() ? "" : ", ") + name;
-  }
-  return list.empty() ? "none" : list;
+// Whether the style paints shadows in some frame.
+bool PaintsShadows(const Style& style) {
+  const Expected<LayerSet> layers = LayersOverTime(style);
+  return layers && layers->Has(Layer::kShadow);
 }
-
-}  // namespace
-
-bool FitsPattern(const std::string& name, const std::string& pattern) {
-  std::size_t n = 0, p = 0, star = std::string::npos, resume = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++, resume = n;
-    } else if (p < pattern.size() && pattern[p] == name[n]) {
-      ++p, ++n;
-    } else if (star != std::string::npos) {
-      p = star + 1, n = ++resume;
-    } else {
-      return false;
-    }
-  }
-  return std::all_of(pattern.begin() + std::ptrdiff_t(p), pattern.end(), [](char c) { return c == '*'; });
-}
-
-namespace {
 
 // The place of a style in the set, which is opened if it is new.
 Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
   SCUMBLE_ASSIGN(const std::filesystem::path found, FindStyle(name, base));
-  std::error_code failed;
-  const std::string path = std::filesystem::weakly_canonical(found, failed).string();
+  const std::string path = PathOf(found);
   if (const auto known = set.opened.find(path); known != set.opened.end()) return known->second;
   if (set.styles.size() >= std::size_t(StyleMap::kMaxStyles)) return UsageError("too many styles in one picture");
-  SCUMBLE_ASSIGN(Style style, LoadStyle(found, set.options.sets));
+  std::vector<std::string> overrides;
+  for (const StyleSet::Override& one : set.overrides) {
+    if (one.style.empty() || one.path == path) overrides.push_back(one.text);
+  }
+  SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides));
   set.styles.push_back(std::move(style));
+  set.given.push_back(name);
   return set.opened[path] = static_cast<std::uint16_t>(set.styles.size() - 1);
 }
 
@@ -97,7 +69,7 @@ Status AddWishes(StyleSet& set, const std::map<std::string, std::string>& wishes
     const std::string mend = "; mend the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
     const Expected<std::uint16_t> place = PlaceOrWord(set, wish, std::filesystem::path(file).parent_path());
     if (!place) return Error{place.error().kind, who + ": " + place.error().message + mend};
-    if (*place == StyleMap::kCatch && set.first().transfer.shadow == ShadowMode::kNone) {
+    if (*place == StyleMap::kCatch && !PaintsShadows(set.first())) {
       return InputError(who + ", and the style of the picture paints no shadows that it could catch: give --set " +
                         "transfer.shadow=paint" + mend);
     }
@@ -149,14 +121,17 @@ StyleWishes WishesOf(const GuideSet& guides) {
   return wishes;
 }
 
-Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+LayerSet StyleSet::LayersOfNames(const StyleWishes& wishes) const {
+  const bool wished = options.scene_styles && (!wishes.objects.empty() || !wishes.materials.empty());
+  return wished || !assigned.empty() ? LayerSet{Layer::kObject, Layer::kMaterial} : LayerSet();
+}
+
+Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
   std::set<std::size_t> read;
   for (std::size_t i = 0; i < set.chosen; ++i) read.insert(i);
-  bool needs_map = !set.assigned.empty();
   if (set.options.scene_styles) {
     SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.objects, "object", file, read));
     SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.materials, "material", file, read));
-    needs_map = needs_map || !wishes.objects.empty() || !wishes.materials.empty();
   }
   LayerSet layers;
   for (const std::size_t i : read) {
@@ -164,49 +139,128 @@ Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, cons
     SCUMBLE_ASSIGN(const LayerSet of_style, LayersOverTime(set.styles[i]));
     layers.Add(of_style);
   }
-  if (needs_map) layers.Add(Layer::kObject).Add(Layer::kMaterial);
   return layers;
 }
+
+Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+  SCUMBLE_ASSIGN(LayerSet layers, StyleLayers(set, wishes, file));
+  return layers.Add(set.LayersOfNames(wishes));
+}
+
+namespace {
+
+// "NAME:KEY=VALUE" or "KEY=VALUE". No key holds a colon; names may.
+Expected<StyleSet::Override> ParseOverride(const std::string& text) {
+  const std::size_t colon = text.substr(0, text.find('=')).rfind(':');
+  if (colon == std::string::npos) return StyleSet::Override{"", "", text};
+  StyleSet::Override one{text.substr(0, colon), "", text.substr(colon + 1)};
+  if (one.style.empty()) return UsageError("--set " + text + ": expected a style's name before the colon");
+  if (const auto found = FindStyle(one.style)) one.path = PathOf(*found);
+  return one;
+}
+
+// An override of a style that nothing is painted in is a slip.
+Status CheckOverrides(const StyleSet& set) {
+  for (const StyleSet::Override& one : set.overrides) {
+    if (one.style.empty() || set.opened.count(one.path)) continue;
+    std::string names;
+    for (const std::string& name : set.given) names += (names.empty() ? "" : ", ") + name;
+    return UsageError("--set " + one.style + ":" + one.text + ": --style and --assign give no style '" + one.style +
+                      "'; they give " + names);
+  }
+  return Ok();
+}
+
+}  // namespace
 
 Expected<StyleSet> OpenStyles(const StyleOptions& options) {
   StyleSet set;
   set.options = options;
+  for (const std::string& text : options.sets) {
+    SCUMBLE_ASSIGN(StyleSet::Override one, ParseOverride(text));
+    set.overrides.push_back(std::move(one));
+  }
   SCUMBLE_RETURN_IF_ERROR(PlaceOf(set, options.style, {}));
-  std::map<std::string, std::uint16_t> by_name;  // thousands of options name few styles
-  for (const std::string& text : options.assigned) {
-    // The last '=': names of objects are anyone's, names of styles rarely hold one.
-    const std::size_t equals = text.rfind('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-      return UsageError("--assign " + text + ": expected NAME=STYLE, as in 'Tree*=charcoal' or Glass=rendered");
-    }
-    const std::string pattern = text.substr(0, equals), name = text.substr(equals + 1);
+  SCUMBLE_ASSIGN(const std::vector<Assignment> assignments, ReadAssignments(options.assigned));
+  std::map<std::string, std::uint16_t> by_name;  // thousands of assignments name few styles
+  for (const auto& [pattern, name, where] : assignments) {
     if (!by_name.count(name)) {
-      SCUMBLE_ASSIGN(by_name[name], PlaceOrWord(set, name, {}));
+      const Expected<std::uint16_t> place = PlaceOrWord(set, name, {});
+      if (!place) return Error{place.error().kind, where + ": " + place.error().message};
+      by_name[name] = *place;
     }
     const std::uint16_t place = by_name[name];
-    set.assigned.push_back({pattern, place});
-    if (place == StyleMap::kCatch && set.first().transfer.shadow == ShadowMode::kNone) {
-      return UsageError("--assign " + text + ": the style paints no shadows that it could catch; give --set " +
+    set.assigned.push_back({pattern, place, where});
+    if (place == StyleMap::kCatch && !PaintsShadows(set.first())) {
+      return UsageError(where + ": the style paints no shadows that it could catch; give --set " +
                         "transfer.shadow=paint, or " + pattern + "=rendered to leave it out");
     }
   }
   set.chosen = set.styles.size();
+  SCUMBLE_RETURN_IF_ERROR(CheckOverrides(set));
   return set;
 }
 
-Expected<StyleMap> MapStyles(const StyleSet& set, const GuideSet& guides) {
-  std::vector<bool> used(set.assigned.size());
-  StyleAssignment assignment;
-  assignment.of_material = Assign(set.assigned, guides.material_names, used);
-  assignment.of_object = Assign(set.assigned, guides.object_names, used);
-  for (std::size_t a = 0; a < used.size(); ++a) {
-    if (used[a]) continue;
-    Warn("--assign " + set.assigned[a].pattern + ": the scene has no such object or material; its objects are " +
-         SomeNames(guides));
+namespace {
+
+void WarnOnce(StyleSet& set, const std::string& text) {
+  if (std::find(set.warnings.begin(), set.warnings.end(), text) != set.warnings.end()) return;
+  set.warnings.push_back(text);
+  Warn(text);
+}
+
+}  // namespace
+
+Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file) {
+  static const std::map<std::uint32_t, std::string> kNone;
+  const bool has_objects = guides.Has(Layer::kObject), has_materials = guides.Has(Layer::kMaterial);
+  const auto& objects = has_objects ? guides.object_names : kNone;
+  const auto& materials = has_materials ? guides.material_names : kNone;
+  RankedAssignment assignment;
+  for (std::size_t rank = 0; rank < set.assigned.size(); ++rank) {
+    StyleSet::Assigned& one = set.assigned[rank];
+    bool fits = false;
+    for (const auto& [names, styles] : {std::pair(&objects, &assignment.of_object), {&materials, &assignment.of_material}}) {
+      for (const auto& [id, name] : *names) {
+        if (!FitsPattern(name, one.pattern)) continue;
+        (*styles)[id] = {rank, one.style};
+        fits = true;
+      }
+    }
+    if (!fits && (!has_objects || !has_materials)) {
+      const std::string lacks = has_objects ? "layer material" : has_materials ? "layer object" : "layers object and material";
+      return InputError(one.where + ": " + file + " names no such object or material: " +
+                        DescribeNames(one.pattern, objects, materials) + "; it lacks the " + lacks +
+                        ", which may know more: make guides with scumble guidegen, or render with that Cryptomatte");
+    }
+    if (!fits && !one.named && !one.told) {
+      one.told = true;
+      WarnOnce(set, one.where + ": the scene has no such object or material; " +
+                        DescribeNames(one.pattern, objects, materials));
+    }
+    one.named = one.named || fits;
   }
-  StyleMap map = MapStyles(guides, {Granted(set, guides.object_styles), Granted(set, guides.material_styles), 0});
-  AssignStyles(guides, assignment, map);
+  const auto wished = [&](bool has, const auto& wishes) {
+    return has ? Granted(set, wishes) : std::map<std::uint32_t, std::uint16_t>();
+  };
+  StyleMap map = MapStyles(
+      guides, {wished(has_objects, guides.object_styles), wished(has_materials, guides.material_styles), 0});
+  std::vector<std::size_t> pixels(set.assigned.size());
+  AssignStyles(guides, assignment, map, pixels);
+  for (std::size_t rank = 0; rank < pixels.size(); ++rank) set.assigned[rank].pixels += pixels[rank];
   return map;
+}
+
+nlohmann::ordered_json SayHowAssigned(StyleSet& set) {
+  std::vector<std::string> idle;
+  for (const StyleSet::Assigned& one : set.assigned) {
+    if (one.named && one.pixels == 0) idle.push_back(one.where);
+  }
+  if (!idle.empty()) {
+    WarnOnce(set, SomeOf(idle) + (idle.size() == 1 ? " paints" : " paint") +
+                      " no pixel: what is named there is not seen, or a later assignment names it too");
+  }
+  return {{"warnings", set.warnings}};
 }
 
 }  // namespace scumble

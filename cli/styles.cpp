@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "cli/cache.h"
 #include "cli/command.h"
@@ -16,6 +17,11 @@
 
 namespace scumble {
 namespace {
+
+// A key that [[exemplar]] has.
+struct StyleKeyLine {
+  const char *key, *default_value, *help;
+};
 
 Expected<ExitCode> ListStyles(const Globals& globals) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
@@ -50,10 +56,14 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
     json.push_back({{"key", key.name}, {"default", key.default_value}, {"help", help}});
     text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, help);
   }
-  text += fmt::format("{:<26} {:<12} {}\n", "exemplar.image", "", "picture of the painted sphere, required");
-  text += fmt::format("{:<26} {:<12} {}\n", "exemplar.guides", "\"\"",
-                      "guides of what is painted; empty: a sphere fills the square");
-  text += fmt::format("{:<26} {:<12} {}\n", "exemplar.luminance", "", "of its light; left out: measured");
+  const StyleKeyLine of_exemplars[] = {
+      {"exemplar.image", "", "picture of the painted sphere, required; in style.toml only"},
+      {"exemplar.guides", "\"\"", "guides of what is painted; empty: a sphere fills the square; in style.toml only"},
+      {"exemplar.luminance", "", "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"}};
+  for (const auto& [key, default_value, help] : of_exemplars) {
+    json.push_back({{"key", key}, {"default", default_value}, {"help", help}});
+    text += fmt::format("{:<26} {:<12} {}\n", key, default_value, help);
+  }
   Print(globals.json ? JsonText(json) : text);
   return ExitCode::kOk;
 }
@@ -62,11 +72,13 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
 struct PaintReport {
   double hole_percent = 0;   // not opaque
   double range_percent = 0;  // from the darkest to the brightest
+  double lightness = 0;      // mean of green, 0 … 1 in sRGB
 };
 
 PaintReport LookAtPaint(const PreparedExemplar& exemplar, int index) {
   std::size_t usable = 0, transparent = 0;
   std::uint16_t darkest = 65535, brightest = 0;
+  double sum = 0.0;
   for (int y = 0; y < exemplar.height(); ++y) {
     for (int x = 0; x < exemplar.width(); ++x) {
       if (!exemplar.Usable(x, y)) continue;
@@ -74,10 +86,11 @@ PaintReport LookAtPaint(const PreparedExemplar& exemplar, int index) {
       ++usable;
       transparent += texel[3] < 65535;
       darkest = std::min(darkest, texel[1]), brightest = std::max(brightest, texel[1]);
+      sum += texel[1];
     }
   }
   return {100.0 * static_cast<double>(transparent) / static_cast<double>(usable),
-          100.0 * (brightest - darkest) / 65535.0};
+          100.0 * (brightest - darkest) / 65535.0, sum / 65535.0 / static_cast<double>(usable)};
 }
 
 void WarnOfPaint(const std::string& name, bool is_sphere, const PaintReport& paint) {
@@ -91,6 +104,20 @@ void WarnOfPaint(const std::string& name, bool is_sphere, const PaintReport& pai
     Warn(fmt::format(
         "{}: light and dark differ by {:.0f}% only, shapes will look flat; paint lights lighter and shades darker",
         name, paint.range_percent));
+  }
+}
+
+// A painting for more light that is darker than one for less is legal, and most often a slip.
+void WarnOfOppositeLight(const Style& style, const PreparedStyle& prepared, const std::vector<PaintReport>& paint) {
+  constexpr double kClearly = 0.02;
+  const auto luminances = prepared.illumination.luminances();
+  for (std::size_t a = 0; a < luminances.size(); ++a) {
+    for (std::size_t b = 0; b < luminances.size(); ++b) {
+      if (!(luminances[a] > luminances[b] && paint[a].lightness + kClearly < paint[b].lightness)) continue;
+      Warn(fmt::format("{} is for more light than {} ({:.4g} and {:.4g}), and its paint is darker: are the luminances "
+                       "the wrong way round?",
+                       style.exemplars[a].name, style.exemplars[b].name, luminances[a], luminances[b]));
+    }
   }
 }
 
@@ -123,12 +150,14 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
   options.threads = globals.threads;
   SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, 1080, options));
   const PreparedExemplar& exemplar = *prepared.exemplar;
-  const PaintReport paint = LookAtPaint(exemplar, 0);
-  WarnOfPaint(path, exemplar.is_sphere(), paint);
-  for (int k = 1; k < exemplar.count(); ++k) {
-    WarnOfPaint(style.exemplars[std::size_t(k)].name, exemplar.is_sphere(), LookAtPaint(exemplar, k));
+  std::vector<PaintReport> paints;
+  for (int k = 0; k < exemplar.count(); ++k) {
+    paints.push_back(LookAtPaint(exemplar, k));
+    WarnOfPaint(k == 0 ? path : style.exemplars[std::size_t(k)].name, exemplar.is_sphere(), paints.back());
   }
+  const PaintReport& paint = paints.front();
   WarnOfEqualLight(style, prepared);
+  WarnOfOppositeLight(style, prepared, paints);
   const AmbiguityReport report = MeasureAmbiguity(exemplar);
   WarnOfAmbiguity(path, report);
   const Picture& picture = style.exemplars.front().picture;
@@ -141,6 +170,11 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
                                 {"transparent_percent", paint.hole_percent},
                                 {"range_percent", paint.range_percent}};
     if (exemplar.count() > 1) json["luminances"] = prepared.illumination.luminances();
+    for (const Exemplar& one : style.exemplars) {
+      nlohmann::ordered_json entry{{"image", one.name}};
+      if (exemplar.count() > 1) entry["light"] = LightInWords(one, style.transfer.rim);
+      json["exemplars"].push_back(std::move(entry));
+    }
     json["directions"] = {{"covered_percent", report.covered_percent},
                           {"covered_within_degrees", kCoveredDegrees},
                           {"mean_error_degrees", report.mean_error_degrees},
@@ -154,6 +188,11 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
   } else {
     Print(fmt::format("{}: {} pixels, tonal range {:.0f}%, transparent {:.2f}%: usable\n", style.name,
                       SizeText(picture), paint.range_percent, paint.hole_percent));
+    if (exemplar.count() > 1) {
+      for (const Exemplar& one : style.exemplars) {
+        Print(fmt::format("{}: {}\n", one.name, LightInWords(one, style.transfer.rim)));
+      }
+    }
     Print(fmt::format("directions: {:.1f}% covered within {:.0f}°; error {:.2f}° on average, {:.1f}° at most\n",
                       report.covered_percent, kCoveredDegrees, report.mean_error_degrees,
                       report.largest_error_degrees));

@@ -95,14 +95,16 @@ GuideReadOptions ReadOptions(const TransferVerb& verb, const StyleSet& styles) {
   return read;
 }
 
-// What the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks for
-// nothing here; reading it says why.
-Expected<LayerSet> RequiredOfFile(StyleSet& styles, const std::string& file) {
+// Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks for
+// nothing here; reading it says why. Layers that tell of names alone are optional: a render may have one of them.
+Status RequireOfFile(StyleSet& styles, const std::string& file, GuideReadOptions& read) {
   StyleWishes wishes;
   if (styles.options.scene_styles) {
     if (const Expected<GuideFileInfo> info = InspectGuides(file)) wishes = WishesOf(info->header);
   }
-  return RequiredLayers(styles, wishes, file);
+  SCUMBLE_ASSIGN(read.required, StyleLayers(styles, wishes, file));
+  read.optional = styles.LayersOfNames(wishes);
+  return Ok();
 }
 
 Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& sequence, StyleSet& styles,
@@ -117,7 +119,7 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
     if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}}};
     guides.reset();
     GuideReadOptions one = read;
-    SCUMBLE_ASSIGN(one.required, RequiredOfFile(styles, file));
+    SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, one));
     one.blender_camera = camera.At(frame);
     Stopwatch watch;
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
@@ -137,6 +139,7 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.1, progress);
   };
+  work.end = [&] { return SayHowAssigned(styles); };
   ProgressBar bar("transfer", globals.quiet);
   return RunSequence(sequence, work, bar, globals);
 }
@@ -164,7 +167,7 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   GuideReadOptions read = ReadOptions(verb, styles);
   if (sequence) return TransferSequence(verb, *sequence, styles, read, globals);
   Stopwatch watch;
-  SCUMBLE_ASSIGN(read.required, RequiredOfFile(styles, verb.guides));
+  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, verb.guides, read));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
@@ -236,6 +239,7 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.5, progress);
   };
+  work.end = [&] { return SayHowAssigned(styles); };
   ProgressBar bar("stylize", globals.quiet);
   return RunSequence(sequence, work, bar, globals);
 }
@@ -276,8 +280,6 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--camera", verb->camera, "the .camera file of a Blender render; left out: found from its Position pass")
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
-  AddAssignOption(*sub, verb->style);
-  AddSceneStylesOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
   AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);
@@ -289,8 +291,6 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("stylize", "scene + style -> picture: guidegen and transfer in one go");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
-  AddAssignOption(*sub, verb->style);
-  AddSceneStylesOption(*sub, verb->style);
   AddPictureOptions(*sub, verb->picture);
   AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);

@@ -53,27 +53,47 @@ std::string StepsToText(const Steps& steps, int repeat) {
   return text + fmt::format(", total {:.1f} ms", total);
 }
 
-nlohmann::ordered_json ToJson(const Style& style, const PreparedStyle& prepared, const SourceField& field, double exposure,
-                   const PictureOptions& options, const std::vector<PlanItem>& plan, const Steps& steps) {
+nlohmann::ordered_json ToJson(const std::string& given, const Style& style, const PreparedStyle& prepared) {
+  const PreparedExemplar& exemplar = *prepared.exemplar;
+  nlohmann::ordered_json json{{"style", given},
+                              {"name", style.name},
+                              {"exemplars", exemplar.count()},
+                              {"exemplar_width", exemplar.width()},
+                              {"exemplar_height", exemplar.height()},
+                              {"levels", prepared.levels},
+                              {"blend_radius", prepared.blend_radius}};
+  if (prepared.illumination.active()) json["luminances"] = prepared.illumination.luminances();
+  return json;
+}
+
+// What stands outside `styles` about a style is the default one's.
+nlohmann::ordered_json ToJson(const StyleSet& styles, const std::vector<PreparedStyle>& prepared,
+                              const SourceField& field, double exposure, const PictureOptions& options,
+                              const std::vector<PlanItem>& plan, const Steps& steps) {
   nlohmann::ordered_json json;
   json["output"] = options.output;
-  json["style"] = style.name;
+  json["style"] = styles.first().name;
   json["width"] = field.width;
   json["height"] = field.height;
   json["upsample"] = options.upsample;
-  const PreparedExemplar& exemplar = *prepared.exemplar;
+  const PreparedExemplar& exemplar = *prepared.front().exemplar;
   json["exemplar_size"] = exemplar.size();  // the longer side
   json["exemplar_width"] = exemplar.width();
   json["exemplar_height"] = exemplar.height();
-  json["levels"] = prepared.levels;
-  json["blend_radius"] = prepared.blend_radius;
+  json["levels"] = prepared.front().levels;
+  json["blend_radius"] = prepared.front().blend_radius;
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    json["styles"].push_back(ToJson(styles.given[i], styles.styles[i], prepared[i]));
+  }
   const CoherenceReport coherence = CoherenceOf(field);
   json["covered_pixels"] = coherence.covered;
   json["coherence"] = coherence.share;
   json["chunks"] = coherence.chunks;
   json["mean_chunk_area"] = coherence.mean_chunk_area;
   json["seed"] = options.seed;
-  if (prepared.illumination.active()) json["exposure"] = exposure;
+  const bool lit = std::any_of(prepared.begin(), prepared.end(),
+                               [](const PreparedStyle& style) { return style.illumination.active(); });
+  if (lit) json["exposure"] = exposure;
   json["version"] = SCUMBLE_VERSION;
   json["repeat"] = options.repeat;
   if (!plan.empty()) json["plan"] = PlanToJson(plan);
@@ -228,9 +248,18 @@ void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared) {
     const auto first = std::find(luminances.begin(), luminances.begin() + std::ptrdiff_t(later), luminances[later]);
     const auto index = static_cast<std::size_t>(first - luminances.begin());
     if (index == later) continue;
-    Warn(fmt::format("{} has the luminance {:.4g} as {} has, so it never shows: give each [[exemplar]] its own",
+    Warn(fmt::format("{} has the luminance {:.4g} as {} has, which stands first and is taken, so it never shows: give "
+                     "each [[exemplar]] its own",
                      style.exemplars[later].name, luminances[later], style.exemplars[index].name));
   }
+}
+
+std::string LightInWords(const Exemplar& exemplar, double rim) {
+  const bool by_guides = exemplar.guides && exemplar.guides->Has(Layer::kLuminance);
+  const char* const source = exemplar.luminance ? "given"
+                             : by_guides        ? "measured from its guides"
+                                                : "measured from its paint";
+  return fmt::format("luminance {:.4g}, {}", LuminanceOf(exemplar, rim), source);
 }
 
 bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
@@ -241,7 +270,8 @@ bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
 Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                const PictureOptions& options, const Globals& globals, const Progress& progress) {
   TransferMemory memory;
-  SCUMBLE_ASSIGN(const FrameReport report, TransferFrame(styles, guides, source, options, globals, progress, memory));
+  SCUMBLE_ASSIGN(FrameReport report, TransferFrame(styles, guides, source, options, globals, progress, memory));
+  report.json.update(SayHowAssigned(styles));
   Print(globals.json ? JsonText(report.json) : report.text);
   return ExitCode::kOk;
 }
@@ -267,7 +297,7 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, con
   StyleMap map;
   const bool needs_map = styles.NeedsMap(guides);
   if (needs_map) {
-    SCUMBLE_ASSIGN(map, MapStyles(styles, guides));
+    SCUMBLE_ASSIGN(map, MapStyles(styles, guides, source.name));
   }
   times.emplace_back("prepare", watch.Lap());
 
@@ -306,7 +336,7 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, con
   const double write_ms = watch.Lap();
   steps.emplace_back("write", Spread{write_ms, write_ms, write_ms});
   FrameReport report;
-  report.json = ToJson(styles.first(), prepared.front(), scratch.field, transfer.exposure, options, source.plan, steps);
+  report.json = ToJson(styles, prepared, scratch.field, transfer.exposure, options, source.plan, steps);
   if (!source.plan.empty()) report.text = PlanToText(source.plan);
   report.text += fmt::format("{}  {}\n", options.output, StepsToText(steps, options.repeat));
   return report;

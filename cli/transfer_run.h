@@ -47,6 +47,9 @@ struct TransferMemory {
 // Of two lighting conditions with one luminance only the first is ever chosen: warns of the other.
 void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared);
 
+// "luminance 0.8, given" or where it is measured. `rim` is the style's.
+std::string LightInWords(const Exemplar& exemplar, double rim);
+
 // Brings the styles to options.frame and prepares what has changed since the last call; sets the exposure if
 // it is not set. TransferFrame does it by itself.
 Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptions& options, const Globals& globals,

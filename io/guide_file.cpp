@@ -389,6 +389,21 @@ Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, co
   });
 }
 
+namespace {
+
+// What guidegen writes unasked needs no option.
+std::string MendFor(const LayerSet& missing) {
+  std::string asked;
+  for (const LayerInfo& info : AllLayers()) {
+    if (missing.Has(info.layer) && !AlwaysWritten().Has(info.layer)) asked += (asked.empty() ? "" : ",") + std::string(info.name);
+  }
+  if (asked.empty()) return ". Make guides with `scumble guidegen`, or render that pass too";
+  return ". Make the guides again with --layers " + asked +
+         ", or with the same --style, --assign and --set as here; where a renderer made them, render that pass too";
+}
+
+}  // namespace
+
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
   const std::string name = path.string();
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
@@ -425,7 +440,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     }
   }
   if (!missing.empty()) {
-    std::string remedy = ". Make guides with `scumble guidegen`, or render that pass too";
+    std::string remedy = MendFor(missing);
     if (contents.from_blender) remedy = BlenderPassesFor(missing);
     if (solves_camera && missing.Has(Layer::kPosition)) {
       remedy += ", or give the camera with --camera FILE, which does without Position";
@@ -434,7 +449,11 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     others.Remove(Layer::kObject);
     if (!solves_camera) others.Remove(Layer::kDepth);
     if (others.empty()) remedy += options.mend;
-    return InputError(name + " has no layer " + missing.ToString() + remedy + ". Its channels are " + contents.all_names);
+    LayerSet every;
+    for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
+    const LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
+                      (there.empty() ? "none" : there.ToString()));
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {

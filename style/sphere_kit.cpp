@@ -9,6 +9,7 @@
 #include "image/check.h"
 #include "image/color.h"
 #include "image/direction.h"
+#include "image/style.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
@@ -59,42 +60,60 @@ std::string LightInWords(const KitLight& light) {
   return text;
 }
 
+std::string PaintingName(const KitLight& light, std::size_t index) {
+  return light.name.empty() ? Numbered("lit", ".png", index) : light.name + ".png";
+}
+std::string TemplateName(const KitLight& light, std::size_t index) {
+  return light.name.empty() ? Numbered("template", ".png", index) : light.name + "-template.png";
+}
+std::string GuidesName(const KitLight& light, std::size_t index) {
+  return light.name.empty() ? Numbered("guides", ".exr", index) : light.name + "-guides.exr";
+}
+
+// `mark` begins each line: empty, or what makes a comment of it.
+std::string ExemplarEntry(const KitLight& light, std::size_t index, const std::string& mark) {
+  return "\n" + mark + "[[exemplar]]          # light from " + LightInWords(light) + "\n" + mark + "image = \"" +
+         PaintingName(light, index) + "\"\n" + mark + "guides = \"" + GuidesName(light, index) +
+         "\"  # knows the template's margin, and how bright this light is\n";
+}
+
 std::string StarterStyle(const std::vector<KitLight>& lights) {
-  std::string text =
-      "# A style: paint over template.png, save as lit.png beside this file.\n"
-      "# All keys and their defaults: scumble styles --keys\n"
-      "name = \"my style\"\n"
-      "licence = \"\"\n\n"
-      "[transfer]\n"
-      "threshold = 0.125     # smaller: shape is followed closer; larger: bigger patches of your paint\n"
-      "blend_radius = 1      # how softly patches melt into each other, pixels\n"
-      "scale = 1.0           # smaller: finer strokes in the picture\n"
-      "paper = \"\"            # a colour like \"#f4efe6\" or a picture behind; empty: transparent\n\n"
-      "[[exemplar]]\n"
-      "image = \"lit.png\"     # light from " +
-      LightInWords(lights.front()) +
-      "\n"
-      "guides = \"guides.exr\" # knows the template's margin\n";
+  std::string text = "# A style: paint over " + TemplateName(lights[0], 0) + ", save as " + PaintingName(lights[0], 0) +
+                     " beside this file.\n"
+                     "# All keys and their defaults: scumble styles --keys\n"
+                     "name = \"my style\"\n"
+                     "licence = \"\"\n\n"
+                     "[transfer]\n"
+                     "threshold = 0.125     # smaller: shape is followed closer; larger: bigger patches of your paint\n"
+                     "blend_radius = 1      # how softly patches melt into each other, pixels\n"
+                     "scale = 1.0           # smaller: finer strokes in the picture\n"
+                     "paper = \"\"            # a colour like \"#f4efe6\" or a picture behind; empty: transparent\n";
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (i == std::size_t(kMaxExemplars)) text += "\n# A style takes up to four lights.";
+    text += ExemplarEntry(lights[i], i, i < std::size_t(kMaxExemplars) ? "" : "# ");
+  }
   return text;
 }
 
 std::string Howto(const std::vector<KitLight>& lights) {
   std::string text =
       "PAINT YOUR OWN STYLE\n\n"
-      "1. Open template.png in any painting program. Paint over the sphere: its light comes from\n   " +
+      "1. Open " + TemplateName(lights[0], 0) + " in any painting program. Paint over the sphere: its light comes from\n   " +
       LightInWords(lights.front()) +
       "\n   (azimuth to the right of the viewer, elevation above the horizon).\n"
       "2. Let strokes run over the sphere's edge; what lies outside it is never shown.\n"
-      "3. Do not move, scale or crop the picture. Export it at the same size as lit.png into this folder.\n"
+      "3. Do not move, scale or crop the picture. Export it at the same size as " + PaintingName(lights[0], 0) +
+      " into this folder.\n"
       "4. Stylise a scene:   scumble stylize scene.glb --style THIS_FOLDER -o picture.png\n"
       "5. Tune style.toml: threshold, scale, blend_radius, paper.\n\n"
       "What helps: the whole range from highlight to reflected light; strokes with a direction; irregular, lively\n"
       "texture. What hurts: a regular pattern (it tears where patches meet), bare template showing through.\n";
   for (std::size_t i = 1; i < lights.size(); ++i) {
-    text += "\n" + Numbered("template", ".png", i) + " and " + Numbered("guides", ".exr", i) +
-            " are the same sphere in another light: " + LightInWords(lights[i]) +
-            ".\nA style takes one painting: to use that one, name it and its guides in style.toml instead of lit.png's.\n";
+    text += "\n" + TemplateName(lights[i], i) + " is the same sphere in another light: " + LightInWords(lights[i]) +
+            ".\nPaint it too and save it as " + PaintingName(lights[i], i) +
+            ", or take its [[exemplar]] out of style.toml.\n";
   }
+  text += "\nAnother light later:   scumble sphere --size N --light AZ,EL --name shade -o THIS_FOLDER\n";
   return text;
 }
 
@@ -174,7 +193,44 @@ Status RefusePaintedTemplate(const fs::path& path, const Picture& drawn) {
   const auto old = ReadPicture(path);
   if (old && SameIn8Bits(*old, drawn)) return Ok();
   return OutputError(path.string() + " is there already and differs from the template of this size and light: it may be "
-                     "a painting. Move it away, or write to another folder");
+                     "a painting. Move it away, give this light a --name of its own, or write to another folder");
+}
+
+// A painting fits the guides that it was painted with.
+Status RefuseOtherGuides(const fs::path& guides, const fs::path& painting, int size) {
+  std::error_code failed;
+  if (!fs::exists(painting, failed)) return Ok();
+  const auto old = InspectGuides(guides);
+  if (!old || (old->width == size && old->height == size)) return Ok();
+  return OutputError(guides.string() + " is of " + std::to_string(old->width) + "² pixels and belongs to " +
+                     painting.string() + ": take --size " + std::to_string(old->width) + ", or write to another folder");
+}
+
+// style.toml as it should be; nothing where it should stay as it is.
+Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::vector<KitLight>& lights) {
+  std::error_code failed;
+  if (!fs::exists(path, failed)) return std::optional(StarterStyle(lights));
+  constexpr std::size_t kMaxStyleBytes = 1 << 20;
+  SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxStyleBytes));
+  const std::string old(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string text = old;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const std::string painting = PaintingName(lights[i], i);
+    const bool listed = old.find('"' + painting + '"') != std::string::npos ||
+                        old.find('\'' + painting + '\'') != std::string::npos;
+    if (lights[i].name.empty() || listed) continue;
+    if (!text.empty() && text.back() != '\n') text += '\n';
+    text += ExemplarEntry(lights[i], i, "");
+  }
+  if (text == old) return std::optional<std::string>();
+  int exemplars = 0;
+  for (std::size_t at = text.find("\n[[exemplar]]"); at != std::string::npos; at = text.find("\n[[exemplar]]", at + 1)) ++exemplars;
+  exemplars += text.rfind("[[exemplar]]", 0) == 0;
+  if (exemplars > kMaxExemplars) {
+    return OutputError(path.string() + " would list " + std::to_string(exemplars) + " lights: a style takes up to " +
+                       std::to_string(kMaxExemplars) + "; take an [[exemplar]] out, or write to another folder");
+  }
+  return std::optional(std::move(text));
 }
 
 }  // namespace
@@ -187,26 +243,31 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
   std::vector<Picture> templates;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     templates.push_back(DrawTemplate(lights[i]));
-    SCUMBLE_RETURN_IF_ERROR(RefusePaintedTemplate(folder / Numbered("template", ".png", i), templates.back()));
+    SCUMBLE_RETURN_IF_ERROR(RefusePaintedTemplate(folder / TemplateName(lights[i], i), templates.back()));
+    SCUMBLE_RETURN_IF_ERROR(RefuseOtherGuides(folder / GuidesName(lights[i], i), folder / PaintingName(lights[i], i),
+                                              lights[i].guides.width()));
   }
+  const fs::path style = folder / "style.toml", howto = folder / "HOWTO.txt";
+  SCUMBLE_ASSIGN(const std::optional<std::string> new_style, NewStyle(style, lights));
   std::vector<fs::path> written;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     GuideSet& guides = lights[i].guides;
     guides.attributes[kMarginAttribute] = std::to_string(TemplateMargin(guides.width()));
-    const fs::path picture = folder / Numbered("template", ".png", i);
-    const fs::path guide_file = folder / Numbered("guides", ".exr", i);
+    const fs::path picture = folder / TemplateName(lights[i], i);
+    const fs::path guide_file = folder / GuidesName(lights[i], i);
     SCUMBLE_RETURN_IF_ERROR(WritePicture(picture, templates[i]));
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(guide_file, guides));
     written.insert(written.end(), {picture, guide_file});
   }
-  const fs::path style = folder / "style.toml", howto = folder / "HOWTO.txt";
-  std::error_code failed;
-  if (!fs::exists(style, failed)) {
-    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(style, StarterStyle(lights)));
+  if (new_style) {
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(style, *new_style));
     written.push_back(style);
   }
-  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(howto, Howto(lights)));
-  written.push_back(howto);
+  std::error_code failed;
+  if (lights.front().name.empty() || !fs::exists(howto, failed)) {
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(howto, Howto(lights)));
+    written.push_back(howto);
+  }
   return written;
 }
 

@@ -17,6 +17,7 @@ struct KitLight {
   double azimuth = 0;    // degrees, from +Z towards +X
   double elevation = 0;  // degrees
   GuideSet guides;       // N × N, the sphere fills it; needs luminance
+  std::string name = {};  // of its painting, "shade" for shade.png; empty: lit, and lit-2, lit-3 … for further ones
 };
 
 // Pixels of margin around the sphere's square in the template of an N × N kit.
@@ -33,9 +34,12 @@ Picture DrawTemplate(const KitLight& light);
 // than 63 pixels are not recognised.
 bool LooksLikeTemplate(const Picture& picture);
 
-// Writes template.png, guides.exr, style.toml and HOWTO.txt into `folder`; further lights give template-2.png,
-// guides-2.exr and so on. An existing style.toml is kept: it may be the artist's. A
-// template.png that is not as it was drawn may be a painting: it is an error, and nothing is written. Returns the files written.
+// Writes into `folder`, for lights without names, template.png and guides.exr, for further ones template-2.png and guides-2.exr
+// and so on; for lights with names shade-template.png and shade-guides.exr; a style.toml that lists them all, and HOWTO.txt.
+// A style.toml that is there already may be the artist's: lights with names that it does not list are added at its end,
+// otherwise it is kept. Paintings (lit.png, shade.png) are never written. A template that is not as it was drawn may be one,
+// and guides of another size belong to one: either is an error, as is a fifth light in style.toml, and nothing is
+// written. Returns the files written.
 Expected<std::vector<std::filesystem::path>> WriteSphereKit(const std::filesystem::path& folder,
                                                             std::vector<KitLight> lights);
 

@@ -165,6 +165,15 @@ Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar
   return Ok();
 }
 
+// The template that `scumble sphere` wrote with these guides, as it names them.
+fs::path TemplateBeside(const fs::path& folder, const std::string& guides) {
+  const std::string kGuides = "guides";
+  std::string stem = fs::path(guides).stem().string();
+  if (const std::size_t at = stem.rfind(kGuides); at != std::string::npos) stem.replace(at, kGuides.size(), "template");
+  const fs::path drawn = folder / (stem + ".png");
+  return Exists(drawn) ? drawn : folder / "template.png";
+}
+
 // `several`: the style has more than one exemplar, so that their luminances matter.
 Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder,
                                 bool several) {
@@ -188,10 +197,10 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& fil
     (name == "image" ? image : guides) = text->get();
   }
   if (image.empty()) return InputError(Where(file, table) + ": [[exemplar]] has no image; add image = \"lit.png\"");
-  const fs::path image_path = folder / image;
-  if (!Exists(image_path) && Exists(folder / "template.png")) {
-    return InputError(image_path.string() + " is not there yet: paint over " + (folder / "template.png").string() +
-                      " and save it under that name");
+  const fs::path image_path = folder / image, drawn = TemplateBeside(folder, guides);
+  if (!Exists(image_path) && Exists(drawn)) {
+    return InputError(image_path.string() + " is not there yet: paint over " + drawn.string() +
+                      " and save it under that name" + (several ? ", or take its [[exemplar]] out of " + file : ""));
   }
   Exemplar exemplar;
   exemplar.name = image_path.string();
@@ -244,6 +253,33 @@ Expected<Style> ReadStyleFile(const fs::path& path) {
   return style;
 }
 
+// "exemplar.2.luminance", the one key of an exemplar that can be changed once its files are read.
+Status SetExemplarKey(Style& style, const std::string& name, const toml::node& node) {
+  const std::string where = "--set " + name + ": ";
+  const std::string last = std::to_string(style.exemplars.size());
+  const std::size_t begin = std::string_view("exemplar.").size(), dot = name.find('.', begin);
+  if (dot == std::string::npos) {
+    return UsageError(where + (name == "exemplar.luminance" ? "say whose, exemplar.1.luminance to exemplar." + last + ".luminance"
+                                                            : "expected exemplar.1.luminance; other keys of [[exemplar]] "
+                                                              "are set in style.toml"));
+  }
+  if (name.substr(dot + 1) != "luminance") {
+    return UsageError(where + "only its luminance can be set here; image and guides are set in style.toml");
+  }
+  const std::string number = name.substr(begin, dot - begin);
+  const bool is_number = !number.empty() && number.size() < 4 && number.find_first_not_of("0123456789") == std::string::npos;
+  const std::size_t index = is_number ? std::stoul(number) : 0;
+  if (index < 1 || index > style.exemplars.size()) {
+    return UsageError(where + "style " + style.name + " has the exemplars 1 to " + last);
+  }
+  const auto luminance = node.value<double>();
+  if (!luminance || !(*luminance >= 0.0 && std::isfinite(*luminance))) {
+    return UsageError(where + "expected a number, 0 or more");
+  }
+  style.exemplars[index - 1].luminance = *luminance;
+  return Ok();
+}
+
 // "key=value" with TOML's values; a bare word is taken as text.
 Status ApplyOverride(Style& style, const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -259,6 +295,7 @@ Status ApplyOverride(Style& style, const std::string& text) {
     table.clear();
     table.insert("value", value_text);
   }
+  if (name.rfind("exemplar.", 0) == 0) return SetExemplarKey(style, name, *table.get("value"));
   return SetKey(style, name, *table.get("value"), "--set", fs::path());
 }
 

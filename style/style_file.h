@@ -11,7 +11,8 @@
 namespace scumble {
 
 // Reads a style and its pictures. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
-// writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Every key is honoured, or
+// writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Of [[exemplar]] the luminance
+// can be overridden, by number from 1: exemplar.2.luminance=0.1. Every key is honoured, or
 // refused by name: unknown ones with the list of what there is, features still to come as kUnavailable.
 //
 // A key of [transfer] may also have one value for each of several frames: threshold = [[1, 0.1], [24, 0.3]]; see

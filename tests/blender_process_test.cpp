@@ -115,7 +115,8 @@ TEST_F(BlenderProcess, TargetsAreCheckedBeforeItRuns) {
   ExpectError(With({"guidegen", "shot.blend", "-o", "nodir/g.exr"}, with), 4, {"nodir/g.exr", "there is no folder"});
   ExpectError(With({"crosscheck", Scene("suzanne.glb"), "-o", "/proc/report.html"}, with), 4, {"/proc/report.html"});
   EXPECT_FALSE(Exists("ran"));
-  ExpectError({"info", "shot.blend"}, 3, {"scumble stylize"});
+  ExpectError({"info", "shot.blend", "--blender", "./none"}, 5, {"./none"});
+  ExpectError({"info", Scene("suzanne.glb"), "--blender", "./blender"}, 2, {"--blender is for .blend scenes"});
   WriteStyle("style");
   ExpectError({"transfer", "shot.blend", "--style", "style", "-o", "p.png"}, 3, {"scumble stylize"});
 }

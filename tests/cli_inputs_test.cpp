@@ -182,9 +182,9 @@ TEST_F(CliInputs, NamesThatTheSceneHasNot) {
   RunOk(With(stylize, {"-o", "plain.png"}));
   const CommandResult result = RunOk(
       With(stylize, {"--assign", "Balll=other.png", "--assign", "Tree*=rendered", "--assign", "Bal*=other.png", "-o", "out.png"}));
-  EXPECT_TRUE(Contains(result.err, "warning: --assign Balll: the scene has no such object or material; its objects are ")) << result.err;
+  EXPECT_TRUE(Contains(result.err, "warning: --assign Balll=other.png: the scene has no such object or material; its objects are ")) << result.err;
   EXPECT_TRUE(Contains(result.err, "Plinth")) << result.err;
-  EXPECT_TRUE(Contains(result.err, "warning: --assign Tree*: ")) << result.err;
+  EXPECT_TRUE(Contains(result.err, "warning: --assign Tree*=rendered: ")) << result.err;
   EXPECT_FALSE(Contains(result.err, "warning: --assign Bal*")) << result.err;
   EXPECT_FALSE(Bytes("out.png") == Bytes("plain.png"));
   RunOk(With(stylize, {"--assign", "Balll=other.png", "-o", "none.png"}));

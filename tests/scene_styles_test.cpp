@@ -1,4 +1,5 @@
-// Styles that a scene's author gives to objects and materials, below --assign; shadow catchers; wrong names.
+// Styles by object and material: what a scene's author gives, what --assign gives, and what --set changes in one of them;
+// shadow catchers; wrong names.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -258,6 +259,148 @@ TEST_F(CliSceneStyles, TwoThousandObjectsOfThreeStyles) {
   RunOk(assigned);
   EXPECT_EQ(Bytes("p.png"), first);
   EXPECT_NE(by_scene, first) << "without the scene's styles it is another picture";
+}
+
+int Count(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+class CliAssign : public CliSceneStyles {
+ protected:
+  void SetUp() override {
+    CliSceneStyles::SetUp();
+    WriteColor("scene/lit", 10, 10, 250, "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.1\n");
+    WriteGlb("s.glb", Tiles(4, 1));
+  }
+  CommandResult Paint(const Arguments& more) {
+    return RunOk(With({"stylize", "s.glb", "--style", "red", "--size", "32x8", "-o", "p.png", "--json"}, more));
+  }
+  std::string ColorsWith(const Arguments& more) {
+    Paint(more);
+    return Colors("p.png", 4, 1);
+  }
+};
+
+TEST_F(CliAssign, TheLaterOneWinsBeItAnObjectsOrAMaterials) {
+  EXPECT_EQ(ColorsWith({"--assign", "*=scene/green", "--assign", "Paint=scene/blue"}), "bbbb");
+  EXPECT_EQ(ColorsWith({"--assign", "Paint=scene/blue", "--assign", "*=scene/green"}), "gggg");
+  EXPECT_EQ(ColorsWith({"--assign", "Paint=scene/blue", "--assign", "Tile1=scene/green"}), "bgbb");
+  const CommandResult hidden =
+      Paint({"--assign", "Tile1=scene/green", "--assign", "Tile2=rendered", "--assign", "Paint=scene/blue"});
+  EXPECT_EQ(Colors("p.png", 4, 1), "bbbb");
+  EXPECT_EQ(hidden.Warning(), "--assign Tile1=scene/green, --assign Tile2=rendered paint no pixel: what is named there is "
+                              "not seen, or a later assignment names it too");
+  ASSERT_EQ(hidden.Json()["warnings"].size(), 1u);
+  EXPECT_EQ(hidden.Json()["warnings"][0], hidden.Warning());
+  EXPECT_TRUE(Paint({"--assign", "Tile1=scene/green"}).Json()["warnings"].empty());
+}
+
+TEST_F(CliAssign, NamesThatFitNothingAreSaidOncePerRun) {
+  const Arguments stylize = {"stylize", "s.glb", "--style", "red", "--size", "32x8", "--frames", "1-3", "-o", "p#.png",
+                             "--assign", "tile0=scene/green", "--assign", "Pait=scene/blue", "--assign", "Zebra=rendered"};
+  const CommandResult run = RunOk(With(stylize, {"--json"}));
+  const std::string names = "its objects are Tile0, Tile1, Tile2, Tile3; its materials are Paint";
+  for (const std::string& line : {"--assign tile0=scene/green: the scene has no such object or material; " + names + "; did you mean Tile0?\n",
+                                 "--assign Pait=scene/blue: the scene has no such object or material; " + names + "; did you mean Paint?\n",
+                                 "--assign Zebra=rendered: the scene has no such object or material; " + names + "\n"}) {
+    EXPECT_EQ(Count(run.err, line), 1) << run.err;
+  }
+  EXPECT_EQ(Count(run.err, "warning"), 3) << run.err;
+  EXPECT_EQ(run.Json()["warnings"].size(), 3u);
+}
+
+TEST_F(CliAssign, FilesHoldManyAssignments) {
+  WriteText("sheet.txt", "\xef\xbb\xbf# the set\r\n\n  Tile0 = scene/green\r\nPaint=scene/blue\n   # over it\nTile3=rendered");
+  EXPECT_EQ(ColorsWith({"--assign", "@sheet.txt"}), "bbb.");
+  EXPECT_EQ(ColorsWith({"--assign", "@sheet.txt", "--assign", "Tile1=red"}), "brb.");
+  EXPECT_EQ(ColorsWith({"--assign", "Tile1=red", "--assign", "@sheet.txt"}), "bbb.");
+  const Arguments stylize = {"stylize", "s.glb", "--style", "red", "-o", "p.png", "--assign"};
+  WriteText("bad.txt", "# one\nTile0\n");
+  ExpectError(With(stylize, {"@bad.txt"}), 3, {"bad.txt:2: Tile0", "NAME=STYLE"});
+  WriteText("bad.txt", "Tile0 = nope\n");
+  ExpectError(With(stylize, {"@bad.txt"}), 3, {"bad.txt:1: Tile0 = nope: there is no style 'nope'"});
+  ExpectError(With(stylize, {"@none.txt"}), 3, {"none.txt"});
+  ExpectError(With(stylize, {"Tile0=nope"}), 3, {"--assign Tile0=nope: there is no style 'nope'"});
+  ExpectError(With(stylize, {"Tile0"}), 2, {"--assign Tile0", "NAME=STYLE"});
+}
+
+TEST_F(CliAssign, OneKeyOfOneStyleAndAllStylesInTheReport) {
+  const Arguments two = {"--assign", "Tile1=scene/lit"};
+  const nlohmann::json plain = Paint(two).Json();
+  ASSERT_EQ(plain["styles"].size(), 2u);
+  EXPECT_EQ(plain["styles"][0]["style"], "red");
+  EXPECT_EQ(plain["styles"][1]["style"], "scene/lit");
+  EXPECT_EQ(plain["styles"][1]["exemplars"], 2);
+  EXPECT_EQ(plain["styles"][1]["luminances"].size(), 2u);
+  EXPECT_FALSE(plain["styles"][0].contains("luminances"));
+  EXPECT_TRUE(plain.contains("exposure")) << "the assigned style looks at the light";
+  EXPECT_FALSE(Paint({"--assign", "Tile1=scene/green"}).Json().contains("exposure"));
+  const auto widths = [&](const Arguments& sets) {
+    const nlohmann::json json = Paint(With(two, sets)).Json();
+    return std::vector<int>{json["styles"][0]["exemplar_width"], json["styles"][1]["exemplar_width"]};
+  };
+  EXPECT_EQ(widths({}), (std::vector<int>{16, 16}));
+  EXPECT_EQ(widths({"--set", "transfer.scale=2"}), (std::vector<int>{32, 32}));
+  EXPECT_EQ(widths({"--set", "scene/lit:transfer.scale=0.5"}), (std::vector<int>{16, 8}));
+  EXPECT_EQ(widths({"--set", "transfer.scale=2", "--set", "red:transfer.scale=0.5"}), (std::vector<int>{8, 32}));
+  EXPECT_EQ(widths({"--set", "red:transfer.scale=0.5", "--set", "transfer.scale=2"}), (std::vector<int>{32, 32}));
+  EXPECT_EQ(widths({"--set", "./scene/lit:transfer.scale=0.5"}), (std::vector<int>{16, 8})) << "the same folder";
+  const Arguments stylize = {"stylize", "s.glb", "--style", "red", "-o", "p.png", "--set"};
+  ExpectError(With(stylize, {"scene/lit:transfer.scale=2"}), 2, {"give no style 'scene/lit'", "they give red"});
+  ExpectError(With(stylize, {"nope:transfer.scale=2"}), 2, {"give no style 'nope'"});
+  ExpectError(With(stylize, {"red:transfer.scalee=2"}), 2, {"unknown key transfer.scalee"});
+}
+
+TEST_F(CliAssign, TheTwoStepsTakeWhatTheOneTakes) {
+  const Arguments styles = {"--style", "red", "--assign", "Tile1=scene/lit", "--set", "red:transfer.colorize=1"};
+  RunOk(With(With({"stylize", "s.glb", "--size", "32x8", "-o", "one.png"}, styles), {}));
+  RunOk(With({"guidegen", "s.glb", "--size", "32x8", "-o", "g.exr"}, styles));
+  RunOk(With({"transfer", "g.exr", "-o", "two.png"}, styles));
+  EXPECT_TRUE(Bytes("one.png") == Bytes("two.png"));
+  RunOk({"guidegen", "s.glb", "--size", "32x8", "--style", "red", "-o", "few.exr"});
+  const CommandResult lacks = ExpectError(With({"transfer", "few.exr", "-o", "no.png"}, styles), 3,
+                                          {"few.exr has no layer albedo, luminance", "--layers albedo,luminance",
+                                           "the same --style, --assign and --set", "It has A, normal, depth, object, material"});
+  EXPECT_EQ(Count(lacks.err, "normal.X"), 0) << lacks.err;
+  RunOk({"guidegen", "s.glb", "--size", "32x8", "--layers", "albedo,luminance", "-o", "few.exr"});
+  RunOk(With({"transfer", "few.exr", "-o", "two.png"}, styles));
+  EXPECT_TRUE(Bytes("one.png") == Bytes("two.png")) << "the option that the error names mends it";
+  ExpectError({"guidegen", "s.glb", "--assign", "Tile1=red", "-o", "g.exr"}, 2, {"--assign", "--style"});
+}
+
+// Renders may have a Cryptomatte of objects alone.
+TEST_F(CliAssign, OneLayerOfNamesIsEnoughForWhatItNames) {
+  RunOk({"guidegen", "s.glb", "--size", "32x8", "--style", "red", "-o", "g.exr"});
+  const Expected<GuideSet> all = ReadGuides(At("g.exr"));
+  ASSERT_TRUE(all);
+  GuideSet objects = *all, materials = *all, neither = *all;
+  objects.Remove(Layer::kMaterial), materials.Remove(Layer::kObject);
+  neither.Remove(Layer::kMaterial), neither.Remove(Layer::kObject);
+  WriteGuideFile("objects.exr", objects);
+  WriteGuideFile("materials.exr", materials);
+  WriteGuideFile("neither.exr", neither);
+  const auto with = [](const std::string& file, const std::string& assigned) -> Arguments {
+    return {"transfer", file, "--style", "red", "--set", "transfer.edge_aware=false", "--assign", assigned, "-o", "p.png"};
+  };
+  RunOk(with("objects.exr", "Tile2=scene/blue"));
+  EXPECT_EQ(Colors("p.png", 4, 1), "rrbr");
+  RunOk(with("materials.exr", "Paint=scene/blue"));
+  EXPECT_EQ(Colors("p.png", 4, 1), "bbbb");
+  ExpectError(with("objects.exr", "Paint=scene/blue"), 3,
+              {"--assign Paint=scene/blue", "objects.exr", "its objects are Tile0, Tile1", "lacks the layer material"});
+  ExpectError(with("materials.exr", "Tile2=scene/blue"), 3, {"its materials are Paint", "lacks the layer object"});
+  ExpectError(with("neither.exr", "Tile2=scene/blue"), 3, {"lacks the layers object and material"});
+}
+
+TEST_F(CliAssign, ShadowsThatComeLaterCanBeCaught) {
+  const Arguments stylize = {"stylize", "s.glb", "--style", "red", "--size", "32x8", "-o", "p.png", "--assign",
+                             "Tile0=catcher", "--frame", "6"};
+  RunOk(With(stylize, {"--set", R"(transfer.shadow=[[1, "none"], [5, "paint"]])"}));
+  EXPECT_EQ(Colors("p.png", 4, 1), ".rrr");
+  ExpectError(stylize, 2, {"--assign Tile0=catcher", "transfer.shadow=paint"});
+  ExpectError(With(stylize, {"--set", R"(transfer.shadow=[[1, "none"], [5, "none"]])"}), 2, {"--assign Tile0=catcher"});
 }
 
 }  // namespace

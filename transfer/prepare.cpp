@@ -133,20 +133,6 @@ Status CheckExemplars(const Style& style) {
   return Ok();
 }
 
-// What the style says, else what the guides were lit by, else what the paint shows.
-double LuminanceOf(const Exemplar& exemplar, double rim) {
-  if (exemplar.luminance) return *exemplar.luminance;
-  if (!exemplar.guides) return MeasuredLuminance(exemplar.picture, rim);
-  const std::vector<std::uint8_t> mask = internal::UsableMask(*exemplar.guides, rim);
-  if (!exemplar.guides->Has(Layer::kLuminance)) return MeasuredLuminance(exemplar.picture, mask);
-  const auto luminance = exemplar.guides->Plane(Layer::kLuminance);
-  double sum = 0.0, count = 0.0;
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i]) sum += std::max(0.0, static_cast<double>(luminance[i])), count += 1.0;
-  }
-  return count > 0.0 ? sum / count : 0.0;
-}
-
 Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& style, int output_height,
                                                                   const PrepareOptions& options) {
   const TransferSettings& settings = style.transfer;
@@ -224,6 +210,19 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
 }
 
 }  // namespace
+
+double LuminanceOf(const Exemplar& exemplar, double rim) {
+  if (exemplar.luminance) return *exemplar.luminance;
+  if (!exemplar.guides) return MeasuredLuminance(exemplar.picture, rim);
+  const std::vector<std::uint8_t> mask = internal::UsableMask(*exemplar.guides, rim);
+  if (!exemplar.guides->Has(Layer::kLuminance)) return MeasuredLuminance(exemplar.picture, mask);
+  const auto luminance = exemplar.guides->Plane(Layer::kLuminance);
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i]) sum += std::max(0.0, static_cast<double>(luminance[i])), count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
 
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options) {
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);

@@ -1,8 +1,10 @@
 // Which of several styles paints which pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "image/guides.h"
@@ -28,7 +30,20 @@ struct StyleAssignment {
 // O(pixels · log assignments). The guides must hold the object layer if an object is named, and material likewise.
 StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment);
 
-// Likewise on top of a map, where what is not named keeps its style; `otherwise` is not looked at.
-void AssignStyles(const GuideSet& guides, const StyleAssignment& assignment, StyleMap& map);
+// A style by the rank-th of several assignments.
+struct RankedStyle {
+  std::size_t rank = 0;
+  std::uint16_t style = 0;
+};
+struct RankedAssignment {
+  std::map<std::uint32_t, RankedStyle> of_object;
+  std::map<std::uint32_t, RankedStyle> of_material;
+};
+
+// On top of a map, where what is not named keeps its style: of a pixel's object and its material the one of higher rank
+// wins, the object's if they are of one rank. Adds to `pixels`, which has a place for each rank, how many each one got.
+// Otherwise as MapStyles.
+void AssignStyles(const GuideSet& guides, const RankedAssignment& assignment, StyleMap& map,
+                  std::span<std::size_t> pixels);
 
 }  // namespace scumble

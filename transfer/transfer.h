@@ -55,6 +55,10 @@ struct PrepareOptions {
 // states.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
+// The luminance of the light that an exemplar is painted for: what the style says, else the mean of the luminance layer
+// of its guides, else that of its paint; over the pixels that are usable with a rim of so many pixels.
+double LuminanceOf(const Exemplar& exemplar, double rim);
+
 struct TransferOptions {
   std::uint64_t seed = 0;
   std::int64_t frame = 0;           // with the rate, which jitter; see JitterStep
