@@ -218,11 +218,17 @@ TEST(Neutral, ValuesThatMakeNoDifference) {
   }
 }
 
-// Where everything is one object, a tolerance of its whole distance and creases that none is let every vote through:
-// the largest values that a style can have are those of edge_aware = false.
+// Where one object fills the picture, a tolerance of its whole distance and creases that none is let every vote through:
+// the largest values that a style can have are those of edge_aware = false. (A gap of background is an edge whatever the
+// values are: no vote goes over it.)
 TEST(Neutral, TheWidestEdgesAreNone) {
   for (GuideSet guides : {Hills(), Wall()}) {
-    for (float& id : guides.Plane(Layer::kObject)) id = id > 0.0f ? kOneObject : 0.0f;
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      guides.Plane(Layer::kObject)[i] = kOneObject;
+      if (guides.Plane(Layer::kCoverage)[i] > 0.0f) continue;
+      guides.Plane(Layer::kCoverage)[i] = 1.0f, guides.Plane(Layer::kDepth)[i] = 10.0f;
+      guides.Plane(Layer::kNormal, 2)[i] = 1.0f;
+    }
     Style none = Base(), widest = Base();
     none.transfer.edge_aware = false;
     widest.transfer.crease = 180.0, widest.transfer.depth_tolerance = 1.0;

@@ -187,14 +187,15 @@ TEST(MatchStep, MostPixelsKeepTheirSource) {
   }
 }
 
-// A seed that variety has sent elsewhere is compared with the guide that it was sent from, by pixels in between too.
+// A seed that variety has sent elsewhere is compared with the guide that it was sent from, by pixels in between too. (The
+// borders of pieces follow the paint there, pixel by pixel, which matching one pixel of sixteen cannot.)
 TEST(MatchStep, KnowsWhatVarietyMoved) {
   const GuideSet guides = MakeGuides(200, 160, [](int, int) { return glm::normalize(glm::vec3(0.2f, 0.1f, 1.0f)); });
   Style style = PlainStyle(NoisePicture(300));
   style.transfer.variety = 30.0;
   const SourceField full = MustTransfer(style, guides).field;
   style.transfer.match_step = 4;
-  EXPECT_GT(SameSources(full, MustTransfer(style, guides).field), 0.9);
+  EXPECT_GT(SameSources(full, MustTransfer(style, guides).field), 0.85);
 }
 
 TEST(MatchStep, SeedsOnTheSurfaceAreTheSameForAll) {
