@@ -180,5 +180,32 @@ TEST(Variety, KeepsTheToneOfTheWall) {
   EXPECT_GT(sources.size(), 2 * own.size());
 }
 
+// A preview of half the size has the choices of the final picture.
+TEST(Variety, APreviewShowsTheFinalPicturesPieces) {
+  const auto field_at = [](int size, std::uint64_t seed) {
+    Style style = PlainStyle(TwoTones(512, 512));
+    style.transfer.reference_height = 512, style.transfer.levels = 6, style.transfer.variety = 25.0;
+    TransferOptions options;
+    options.seed = seed;
+    const GuideSet wall =
+        MakeGuides(size, size, [](int, int) { return glm::normalize(glm::vec3(-0.25f, 0.1f, 1.0f)); });
+    return MustTransfer(style, wall, options).field;
+  };
+  const SourceField full = field_at(512, 0);
+  const auto shared = [&](const SourceField& half) {
+    int same = 0;
+    for (int y = 0; y < 256; ++y) {
+      for (int x = 0; x < 256; ++x) {
+        const std::size_t p = half.Index(x, y), q = full.Index(2 * x, 2 * y);
+        same += std::abs(full.x[q] - 2 * half.x[p]) <= 6 && std::abs(full.y[q] - 2 * half.y[p]) <= 6;
+      }
+    }
+    return same / (256.0 * 256.0);
+  };
+  const double same_seeds = shared(field_at(256, 0)), other_seeds = shared(field_at(256, 1));
+  EXPECT_GT(same_seeds, 0.6);
+  EXPECT_LT(other_seeds, 0.3 * same_seeds);
+}
+
 }  // namespace
 }  // namespace scumble

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "image/exact_math.h"
 #include "image/hash.h"
 #include "transfer/prepared_exemplar.h"
 
 namespace scumble {
 namespace {
 
-constexpr double kRadians = 3.14159265358979323846 / 180.0;
 constexpr int kTries = 24;
 constexpr int kNormalCells = 64;  // a side
 // Root of the mean squared distance, as a share of the encoded range. Wider, patches begin to show; narrower, so few
@@ -171,8 +171,8 @@ Source Alternatives::Choose(const PreparedExemplar& exemplar, const Wish& wish) 
   const std::optional<Tone> tone = ToneAround(wish.own, wish.picture, wish.half_width);
   if (!tone) return wish.own;
   constexpr auto kMost = static_cast<std::int64_t>(kTolerance * 65535 * kTolerance * 65535);
-  const double chord = 2.0 * std::sin(0.5 * wish.degrees * kRadians);
-  const float cosine = static_cast<float>(std::cos(wish.degrees * kRadians));
+  const double chord = 2.0 * SinDegrees(0.5 * wish.degrees);
+  const float cosine = static_cast<float>(CosDegrees(wish.degrees));
   Source best = wish.own;
   std::int64_t least = std::numeric_limits<std::int64_t>::max();
   for (int attempt = 0; attempt < kTries; ++attempt) {

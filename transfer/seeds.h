@@ -33,6 +33,10 @@ class SeedGrid {
   int level() const { return level_; }
   std::size_t size() const { return seeds_.size(); }
   PixelPosition Position(std::size_t index) const { return seeds_[index]; }
+  // Column and row of the cell that a seed belongs to: the same in a preview of half the size, on the level below.
+  PixelPosition Cell(std::size_t index) const {
+    return {first_column_ + static_cast<int>(index % columns_), first_row_ + static_cast<int>(index / columns_)};
+  }
 
   // Index of the nearest seed among the 3 × 3 cells around the own one of a pixel of the region, by squared integer
   // distance; ties to the first in row order.

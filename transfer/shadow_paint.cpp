@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "image/color.h"
+#include "image/exact_math.h"
 #include "image/hash.h"
 #include "transfer/bare_paper.h"
 
@@ -66,7 +67,7 @@ DarkPlace DarkestPlace(const PreparedExemplar& exemplar) {
 
 ShadowPaint::ShadowPaint(std::shared_ptr<const PreparedExemplar> exemplar, std::span<const Picture* const> originals)
     : exemplar_(std::move(exemplar)), dark_(DarkestPlace(*exemplar_)) {
-  level_ = std::clamp(static_cast<int>(std::floor(std::log2(std::max(1.0, 0.5 * dark_.reach)))), 0, 15);
+  level_ = std::clamp(static_cast<int>(std::floor(Log2(std::max(1.0, 0.5 * dark_.reach)))), 0, 15);
   std::vector<BarePaper> papers;
   for (const Picture* picture : originals) {
     if (!exemplar_->is_sphere()) break;

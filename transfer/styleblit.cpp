@@ -49,7 +49,9 @@ struct Level {
       if (!input.active[i]) continue;
       const Offer own = OwnOffer(input, i);
       GridOffer& made = offers[s].emplace(GridOffer{{own}});
-      const std::uint64_t hash = Hash(input.seeds.seed, input.seeds.time_step, level, q.x, q.y, 0x7a);
+      const PixelPosition cell = grid.Cell(s);
+      const std::uint64_t hash =
+          Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset, cell.x, cell.y, 0x7a);
       if (!Vary(input, level, q, hash, made)) continue;
       made.flat = static_cast<int>(tones.size());
       tones.push_back(WantedTone(input, own, level));

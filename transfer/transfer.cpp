@@ -68,6 +68,12 @@ std::vector<Region> Extents(std::size_t styles, const StyleMap* map, const Guide
   return extents;
 }
 
+int FlatReach(const PreparedStyle& style) {
+  const int reference = style.settings.reference_height;
+  if (reference <= 0) return kFlatReach;
+  return std::max(1, static_cast<int>(std::lround(double(kFlatReach) * style.output_height / reference)));
+}
+
 // Styles are painted one after the other, each as if nothing else were there.
 class Run {
  public:
@@ -194,7 +200,7 @@ class Run {
         SeedsOf(style),
         style.levels,
         settings.variety,
-        kFlatReach,
+        FlatReach(style),
         matched};
     Stopwatch watch;
     const auto part = [&](double share) { return from + (to - from) * share; };
