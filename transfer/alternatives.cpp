@@ -22,6 +22,10 @@ int NormalCell(float coordinate) {
   return std::clamp(static_cast<int>(std::floor((coordinate * 0.5f + 0.5f) * kNormalCells)), 0, kNormalCells - 1);
 }
 
+// 0 … count - 1 by the hash's upper half. Unlike the remainder it is the same share of any count, so a preview of half the
+// size draws where the final picture does.
+std::uint64_t ShareOf(std::uint64_t hash, std::uint64_t count) { return (hash >> 32) * count >> 32; }
+
 }  // namespace
 
 Alternatives::Alternatives(const PreparedExemplar& exemplar)
@@ -139,7 +143,7 @@ std::optional<Source> Alternatives::Draw(const PreparedExemplar& exemplar, Sourc
   if (exemplar.is_sphere()) {
     const int reach = std::max(1, static_cast<int>(std::ceil(0.5 * exemplar.size() * chord)));
     const auto side = static_cast<std::uint64_t>(2 * reach + 1);
-    source = {own.x - reach + static_cast<int>(a % side), own.y - reach + static_cast<int>(b % side)};
+    source = {own.x - reach + static_cast<int>(ShareOf(a, side)), own.y - reach + static_cast<int>(ShareOf(b, side))};
     if (!exemplar.Usable(source.x, source.y)) return std::nullopt;
   } else {
     const float reach = static_cast<float>(chord);
@@ -149,7 +153,7 @@ std::optional<Source> Alternatives::Draw(const PreparedExemplar& exemplar, Sourc
     // The cells of one row lie side by side, so each row of the box is one range.
     const auto row = [&](int y, int x) { return begins_[std::size_t(y) * kNormalCells + std::size_t(x)]; };
     for (int y = y0; y <= y1; ++y) total += row(y, x1 + 1) - row(y, x0);
-    std::uint64_t index = a % total;  // own is among them
+    std::uint64_t index = ShareOf(a, total);  // own is among them
     for (int y = y0;; ++y) {
       const std::uint64_t count = row(y, x1 + 1) - row(y, x0);
       if (index >= count) {

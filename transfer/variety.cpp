@@ -34,7 +34,7 @@ bool IsFlat(const MatchInput& input, PixelPosition at, int reach) {
 }
 
 bool HasFreedom(const MatchInput& input, int level, PixelPosition seed) {
-  if (!(input.variety_degrees > 0.0) || level < std::min(kLeastLevel, input.levels - 1)) return false;
+  if (!(input.variety_degrees > 0.0) || level < std::min(kLeastLevel - input.seeds.level_offset, input.levels - 1)) return false;
   return IsFlat(input, seed, std::max(input.flat_reach, 1 << level));
 }
 
