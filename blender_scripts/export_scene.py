@@ -35,7 +35,7 @@ import export_lamps  # noqa: E402
 import export_materials  # noqa: E402
 import export_rest  # noqa: E402
 import export_stretch  # noqa: E402
-from blend_common import Unsupported, check_version, choose_layer, choose_scene, fail  # noqa: E402
+from blend_common import Unsupported, cameras_of, check_version, choose_layer, choose_scene, fail  # noqa: E402
 
 
 def export(scene, output, unsupported):
@@ -93,6 +93,10 @@ def wait_for_reader(written, ahead, parent):
         time.sleep(0.02)
 
 
+def open_again():
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath, use_scripts=False)
+
+
 def export_frame(arguments, frame, output, unsupported):
     scene = choose_scene(arguments.scene)
     bpy.context.window.scene = scene
@@ -101,13 +105,35 @@ def export_frame(arguments, frame, output, unsupported):
     export(scene, output, unsupported)
 
 
-def export_range(arguments):
+def is_surely_lit(scene):
+    """Whether some lamp is in the render of every frame, as far as it itself says."""
+    def blinks(thing):
+        action = thing.animation_data.action if thing.animation_data else None
+        return any(curve.data_path == "hide_render" for curve in (action.fcurves if action else []))
+    return any(thing.type == "LIGHT" and not thing.hide_render and not blinks(thing) for thing in scene.objects)
+
+
+def export_start(arguments):
+    """What is the same in all frames: their rate, and where we must decide from where the scene is seen or lit, the
+    scene at its first frame. False where there was nothing to export."""
+    scene = choose_scene(arguments.scene)
+    if arguments.fps_file:
+        fps, base = scene.render.fps, scene.render.fps_base
+        arguments.fps_file.write_text(f"{fps}/{base:.6g}" if base > 1 else f"{fps / base:.6g}")
+    cameras = cameras_of(scene, Unsupported())
+    if not arguments.start_file or (cameras and is_surely_lit(scene) and not arguments.start_always):
+        return False
+    export_frame(arguments, scene.frame_start, arguments.start_file, Unsupported())
+    return True
+
+
+def export_range(arguments, opened):
     parent, written, said = os.getppid(), [], Unsupported()
     for number, frame in enumerate(arguments.frames):
         if arguments.ahead:
             wait_for_reader(written, arguments.ahead, parent)
-        if number > 0:
-            bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath, use_scripts=False)
+        if number > 0 or not opened:
+            open_again()
         unsupported = Unsupported()
         output = numbered(arguments.output, frame)
         export_frame(arguments, frame, output, unsupported)
@@ -125,15 +151,22 @@ def main():
     which.add_argument("--frames", type=parse_frames, help="several frames, as 1-24 or 3,5-10 or 12-24x2")
     parser.add_argument("--ahead", type=int, default=0,
                         help="with --frames: wait while so many files are there; a reader deletes them. 0: never wait")
+    parser.add_argument("--fps-file", type=Path, help="write the frames a second there, as text")
+    parser.add_argument("--start-file", type=Path,
+                        help=".glb file for the scene at its first frame, where it has no camera or perhaps no lamp")
+    parser.add_argument("--start-always", action="store_true", help="write --start-file in any case")
     parser.add_argument("--scene", help="scene by name; left out: the one that was open when the file was saved")
     arguments = parser.parse_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
     if arguments.frames is not None and "#" not in arguments.output.name:
         parser.error("with --frames the output's name needs a #, where the frame's number goes")
     check_version(", or export to .glb by hand")
     unsupported = Unsupported()
+    opened = not export_start(arguments)
     if arguments.frames is not None:
-        unsupported = export_range(arguments)
+        unsupported = export_range(arguments, opened)
     else:
+        if not opened:
+            open_again()
         export_frame(arguments, arguments.frame, arguments.output, unsupported)
     unsupported.say()
 

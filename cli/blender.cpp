@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -82,6 +83,24 @@ fs::path In(const ScratchFolder& scratch, const char* name) {
   return scratch.path().empty() ? fs::path() : scratch.path() / name;
 }
 
+constexpr const char *kStartFile = "start.glb", *kRateFile = "fps";
+
+void AskForFilm(const ScratchFolder& scratch, const BlenderOptions& options, std::vector<std::string>& arguments) {
+  arguments.insert(arguments.end(), {"--fps-file", In(scratch, kRateFile).string(), "--start-file",
+                                     In(scratch, kStartFile).string()});
+  if (options.wants_start) arguments.push_back("--start-always");
+}
+
+Status LoadFilm(const ScratchFolder& scratch, const std::string& path, BlenderFilm& film) {
+  std::ifstream(In(scratch, kRateFile)) >> film.fps;
+  std::error_code failed;
+  const fs::path start = In(scratch, kStartFile);
+  if (!fs::is_regular_file(start, failed)) return Ok();
+  SCUMBLE_ASSIGN(film.start, LoadExport(start, path));
+  fs::remove(start, failed);
+  return Ok();
+}
+
 // With more, a slow disk would still not be felt.
 constexpr int kFramesAhead = 3;
 constexpr const char* kRangeOutput = "scene.#.glb";
@@ -94,14 +113,17 @@ bool IsBlenderScene(const std::string& path) {
   return ending == ".blend";
 }
 
-Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals) {
+Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals,
+                                 BlenderFilm* film) {
   const ScratchFolder scratch;
   const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
   SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported));
+  if (film) AskForFilm(scratch, options, arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   Say(globals, path + ": " + arguments.front() + " exports it" +
                    (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
   SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), ExportTask(path, options), log, exported));
+  if (film) SCUMBLE_RETURN_IF_ERROR(LoadFilm(scratch, path, *film));
   return LoadExport(exported, path);
 }
 
@@ -121,7 +143,9 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   // With an equals sign: a range that starts at a negative frame would look like an option.
   arguments.push_back("--frames=" + FramesToText(frames));
   arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
-  Say(globals, path + ": " + arguments.front() + " exports frames " + FramesToText(frames));
+  AskForFilm(*range->scratch_, options, arguments);
+  Say(globals, path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
+                   FramesToText(frames));
   const fs::path log = In(*range->scratch_, "log");
   auto program = RunningProgram::Start(arguments, log);
   if (!program) return CheckProgramEnd(program.error(), *range->task_, log, {}).error();
@@ -135,11 +159,14 @@ Expected<Scene> BlenderRange::Load(int frame) {
   std::error_code failed;
   for (;;) {
     // In this order: a Blender that ends between the two questions has written its last file before.
+    SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(task_->scene));
     SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, program_->Poll());
     if (fs::is_regular_file(exported, failed)) break;  // it gets this name when it is whole
     if (end) SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(*end, *task_, In(*scratch_, "log"), exported));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  if (!has_film_) SCUMBLE_RETURN_IF_ERROR(LoadFilm(*scratch_, task_->scene, film_));
+  has_film_ = true;
   Expected<Scene> scene = LoadExport(exported, task_->scene);
   fs::remove(exported, failed);
   return scene;

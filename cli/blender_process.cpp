@@ -171,6 +171,12 @@ ScratchFolder::~ScratchFolder() {
   ReleaseSignals();
 }
 
+Status CheckNotSignalled(const std::string& scene) {
+  const int signal = caught_signal;
+  if (signal == 0) return Ok();
+  return Error{ErrorKind::kCancelled, scene + ": ended by a signal (" + ::strsignal(signal) + ")"};
+}
+
 Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask& task) {
   std::error_code failed;
   for (const fs::path& root : DataRoots("blender_scripts")) {
@@ -238,6 +244,7 @@ std::vector<std::string> LinesOf(const fs::path& log) {
 
 Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& task, const fs::path& log,
                        const fs::path& product) {
+  SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(task.scene));
   if (!ended) {
     return Error{ended.error().kind, task.scene + ": " + ended.error().message + ": install " + kSupported +
                                          ", or say where it is with --blender PATH" + ByHand(task)};

@@ -34,6 +34,9 @@ struct BlenderTask {
   bool can_be_exported = false;  // a .glb would do instead, made by hand
 };
 
+// While a ScratchFolder lives: kCancelled once one of those signals has come, which is no fault of the scene's.
+Status CheckNotSignalled(const std::string& scene);
+
 // The script of that name in blender_scripts/, beside the build or where `install` put it.
 Expected<std::filesystem::path> FindBlenderScript(const std::string& name, const BlenderTask& task);
 

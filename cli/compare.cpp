@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/json_text.h"
 #include "cli/options.h"
+#include "cli/run_files.h"
 #include "io/channel_file.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
@@ -59,6 +60,12 @@ Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
 
 Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& globals) {
   if (!verb.motion.empty()) return RunFlicker(verb, globals);
+  if (!verb.heat_map.empty()) {
+    RunFiles files;
+    files.Reads("the first file", verb.a), files.Reads("the second file", verb.b);
+    SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.heat_map));
+    SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.heat_map));
+  }
   SCUMBLE_ASSIGN(const ChannelImage a, ReadChannels(verb.a));
   SCUMBLE_ASSIGN(const ChannelImage b, ReadChannels(verb.b));
   SCUMBLE_ASSIGN(const CompareReport report, Compare(a, b, verb.options));

@@ -14,6 +14,7 @@
 #include "cli/crosscheck_reference.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/run_files.h"
 #include "guidegen/path_layers.h"
 #include "guidegen/pure_materials.h"
 #include "io/atomic_file.h"
@@ -196,9 +197,11 @@ Status CheckScenes(const CrosscheckVerb& verb) {
 
 // Told before minutes of rendering, not after.
 Status CheckTargets(const CrosscheckVerb& verb) {
-  for (const std::string& file : {verb.html, verb.write_baseline}) {
-    if (!file.empty()) SCUMBLE_RETURN_IF_ERROR(CheckWritable(file));
-  }
+  RunFiles files;
+  for (const std::string& scene : verb.scenes) files.ReadsScene(scene);
+  if (!verb.write_baseline.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.write_baseline));
+  files.Reads("the baseline", verb.baseline);  // which --write-baseline may bring up to date
+  if (!verb.html.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.html));
   if (verb.keep.empty()) return Ok();
   std::error_code failed;
   fs::create_directories(verb.keep, failed);

@@ -11,10 +11,10 @@
 #include "cli/json_text.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
+#include "cli/run_files.h"
 #include "cli/scene_frames.h"
 #include "cli/sequence.h"
 #include "cli/style_set.h"
-#include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/whole_output.h"
 
@@ -76,12 +76,13 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
                                     const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
   SceneFrames scene(verb.scene, layers_for, motion, globals);
+  const std::string settings = GuideSettings(verb.scene);
   SequenceWork work;
   // What the scene wishes is in the file as well, so that nothing is loaded where nothing is left to make.
   work.check = [&](int, const std::string& output) -> Status {
     const Expected<GuideFileInfo> info = InspectGuides(output);
     SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? WishesOf(info->header) : StyleWishes()));
-    return CheckWholeGuides(output, size.width, size.height, layers.Add(AlwaysWritten()));
+    return CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()), verb.scene.half, settings});
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameReport> {
@@ -97,6 +98,15 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
   };
   ProgressBar bar("guidegen", globals.quiet);
   return RunSequence(sequence, work, bar, globals);
+}
+
+Status CheckFiles(const GuidegenVerb& verb, const std::optional<Sequence>& sequence,
+                  const std::optional<StyleSet>& styles) {
+  RunFiles files;
+  files.ReadsScene(verb.scene.scene);
+  if (styles) files.ReadsStyles(*styles);
+  SCUMBLE_ASSIGN(const auto outputs, NamesOf(verb.output, sequence));
+  return files.CheckOutputs(outputs);
 }
 
 Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
@@ -123,12 +133,13 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
   if (verb.style.style.empty() && !verb.style.assigned.empty()) {
     return UsageError("--assign goes with a style for all the rest: give --style too");
   }
-  if (sequence && !plan_only) return GuidegenSequence(verb, *sequence, layers_for, motion, styles, write, globals);
-  if (sequence && IsBlenderScene(verb.scene.scene)) verb.scene.blender.frame = sequence->frames.front();
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.scene));
   if (!sequence) {
     SCUMBLE_ASSIGN(verb.output, NameOfOne(verb.output, verb.scene.blender.frame));
   }
-  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.output));
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(verb, sequence, styles));
+  if (sequence && !plan_only) return GuidegenSequence(verb, *sequence, layers_for, motion, styles, write, globals);
+  if (sequence && IsBlenderScene(verb.scene.scene)) verb.scene.blender.frame = sequence->frames.front();
   ProgressBar bar("guidegen", globals.quiet);
   SceneGuides made;
   if (frame && !plan_only) {
@@ -164,7 +175,9 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
                   "frame of a scene that moves; left out: of a .blend the one it was saved at, of glTF the nodes as "
                   "they stand")
       ->type_name("N");
-  AddFpsOption(*sub, verb->scene.fps, "frames a second of a glTF animation, as 24 or 24000/1001; frame N is at N / RATE s");
+  AddFpsOption(*sub, verb->scene.fps, 
+               "frames a second of a glTF animation, as 24 or 24000/1001: frame N is at N / RATE s; left out: 24. Of a "
+               ".blend what its guides say to transfer; left out: its own");
   AddLightPathOptions(*sub, verb->scene);
   sub->add_option(
          "--layers", verb->layers,

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
@@ -104,7 +105,8 @@ Expected<Json> DescribeStyle(const std::string& path) {
   constexpr const char* kMethods[] = {"litsphere", "styleblit", "bruteforce"};
   Json json{{"kind", "style"}, {"name", style.name}, {"licence", style.licence}};
   json["method"] = kMethods[static_cast<int>(style.transfer.method)];
-  json["threshold"] = style.transfer.threshold;
+  // The shortest number that is this float: as a double 0.09 would be 0.09000000357627869.
+  json["threshold"] = std::strtod(fmt::format("{}", style.transfer.threshold).c_str(), nullptr);
   json["levels"] = style.transfer.levels;
   json["blend_radius"] = style.transfer.blend_radius;
   json["scale"] = style.transfer.scale;

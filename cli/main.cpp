@@ -1,5 +1,7 @@
 // scumble: paint a sphere, stylise a scene. One binary, one verb a task; `scumble help` prints verbs and exit codes.
 #include <fcntl.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -121,6 +123,9 @@ int Run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return Fail(UsageError(ExplainUsage(app, error)));
   }
+  // More threads than cores, where they are asked for: the library would refuse them, and say so itself.
+  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism,
+                                    std::size_t(std::max(globals.threads, tbb::this_task_arena::max_concurrency())));
   SetIoThreads(globals.threads);
   const Expected<ExitCode> result = chosen();
   if (!result) return Fail(result.error());

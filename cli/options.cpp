@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <system_error>
 
+#include "cli/sequence.h"
 #include "io/guide_file.h"
 #include "style/style_file.h"
 
@@ -157,20 +159,52 @@ void WarnIfNothingShows(const GuideSet& guides, const std::string& scene) {
   Warn(scene + ": the camera sees nothing, the picture is empty; try --view or another --camera");
 }
 
-Expected<Scene> LoadAnyScene(const SceneOptions& options, const Globals& globals) {
-  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, options.blender, globals);
+Expected<Scene> LoadAnyScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film) {
+  BlenderOptions blender = options.blender;
+  blender.wants_start = !options.view.empty();
+  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, globals, film);
   return LoadScene(options.scene);
 }
 
 }  // namespace
 
-Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals) {
-  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, globals));
+Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film) {
+  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, globals, film));
   for (const std::string& warning : scene.warnings) Warn(options.scene + ": " + warning);
   return scene;
 }
 
+bool IsScene(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::vector<std::string> kEndings = {".glb", ".gltf", ".obj", ".ply", ".blend"};
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+namespace {
+
+Status CheckScene(const std::string& scene) {
+  std::error_code failed;
+  if (fs::is_directory(scene, failed)) return InputError(scene + " is a folder: name a scene file in it");
+  const bool has_ending = IsScene(scene);
+  if (!fs::exists(scene, failed) && has_ending) {
+    const Expected<FrameName> name = FrameName::Parse(scene);
+    if (!name || name->must_have_frame()) {
+      return UsageError(scene + ": a scene of one file a frame is not read as a sequence; call scumble once a frame, with " +
+                        "its file and --frame N, or export one animated .glb");
+    }
+  }
+  if (has_ending) return Ok();
+  const std::string ending = fs::path(scene).extension().string().substr(0, 40);
+  return InputError(scene + " has " + (ending.empty() ? "no ending" : "the ending '" + ending + "'") +
+                    "; expected a scene in .glb, .gltf, .obj, .ply or .blend");
+}
+
+}  // namespace
+
 Status CheckSceneOptions(const SceneOptions& options) {
+  SCUMBLE_RETURN_IF_ERROR(CheckScene(options.scene));
+  if (!options.fps.empty()) SCUMBLE_RETURN_IF_ERROR(ParseFps(options.fps));
   SCUMBLE_RETURN_IF_ERROR(ParseSize(options.size));
   SCUMBLE_RETURN_IF_ERROR(ParseView(options.view));
   if (IsBlenderScene(options.scene)) {
@@ -198,6 +232,18 @@ Expected<PreparedView> ViewScene(Scene& scene, const SceneOptions& options, cons
   }
   needs_light = needs_light && options.key_light;
   return PrepareView(scene, options.camera, view, aspect, needs_light);
+}
+
+std::string GuideSettings(const SceneOptions& options) {
+  std::string text = fmt::format("scumble {}; aa {}; normals {}; seed {}", SCUMBLE_VERSION, options.aa,
+                                 options.normal_frame, options.seed);
+  const auto add = [&](const char* name, std::string value) {
+    std::replace(value.begin(), value.end(), ';', ',');
+    text += fmt::format("; {} '{}'", name, value);
+  };
+  add("camera", options.camera), add("view", options.view), add("animation", options.animation);
+  add("fps", options.fps == kUsualFps ? "" : options.fps);
+  return text;
 }
 
 Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const NextFrame* next,
@@ -229,6 +275,7 @@ Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const 
   result.guides = std::move(rendered.guides);
   result.rays = rendered.rays, result.samples = rendered.samples, result.noise = rendered.noise;
   if (options.half) RoundColorLayersToHalf(result.guides);
+  result.guides.attributes["scumble:settings"] = GuideSettings(options);
   if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene);
   return result;
 }

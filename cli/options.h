@@ -52,7 +52,7 @@ struct SceneOptions {
   bool explain = false;
   BlenderOptions blender;  // for .blend scenes
   std::string animation;   // of a glTF file with several, as AnimationOptions has it
-  std::string fps = "24";
+  std::string fps;  // empty: a .blend's own, otherwise kUsualFps
   // Light-path layers, as in GuidegenOptions.
   int samples = GuidegenOptions().samples;
   bool samples_given = false;  // then they are the most that noise or a time budget may take
@@ -79,14 +79,20 @@ struct SceneGuides {
   double noise = 0.0;  // estimated, where noise or a time budget was asked for
 };
 
+// Whether the name has a scene's ending.
+bool IsScene(const std::string& path);
+
 // Loads the scene, a .blend by way of Blender; warns of what the scene asks for in vain.
-Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals);
+Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film = nullptr);
 
 // Mistakes in the options come to light before a large scene is loaded.
 Status CheckSceneOptions(const SceneOptions& options);
 
 // How an open scene is seen; the key light, where a layer needs one, is added to it.
 Expected<PreparedView> ViewScene(Scene& scene, const SceneOptions& options, const LayerSet& layers);
+
+// What the guides' attribute scumble:settings says of how they are seen, for --resume to compare.
+std::string GuideSettings(const SceneOptions& options);
 
 // Casts the guides of a scene that is ready. The layer motion wants `next`, which may be null otherwise.
 Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const NextFrame* next,

@@ -5,9 +5,34 @@
 
 namespace scumble {
 
+namespace {
+
+// How a frame of a .blend is seen: as the scene's first frame says, where the file leaves camera or light to us.
+Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneOptions& options, const LayerSet& layers) {
+  if (!film.start) return ViewScene(scene, options, layers);
+  Scene& start = *film.start;
+  const std::size_t lights = start.lights.size();
+  SCUMBLE_ASSIGN(PreparedView view, ViewScene(start, options, layers));
+  if (start.lights.size() > lights) scene.lights.push_back(start.lights.back());
+  start.lights.resize(lights);
+  if (!options.view.empty() || start.cameras.empty()) return view;
+  SceneOptions without_light = options;
+  without_light.key_light = false;
+  SCUMBLE_ASSIGN(const PreparedView now, ViewScene(scene, without_light, layers));
+  view.camera = now.camera;
+  return view;
+}
+
+void TellRate(const SceneOptions& options, const BlenderFilm& film, GuideSet& guides) {
+  const std::string& fps = options.fps.empty() ? film.fps : options.fps;
+  if (!fps.empty()) guides.attributes["scumble:fps"] = fps;
+}
+
+}  // namespace
+
 Status SceneFrames::Start(std::span<const int> frames, const Progress& progress) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options_));
-  SCUMBLE_ASSIGN(rate_, ParseFps(options_.fps));
+  SCUMBLE_ASSIGN(rate_, ParseFps(options_.fps.empty() ? kUsualFps : options_.fps));
   return IsBlenderScene(options_.scene) ? StartBlender(frames) : StartFile(progress);
 }
 
@@ -19,6 +44,7 @@ Status SceneFrames::StartBlender(std::span<const int> frames) {
       needed_by_[frame] = static_cast<int>(i);
     }
   }
+  options_.blender.wants_start = !options_.view.empty();
   SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, exported_, globals_));
   return Ok();
 }
@@ -99,19 +125,20 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
   const double load_ms = watch.Lap();
   WarnOnce(scene);
   SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(WishesOf(scene.instances, scene)));
-  SCUMBLE_ASSIGN(const PreparedView view, ViewScene(scene, options_, layers));
+  SCUMBLE_ASSIGN(const PreparedView view, ViewBlender(scene, blender_->film(), options_, layers));
   for (const std::string& note : view.notes) Say(globals, note);
   std::optional<Scene> following;
   PreparedView following_view;
   if (motion_) {
     SCUMBLE_ASSIGN(const Scene* const after, BlenderFrame(frame + 1));
     following = *after, following->textures.clear();
-    SCUMBLE_ASSIGN(following_view, ViewScene(*following, options_, layers));
+    SCUMBLE_ASSIGN(following_view, ViewBlender(*following, blender_->film(), options_, layers));
   }
   std::optional<NextFrame> next;
   if (following) next.emplace(NextFrame{*following, following_view.camera});
   SCUMBLE_ASSIGN(SceneGuides guides,
                  CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, globals, progress, false));
+  TellRate(options_, blender_->film(), guides.guides);
   guides.times.insert(guides.times.begin(), {"load", load_ms});
   return guides;
 }
@@ -156,10 +183,15 @@ Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const Layers
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
   if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
   Stopwatch watch;
-  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
+  BlenderFilm film;
+  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals, plan_only ? nullptr : &film));
   SCUMBLE_ASSIGN(const LayerSet layers, layers_for(WishesOf(scene.instances, scene)));
   const double load_ms = watch.Lap();
-  SCUMBLE_ASSIGN(SceneGuides result, MakeGuidesOf(scene, options, layers, globals, progress, plan_only));
+  SCUMBLE_ASSIGN(const PreparedView view, ViewBlender(scene, film, options, layers));
+  for (const std::string& note : view.notes) Say(globals, note);
+  SCUMBLE_ASSIGN(SceneGuides result,
+                 CastScene(scene, view.camera, nullptr, options, layers, globals, progress, plan_only));
+  TellRate(options, film, result.guides);
   result.times.insert(result.times.begin(), {"load", load_ms});
   return result;
 }

@@ -33,7 +33,7 @@ class SceneFrames {
   // A scene that does not move is loaded and cast here, once for all frames. One that moves is loaded here, and how it
   // is seen is decided as it stands at time 0, whatever the frames: a camera that frames it and a key light stay where
   // they are then, a camera of the file moves as the file says. Of a .blend, one Blender begins to export these frames,
-  // each of which is seen by itself; for the layer motion the next ones too.
+  // for the layer motion the next ones too; time 0 is its own first frame there.
   Status Start(std::span<const int> frames, const Progress& progress);
 
   // The guides of one of the frames, to be asked for in their order; the same one may be asked for again. What the

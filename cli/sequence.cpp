@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
 
 #include "cli/json_text.h"
 #include "image/stopwatch.h"
@@ -16,7 +20,7 @@ void AddSequenceOptions(CLI::App& verb, SequenceOptions& options) {
                   "names of files stands for the frame's number")
       ->type_name("RANGE");
   verb.add_flag("--resume", options.resume,
-                "with --frames: keep frames whose output is there and whole; empty and truncated files are made again");
+                "with --frames: keep frames whose output is there, whole, and made with these settings; all others are made again");
 }
 
 Expected<std::optional<Sequence>> PlanSequence(const SequenceOptions& options, std::optional<int> frame,
@@ -40,8 +44,14 @@ Expected<std::optional<Sequence>> PlanSequence(const SequenceOptions& options, s
   return std::optional(std::move(sequence));
 }
 
+namespace {
+
+std::string RefuseEmptyRate(const std::string& text) { return text.empty() ? "it is empty: give a rate, or leave it out" : ""; }
+
+}  // namespace
+
 void AddFpsOption(CLI::App& verb, std::string& fps, const std::string& help) {
-  verb.add_option("--fps", fps, help)->type_name("RATE")->capture_default_str();
+  verb.add_option("--fps", fps, help)->type_name("RATE")->check(RefuseEmptyRate);
 }
 
 Expected<FrameRate> ParseFps(const std::string& text) {
@@ -64,6 +74,15 @@ double SecondsAt(int frame, const FrameRate& rate) {
   return static_cast<double>(static_cast<float>(seconds));
 }
 
+Expected<std::vector<std::string>> NamesOf(const std::string& name, const std::optional<Sequence>& sequence) {
+  if (!sequence) return std::vector<std::string>{name};
+  SCUMBLE_ASSIGN(const FrameName parsed, FrameName::Parse(name));
+  if (!parsed.has_place()) return std::vector<std::string>{name};
+  std::vector<std::string> names;
+  for (const int frame : sequence->frames) names.push_back(parsed.At(frame));
+  return names;
+}
+
 Expected<std::string> NameOfOne(const std::string& name, std::optional<int> frame) {
   SCUMBLE_ASSIGN(const FrameName parsed, FrameName::Parse(name));
   if (frame) return parsed.At(*frame);
@@ -79,6 +98,32 @@ Progress Within(const Progress& progress, double from, double to) {
 }
 
 namespace {
+
+// A reason without the frame's number, as names of files have it.
+std::string WithoutNumber(const std::string& reason, int frame) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::string text;
+  for (std::size_t i = 0; i < reason.size();) {
+    std::size_t end = i;
+    while (end < reason.size() && is_digit(reason[end])) ++end;
+    int number = 0;
+    const auto [stop, failure] = std::from_chars(reason.data() + i, reason.data() + end, number);
+    const bool is_frame = failure == std::errc() && number == std::abs(frame);
+    const std::size_t next = std::max(end, i + 1);
+    text += is_frame ? "#" : reason.substr(i, next - i);
+    i = next;
+  }
+  return text;
+}
+
+// Whether an output can be kept; says why one that is there cannot.
+bool CanKeep(const Sequence& sequence, const SequenceWork& work, int frame, const Globals& globals) {
+  const std::string output = sequence.output.At(frame);
+  const Status whole = work.check(frame, output);
+  std::error_code failed;
+  if (!whole && std::filesystem::exists(output, failed)) Say(globals, whole.error().message + ": made again");
+  return whole.ok();
+}
 
 // What became of the frames so far.
 class Tally {
@@ -100,10 +145,11 @@ class Tally {
     nlohmann::ordered_json json = Entry(frame, "failed");
     json["error"] = reason;
     Add(std::move(json), "");
-    // One reason for many frames, as when Blender crashed, is said once.
-    if (failed_.empty() || reason != last_reason_) Warn(fmt::format("frame {}: {}", frame, reason));
+    // One reason for many frames, as when Blender crashed or all guides lack a layer, is said once.
+    const std::string kind = WithoutNumber(reason, frame);
+    if (failed_.empty() || kind != last_kind_) Warn(fmt::format("frame {}: {}", frame, reason));
     if (failed_.empty()) first_reason_ = reason;
-    last_reason_ = reason;
+    last_kind_ = kind;
     failed_.push_back(frame);
   }
 
@@ -151,7 +197,7 @@ class Tally {
   const Globals& globals_;
   nlohmann::ordered_json entries_ = nlohmann::ordered_json::array();
   std::vector<int> failed_;
-  std::string first_reason_, last_reason_;
+  std::string first_reason_, last_kind_;
   int made_ = 0, kept_ = 0;
 };
 
@@ -163,7 +209,7 @@ Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& wor
   Tally tally(sequence, bar, globals);
   std::vector<int> frames;
   for (const int frame : sequence.frames) {
-    if (sequence.resume && work.check(frame, sequence.output.At(frame))) {
+    if (sequence.resume && CanKeep(sequence, work, frame, globals)) {
       tally.Kept(frame);
     } else {
       frames.push_back(frame);

@@ -24,6 +24,8 @@ struct SequenceOptions {
 };
 void AddSequenceOptions(CLI::App& verb, SequenceOptions& options);
 
+inline constexpr const char* kUsualFps = "24";
+
 // Frames a second as a fraction, in thousandths above and below: "24", "23.976" or "24000/1001".
 struct FrameRate {
   std::int64_t numerator = 24;
@@ -58,7 +60,7 @@ Expected<std::optional<Sequence>> PlanSequence(const SequenceOptions& options, s
 Expected<std::string> NameOfOne(const std::string& name, std::optional<int> frame);
 
 struct SequenceWork {
-  // Ok where the frame's output is there and whole.
+  // Ok where the frame's output is there, whole, and what would be made.
   std::function<Status(int frame, const std::string& output)> check;
   // Called once, with the frames that are left to make, unless there are none. An error ends the sequence.
   std::function<Status(std::span<const int> frames, const Progress& progress)> begin;
@@ -74,6 +76,9 @@ struct SequenceWork {
 // in every frame, and ends the sequence at once.
 Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& work, ProgressBar& bar,
                                const Globals& globals);
+
+// The names of all frames' files; of one picture, whose place is filled, it is the name itself.
+Expected<std::vector<std::string>> NamesOf(const std::string& name, const std::optional<Sequence>& sequence);
 
 // The part [from, to] of a progress.
 Progress Within(const Progress& progress, double from, double to);

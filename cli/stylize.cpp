@@ -8,14 +8,18 @@
 
 #include "cli/command.h"
 #include "cli/options.h"
+#include "cli/json_text.h"
+#include "cli/picture_settings.h"
 #include "cli/progress_bar.h"
+#include "cli/run_files.h"
 #include "cli/scene_frames.h"
 #include "cli/sequence.h"
 #include "cli/transfer_run.h"
-#include "io/atomic_file.h"
+#include "io/blender_camera.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 #include "io/whole_output.h"
+#include "style/style_keyframes.h"
 
 namespace scumble {
 namespace {
@@ -44,7 +48,9 @@ class PictureSequence {
 
   // --exposure auto is measured on the first frame of the range, even where that one is kept: a sequence that is resumed
   // goes on as it began.
-  Status Begin(const Sequence& sequence, const GuidesAt& guides_at, const Progress& progress) {
+  // One picture underneath all frames must be there, and have the size of the first that is known.
+  Status Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress) {
+    SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
     if (!MustLookAhead(sequence)) return Ok();
     const int first = sequence.frames.front();
     const Expected<FrameGuides> found = guides_at(first, progress);
@@ -58,6 +64,23 @@ class PictureSequence {
                      "give each --exposure {:.2f}",
                      first, *memory_.exposure));
     return Ok();
+  }
+  Status ReadOverOfAll(int width, int height) {
+    SCUMBLE_ASSIGN(const FrameName over, FrameName::Parse(options_.over));
+    if (options_.over.empty() || over.has_place()) return Ok();
+    SCUMBLE_RETURN_IF_ERROR(ReadOver(options_.over, memory_));
+    if (width == 0 || (memory_.over->width == width && memory_.over->height == height)) return Ok();
+    return InputError(fmt::format("--over {} is {}×{}, the frames are {}×{}: render both at one size", options_.over,
+                                  memory_.over->width, memory_.over->height, width, height));
+  }
+
+  // Whether a picture that is there is one that Make would make, as far as can be told without its guides.
+  Status Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps) {
+    for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
+    SCUMBLE_ASSIGN(const std::optional<double> exposure, ParseExposure(options_.exposure));
+    PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {options_.bits}), {}};
+    shape.settings = SettingsText(styles_, SettingsOf(options_, fps, exposure), memory_.hashes);
+    return CheckWholePicture(output, shape);
   }
   bool MustLookAhead(const Sequence& sequence) const {
     return sequence.frames.size() > 1 && MeasuresExposure(styles_, options_);
@@ -128,14 +151,26 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   };
   SequenceWork work;
   work.check = [&](int frame, const std::string& output) -> Status {
-    PictureShape shape{0, 0, PictureChannels(output)};
-    // Guides that are gone cannot say how large their picture was to be.
-    if (const auto info = InspectGuides(guides_name.At(frame))) {
-      shape.width = info->width * verb.picture.upsample, shape.height = info->height * verb.picture.upsample;
-    }
-    return CheckWholePicture(output, shape);
+    // Guides that are gone cannot say how large their picture was to be, and how fast it plays.
+    const auto info = InspectGuides(guides_name.At(frame));
+    if (!info) return pictures.Check(frame, output, 0, 0, {});
+    SCUMBLE_ASSIGN(const FrameRate fps, RateFor(verb.picture, info->header));
+    const int factor = verb.picture.upsample;
+    return pictures.Check(frame, output, info->width * factor, info->height * factor, fps);
   };
-  work.begin = [&](std::span<const int>, const Progress& progress) { return pictures.Begin(sequence, guides_at, progress); };
+  work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
+    if (!verb.camera.empty() && !camera.has_place()) SCUMBLE_RETURN_IF_ERROR(ReadBlenderCamera(verb.camera));
+    // What is wrong with guides that serve all frames would be wrong in each.
+    if (!guides_name.has_place()) SCUMBLE_RETURN_IF_ERROR(guides_at(frames.front(), {}));
+    int width = 0, height = 0;
+    for (const int frame : frames) {
+      const auto info = InspectGuides(guides_name.At(frame));
+      const int factor = verb.picture.upsample;
+      if (info) width = info->width * factor, height = info->height * factor;
+      if (info || verb.picture.over.empty()) break;
+    }
+    return pictures.Begin(sequence, width, height, guides_at, progress);
+  };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.1, progress);
   };
@@ -151,19 +186,41 @@ Status NameOne(PictureOptions& picture) {
   return Ok();
 }
 
+Status CheckNumbers(const PictureOptions& picture) {
+  SCUMBLE_RETURN_IF_ERROR(ParseExposure(picture.exposure));
+  if (!picture.fps.empty()) SCUMBLE_RETURN_IF_ERROR(ParseFps(picture.fps));
+  return Ok();
+}
+
+// `files` has what the verb alone reads.
+Status CheckFiles(RunFiles& files, const PictureOptions& picture, const std::optional<Sequence>& sequence,
+                  const StyleSet& styles) {
+  SCUMBLE_ASSIGN(const auto overs, NamesOf(picture.over, sequence));
+  for (const std::string& over : overs) files.Reads("the picture of --over", over);
+  files.ReadsStyles(styles);
+  SCUMBLE_ASSIGN(const auto outputs, NamesOf(picture.output, sequence));
+  return files.CheckOutputs(outputs);
+}
+
 Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
-  if (IsBlenderScene(verb.guides)) {
+  if (IsScene(verb.guides)) {
     return InputError(verb.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
   }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.picture.frame, verb.picture.output));
   if (!sequence) {
     SCUMBLE_RETURN_IF_ERROR(NameOne(verb.picture));
-    SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
     SCUMBLE_ASSIGN(verb.guides, NameOfOne(verb.guides, verb.picture.frame));
     SCUMBLE_ASSIGN(verb.camera, NameOfOne(verb.camera, verb.picture.frame));
   }
+  SCUMBLE_RETURN_IF_ERROR(CheckNumbers(verb.picture));
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
+  RunFiles files;
+  for (const auto& [what, name] : {std::pair("the guides", &verb.guides), {"the .camera file", &verb.camera}}) {
+    SCUMBLE_ASSIGN(const auto names, NamesOf(*name, sequence));
+    for (const std::string& file : names) files.Reads(what, file);
+  }
+  SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
   GuideReadOptions read = ReadOptions(verb, styles);
   if (sequence) return TransferSequence(verb, *sequence, styles, read, globals);
   Stopwatch watch;
@@ -221,20 +278,26 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
     return source(*made);
   };
   SequenceWork work;
-  work.check = [&](int, const std::string& output) {
-    const int factor = verb.picture.upsample;
-    return CheckWholePicture(output, {size.width * factor, size.height * factor, PictureChannels(output)});
+  // How fast a .blend plays is known when it is exported.
+  std::optional<FrameRate> fps;
+  if (!options.fps.empty() || !IsBlenderScene(options.scene)) {
+    SCUMBLE_ASSIGN(fps, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
+  }
+  const int width = size.width * verb.picture.upsample, height = size.height * verb.picture.upsample;
+  work.check = [&](int frame, const std::string& output) {
+    return pictures.Check(frame, output, width, height, fps);
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
     const int first = sequence.frames.front();
     // What a .blend wants is known when its first frame is there: it may be a style that is exposed.
     const bool may_want = IsBlenderScene(options.scene) && verb.style.scene_styles && verb.picture.exposure == "auto";
+    SCUMBLE_RETURN_IF_ERROR(pictures.ReadOverOfAll(width, height));
     const bool look = sequence.frames.size() > 1 && (may_want || pictures.MustLookAhead(sequence));
     if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
     SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
     if (look && !pictures.MustLookAhead(sequence) && !guides_ahead(first, {})) return Ok();  // said when it is made
-    return pictures.Begin(sequence, guides_ahead, {});
+    return pictures.Begin(sequence, width, height, guides_ahead, {});
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.5, progress);
@@ -244,15 +307,41 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   return RunSequence(sequence, work, bar, globals);
 }
 
+// Without a picture: what a run would cast, and why.
+Expected<ExitCode> PrintPlan(const StylizeVerb& verb, StyleSet& styles, const Globals& globals) {
+  SceneOptions scene = verb.scene;
+  scene.animation.clear();  // a plan is the same at any time
+  scene.blender.frame = verb.picture.frame;
+  ProgressBar bar("stylize", globals.quiet);
+  SCUMBLE_ASSIGN(SceneGuides made, MakeGuidesAtRest(scene, RequiredOfScene(styles, scene.scene), false, globals,
+                                                    bar.Part(0.0, 1.0), true));
+  for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
+  bar.Clear();
+  Print(globals.json ? JsonText(nlohmann::ordered_json{{"plan", PlanToJson(made.plan)}}) : PlanToText(made.plan));
+  return ExitCode::kOk;
+}
+
 Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(verb));
+  if (verb.picture.output.empty()) {
+    if (!verb.scene.explain) {
+      return UsageError("scumble stylize: -o FILE is required; with --explain and no -o the plan is printed alone");
+    }
+    SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.scene));
+    SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
+    return PrintPlan(verb, styles, globals);
+  }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.picture.frame, verb.picture.output));
   if (!sequence) SCUMBLE_RETURN_IF_ERROR(NameOne(verb.picture));
-  if (!sequence) SCUMBLE_RETURN_IF_ERROR(CheckWritable(verb.picture.output));
+  SCUMBLE_RETURN_IF_ERROR(CheckNumbers(verb.picture));
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.scene));
   Stopwatch watch;
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
   const double style_ms = watch.Lap();
+  RunFiles files;
+  files.ReadsScene(verb.scene.scene);
+  SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
   if (sequence) return StylizeSequence(verb, *sequence, styles, globals);
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
@@ -280,7 +369,7 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--camera", verb->camera, "the .camera file of a Blender render; left out: found from its Position pass")
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
-  AddPictureOptions(*sub, verb->picture);
+  AddPictureOptions(*sub, verb->picture, true);
   AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTransferVerb(*verb, globals); }; });
@@ -291,7 +380,7 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("stylize", "scene + style -> picture: guidegen and transfer in one go");
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
-  AddPictureOptions(*sub, verb->picture);
+  AddPictureOptions(*sub, verb->picture, false);
   AddSequenceOptions(*sub, verb->sequence);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunStylizeVerb(*verb, globals); }; });

@@ -104,24 +104,84 @@ nlohmann::ordered_json ToJson(const StyleSet& styles, const std::vector<Prepared
 }
 
 // The picture underneath, if one is asked for.
-Expected<std::optional<Picture>> ReadOver(const PictureOptions& options, const GuideSet& guides,
-                                          const std::string& guides_name) {
-  if (options.over.empty()) return std::optional<Picture>();
-  SCUMBLE_ASSIGN(Picture over, ReadPicture(options.over));
+Expected<const Picture*> OverFor(const PictureOptions& options, const GuideSet& guides, const std::string& guides_name,
+                                 TransferMemory& memory) {
+  if (options.over.empty()) return static_cast<const Picture*>(nullptr);
+  SCUMBLE_RETURN_IF_ERROR(ReadOver(options.over, memory));
+  const Picture& over = *memory.over;
   if (over.width != guides.width() || over.height != guides.height()) {
     return InputError(fmt::format("--over {} is {}×{}, {} {} {}×{}: render both at one size", options.over, over.width,
                                   over.height, guides_name, options.upsample > 1 ? "upsampled is" : "is",
                                   guides.width(), guides.height()));
   }
-  return std::optional(std::move(over));
+  return &over;
+}
+
+bool IsCatcher(const StyleSet& styles) {
+  return std::any_of(styles.assigned.begin(), styles.assigned.end(),
+                     [](const StyleSet::Assigned& one) { return one.style == StyleMap::kCatch; }) ||
+         std::any_of(styles.wanted.begin(), styles.wanted.end(),
+                     [](const auto& wish) { return wish.second == StyleMap::kCatch; });
+}
+
+// Of what was asked for and changes nothing, once in a run.
+void WarnOfIdleOptions(const StyleSet& styles, const PictureOptions& options, TransferMemory& memory) {
+  if (memory.warned) return;
+  memory.warned = true;
+  const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(),
+                               [](const Style& style) { return style.exemplars.size() > 1; });
+  if (options.exposure != "auto" && !lit) {
+    Warn("--exposure " + options.exposure + " changes nothing: style " + styles.first().name +
+         " has one exemplar, and only styles of several look at the light");
+  }
+  const auto shadowed = std::find_if(styles.styles.begin(), styles.styles.end(), [](const Style& style) {
+    return style.transfer.shadow != ShadowMode::kNone;
+  });
+  if (shadowed != styles.styles.end() && !IsCatcher(styles)) {
+    Warn("transfer.shadow of style " + shadowed->name +
+         " changes nothing, and its layer costs time: no object catches shadows; give --assign 'Ground=catcher', or leave it "
+         "out");
+  }
+}
+
+// A frame of another size than those before is rarely meant.
+void WarnOfOtherSize(const GuideSet& guides, const std::string& name, TransferMemory& memory) {
+  if (memory.width == 0) memory.width = guides.width(), memory.height = guides.height();
+  if (memory.warned_of_size || (memory.width == guides.width() && memory.height == guides.height())) return;
+  memory.warned_of_size = true;
+  Warn(fmt::format("{} is {}×{}, the frames before it are {}×{}: its picture has another size than theirs", name,
+                   guides.width(), guides.height(), memory.width, memory.height));
 }
 
 }  // namespace
 
-void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
-  verb.add_option("-o,--output", options.output, "picture to write: .png, .tif, .exr or .jpg")
-      ->type_name("FILE")
-      ->required();
+Status ReadOver(const std::string& file, TransferMemory& memory) {
+  if (memory.over && memory.over_file == file) return Ok();
+  memory.over.reset();
+  SCUMBLE_ASSIGN(memory.over, ReadPicture(file));
+  memory.over_file = file;
+  return Ok();
+}
+
+PictureSettings SettingsOf(const PictureOptions& options, std::optional<FrameRate> fps, std::optional<double> exposure) {
+  return {options.seed, !options.over.empty(), options.show, options.upsample, fps, exposure};
+}
+
+Expected<FrameRate> RateFor(const PictureOptions& options, const GuideSet& guides) {
+  if (!options.fps.empty()) return ParseFps(options.fps);
+  const auto told = guides.attributes.find("scumble:fps");
+  if (told != guides.attributes.end()) {
+    if (const auto rate = ParseFps(told->second)) return *rate;  // guides may come from anywhere
+  }
+  return ParseFps(kUsualFps);
+}
+
+void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
+  auto* output = verb.add_option("-o,--output", options.output,
+                                 std::string("picture to write: .png, .tif, .exr or .jpg") +
+                                     (needed ? "" : "; required unless --explain is given"));
+  output->type_name("FILE");
+  if (needed) output->required();
   verb.add_option("--over", options.over, "picture to composite over, of the same size")->type_name("FILE");
   verb.add_option("--bits", options.bits,
                   "bits a channel: 8 or 16 for .png and .tif; .exr takes 16, half floats, or 32, floats")
@@ -138,7 +198,7 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
       ->type_name("N");
   AddFpsOption(verb, options.fps,
                "frames a second, as 24 or 24000/1001, for transfer.jitter_fps, and of a glTF animation: frame N is at "
-               "N / RATE s");
+               "N / RATE s; left out: of a .blend its own, otherwise 24");
   verb.add_option("--exposure", options.exposure,
                   "stops by which the scene's light is brightened for styles of several exemplars; auto fits it to "
                   "the brightest one and prints the stops that repeat it")
@@ -167,6 +227,16 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options) {
       ->capture_default_str();
 }
 
+Expected<std::optional<double>> ParseExposure(const std::string& text) {
+  if (text == "auto") return std::optional<double>();
+  double stops = 0.0;
+  const auto [parsed, failure] = std::from_chars(text.data(), text.data() + text.size(), stops);
+  if (failure != std::errc() || parsed != text.data() + text.size() || !(std::fabs(stops) <= 64.0)) {
+    return UsageError("--exposure " + text + ": expected auto, or stops from -64 to 64");
+  }
+  return std::optional(stops);
+}
+
 // Stops for the scene's luminance; 0 where no style looks at it.
 Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const GuideSet& guides,
                              const PictureOptions& options, const Globals& globals) {
@@ -175,17 +245,10 @@ Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const G
     if (!style.illumination.active()) continue;
     luminances.insert(luminances.end(), style.illumination.luminances().begin(), style.illumination.luminances().end());
   }
-  double stops = 0.0;
-  if (options.exposure != "auto") {
-    const char *begin = options.exposure.data(), *end = begin + options.exposure.size();
-    const auto [parsed, failure] = std::from_chars(begin, end, stops);
-    if (failure != std::errc() || parsed != end || !(std::fabs(stops) <= 64.0)) {
-      return UsageError("--exposure " + options.exposure + ": expected auto, or stops from -64 to 64");
-    }
-    return stops;
-  }
+  SCUMBLE_ASSIGN(const std::optional<double> given, ParseExposure(options.exposure));
+  if (given) return *given;
   if (luminances.empty()) return 0.0;
-  stops = MeasureExposure(guides, luminances);
+  const double stops = MeasureExposure(guides, luminances);
   Say(globals, fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", stops, stops));
   return stops;
 }
@@ -279,18 +342,20 @@ Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const G
 Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, const GuideSource& source,
                                     const PictureOptions& options, const Globals& globals, const Progress& progress,
                                     TransferMemory& memory) {
-  SCUMBLE_ASSIGN(const FrameRate fps, ParseFps(options.fps));
+  SCUMBLE_ASSIGN(const FrameRate fps, RateFor(options, given));
   StepTimes times = source.times;
   Stopwatch watch;
+  WarnOfOtherSize(given, source.name, memory);
   std::optional<GuideSet> larger;
   if (options.upsample > 1) {
     SCUMBLE_ASSIGN(larger, UpsampleGuides(given, options.upsample, globals.threads));
     times.emplace_back("upsample", watch.Lap());
   }
   const GuideSet& guides = larger ? *larger : given;
-  SCUMBLE_ASSIGN(const std::optional<Picture> over, ReadOver(options, guides, source.name));
+  SCUMBLE_ASSIGN(const Picture* const over, OverFor(options, guides, source.name, memory));
   if (over) times.emplace_back("over", watch.Lap());
   SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles, given, options, globals, memory));
+  WarnOfIdleOptions(styles, options, memory);
   const std::vector<PreparedStyle>& prepared = memory.prepared;
   std::vector<const PreparedStyle*> pointers;
   for (const PreparedStyle& one : prepared) pointers.push_back(&one);
@@ -308,7 +373,7 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, con
   transfer.exposure = *memory.exposure;
   transfer.threads = globals.threads;
   transfer.match_step = options.upsample;
-  transfer.over = over ? &*over : nullptr;
+  transfer.over = over;
   TransferScratch& scratch = memory.scratch;
   Picture picture;
   std::vector<double> match, vote, compose;
@@ -326,7 +391,9 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, con
     picture = Show(*what, {prepared, map, guides, scratch.field, transfer.exposure, picture});
   }
   watch.Lap();
-  SCUMBLE_RETURN_IF_ERROR(WritePicture(options.output, picture, {options.bits, options.png_level}));
+  PictureWriteOptions write{options.bits, options.png_level};
+  write.settings = SettingsText(styles, SettingsOf(options, fps, transfer.exposure), memory.hashes);
+  SCUMBLE_RETURN_IF_ERROR(WritePicture(options.output, picture, write));
 
   Steps steps;
   for (const auto& [name, ms] : times) steps.emplace_back(name, Spread{ms, ms, ms});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/options.h"
+#include "cli/picture_settings.h"
 #include "cli/sequence.h"
 #include "cli/style_set.h"
 #include "image/guides.h"
@@ -21,14 +22,25 @@ struct PictureOptions {
   int bits = 8;
   int png_level = 6;
   std::optional<int> frame;
-  std::string fps = "24";
+  std::string fps;  // empty: what the guides say, or kUsualFps
   std::string exposure = "auto";
   std::uint64_t seed = 0;
   int repeat = 1;
   int upsample = 1;  // the picture is so many times as wide and high as the guides
   std::string show;  // an explanation's name; empty: the result itself
 };
-void AddPictureOptions(CLI::App& verb, PictureOptions& options);
+// `needed`: the verb does nothing without an output.
+void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed);
+
+// What is written for --resume to compare, of styles that are at the picture's frame. Rate and exposure where they are
+// known already.
+PictureSettings SettingsOf(const PictureOptions& options, std::optional<FrameRate> fps, std::optional<double> exposure);
+
+// The rate that was asked for, or that of a .blend, which its guides keep in the attribute scumble:fps.
+Expected<FrameRate> RateFor(const PictureOptions& options, const GuideSet& guides);
+
+// Stops of --exposure; nothing for auto. A usage error says what was expected.
+Expected<std::optional<double>> ParseExposure(const std::string& text);
 
 // Where the guides come from.
 struct GuideSource {
@@ -42,7 +54,16 @@ struct TransferMemory {
   std::vector<PreparedStyle> prepared;  // by style; empty: not yet
   std::optional<double> exposure;       // stops, once given or measured
   TransferScratch scratch;
+  ExemplarHashes hashes;
+  std::string over_file;        // that `over` is from
+  std::optional<Picture> over;  // one picture underneath all frames is read once
+  int width = 0, height = 0;    // of the first frame's guides
+  bool warned = false;          // of options that change nothing
+  bool warned_of_size = false;
 };
+
+// Reads --over, unless `memory` has it already.
+Status ReadOver(const std::string& file, TransferMemory& memory);
 
 // Of two lighting conditions with one luminance only the first is ever chosen: warns of the other.
 void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared);

@@ -117,6 +117,7 @@ struct FileContents {
   std::vector<FoundMatte> mattes;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
   std::string all_names;  // for messages
+  bool has_half = false;
   bool from_blender = false;
 };
 
@@ -144,6 +145,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string& channel = spec.channelnames[c];
       if (++named <= 40) contents.all_names += (contents.all_names.empty() ? "" : ", ") + channel;
+      contents.has_half = contents.has_half || spec.channelformat(c) == OIIO::TypeDesc::HALF;
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
       if (auto matte = ParseMatteChannel(channel)) {
         contents.mattes.push_back({subimage, c, spec.channelformat(c) == OIIO::TypeDesc::FLOAT, *matte});
@@ -275,7 +277,9 @@ Status ReadPlanes(OIIO::ImageInput& input, const std::vector<PlaneRead>& reads, 
     for (const ChannelRun& run : RunsOf(reads, part)) {
       std::vector<float> pixels(std::size_t(run.end - run.first) * spec.width * spec.height);
       if (!input.read_image(part, 0, run.first, run.end, OIIO::TypeDesc::FLOAT, pixels.data()) || input.has_error()) {
-        return internal::ReadFailure(input, name);
+        Error failure = internal::ReadFailure(input, name);
+        failure.message += "; render it again, or make its frame again with scumble guidegen --resume";
+        return failure;
       }
       for (const PlaneRead& read : reads) {
         const bool in_run = read.subimage == part && read.channel >= run.first && read.channel < run.end;
@@ -490,7 +494,7 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
-  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.from_blender, {}, contents.all_names, {}};
+  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.has_half, contents.from_blender, {}, contents.all_names, {}};
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");
   for (const std::string& prefix : prefixes) {

@@ -41,6 +41,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
 struct GuideFileInfo {
   int width = 0;
   int height = 0;
+  bool has_half = false;                    // some channel is stored in half floats
   bool from_blender = false;                // rendered by Blender itself: its passes are to be converted
   std::map<std::string, LayerSet> layers;   // complete layers by view layer; "" where names have nothing before them; Cryptomatte counts
   std::string channels;                     // all names as they stand in the file

@@ -1,8 +1,12 @@
 #include "io/oiio.h"
 
+#include <cctype>
+#include <fstream>
+
 #include "image/guides.h"
 #include "io/atomic_file.h"
 #include "io/library.h"
+#include "io/whole_png.h"
 
 namespace scumble {
 
@@ -20,11 +24,32 @@ OIIO::ImageSpec StraightAlpha() {
   return config;
 }
 
-// The first line: what follows repeats it from layer to layer.
-std::string LibraryReason(std::string reason) {
+// The first line: what follows repeats it from layer to layer. Without the file's name, which our message begins with.
+std::string LibraryReason(std::string reason, const std::string& name) {
   reason = reason.substr(0, reason.find('\n'));
+  for (const std::string& mention : {" from image file \"" + name + "\"", " \"" + name + "\""}) {
+    const std::size_t at = reason.find(mention);
+    if (at != std::string::npos) reason.erase(at, mention.size());
+  }
   while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' ')) reason.pop_back();
   return reason.empty() ? "the picture library gives no reason" : reason;
+}
+
+bool LooksLikeScene(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char* scene : {".glb", ".gltf", ".obj", ".ply", ".blend"}) {
+    if (ending == scene) return true;
+  }
+  return false;
+}
+
+Status CheckIfPng(const std::filesystem::path& path) {
+  char start[8] = {};
+  std::ifstream(path, std::ios::binary).read(start, sizeof start);
+  if (!IsPng(std::as_bytes(std::span(start)))) return Ok();
+  SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
+  return CheckPngIsWhole(bytes, path.string());
 }
 
 }  // namespace
@@ -43,26 +68,33 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   if (std::filesystem::file_size(path, failed) == 0) {
     return InputError("cannot read " + path.string() + ": the file is empty");
   }
+  if (LooksLikeScene(path)) {
+    return InputError("cannot read " + path.string() + ": it is a scene, and a picture or guides are expected here; " +
+                      "scumble stylize and scumble guidegen take scenes");
+  }
+  if (auto whole = CheckIfPng(path); !whole) return whole.error();
   const OIIO::ImageSpec config = StraightAlpha();
   auto input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) return InputError("cannot read " + path.string() + ": " + LibraryReason(OIIO::geterror()));
+  if (!input) return InputError("cannot read " + path.string() + ": " + LibraryReason(OIIO::geterror(), path.string()));
   return input;
 }
 
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
+  const auto bytes = std::as_bytes(std::span(proxy.buffer().data(), proxy.buffer().size()));
+  if (IsPng(bytes)) SCUMBLE_RETURN_IF_ERROR(CheckPngIsWhole(bytes, name));
   // The readers look for the proxy in the configuration, and forget one that is only passed as an argument.
   OIIO::ImageSpec config = StraightAlpha();
   void* pointer = &proxy;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
   auto input = OIIO::ImageInput::open(name, &config, &proxy);
-  if (!input) return InputError("cannot read " + name + ": " + LibraryReason(OIIO::geterror()));
+  if (!input) return InputError("cannot read " + name + ": " + LibraryReason(OIIO::geterror(), name));
   return input;
 }
 
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name) {
   const std::string reason = input.geterror();
   return InputError("cannot read " + name + ": " +
-                    (reason.empty() ? "the pixel data is damaged" : LibraryReason(reason)));
+                    (reason.empty() ? "the pixel data is damaged" : LibraryReason(reason, name)));
 }
 
 Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::ImageSpec& spec,
@@ -71,7 +103,7 @@ Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::Ima
   if (spec.width < 1 || spec.height < 1) return OutputError("cannot write " + name + ": the picture is empty");
   auto output = OIIO::ImageOutput::create(name);
   if (!output) {
-    return OutputError("cannot write " + name + ": " + LibraryReason(OIIO::geterror()) +
+    return OutputError("cannot write " + name + ": " + LibraryReason(OIIO::geterror(), name) +
                        "; name it .png, .exr, .tif or .jpg");
   }
   std::vector<unsigned char> encoded;
@@ -83,7 +115,7 @@ Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::Ima
   OIIO::ImageSpec timeless = spec;
   timeless.attribute("DateTime", "");  // the library would write the hour, and the same picture would differ by it
   if (!output->open(name, timeless) || !write_pixels(*output) || !output->close()) {
-    return OutputError("cannot write " + name + ": " + LibraryReason(output->geterror()));
+    return OutputError("cannot write " + name + ": " + LibraryReason(output->geterror(), name));
   }
   const auto bytes = std::as_bytes(std::span(encoded));
   return std::vector<std::byte>(bytes.begin(), bytes.end());

@@ -157,6 +157,7 @@ Status WriteEncoded(const std::filesystem::path& path, const Picture& picture, c
   OIIO::ImageSpec spec = EncodedSpec(picture, 4, options);
   // A TIFF would say sRGB in a second directory, which OpenImageIO 2.4 spoils in memory; integers are sRGB without it.
   if (Upper(path.extension().string()) != ".PNG") spec.erase_attribute("oiio:ColorSpace");
+  else if (!options.settings.empty()) spec.attribute(internal::kSettings, options.settings);
   if (options.bits == 8) {
     const std::vector<std::uint8_t> bytes = In8Bits(picture);
     return internal::EncodeAndWrite(
@@ -190,6 +191,7 @@ Status WriteLinear(const std::filesystem::path& path, const Picture& picture, co
                        options.bits == 32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("compression", "zip");
+  if (!options.settings.empty()) spec.attribute(internal::kSettings, options.settings);
   std::vector<float> pixels(picture.rgba.size());
   for (std::size_t i = 0; i < pixels.size(); i += 4) {
     const float alpha = static_cast<float>(picture.rgba[i + 3]) / 65535.0f;
@@ -243,12 +245,22 @@ Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::str
   return ReadFrom(*input, name);
 }
 
+int PictureBits(const std::filesystem::path& path, const PictureWriteOptions& options) {
+  const std::string ending = Upper(path.extension().string());
+  if (ending == ".EXR") return options.bits == 32 ? 32 : 16;
+  return ending == ".JPG" || ending == ".JPEG" ? 8 : options.bits;
+}
+
 Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteOptions& options) {
   const std::string ending = Upper(path.extension().string());
   constexpr const char* kEndings[] = {".EXR", ".JPG", ".JPEG", ".PNG", ".TIF", ".TIFF"};
   if (std::find(std::begin(kEndings), std::end(kEndings), ending) == std::end(kEndings)) {
     return UsageError("cannot write " + path.string() + ": the ending '" + path.extension().string() +
                       "' is not one of .png, .tif, .jpg, .exr");
+  }
+  if ((ending == ".JPG" || ending == ".JPEG") && options.bits != 8) {
+    return UsageError(path.string() + ": " + std::to_string(options.bits) +
+                      " bits asked for, and JPEG has 8: name it .png, .tif or .exr, or leave --bits out");
   }
   if (ending != ".EXR" && options.bits != 8 && options.bits != 16) {
     return UsageError(path.string() + ": " + std::to_string(options.bits) + " bits asked for; " +

@@ -24,10 +24,14 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path);
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 
 struct PictureWriteOptions {
-  int bits = 8;       // 8 or 16 per channel; JPEG is always 8; EXR is half floats, or floats at 32
+  int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR is half floats, or floats at 32
   int png_level = 6;  // 0 … 9, zlib's compression level
   int jpeg_quality = 92;
+  std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
 };
+
+// Bits a channel that WritePicture stores under that name: 16 for EXR means half floats.
+int PictureBits(const std::filesystem::path& path, const PictureWriteOptions& options);
 
 // Whether WritePicture knows the ending and can store so many bits: to be asked before hours of work.
 Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteOptions& options = {});

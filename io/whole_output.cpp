@@ -1,6 +1,9 @@
 #include "io/whole_output.h"
 
+#include <algorithm>
 #include <cctype>
+#include <map>
+#include <sstream>
 #include <string>
 #include <system_error>
 
@@ -25,6 +28,29 @@ Status CheckSide(const std::filesystem::path& path, int width, int height, int w
   return InputError(path.string() + " is " + Text(width, height) + ", not " + Text(wanted_width, wanted_height));
 }
 
+// "seed 0; show chunks" by first words.
+std::map<std::string, std::string> Parts(const std::string& settings) {
+  std::map<std::string, std::string> parts;
+  std::istringstream stream(settings);
+  for (std::string part; std::getline(stream, part, ';');) {
+    part.erase(0, part.find_first_not_of(' '));
+    const std::size_t space = part.find(' ');
+    if (space != std::string::npos) parts[part.substr(0, space)] = part.substr(space + 1);
+  }
+  return parts;
+}
+
+Status CheckSettings(const std::filesystem::path& path, const std::string& found, const std::string& wanted) {
+  const auto there = Parts(found);
+  for (const auto& [name, value] : Parts(wanted)) {
+    const auto other = there.find(name);
+    if (other == there.end() || other->second == value) continue;
+    return InputError(path.string() + " was made with other settings (" + name + " " + other->second + ", not " + value +
+                      ")");
+  }
+  return Ok();
+}
+
 }  // namespace
 
 int PictureChannels(const std::filesystem::path& path) {
@@ -43,20 +69,40 @@ Status CheckWholePicture(const std::filesystem::path& path, const PictureShape& 
       return InputError(path.string() + " has " + std::to_string(spec.nchannels) + " channels, not " +
                         std::to_string(shape.channels));
     }
+    const int bits = static_cast<int>(8 * spec.format.basesize());
+    if (shape.bits != 0 && bits != shape.bits) {
+      return InputError(path.string() + " has " + std::to_string(bits) + " bits a channel, not " +
+                        std::to_string(shape.bits));
+    }
+    SCUMBLE_RETURN_IF_ERROR(
+        CheckSettings(path, std::string(spec.get_string_attribute(internal::kSettings)), shape.settings));
   }
   if (const auto read = ReadPicture(path); !read) return read.error();
   return Ok();
 }
 
-Status CheckWholeGuides(const std::filesystem::path& path, int width, int height, const LayerSet& layers) {
+Status CheckWholeGuides(const std::filesystem::path& path, const GuideShape& shape) {
   SCUMBLE_RETURN_IF_ERROR(CheckNotEmpty(path));
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
-  SCUMBLE_RETURN_IF_ERROR(CheckSide(path, info.width, info.height, width, height));
+  SCUMBLE_RETURN_IF_ERROR(CheckSide(path, info.width, info.height, shape.width, shape.height));
   const auto found = info.layers.find("");
   const LayerSet held = found == info.layers.end() ? LayerSet() : found->second;
-  if (held != layers) return InputError(path.string() + " holds " + held.ToString() + ", not " + layers.ToString());
+  if (held != shape.layers) {
+    return InputError(path.string() + " holds " + held.ToString() + ", not " + shape.layers.ToString());
+  }
+  const bool has_color = std::any_of(AllLayers().begin(), AllLayers().end(), [&](const LayerInfo& layer) {
+    return layer.is_color && held.Has(layer.layer);
+  });
+  if (has_color && info.has_half != shape.half) {
+    return InputError(path.string() + " has its colours in " + (info.has_half ? "half floats" : "floats") + ", not " +
+                      (shape.half ? "half floats" : "floats"));
+  }
+  const auto settings = info.header.attributes.find(internal::kSettings);
+  if (settings != info.header.attributes.end()) {
+    SCUMBLE_RETURN_IF_ERROR(CheckSettings(path, settings->second, shape.settings));
+  }
   GuideReadOptions options;
-  options.required = layers;
+  options.required = shape.layers;
   if (const auto read = ReadGuides(path, options); !read) return read.error();
   return Ok();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "image/layers.h"
 #include "image/status.h"
@@ -14,6 +15,9 @@ struct PictureShape {
   int width = 0;
   int height = 0;
   int channels = 0;
+  int bits = 0;          // a channel, as PictureBits has them
+  std::string settings;  // as WritePicture keeps them: "scumble 0.1; seed 0; exposure 0.52". What is said on both sides
+                         // must agree; "" and what only one side says count for nothing
 };
 
 // Channels of a picture that WritePicture writes to a file of that name: 4, and 3 for JPEG, which has no alpha.
@@ -23,7 +27,15 @@ int PictureChannels(const std::filesystem::path& path);
 // at.
 Status CheckWholePicture(const std::filesystem::path& path, const PictureShape& shape);
 
-// The same for a guide file, which must hold just these layers.
-Status CheckWholeGuides(const std::filesystem::path& path, int width, int height, const LayerSet& layers);
+// The same for a guide file, which must hold just these layers, colours as half floats if `half`. The settings are
+// those of the guides' attribute scumble:settings.
+struct GuideShape {
+  int width = 0;
+  int height = 0;
+  LayerSet layers;
+  bool half = false;
+  std::string settings;
+};
+Status CheckWholeGuides(const std::filesystem::path& path, const GuideShape& shape);
 
 }  // namespace scumble

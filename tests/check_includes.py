@@ -30,7 +30,7 @@ THIRD_PARTY = {
     "tiny_obj_loader": {"guidegen"},
     "stb_image": {"guidegen"},
     "oneapi/tbb": {"guidegen", "transfer"},
-    "tbb/": {"guidegen", "transfer"},
+    "tbb/": {"cli", "guidegen", "transfer"},
     "nanoflann": {"transfer"},
     "hwy/": {"transfer"},
     "toml++/": {"style"},

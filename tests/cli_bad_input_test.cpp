@@ -72,7 +72,7 @@ TEST_F(CliBadFiles, Scenes) {
 TEST_F(CliBadFiles, ScenesThatAreNone) {
   WritePainted("picture.png", 8, 8);
   ExpectError({"stylize", "picture.png", "--style", "picture.png", "-o", "out.png"}, 3,
-              {"picture.png has the ending '.png'", ".glb, .gltf, .obj or .ply"});
+              {"picture.png has the ending '.png'", ".glb, .gltf, .obj, .ply or .blend"});
   WriteText("scene.blend", "BLENDER-v304");
   ExpectError({"stylize", "scene.blend", "--blender", "no/blender", "--style", "picture.png", "-o", "out.png"}, 5,
               {"scene.blend", "export", ".glb"});

@@ -190,7 +190,7 @@ TEST_F(CliSequence, HolesAreNamedAndTheOthersMade) {
 TEST_F(CliSequence, AnErrorThatWouldComeAgainEndsIt) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(32));
-  fs::create_directory(At("p2.png"));
+  fs::create_symlink("/dev/full", At("p2.png"));
   const CommandResult result = Run({"transfer", "g.exr", "--style", "style", "--frames", "1-3", "-o", "p#.png"});
   EXPECT_EQ(result.code, 4) << result.err;
   EXPECT_TRUE(Contains(result.Error(), "frame 2: ")) << result.err;

@@ -1,0 +1,98 @@
+#include "cli/picture_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "image/hash.h"
+
+namespace scumble {
+namespace {
+
+// Eight bytes at a time: pictures are large.
+template <class T>
+std::uint64_t HashBytes(std::span<const T> values) {
+  const auto bytes = std::as_bytes(values);
+  std::uint64_t state = bytes.size();
+  for (std::size_t i = 0; i < bytes.size(); i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
+    state = (state ^ word) * 0x9e3779b97f4a7c15ull;
+    state ^= state >> 32;
+  }
+  return Mix64(state);
+}
+
+std::string TextOf(const TransferSettings& settings) {
+  // All members by name: one more does not compile until it is written below.
+  const auto& [method, nearest, threshold, threshold_metric, levels, jitter, jitter_fps, coherent, blend_radius, edge_aware, crease,
+               depth_tolerance, luminance_weight, luminance_error, colorize, colorize_mode, variety, hybrid,
+               match_step, scale, rim, edge,
+               shadow, reference_height] = settings;
+  std::string text;
+  for (const auto word : {int(method), int(nearest), int(threshold_metric), levels, int(coherent), blend_radius, int(edge_aware),
+                          int(luminance_error), int(colorize_mode), int(edge), int(shadow), reference_height, match_step}) {
+    text += fmt::format("{} ", word);
+  }
+  for (const double number : {double(threshold), double(jitter), jitter_fps, crease, depth_tolerance,
+                              double(luminance_weight), colorize, variety, hybrid, scale, rim}) {
+    text += fmt::format("{} ", number);
+  }
+  return text;
+}
+
+std::uint64_t HashOfGuides(const GuideSet& guides) {
+  std::uint64_t hash = Hash(guides.width(), guides.height());
+  for (const LayerInfo& info : AllLayers()) {
+    if (!guides.Has(info.layer)) continue;
+    for (int c = 0; c < ChannelCount(info.layer); ++c) hash = Hash(hash, HashText(info.name), c, HashBytes(guides.Plane(info.layer, c)));
+  }
+  return hash;
+}
+
+std::uint64_t HashOfPicture(const Picture& picture) {
+  return Hash(picture.width, picture.height, HashBytes(std::span<const std::uint16_t>(picture.rgba)));
+}
+
+std::uint64_t HashOfExemplar(const Exemplar& exemplar) {
+  const std::uint64_t hash = Hash(HashOfPicture(exemplar.picture), exemplar.is_sphere);
+  return exemplar.guides ? Hash(hash, HashOfGuides(*exemplar.guides)) : hash;
+}
+
+std::uint64_t HashOfStyles(const StyleSet& styles, ExemplarHashes& known) {
+  std::uint64_t hash = 0;
+  for (std::size_t i = 0; i < styles.chosen; ++i) {
+    const Style& style = styles.styles[i];
+    hash = Hash(hash, HashText(TextOf(style.transfer)), style.exemplars.size());
+    for (std::size_t e = 0; e < style.exemplars.size(); ++e) {
+      const Exemplar& exemplar = style.exemplars[e];
+      const auto [place, is_new] = known.try_emplace({i, e}, 0);
+      if (is_new) place->second = HashOfExemplar(exemplar);
+      // What it is painted for matters where there are several.
+      const bool lit = style.exemplars.size() > 1 && exemplar.luminance;
+      hash = Hash(hash, place->second, HashText(lit ? fmt::format("{}", *exemplar.luminance) : ""));
+    }
+    if (style.paper.color) hash = Hash(hash, HashBytes(std::span<const std::uint16_t>(*style.paper.color)));
+    if (style.paper.picture) hash = Hash(hash, HashOfPicture(*style.paper.picture));
+  }
+  for (const StyleSet::Assigned& one : styles.assigned) hash = Hash(hash, HashText(one.pattern), one.style);
+  return hash;
+}
+
+}  // namespace
+
+std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
+  std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}", SCUMBLE_VERSION,
+                                 HashOfStyles(styles, known), settings.seed, settings.over ? "a picture" : "nothing",
+                                 settings.show.empty() ? "result" : settings.show);
+  if (settings.upsample > 1) text += fmt::format("; upsample {}", settings.upsample);
+  if (settings.fps) text += fmt::format("; fps {}", double(settings.fps->numerator) / double(settings.fps->denominator));
+  const bool lit = std::any_of(styles.styles.begin(), styles.styles.begin() + std::ptrdiff_t(styles.chosen),
+                               [](const Style& style) { return style.exemplars.size() > 1; });
+  if (lit && settings.exposure) text += fmt::format("; exposure {}", *settings.exposure);
+  return text;
+}
+
+}  // namespace scumble

@@ -1,0 +1,32 @@
+// What a picture was made with, as text that is kept in its file: --resume makes pictures again that other settings made.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "cli/sequence.h"
+#include "cli/style_set.h"
+
+namespace scumble {
+
+// Hashes of exemplars by their place in a set: pictures take the longest.
+using ExemplarHashes = std::map<std::pair<std::size_t, std::size_t>, std::uint64_t>;
+
+struct PictureSettings {
+  std::uint64_t seed = 0;
+  bool over = false;               // something lies underneath
+  std::string show;                // an explanation's name
+  int upsample = 1;
+  std::optional<FrameRate> fps;    // where it is known
+  std::optional<double> exposure;  // where it is known; counts for styles of several exemplars
+};
+
+// The text: parts "name value" with semicolons between, as io/whole_output.h compares them. It holds nothing that stylize
+// and transfer do not both know, and nothing that makes no other picture, so that equal pictures stay equal files. The
+// styles must be at the picture's frame (SetStyleFrame); those that a scene asks for are not told of.
+std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known);
+
+}  // namespace scumble

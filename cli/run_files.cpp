@@ -1,0 +1,145 @@
+#include "cli/run_files.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <system_error>
+
+#include "io/atomic_file.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Identity = std::pair<unsigned long, unsigned long>;
+
+// Of the file that the name leads to, links followed; nothing where there is no plain file.
+std::optional<Identity> IdentityOf(const std::string& path) {
+  struct stat file;
+  if (::stat(path.c_str(), &file) != 0 || !S_ISREG(file.st_mode)) return std::nullopt;
+  return Identity{file.st_dev, file.st_ino};
+}
+
+// Its beginning, where files are named.
+std::string StartOf(const fs::path& path) {
+  constexpr std::size_t kMost = std::size_t(16) << 20;
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(kMost, '\0');
+  stream.read(text.data(), std::streamsize(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
+}
+
+std::string Ending(const fs::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
+
+// "a%20b.png" as glTF writes the name "a b.png".
+std::string WithoutPercents(const std::string& text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool coded = text[i] == '%' && i + 2 < text.size() && std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
+                       std::isxdigit(static_cast<unsigned char>(text[i + 2]));
+    plain += coded ? static_cast<char>(std::strtol(text.substr(i + 1, 2).c_str(), nullptr, 16)) : text[i];
+    if (coded) i += 2;
+  }
+  return plain;
+}
+
+}  // namespace
+
+void RunFiles::Reads(const std::string& what, const std::string& path) {
+  if (const auto identity = IdentityOf(path)) inputs_.try_emplace(*identity, Input{what, path});
+}
+
+void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder) {
+  constexpr std::size_t kLongestName = 4096;
+  const std::string text = StartOf(file);
+  for (std::size_t begin = text.find_first_of("\"'"); begin != std::string::npos;) {
+    const std::size_t end = text.find(text[begin], begin + 1);
+    if (end == std::string::npos) return;
+    if (end - begin <= kLongestName) {
+      const std::string name = text.substr(begin + 1, end - begin - 1);
+      for (const std::string& spelling : {name, WithoutPercents(name)}) Reads(what, (fs::path(folder) / spelling).string());
+    }
+    // A quotation mark alone, as in a comment, must not hide the names after it.
+    const std::size_t line = text.find('\n', begin);
+    begin = text.find_first_of("\"'", (line < end ? line : end) + 1);
+  }
+}
+
+void RunFiles::ReadsScene(const std::string& scene) {
+  const std::string what = "a file of the scene " + scene, folder = fs::path(scene).parent_path().string();
+  Reads("the scene", scene);
+  if (Ending(scene) == ".gltf") ReadsQuoted(what, scene, folder);
+  if (Ending(scene) != ".obj") return;
+  // "mtllib a.mtl" there and "map_Kd -s 1 1 1 a.png" in that file: what is at the end of a line may be a file.
+  const auto named = [&](const std::string& line) {
+    std::vector<std::string> names;
+    for (std::size_t space = line.find(' '); space != std::string::npos; space = line.find(' ', space + 1)) {
+      std::string name = line.substr(space + 1);
+      name.erase(name.find_last_not_of(" \t\r") + 1);
+      if (!name.empty()) names.push_back((fs::path(folder) / name).string());
+    }
+    return names;
+  };
+  std::istringstream lines(StartOf(scene));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("mtllib", 0) != 0) continue;
+    for (const std::string& library : named(line)) {
+      Reads(what, library);
+      std::istringstream entries(IdentityOf(library) ? StartOf(library) : std::string());
+      for (std::string entry; std::getline(entries, entry);) {
+        for (const std::string& picture : named(entry)) Reads(what, picture);
+      }
+    }
+  }
+}
+
+void RunFiles::ReadsStyles(const StyleSet& styles) {
+  std::error_code failed;
+  for (const auto& [path, place] : styles.opened) {
+    const Style& style = styles.styles[place];
+    const std::string what = "a file of the style " + style.name;
+    for (const Exemplar& exemplar : style.exemplars) Reads(what, exemplar.name);
+    fs::path file = path;
+    if (fs::is_directory(file, failed)) file /= "style.toml";
+    if (file.extension() != ".toml") file = file.parent_path() / "style.toml";  // which a picture may stand for
+    if (!IdentityOf(file.string())) continue;
+    Reads(what, file.string());
+    ReadsQuoted(what, file.string(), file.parent_path().string());
+  }
+  for (const std::string& set : styles.options.sets) {
+    std::string value = set.substr(std::min(set.find('=') + 1, set.size()));
+    std::erase_if(value, [](char c) { return c == '"' || c == '\''; });
+    Reads("--set " + set, value);
+  }
+}
+
+Status RunFiles::CheckOutputs(std::span<const std::string> outputs) const {
+  for (const std::string& output : outputs) {
+    const auto identity = IdentityOf(output);
+    const auto found = identity ? inputs_.find(*identity) : inputs_.end();
+    if (found == inputs_.end()) continue;
+    const Input& input = found->second;
+    const std::string also = input.path == output ? "" : ", by the name " + input.path;
+    return UsageError("-o " + output + " would overwrite " + input.what + also + ": give another name");
+  }
+  std::error_code failed;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const bool look = i == 0 || fs::is_symlink(outputs[i], failed) || fs::is_directory(outputs[i], failed);
+    if (look) SCUMBLE_RETURN_IF_ERROR(CheckWritable(outputs[i]));
+  }
+  return Ok();
+}
+
+}  // namespace scumble

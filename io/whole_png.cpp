@@ -1,0 +1,62 @@
+#include "io/whole_png.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace scumble::internal {
+namespace {
+
+constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+
+// Annex D of the specification.
+std::array<std::uint32_t, 256> MakeTable() {
+  std::array<std::uint32_t, 256> table;
+  for (std::uint32_t n = 0; n < 256; ++n) {
+    std::uint32_t c = n;
+    for (int bit = 0; bit < 8; ++bit) c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+    table[n] = c;
+  }
+  return table;
+}
+
+std::uint32_t Sum(std::span<const std::byte> bytes) {
+  static const std::array<std::uint32_t, 256> kTable = MakeTable();
+  std::uint32_t sum = 0xffffffffu;
+  for (const std::byte byte : bytes) sum = kTable[(sum ^ std::to_integer<std::uint32_t>(byte)) & 0xff] ^ (sum >> 8);
+  return sum ^ 0xffffffffu;
+}
+
+std::uint32_t Number(std::span<const std::byte> bytes) {
+  std::uint32_t number = 0;
+  for (int i = 0; i < 4; ++i) number = number << 8 | std::to_integer<std::uint32_t>(bytes[i]);
+  return number;
+}
+
+}  // namespace
+
+bool IsPng(std::span<const std::byte> bytes) {
+  return bytes.size() >= kSignature.size() &&
+         std::equal(kSignature.begin(), kSignature.end(), bytes.begin(),
+                    [](unsigned char a, std::byte b) { return a == std::to_integer<unsigned char>(b); });
+}
+
+Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name) {
+  constexpr std::size_t kAround = 12;  // length, type and sum
+  bytes = bytes.subspan(kSignature.size());
+  while (bytes.size() >= kAround) {
+    const std::size_t length = Number(bytes);
+    if (length > bytes.size() - kAround) break;
+    const auto type_and_data = bytes.subspan(4, 4 + length);
+    const char kind = static_cast<char>(type_and_data[0]);
+    const bool is_critical = kind >= 'A' && kind <= 'Z';  // the others may be left out, and are then
+    if (is_critical && Sum(type_and_data) != Number(bytes.subspan(8 + length))) {
+      return InputError("cannot read " + name + ": the PNG file is damaged; copy or save it again");
+    }
+    if (Number(type_and_data) == 0x49454e44u) return Ok();  // IEND
+    bytes = bytes.subspan(kAround + length);
+  }
+  return InputError("cannot read " + name + ": the PNG file ends before its picture does; copy or save it again");
+}
+
+}  // namespace scumble::internal
