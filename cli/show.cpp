@@ -1,26 +1,27 @@
 #include "cli/show.h"
 
-#include <cmath>
+#include "image/exact_math.h"
 
 namespace scumble {
 namespace {
-
-float GuideDistance(glm::vec3 a, glm::vec3 b, ThresholdMetric metric) {
-  const glm::vec3 d = a - b;
-  if (metric == ThresholdMetric::kL1) return std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
-  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-}
 
 // What the match compares with the threshold, at the source that each pixel got.
 std::vector<float> GuideErrors(const ShownTransfer& shown) {
   const SourceField& field = shown.field;
   std::vector<float> errors(field.level.size(), 0.0f);
-  const float exposure = static_cast<float>(std::exp2(shown.exposure));
+  const float exposure = static_cast<float>(Exp2(shown.exposure));
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (field.level[i] == SourceField::kNoSource) continue;
     const PreparedStyle& style = shown.styles[shown.map.style.empty() ? 0 : shown.map.style[i]];
-    const glm::vec3 there = style.exemplar->Normal(field.x[i], field.y[i]);
-    errors[i] = GuideDistance(shown.guides.Vec3(Layer::kNormal, i), there, style.settings.threshold_metric);
+    const glm::vec3 normal = shown.guides.Vec3(Layer::kNormal, i);
+    const GuideTest test(style.settings.threshold, style.settings.threshold_metric);
+    if (style.space) {
+      float rest[GuideSpace::kMaxRest];
+      style.space->Read(shown.guides, i, exposure, rest);
+      errors[i] = style.space->Distance(test, field.exemplar[i], normal, rest, {field.x[i], field.y[i]});
+    } else {
+      errors[i] = test.Distance(normal, style.exemplar->Normal(field.x[i], field.y[i]));
+    }
     if (!style.illumination.active()) continue;
     const float luminance = shown.guides.Plane(Layer::kLuminance)[i] * exposure;
     errors[i] += style.illumination.Error(luminance, field.exemplar[i]);

@@ -20,6 +20,7 @@ struct SphereVerb {
   int size = 1024;
   std::vector<std::string> lights;
   std::vector<std::string> names;  // none, or one a light
+  std::string layers;
   int aa = 4;
   std::string isa;
   std::string output;
@@ -34,6 +35,8 @@ Expected<KitLight> RenderLight(const SphereVerb& verb, const std::string& text, 
   SphereOptions options;
   options.size = verb.size;
   options.layers = {Layer::kPosition, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow};
+  SCUMBLE_ASSIGN(const LayerSet more, ParseLayers(verb.layers));
+  options.layers.Add(more);
   options.aa = verb.aa;
   options.light_azimuth = angles[0], options.light_elevation = angles[1];
   options.threads = globals.threads;
@@ -113,6 +116,10 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
                   "out: lit, lit-2 and so on")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  sub->add_option("--layers", verb->layers,
+                  "layers of the guides beyond A, normal, depth, object, material, position, albedo, luminance and "
+                  "shadow, for transfer.guide_weights: lpe.LDE, lpe.LSE, ...")
+      ->type_name("NAMES");
   sub->add_option("--aa", verb->aa, "N x N subsamples of the silhouette's coverage, 1 to 16")
       ->type_name("N")
       ->check(CLI::Range(1, 16))

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cli/cache.h"
@@ -141,6 +142,34 @@ std::string SizeText(const Picture& picture) {
                                          : fmt::format("{}×{}", picture.width, picture.height);
 }
 
+// Of the first exemplar, as the rest of the report.
+nlohmann::ordered_json SpaceToJson(const GuideSpace& space, const SpaceAmbiguity& report) {
+  nlohmann::ordered_json json{{"dimensions", space.dimensions()},
+                              {"covered_percent", report.covered_percent},
+                              {"mean_error", report.mean_error},
+                              {"cells_shown", report.cells_shown},
+                              {"mean_repeats", report.mean_repeats},
+                              {"most_repeats", report.most_repeats}};
+  for (const Layer layer : space.layers()) {
+    const auto range = space.RangeOf(0, layer);
+    json["range"][Info(layer).name] = {range.least, range.largest};
+  }
+  return json;
+}
+
+std::string SpaceToText(const GuideSpace& space, const SpaceAmbiguity& report) {
+  std::string text = fmt::format(
+      "guides: {} dimensions; {:.1f}% of directions in all light covered within the threshold, {:.3f} off on average; "
+      "{} places, each on {:.1f} pixels, {} at most\n",
+      space.dimensions(), report.covered_percent, report.mean_error, report.cells_shown, report.mean_repeats,
+      report.most_repeats);
+  for (const Layer layer : space.layers()) {
+    const auto range = space.RangeOf(0, layer);
+    text += fmt::format("  {} shows {:.2f} to {:.2f} of 0 to 1\n", Info(layer).name, range.least, range.largest);
+  }
+  return text;
+}
+
 // Loads and prepares the style as a transfer would, and looks for what a painter overlooks.
 Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
   SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
@@ -160,6 +189,11 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
   WarnOfOppositeLight(style, prepared, paints);
   const AmbiguityReport report = MeasureAmbiguity(exemplar);
   WarnOfAmbiguity(path, report);
+  std::optional<SpaceAmbiguity> space;
+  if (prepared.space) {
+    const GuideTest test(style.transfer.threshold, style.transfer.threshold_metric);
+    space = MeasureAmbiguity(*prepared.space, exemplar, 0, test);
+  }
   const Picture& picture = style.exemplars.front().picture;
   if (globals.json) {
     nlohmann::ordered_json json{{"name", style.name},
@@ -184,6 +218,7 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
                           {"mean_repeats", report.mean_repeats},
                           {"most_repeats", report.most_repeats},
                           {"flat_percent", report.flat_percent}};
+    if (space) json["guides"] = SpaceToJson(*prepared.space, *space);
     Print(JsonText(json));
   } else {
     Print(fmt::format("{}: {} pixels, tonal range {:.0f}%, transparent {:.2f}%: usable\n", style.name,
@@ -199,6 +234,7 @@ Expected<ExitCode> CheckStyle(const std::string& path, const Globals& globals) {
     Print(
         fmt::format("repeats: {} of {} directions shown, each by {:.1f} pixels on average, {} at most; {:.0f}% flat\n",
                     report.cells_shown, report.cells, report.mean_repeats, report.most_repeats, report.flat_percent));
+    if (space) Print(SpaceToText(*prepared.space, *space));
   }
   return ExitCode::kOk;
 }

@@ -92,7 +92,9 @@ nlohmann::ordered_json ToJson(const StyleSet& styles, const std::vector<Prepared
   json["mean_chunk_area"] = coherence.mean_chunk_area;
   json["seed"] = options.seed;
   const bool lit = std::any_of(prepared.begin(), prepared.end(),
-                               [](const PreparedStyle& style) { return style.illumination.active(); });
+                               [](const PreparedStyle& style) {
+                                 return style.illumination.active() || (style.space && style.space->has_radiance());
+                               });
   if (lit) json["exposure"] = exposure;
   json["version"] = SCUMBLE_VERSION;
   json["repeat"] = options.repeat;
@@ -129,10 +131,10 @@ void WarnOfIdleOptions(const StyleSet& styles, const PictureOptions& options, Tr
   if (memory.warned) return;
   memory.warned = true;
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(),
-                               [](const Style& style) { return style.exemplars.size() > 1; });
+                               LooksAtLight);
   if (options.exposure != "auto" && !lit) {
     Warn("--exposure " + options.exposure + " changes nothing: style " + styles.first().name +
-         " has one exemplar, and only styles of several look at the light");
+         " has one exemplar and no weight for light, so it does not look at it");
   }
   const auto shadowed = std::find_if(styles.styles.begin(), styles.styles.end(), [](const Style& style) {
     return style.transfer.shadow != ShadowMode::kNone;
@@ -200,8 +202,8 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
                "frames a second, as 24 or 24000/1001, for transfer.jitter_fps, and of a glTF animation: frame N is at "
                "N / RATE s; left out: of a .blend its own, otherwise 24");
   verb.add_option("--exposure", options.exposure,
-                  "stops by which the scene's light is brightened for styles of several exemplars; auto fits it to "
-                  "the brightest one and prints the stops that repeat it")
+                  "stops by which the scene's light is brightened for styles of several exemplars or with weights for "
+                  "light; auto fits it to the brightest exemplar and prints the stops that repeat it")
       ->type_name("auto|STOPS")
       ->capture_default_str();
   verb.add_option("--seed", options.seed,
@@ -240,17 +242,12 @@ Expected<std::optional<double>> ParseExposure(const std::string& text) {
 // Stops for the scene's luminance; 0 where no style looks at it.
 Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const GuideSet& guides,
                              const PictureOptions& options, const Globals& globals) {
-  std::vector<float> luminances;
-  for (const PreparedStyle& style : prepared) {
-    if (!style.illumination.active()) continue;
-    luminances.insert(luminances.end(), style.illumination.luminances().begin(), style.illumination.luminances().end());
-  }
   SCUMBLE_ASSIGN(const std::optional<double> given, ParseExposure(options.exposure));
   if (given) return *given;
-  if (luminances.empty()) return 0.0;
-  const double stops = MeasureExposure(guides, luminances);
-  Say(globals, fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", stops, stops));
-  return stops;
+  const std::optional<double> stops = MeasureExposure(prepared, guides);
+  if (!stops) return 0.0;
+  Say(globals, fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", *stops, *stops));
+  return *stops;
 }
 
 Expected<PreparedStyle> PrepareOne(const Style& style, int height, int threads) {
@@ -326,8 +323,7 @@ std::string LightInWords(const Exemplar& exemplar, double rim) {
 }
 
 bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
-  return options.exposure == "auto" && std::any_of(styles.styles.begin(), styles.styles.end(),
-                                                   [](const Style& style) { return style.exemplars.size() > 1; });
+  return options.exposure == "auto" && std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
 }
 
 Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const GuideSource& source,

@@ -2,6 +2,30 @@
 
 namespace scumble {
 
+LayerSet GuideWeights::Layers() const {
+  LayerSet layers;
+  for (const LayerInfo& info : AllLayers()) {
+    if ((*this)[info.layer] > 0.0f) layers.Add(info.layer);
+  }
+  return layers;
+}
+
+bool GuideWeights::CanWeigh(Layer layer) {
+  return layer == Layer::kNormal || layer == Layer::kAlbedo || layer == Layer::kShadow || IsRadiance(layer);
+}
+
+bool GuideWeights::IsRadiance(Layer layer) {
+  switch (layer) {
+    case Layer::kLuminance:
+    case Layer::kLpeFull:
+    case Layer::kLpeLDE:
+    case Layer::kLpeLSE:
+    case Layer::kLpeLDDE:
+    case Layer::kLpeLD12E: return true;
+    default: return false;
+  }
+}
+
 LayerSet RequiredLayers(const Style& style) {
   const TransferSettings& settings = style.transfer;
   LayerSet layers{Layer::kCoverage, Layer::kNormal};
@@ -11,11 +35,20 @@ LayerSet RequiredLayers(const Style& style) {
   if (settings.coherent && settings.method == Method::kStyleBlit) {
     layers.Add(Layer::kObject).Add(Layer::kDepth).Add(Layer::kPref);
   }
+  layers.Add(settings.guide_weights.Layers());
   if (style.exemplars.size() > 1) layers.Add(Layer::kLuminance);
   if (settings.shadow == ShadowMode::kPaint) layers.Add(Layer::kShadow);
   if (settings.edge == EdgeMode::kExemplar) layers.Add(Layer::kObject).Add(Layer::kDepth);
   if (settings.colorize > 0.0) layers.Add(Layer::kAlbedo);
   return layers;
+}
+
+bool LooksAtLight(const Style& style) {
+  if (style.exemplars.size() > 1) return true;
+  for (const LayerInfo& info : AllLayers()) {
+    if (style.transfer.guide_weights[info.layer] > 0.0f && GuideWeights::IsRadiance(info.layer)) return true;
+  }
+  return false;
 }
 
 }  // namespace scumble

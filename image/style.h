@@ -57,10 +57,34 @@ enum class ColorizeMode {
   kOklab,     // lightness varies as the paint's does, hue and chroma are the scene's
 };
 
+// What each guide layer counts in the distance by which paint is found and chunks end: values are multiplied by the weight
+// (0 or more, finite; not all 0) before distances are taken. transfer/guide_space.h says what the values are.
+class GuideWeights {
+ public:
+  // Normals alone, counting 1: the plain engine.
+  GuideWeights() { (*this)[Layer::kNormal] = 1.0f; }
+  float& operator[](Layer layer) { return of_[static_cast<std::size_t>(layer)]; }
+  float operator[](Layer layer) const { return of_[static_cast<std::size_t>(layer)]; }
+  bool operator==(const GuideWeights&) const = default;
+
+  bool ArePlain() const { return *this == GuideWeights(); }
+  LayerSet Layers() const;  // those above 0
+
+  // Whether a layer can have a weight: normals, colours, radiance and shares. Ids have no distance, and places in the
+  // exemplar's scene are none in another.
+  static bool CanWeigh(Layer layer);
+  // Whether its values are light, which is exposed first.
+  static bool IsRadiance(Layer layer);
+
+ private:
+  std::array<float, kLayerCount> of_{};
+};
+
 // Lengths are pixels at `reference_height` and follow the output's height.
 struct TransferSettings {
   Method method = Method::kStyleBlit;
   NearestSearch nearest = NearestSearch::kAuto;
+  GuideWeights guide_weights;
   float threshold = 0.125f;  // largest guide distance inside a chunk, at least 0, infinity allowed; the test is strict
   ThresholdMetric threshold_metric = ThresholdMetric::kL2;
   int levels = 7;            // seed grids of 2^(levels-1) … 1 pixels, 1 … 16
@@ -96,6 +120,7 @@ struct Exemplar {
   std::optional<GuideSet> guides = {};  // of what is painted, the picture's size; A and normal at least
   bool is_sphere = true;            // the geometry is the sphere that fills the picture, whatever the guides say;
                                     // false needs guides
+  std::filesystem::path guides_file = {};  // where guides are or would be read from; empty: nowhere
 };
 
 inline constexpr int kMaxExemplars = 4;
@@ -133,5 +158,8 @@ struct Style {
 
 // The layers that a transfer with this style reads: what `guidegen` is asked for, and no more.
 LayerSet RequiredLayers(const Style& style);
+
+// Whether the exposure of the scene's light matters: to styles of several exemplars, and to those that weigh radiance.
+bool LooksAtLight(const Style& style);
 
 }  // namespace scumble

@@ -101,7 +101,9 @@ Status SetKey(Style& style, const std::string& name, const toml::node& node, con
     return UsageError(where + ": unknown key " + name + "; it belongs to [transfer]: transfer." + name);
   }
   if (!key) {
-    const std::string section = name.rfind("transfer.", 0) == 0 ? "transfer." : "";
+    const std::string section = name.rfind(kGuideWeights, 0) == 0 ? kGuideWeights
+                                : name.rfind("transfer.", 0) == 0 ? "transfer."
+                                                                  : "";
     return UsageError(where + ": unknown key " + name + "; there are " + KnownKeys(section) +
                       (section.empty() ? ", [transfer] and [[exemplar]]" : ""));
   }
@@ -118,6 +120,21 @@ Status SetKeyInFile(Style& style, const std::string& name, const toml::node& nod
   auto done = SetKey(style, name, node, Where(file.string(), node), file.parent_path());
   if (done || done.error().kind != ErrorKind::kUsage) return done;
   return InputError(done.error().message);
+}
+
+// A table's keys, those of tables inside it included: [transfer.guide_weights] "lpe.LDE" = 1 or lpe.LDE = 1.
+Status SetKeysInFile(Style& style, const std::string& section, const toml::table& table, const fs::path& file) {
+  for (const auto& [inner, node] : table) {
+    const std::string name = section + "." + std::string(inner.str());
+    const bool holds_keys = std::any_of(StyleKeys().begin(), StyleKeys().end(),
+                                        [&](const StyleKey& key) { return key.name.rfind(name + ".", 0) == 0; });
+    if (const auto* deeper = node.as_table(); deeper && holds_keys) {
+      SCUMBLE_RETURN_IF_ERROR(SetKeysInFile(style, name, *deeper, file));
+    } else {
+      SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name, node, file));
+    }
+  }
+  return Ok();
 }
 
 std::string SizeText(int width, int height) { return std::to_string(width) + "×" + std::to_string(height); }
@@ -141,6 +158,7 @@ Status FitToSphere(int size, int margin, const fs::path& guides, Exemplar& exemp
 
 // Gives the exemplar its guides. `measure` says whether its luminance is wanted and not known.
 Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar) {
+  exemplar.guides_file = path;
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
   GuideReadOptions options;
   if (const auto margin = info.width == info.height ? SphereMargin(info.header) : std::nullopt) {
@@ -212,6 +230,33 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& fil
   return exemplar;
 }
 
+// The layers that the style's weights name, for exemplars that do not hold them yet.
+Status ReadWeighedGuides(Style& style) {
+  const LayerSet wanted = style.transfer.guide_weights.Layers().Remove(Layer::kNormal);
+  if (wanted.empty()) return Ok();
+  for (Exemplar& exemplar : style.exemplars) {
+    if (exemplar.guides_file.empty()) {
+      return InputError(exemplar.name + " has no guides, and transfer.guide_weights asks for " + wanted.ToString() +
+                        ": give [[exemplar]] guides that hold them, as `scumble sphere --layers` and `scumble guidegen` "
+                        "write them");
+    }
+    if (exemplar.guides && exemplar.guides->layers().Contains(wanted)) continue;
+    SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(exemplar.guides_file));
+    LayerSet held;
+    for (const auto& [view_layer, layers] : info.layers) held.Add(layers);
+    if (!held.Contains(wanted)) {
+      return InputError(exemplar.guides_file.string() + " holds " + held.ToString() +
+                        ", and transfer.guide_weights asks for " + wanted.ToString() +
+                        ": write them with --layers, or leave their weights at 0");
+    }
+    GuideReadOptions options;
+    options.required = LayerSet{Layer::kCoverage, Layer::kNormal}.Add(wanted);
+    if (exemplar.guides) options.required.Add(exemplar.guides->layers());
+    SCUMBLE_ASSIGN(exemplar.guides, ReadGuides(exemplar.guides_file, options));
+  }
+  return Ok();
+}
+
 Status ReadExemplars(const toml::node& node, const std::string& file, const fs::path& folder, Style& style) {
   const auto* array = node.as_array();
   if (!array) return InputError(Where(file, node) + ": write [[exemplar]] with two brackets");
@@ -240,9 +285,7 @@ Expected<Style> ReadStyleFile(const fs::path& path) {
     if (name == "exemplar") {
       SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, file, folder, style));
     } else if (const auto* table = node.as_table(); table && name == "transfer") {
-      for (const auto& [inner, value] : *table) {
-        SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name + "." + std::string(inner.str()), value, path));
-      }
+      SCUMBLE_RETURN_IF_ERROR(SetKeysInFile(style, name, *table, path));
     } else {
       SCUMBLE_RETURN_IF_ERROR(SetKeyInFile(style, name, node, path));
     }
@@ -337,6 +380,7 @@ Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& 
   }
   if (style.name.empty()) style.name = NameFor(path, fs::is_directory(kind));
   for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
+  SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style));
   for (const Exemplar& exemplar : style.exemplars) {
     const Picture& picture = exemplar.picture;
     if (!exemplar.is_sphere || picture.width == picture.height) continue;

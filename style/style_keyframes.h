@@ -15,7 +15,7 @@ namespace scumble {
 
 // Checks the track's keys and gives it to the style, in place of an earlier one of that name; the style gets the values
 // of frame 0. Frames must rise, and every value must be one that the key takes alone: kUsage says which is not. Keys of
-// [transfer] only.
+// [transfer] only, without the weights of guides.
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track);
 
 // Forgets the track of that name, if there is one.

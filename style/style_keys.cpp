@@ -15,6 +15,8 @@ namespace {
 
 using Setter = decltype(StyleKey::set);
 
+constexpr double kMaxGuideWeight = 1000.0;
+
 std::optional<double> AsNumber(const KeyValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
@@ -149,10 +151,33 @@ Status SetPaper(Style& style, const KeyValue& value, const std::filesystem::path
   return Ok();
 }
 
+Setter GuideWeight(Layer layer) {
+  return [=](Style& style, const KeyValue& value, const auto&) -> Status {
+    const auto number = AsNumber(value);
+    if (!number || !(*number >= 0.0 && *number <= kMaxGuideWeight)) {
+      return UsageError("expected a number, " + Range(0.0, kMaxGuideWeight));
+    }
+    style.transfer.guide_weights[layer] = static_cast<float>(*number);
+    return Ok();
+  };
+}
+
+// transfer.guide_weights.normal and so on.
+void AddGuideWeights(std::vector<StyleKey>& keys) {
+  for (const LayerInfo& info : AllLayers()) {
+    if (!GuideWeights::CanWeigh(info.layer)) continue;
+    const bool normal = info.layer == Layer::kNormal;
+    keys.push_back({kGuideWeights + std::string(info.name), normal ? "1.0" : "0.0",
+                    normal ? "how much normals count where paint is looked for and pieces end, 0 to 1000"
+                           : "the same of " + std::string(info.meaning),
+                    true, GuideWeight(info.layer)});
+  }
+}
+
 std::vector<StyleKey> MakeKeys() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   using T = TransferSettings;
-  return {
+  std::vector<StyleKey> keys = {
       {"name", "\"\"", "what the style is called", true, Text(&Style::name)},
       {"licence", "\"\"", "SPDX name of the licence", true, Text(&Style::licence)},
       {"transfer.method", "\"styleblit\"", "litsphere, styleblit or bruteforce", true, SetMethod},
@@ -194,6 +219,8 @@ std::vector<StyleKey> MakeKeys() {
       {"transfer.shadow", "\"none\"", "none, or paint: shadows on what --assign NAME=catcher names", true, SetShadow},
       {"transfer.paper", "\"\"", "picture or colour behind; empty: transparent", true, SetPaper},
   };
+  AddGuideWeights(keys);
+  return keys;
 }
 
 }  // namespace

@@ -13,6 +13,9 @@
 
 namespace scumble {
 
+// What the names of the keys that weigh guide layers begin with; the layer's name follows.
+inline constexpr const char* kGuideWeights = "transfer.guide_weights.";
+
 // A value as TOML has it.
 using KeyValue = std::variant<bool, std::int64_t, double, std::string>;
 

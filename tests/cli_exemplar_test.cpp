@@ -61,6 +61,44 @@ TEST_F(CliExemplar, TablesAreKeptAndDamagedOnesRebuilt) {
   EXPECT_EQ(files, 3u);
 }
 
+TEST_F(CliExemplar, GuidesOfLightFromTheSphereToThePicture) {
+  RunOk({"sphere", "--size", "64", "--layers", "lpe.LDE,lpe.LSE", "-q", "-o", "ball"});
+  WritePainted("ball/lit.png", 64, 64);
+  WriteText("ball/style.toml",
+            "name = \"ball\"\n[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = 2\n"
+            "[transfer.guide_weights]\nluminance = 1.0\n\"lpe.LDE\" = 0.5\n"
+            "[[exemplar]]\nimage = \"lit.png\"\nguides = \"guides.exr\"\n");
+  const std::string scene = Scene("stilllife.glb");
+  const Arguments size = {"--size", "96x54", "--aa", "4"};
+  RunOk(With({"stylize", scene, "--style", "ball", "-o", "one.png"}, size));
+  RunOk(With({"guidegen", scene, "--style", "ball", "-q", "-o", "scene.exr"}, size));
+  RunOk({"transfer", "scene.exr", "--style", "ball", "-o", "two.png"});
+  EXPECT_EQ(Bytes("one.png"), Bytes("two.png"));
+  RunOk({"transfer", "scene.exr", "--style", "ball", "--threads", "1", "-o", "single.png"});
+  EXPECT_EQ(Bytes("one.png"), Bytes("single.png"));
+  // Neutral: the plain engine's bytes. Not neutral: others.
+  const Arguments plain = {"--set", "transfer.guide_weights.luminance=0", "--set", "transfer.guide_weights.lpe.LDE=0"};
+  RunOk(With({"transfer", "scene.exr", "--style", "ball", "-o", "neutral.png"}, plain));
+  WriteText("ball/plain.toml",
+            "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = 2\n"
+            "[[exemplar]]\nimage = \"lit.png\"\nguides = \"guides.exr\"\n");
+  RunOk({"transfer", "scene.exr", "--style", "ball/plain.toml", "-o", "other.png"});
+  EXPECT_EQ(Bytes("other.png"), Bytes("neutral.png"));
+  EXPECT_NE(Bytes("one.png"), Bytes("neutral.png"));
+  for (const char* what : {"error", "sources"}) {
+    RunOk({"transfer", "scene.exr", "--style", "ball", "--show", what, "-o", "show.png"});
+  }
+  RunOk(With({"transfer", "scene.exr", "--style", "oil", "--assign", "Vase=ball", "-o", "many.png"}, {}));
+  const auto checked = RunOk({"styles", "check", "ball"});
+  EXPECT_NE(checked.out.find("guides: 7 dimensions"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("lpe.LDE shows 0.00 to"), std::string::npos) << checked.out;
+  // Guides that do not hold what is asked for.
+  RunOk(With({"guidegen", scene, "-q", "-o", "dark.exr"}, size));
+  const auto refused = Run({"transfer", "dark.exr", "--style", "ball", "-o", "no.png"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("luminance"), std::string::npos) << refused.err;
+}
+
 TEST_F(CliExemplar, ACacheThatCannotBeWrittenIsNoError) {
   fs::create_directory(At("style"));
   WriteSceneStyle();

@@ -51,6 +51,7 @@ void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {
   EXPECT_EQ(a.scale, b.scale);
   EXPECT_EQ(a.rim, b.rim);
   EXPECT_EQ(a.reference_height, b.reference_height);
+  EXPECT_TRUE(a.guide_weights == b.guide_weights);
 }
 
 // A folder with a painted sphere of 8×8 pixels in it; its style.toml is written by each test.
@@ -207,6 +208,46 @@ TEST_F(StyleFile, ValuesBeyondThemAreRefusedWithTheRange) {
   }
   ExpectRefusal(Load(std::string("name = 5\n") + kExemplar), ErrorKind::kInput,
                 {"style.toml:1", "name = 5", "text in quotes"});
+}
+
+TEST_F(StyleFile, GuideWeightsAreATableOfLayers) {
+  GuideSet guides(8, 8);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance, Layer::kLpeLDE}) guides.Add(layer);
+  for (float& value : guides.Plane(Layer::kCoverage)) value = 1.0f;
+  for (float& value : guides.Plane(Layer::kNormal, 2)) value = 1.0f;
+  ASSERT_TRUE(WriteGuides(folder_ / "guides.exr", guides));
+  const std::string exemplar = kExemplar + std::string("guides = \"guides.exr\"\n");
+  const LayerSet lit{Layer::kNormal, Layer::kLuminance, Layer::kLpeLDE};
+  for (const char* table : {"[transfer.guide_weights]\nluminance = 2\n\"lpe.LDE\" = 0.5\n",
+                            "[transfer.guide_weights]\nluminance = 2\nlpe.LDE = 0.5\n",
+                            "[transfer]\nguide_weights = {luminance = 2, \"lpe.LDE\" = 0.5}\n"}) {
+    const auto style = Load(table + exemplar);
+    ASSERT_TRUE(style) << table << style.error().message;
+    EXPECT_EQ(style->transfer.guide_weights[Layer::kNormal], 1.0f);
+    EXPECT_EQ(style->transfer.guide_weights[Layer::kLuminance], 2.0f);
+    EXPECT_EQ(style->transfer.guide_weights[Layer::kLpeLDE], 0.5f);
+    EXPECT_TRUE(style->transfer.guide_weights.Layers() == lit);
+    EXPECT_TRUE(RequiredLayers(*style).Contains(lit));
+    ASSERT_TRUE(style->exemplars[0].guides);
+    EXPECT_TRUE(style->exemplars[0].guides->layers().Contains(lit));
+  }
+  const auto neutral = Load("[transfer.guide_weights]\nluminance = 0\nnormal = 1.0\n" + exemplar);
+  ASSERT_TRUE(neutral);
+  EXPECT_TRUE(neutral->transfer.guide_weights.ArePlain());
+  EXPECT_FALSE(RequiredLayers(*neutral).Has(Layer::kLuminance));
+  const auto set = Load(exemplar, {"transfer.guide_weights.lpe.LDE=3", "transfer.guide_weights.normal=0"});
+  ASSERT_TRUE(set) << set.error().message;
+  EXPECT_EQ(set->transfer.guide_weights[Layer::kLpeLDE], 3.0f);
+  EXPECT_EQ(set->transfer.guide_weights[Layer::kNormal], 0.0f);
+  const auto refuse = [&](const std::string& toml, const std::vector<std::string>& words) {
+    SCOPED_TRACE(toml);
+    ExpectRefusal(Load(toml), ErrorKind::kInput, words);
+  };
+  refuse("[transfer.guide_weights]\nluminance = 1\n" + std::string(kExemplar), {"lit.png has no guides", "luminance"});
+  refuse("[transfer.guide_weights]\nshadow = 1\n" + exemplar, {"guides.exr holds", "asks for shadow", "--layers"});
+  refuse("[transfer.guide_weights]\ndepth = 1\n" + exemplar, {"style.toml:2", "unknown key", "there are normal, albedo"});
+  refuse("[transfer.guide_weights]\nluminance = -1\n" + exemplar, {"style.toml:2", "0 to 1000"});
+  refuse("[transfer.guide_weights]\nluminance = [[1, 0], [9, 1]]\n" + exemplar, {"cannot change over time"});
 }
 
 TEST_F(StyleFile, WhatIsStillToComeIsRefusedByName) {

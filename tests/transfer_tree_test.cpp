@@ -1,4 +1,4 @@
-// Trees over points and guides against brute force, and which pixels of a painted scene may be used.
+// Trees over points against brute force, and which pixels of a painted scene may be used.
 #include <cstring>
 #include <limits>
 
@@ -82,78 +82,6 @@ TEST(PointTree, DegenerateSets) {
   ExpectExact(line, 3, line);
   ExpectExact(line, 3, {0, 0, 0, 0.7f, 1e-3f, 0, -1, 0, 0, 0.75f, 0, 0, 1e30f, -1e30f, 1e30f});
   ExpectExact({1e30f, 1e30f, 1e30f, -1e30f, 0, 0, 1e-40f, 0, 0, 0, 0, 0}, 3, {0, 0, 0, 1e30f, 0, 0, 1e-41f, 0, 0});
-}
-
-TEST(GuideTree, WeighsLayersAndEqualsBruteForce) {
-  GuideSet guides = HillGuides(40, 30);
-  for (const Layer layer : {Layer::kLuminance, Layer::kLpeLDE}) {
-    guides.Add(layer);
-    for (int c = 0; c < ChannelCount(layer); ++c) {
-      auto plane = guides.Plane(layer, c);
-      for (std::size_t i = 0; i < plane.size(); ++i)
-        plane[i] = std::floor(8.0f * UnitFloat(Hash(int(layer), c, i))) / 4.0f;
-    }
-  }
-  GuideSet target = guides;
-  for (float& value : target.Plane(Layer::kLuminance)) value = 2.0f - value;
-  const std::vector<std::vector<WeightedLayer>> choices = {
-      {{Layer::kNormal, 1.0f}},
-      {{Layer::kLuminance, 1.0f}},
-      {{Layer::kNormal, 1.0f}, {Layer::kLuminance, 0.3f}},
-      {{Layer::kNormal, 0.5f}, {Layer::kLuminance, 2.0f}, {Layer::kLpeLDE, 1.0f}},
-      {{Layer::kNormal, 0.0f}, {Layer::kLpeLDE, 0.0f}}};  // nothing counts: every pixel is equally near
-  for (const auto& layers : choices) {
-    const auto tree = GuideTree::Build(guides, layers, {}, "g.exr");
-    ASSERT_TRUE(tree.ok()) << tree.error().message;
-    const auto values = [&](const GuideSet& set, std::size_t i) {
-      std::vector<float> all;
-      for (const WeightedLayer& each : layers) {
-        for (int c = 0; c < ChannelCount(each.layer); ++c) all.push_back(set.Plane(each.layer, c)[i] * each.weight);
-      }
-      return all;
-    };
-    for (std::size_t p = 0; p < guides.pixel_count(); p += 7) {
-      const auto query = values(target, p);
-      double least = std::numeric_limits<double>::infinity();
-      Source best;
-      for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-        if (!(guides.Plane(Layer::kCoverage)[i] > 0.0f)) continue;
-        const double d = SquaredDistance(values(guides, i).data(), query.data(), int(query.size()));
-        if (d < least) least = d, best = {int(i) % 40, int(i) / 40};
-      }
-      ASSERT_EQ(tree->Nearest(target, p), best) << layers.size() << " layers, pixel " << p;
-    }
-  }
-}
-
-TEST(GuideTree, RefusesWhatHasNoDistance) {
-  GuideSet guides = HillGuides(8, 8);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const auto refusal = [&](const GuideSet& set, WeightedLayer layer) {
-    const auto tree = GuideTree::Build(set, {&layer, 1}, {}, "g.exr");
-    return tree.ok() ? std::string() : tree.error().message;
-  };
-  EXPECT_EQ(refusal(guides, {Layer::kNormal, 1.0f}), "");
-  EXPECT_NE(refusal(guides, {Layer::kLuminance, 1.0f}).find("g.exr has no layer luminance"), std::string::npos);
-  EXPECT_NE(refusal(guides, {Layer::kObject, 1.0f}).find("ids"), std::string::npos);
-  for (const float weight : {-1.0f, nan, std::numeric_limits<float>::infinity()}) {
-    EXPECT_NE(refusal(guides, {Layer::kNormal, weight}).find("weight"), std::string::npos) << weight;
-  }
-  GuideSet bad = guides;
-  bad.Plane(Layer::kNormal, 1)[2] = nan;
-  EXPECT_NE(refusal(bad, {Layer::kNormal, 1.0f}).find("NaN or infinite at (2, 0)"), std::string::npos);
-  bad.Plane(Layer::kCoverage)[2] = 0.0f;
-  EXPECT_EQ(refusal(bad, {Layer::kNormal, 1.0f}), "") << "not covered, not looked at";
-  EXPECT_NE(refusal(MakeGuides(4, 4, [](int, int) { return glm::vec3(0); }), {Layer::kNormal, 1.0f}).find("covered"),
-            std::string::npos);
-  EXPECT_FALSE(GuideTree::Build(guides, {}, {}, "g.exr").ok());
-  // A target's NaN counts as 0.
-  const WeightedLayer normal{Layer::kNormal, 1.0f};
-  const auto tree = GuideTree::Build(guides, {&normal, 1}, {}, "g.exr");
-  ASSERT_TRUE(tree.ok());
-  GuideSet target = guides, zero = guides;
-  target.Plane(Layer::kNormal, 0)[5] = nan, zero.Plane(Layer::kNormal, 0)[5] = 0.0f;
-  EXPECT_EQ(tree->Nearest(target, 5), tree->Nearest(zero, 5));
 }
 
 // ---- masks ---------------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <vector>
 
@@ -78,6 +79,42 @@ AmbiguityReport MeasureAmbiguity(const PreparedExemplar& exemplar) {
   }
   report.mean_repeats = static_cast<double>(report.usable_pixels) / std::max(1, report.cells_shown);
   report.flat_percent = 100.0 * static_cast<double>(flat) / static_cast<double>(report.usable_pixels);
+  return report;
+}
+
+SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar& exemplar, int k, const GuideTest& test) {
+  SpaceAmbiguity report;
+  constexpr int kSide = 32;  // of the grid of directions
+  std::size_t covered = 0, asked = 0;
+  for (int step = 0; step < kLightSteps; ++step) {
+    std::vector<float> rest(std::size_t(space.rest()) + 1);
+    space.Blend(k, static_cast<float>(step) / (kLightSteps - 1), rest.data());
+    for (int j = 0; j < kSide; ++j) {
+      for (int i = 0; i < kSide; ++i) {
+        const double px = (2.0 * i + 1.0) / kSide - 1.0, py = 1.0 - (2.0 * j + 1.0) / kSide;
+        if (px * px + py * py > 1.0) continue;
+        const glm::vec3 direction = DirectionAt(px, py);
+        const Source source = space.Nearest(k, direction, rest.data());
+        covered += space.Alike(test, k, direction, rest.data(), source, 0.0f);
+        report.mean_error += space.Distance(test, k, direction, rest.data(), source);
+        ++asked;
+      }
+    }
+  }
+  report.covered_percent = 100.0 * static_cast<double>(covered) / static_cast<double>(asked);
+  report.mean_error /= static_cast<double>(asked);
+  std::map<std::vector<int>, std::size_t> cells;
+  std::size_t pixels = 0;
+  for (const Source& source : exemplar.UsablePixels()) {
+    std::vector<int> cell;
+    space.ForEachCoordinate(k, source, [&](float value) {
+      cell.push_back(static_cast<int>(std::floor(value / kGuideCell)));
+    });
+    report.most_repeats = std::max(report.most_repeats, ++cells[std::move(cell)]);
+    ++pixels;
+  }
+  report.cells_shown = cells.size();
+  report.mean_repeats = static_cast<double>(pixels) / static_cast<double>(std::max<std::size_t>(1, cells.size()));
   return report;
 }
 

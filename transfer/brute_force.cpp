@@ -7,6 +7,9 @@ namespace {
 // Offers the anchor's source to every free pixel near enough to land inside the exemplar.
 void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Offer& offer, SourceField& field) {
   const Source anchor = offer.source;
+  PixelGuide of_anchor;
+  input.ReadGuide(input.guides.Index(anchor_x, anchor_y), of_anchor);
+  const bool off = input.IsOff(of_anchor, anchor, offer.exemplar);
   const int size = input.exemplar.size();
   const int x0 = std::max(input.region.x0, anchor_x - anchor.x);
   const int x1 = std::min(input.region.x1, anchor_x - anchor.x + size);
@@ -17,9 +20,10 @@ void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Offer&
       if (field.level[i] != SourceField::kNoSource || !input.Wants(i)) continue;
       const Source candidate{anchor.x + (x - anchor_x), anchor.y + (y - anchor_y)};
       if (!input.exemplar.Usable(candidate.x, candidate.y)) continue;
-      const glm::vec3 guide = input.guides.Vec3(Layer::kNormal, i);
-      const float extra = input.illumination.Error(input.LuminanceAt(i), offer.exemplar);
-      if (!input.test.Alike(guide, input.exemplar.Normal(candidate.x, candidate.y), extra)) continue;
+      PixelGuide guide;
+      input.ReadGuide(i, guide);
+      if (off) input.MoveAs(of_anchor, anchor, offer.exemplar, guide);
+      if (!input.Alike(guide, glm::vec3(0.0f), candidate, offer.exemplar)) continue;
       field.Set(i, candidate.x, candidate.y, offer.exemplar, 0);
     }
   }

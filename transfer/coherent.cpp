@@ -90,6 +90,11 @@ class SeedTable {
   std::unique_ptr<Slot[]> slots_;
 };
 
+// How far a normal may be off where all else is right.
+float NormalThreshold(const MatchInput& input) {
+  return input.test.EuclideanThreshold() / (input.space ? input.space->normal_weight() : 1.0f);
+}
+
 class CoherentMatch {
  public:
   CoherentMatch(const MatchInput& input, SourceField& field)
@@ -97,7 +102,7 @@ class CoherentMatch {
         field_(field),
         object_(input.guides.Plane(Layer::kObject)),
         octaves_(SurfaceOctaves(input.guides, input.active)),
-        cell_(kSteadiness * std::min(kLargestCell, input.test.EuclideanThreshold())),
+        cell_(kSteadiness * std::min(kLargestCell, NormalThreshold(input))),
         settled_(input.guides.pixel_count(), 0) {
     // Pixels that are not wanted belong to pieces as all do, but take nothing.
     for (std::size_t i = 0; i < input.wanted.size(); ++i) settled_[i] = !input.wanted[i];
@@ -209,8 +214,9 @@ class CoherentMatch {
       if (key_[i] == 0 || settled_[i] || !input_.Wants(i)) continue;
       if (key_[i] != last) last = key_[i], seed = MakeSeed(exponent, last, seeds.Pixel(last));
       if (!seed) continue;
-      const auto taken = TakeOffer(input_, seed->made, seed->q, {x, y}, input_.guides.Vec3(Layer::kNormal, i),
-                                   input_.LuminanceAt(i));
+      PixelGuide guide;
+      input_.ReadGuide(i, guide);
+      const auto taken = TakeOffer(input_, seed->made, seed->q, {x, y}, guide);
       if (!taken) continue;
       field_.Set(i, taken->source.x, taken->source.y, taken->exemplar, seed->level);
       if (!field_.moved.empty()) field_.moved[i] = taken->moved;
@@ -229,9 +235,11 @@ class CoherentMatch {
     const int level = exponent - static_cast<int>(std::floor(octaves_[pixel] + PieceChance(key, 0)));
     if (level < input_.least_level || level >= input_.levels) return std::nullopt;
     const int width = input_.guides.width();
-    Seed seed{{OwnOffer(input_, pixel)}, {static_cast<int>(pixel % width), static_cast<int>(pixel / width)}, level};
-    Source& source = seed.made.offer.source;
-    source = input_.exemplar.NearestNeighbour(Steady(input_.guides.Vec3(Layer::kNormal, pixel), cell_, key));
+    PixelGuide guide;
+    input_.ReadGuide(pixel, guide);
+    PixelGuide steady = guide;
+    steady.normal = Steady(guide.normal, cell_, key);
+    Seed seed{SeedOf(input_, guide, OwnOffer(input_, steady)), {static_cast<int>(pixel % width), static_cast<int>(pixel / width)}, level};
     Vary(input_, level, seed.q, Hash(key, 0x7a), seed.made);
     return seed;
   }

@@ -36,6 +36,27 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < left;
   }
 
+  // The same with more dimensions than the three: `rest` is their Rest, 0 or more.
+  bool Alike(glm::vec3 a, glm::vec3 b, float rest, float extra) const {
+    const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    const float left = threshold_ - extra;
+    if (!(left > 0.0f)) return false;
+    if (metric_ == ThresholdMetric::kL2) {
+      return dx * dx + dy * dy + dz * dz + rest < (extra > 0.0f ? left * left : bound_);
+    }
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + rest < (extra > 0.0f ? left : bound_);
+  }
+
+  // What further dimensions add: squares for kL2, absolute differences for kL1.
+  float Rest(const float* a, const float* b, int dimensions) const {
+    float sum = 0.0f;
+    for (int d = 0; d < dimensions; ++d) {
+      const float off = a[d] - b[d];
+      sum += metric_ == ThresholdMetric::kL2 ? off * off : std::fabs(off);
+    }
+    return sum;
+  }
+
   // About what the threshold is between unit normals, by the Euclidean metric.
   float EuclideanThreshold() const { return metric_ == ThresholdMetric::kL2 ? threshold_ : threshold_ * (2.0f / 3.0f); }
 
@@ -44,6 +65,11 @@ class GuideTest {
     const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
     if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz);
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz);
+  }
+  float Distance(glm::vec3 a, glm::vec3 b, float rest) const {
+    const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz + rest);
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + rest;
   }
 
  private:

@@ -1,5 +1,6 @@
 #include "transfer/guide_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -132,10 +133,13 @@ PointTree::PointTree(int dimensions, std::vector<float> coordinates) : dimension
   std::vector<std::uint32_t> first = RemoveRepeats(coordinates, size);
   distinct_ = first.size();
   Points points{std::move(coordinates), size};
-  if (dimensions == 3)
-    search_ = std::make_unique<SearchOf<3>>(std::move(points), std::move(first));
-  else
-    search_ = std::make_unique<SearchOf<-1>>(std::move(points), std::move(first));
+  // Normals; with luminance or another single value; with one colour.
+  switch (dimensions) {
+    case 3: search_ = std::make_unique<SearchOf<3>>(std::move(points), std::move(first)); break;
+    case 4: search_ = std::make_unique<SearchOf<4>>(std::move(points), std::move(first)); break;
+    case 6: search_ = std::make_unique<SearchOf<6>>(std::move(points), std::move(first)); break;
+    default: search_ = std::make_unique<SearchOf<-1>>(std::move(points), std::move(first)); break;
+  }
 }
 
 PointTree::~PointTree() = default;
@@ -144,71 +148,14 @@ PointTree& PointTree::operator=(PointTree&&) noexcept = default;
 
 std::uint32_t PointTree::Nearest(std::span<const float> query) const {
   SCUMBLE_DCHECK(query.size() == std::size_t(dimensions_));
-  if (dimensions_ == 3) {
-    const double three[3] = {query[0], query[1], query[2]};
-    return search_->Nearest(three);
+  constexpr std::size_t kFew = 32;
+  if (query.size() <= kFew) {
+    double few[kFew];
+    std::copy(query.begin(), query.end(), few);
+    return search_->Nearest(few);
   }
   const std::vector<double> any(query.begin(), query.end());
   return search_->Nearest(any.data());
-}
-
-Expected<GuideTree> GuideTree::Build(const GuideSet& guides, std::span<const WeightedLayer> layers,
-                                     std::span<const std::uint8_t> usable, const std::string& name) {
-  int dimensions = 0;
-  for (const WeightedLayer& each : layers) {
-    const std::string layer = Info(each.layer).name;
-    if (!guides.Has(each.layer)) {
-      return InputError(name + " has no layer " + layer + "; it holds " + guides.layers().ToString());
-    }
-    if (each.layer == Layer::kObject || each.layer == Layer::kMaterial) {
-      return UsageError("layer " + layer + " holds ids, which are equal or not: they have no distance to match by");
-    }
-    if (!(each.weight >= 0.0f && std::isfinite(each.weight))) {
-      return UsageError("the weight of layer " + layer + " must be 0 or more, and finite");
-    }
-    dimensions += ChannelCount(each.layer);
-  }
-  if (dimensions == 0) return UsageError("name at least one layer to match by");
-  SCUMBLE_CHECK(usable.empty() || usable.size() == guides.pixel_count());
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  std::vector<float> coordinates;
-  std::vector<Source> sources;
-  for (int y = 0; y < guides.height(); ++y) {
-    for (int x = 0; x < guides.width(); ++x) {
-      const std::size_t i = guides.Index(x, y);
-      if (usable.empty() ? !(coverage[i] > 0.0f) : !usable[i]) continue;
-      for (const WeightedLayer& each : layers) {
-        for (int c = 0; c < ChannelCount(each.layer); ++c) {
-          const float value = guides.Plane(each.layer, c)[i] * each.weight;
-          if (!std::isfinite(value)) {
-            return InputError(name + ": layer " + Info(each.layer).name + " is NaN or infinite at (" +
-                              std::to_string(x) + ", " + std::to_string(y) +
-                              "): write finite values, or set A to 0 there");
-          }
-          coordinates.push_back(value);
-        }
-      }
-      sources.push_back({x, y});
-    }
-  }
-  if (sources.empty()) return InputError(name + " has no usable pixel: nothing in it is covered");
-  return GuideTree({layers.begin(), layers.end()}, std::move(sources), PointTree(dimensions, std::move(coordinates)));
-}
-
-Source GuideTree::Nearest(const GuideSet& target, std::size_t pixel) const {
-  constexpr int kFew = 32;
-  float few[kFew];
-  std::vector<float> many;
-  float* query = few;
-  if (points_.dimensions() > kFew) many.resize(std::size_t(points_.dimensions())), query = many.data();
-  std::size_t n = 0;
-  for (const WeightedLayer& each : layers_) {
-    for (int c = 0; c < ChannelCount(each.layer); ++c) {
-      const float value = target.Plane(each.layer, c)[pixel] * each.weight;
-      query[n++] = std::isfinite(value) ? value : 0.0f;
-    }
-  }
-  return sources_[points_.Nearest({query, n})];
 }
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// Exact nearest neighbours among guides of any number of dimensions: kd-trees (Friedman, Bentley, Finkel, "An Algorithm
+// Exact nearest neighbours among guides of any number of dimensions (transfer/guide_space.h makes them): kd-trees (Friedman, Bentley, Finkel, "An Algorithm
 // for Finding Best Matches in Logarithmic Expected Time", ACM TOMS 1977; nanoflann's).
 #pragma once
 
@@ -6,12 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
-
-#include "image/guides.h"
-#include "image/status.h"
-#include "transfer/source.h"
 
 namespace scumble {
 
@@ -42,37 +37,6 @@ class PointTree {
   int dimensions_;
   std::size_t distinct_ = 0;
   std::unique_ptr<Search> search_;
-};
-
-// A layer and what it counts: its values are multiplied by the weight before distances are taken.
-struct WeightedLayer {
-  Layer layer;
-  float weight = 1.0f;  // 0 or more, finite
-};
-
-// Which pixel of an exemplar's guides is most like a pixel of the scene's, in several layers at once: normals,
-// luminance, light paths. Immutable; any number of threads may ask at once.
-class GuideTree {
- public:
-  // Over the usable pixels of `guides` (`usable` has one value a pixel, 1 for yes; empty: all covered ones), in row
-  // order. Refuses layers that are missing, ids (they have no distances), values that are NaN or infinite, weights
-  // below 0, and sets without a usable pixel. `name` stands for the guides in messages.
-  static Expected<GuideTree> Build(const GuideSet& guides, std::span<const WeightedLayer> layers,
-                                   std::span<const std::uint8_t> usable, const std::string& name);
-
-  // The usable pixel nearest to pixel `pixel` of `target`, exactly; ties to the lowest (y, x). `target` must hold the
-  // layers. A value that is NaN or infinite counts as 0.
-  Source Nearest(const GuideSet& target, std::size_t pixel) const;
-
-  const PointTree& points() const { return points_; }
-
- private:
-  GuideTree(std::vector<WeightedLayer> layers, std::vector<Source> sources, PointTree points)
-      : layers_(std::move(layers)), sources_(std::move(sources)), points_(std::move(points)) {}
-
-  std::vector<WeightedLayer> layers_;
-  std::vector<Source> sources_;  // of the points, in row order
-  PointTree points_;
 };
 
 }  // namespace scumble

@@ -57,6 +57,16 @@ Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 n
   return sum;
 }
 
+// The tone at a pixel's own nearest neighbour in exemplar k.
+Color ToneAt(const HybridInput& input, std::size_t pixel, int k) {
+  const glm::vec3 normal = input.guides.Vec3(Layer::kNormal, pixel);
+  const Picture& tone = input.tones[std::size_t(k)];
+  if (!input.space) return ToneFor(input.votes.exemplar, tone, normal);
+  float rest[GuideSpace::kMaxRest];
+  input.space->Read(input.guides, pixel, input.brightness, rest);
+  return TexelAt(tone, input.space->Nearest(k, normal, rest));
+}
+
 void Store(const Color& color, std::uint16_t* out) {
   const std::int64_t alpha = std::clamp<std::int64_t>(color[3], 0, 65535);
   for (int c = 0; c < 3; ++c) {
@@ -84,7 +94,7 @@ bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
         ++count;
       });
       const int own = input.illumination.Choose(input.luminance.empty() ? 0.0f : input.luminance[p]);
-      Color color = ToneFor(exemplar, input.tones[std::size_t(own)], input.guides.Vec3(Layer::kNormal, p));
+      Color color = ToneAt(input, p, own);
       for (int c = 0; c < 4; ++c) color[c] += FloorDivide(texture[c] + count / 2, count);
       Store(color, out.At(x, y));
     }

@@ -9,6 +9,7 @@
 #include "image/guides.h"
 #include "image/picture.h"
 #include "image/style.h"
+#include "transfer/guide_space.h"
 #include "transfer/illumination.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/vote.h"
@@ -29,11 +30,13 @@ struct HybridInput {
   const Illumination& illumination;
   std::span<const float> luminance;  // exposed; empty where the illumination is not active
   std::span<const Picture> tones;    // by exemplar
+  const GuideSpace* space = nullptr;  // where neighbours are looked for; null: normals alone
+  float brightness = 1.0f;            // of the scene's radiance in that space
 };
 
 // Every active pixel of the region becomes the tone at its own nearest neighbour, in the exemplar that suits its own
 // light, plus the mean of the textures that the chunks around it vote for: the same votes as Vote's. On a sphere the
-// tone is read between texels (bilinearly, in 1/256 of a texel), elsewhere at the nearest neighbour itself. Sums are
+// tone is read between texels (bilinearly, in 1/256 of a texel), elsewhere, and where more than normals count, at the nearest neighbour itself. Sums are
 // integers with premultiplied colours; nothing is clamped before the end. Where the tone is the same everywhere and the
 // paint opaque, this is Vote to the bit. Writes straight alpha into `out`; other pixels are left alone. False: asked to
 // stop.

@@ -54,20 +54,33 @@ double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> m
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-double MeasureExposure(const GuideSet& guides, std::span<const float> luminances) {
-  const auto coverage = guides.Plane(Layer::kCoverage), luminance = guides.Plane(Layer::kLuminance);
+double BrightPercentile(const GuideSet& guides, Layer layer) {
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  const bool is_color = ChannelCount(layer) == 3;
   std::vector<float> lit;
   for (std::size_t i = 0; i < coverage.size(); ++i) {
-    if (coverage[i] > 0.0f) lit.push_back(luminance[i] > 0.0f ? luminance[i] : 0.0f);
+    if (!(coverage[i] > 0.0f)) continue;
+    float light = guides.Plane(layer)[i];
+    if (is_color) {
+      const glm::vec3 rgb = guides.Vec3(layer, i);
+      light = static_cast<float>(Luminance(rgb.r, rgb.g, rgb.b));
+    }
+    lit.push_back(light > 0.0f ? light : 0.0f);
   }
-  const float brightest = luminances.empty() ? 0.0f : *std::max_element(luminances.begin(), luminances.end());
-  if (lit.empty() || !(brightest > 0.0f)) return 0.0;
+  if (lit.empty()) return 0.0;
   // Nearest rank: the smallest value that 90% of the pixels do not exceed.
   const std::size_t rank = (lit.size() * 9 + 9) / 10 - 1;
   const auto place = lit.begin() + static_cast<std::ptrdiff_t>(rank);
   std::nth_element(lit.begin(), place, lit.end());
-  if (!(*place > 0.0f)) return 0.0;
-  return std::round(100.0 * Log2(static_cast<double>(brightest) / *place)) / 100.0;
+  return *place;
+}
+
+double MeasureExposure(const GuideSet& guides, std::span<const float> luminances, Layer layer) {
+  const float brightest = luminances.empty() ? 0.0f : *std::max_element(luminances.begin(), luminances.end());
+  if (!(brightest > 0.0f)) return 0.0;
+  const double bright = BrightPercentile(guides, layer);
+  if (!(bright > 0.0 && std::isfinite(bright))) return 0.0;
+  return std::round(100.0 * Log2(static_cast<double>(brightest) / bright)) / 100.0;
 }
 
 }  // namespace scumble

@@ -39,8 +39,12 @@ double MeasuredLuminance(const Picture& picture, double rim);
 // The same over the pixels of a mask, which has one value for each, 1 for yes.
 double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> mask);
 
+// The 90th percentile of a layer of light over the covered pixels, by the luminance of its colours; what is not above 0
+// counts as 0. 0 where nothing is covered.
+double BrightPercentile(const GuideSet& guides, Layer layer);
+
 // The exposure, in stops to the hundredth, that maps the 90th percentile of the luminance of covered pixels to the
-// brightest exemplar's. 0 where nothing is lit. The guides must hold luminance.
-double MeasureExposure(const GuideSet& guides, std::span<const float> luminances);
+// brightest exemplar's. 0 where nothing is lit. The guides must hold the layer that stands for luminance.
+double MeasureExposure(const GuideSet& guides, std::span<const float> luminances, Layer layer = Layer::kLuminance);
 
 }  // namespace scumble

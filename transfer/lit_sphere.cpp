@@ -4,9 +4,15 @@
 
 namespace scumble::internal {
 
+Offer OwnOffer(const MatchInput& input, const PixelGuide& guide) {
+  const int chosen = input.illumination.Choose(guide.light);
+  return {input.NearestTo(guide, chosen), chosen};
+}
+
 Offer OwnOffer(const MatchInput& input, std::size_t pixel) {
-  const Source own = input.exemplar.NearestNeighbour(input.guides.Vec3(Layer::kNormal, pixel));
-  return {own, input.illumination.Choose(input.LuminanceAt(pixel))};
+  PixelGuide guide;
+  input.ReadGuide(pixel, guide);
+  return OwnOffer(input, guide);
 }
 
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress) {

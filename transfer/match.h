@@ -7,6 +7,7 @@
 
 #include "image/guides.h"
 #include "transfer/guide_distance.h"
+#include "transfer/guide_space.h"
 #include "transfer/illumination.h"
 #include "transfer/parallel.h"
 #include "transfer/prepared_exemplar.h"
@@ -14,6 +15,13 @@
 #include "transfer/source_field.h"
 
 namespace scumble::internal {
+
+// What is compared of one pixel of the scene.
+struct PixelGuide {
+  glm::vec3 normal;
+  float light;                      // exposed luminance, for the choice of exemplars
+  float rest[GuideSpace::kMaxRest];  // only where a GuideSpace is matched in
+};
 
 // What a match looks at. `field` has the picture's size already.
 struct MatchInput {
@@ -30,9 +38,48 @@ struct MatchInput {
   Region region;
   std::span<const std::uint8_t> wanted = {};  // 1: active pixels that are to be matched; empty: all of them are
   int least_level = 1;  // finer grids of seeds are left out
+  const GuideSpace* space = nullptr;  // null: normals alone are matched by, each counting 1
+  float brightness = 1.0f;            // of the scene's radiance in that space
 
   bool Wants(std::size_t i) const { return wanted.empty() ? active[i] != 0 : wanted[i] != 0; }
   float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }
+
+  void ReadGuide(std::size_t i, PixelGuide& guide) const {
+    guide.normal = guides.Vec3(Layer::kNormal, i);
+    guide.light = LuminanceAt(i);
+    if (space) space->Read(guides, i, brightness, guide.rest);
+  }
+
+  // The source in exemplar k that is nearest to a guide.
+  Source NearestTo(const PixelGuide& guide, int k) const {
+    return space ? space->Nearest(k, guide.normal, guide.rest) : exemplar.NearestNeighbour(guide.normal);
+  }
+
+  // Whether a pixel may show `at` of exemplar k, its light included. Its normal is compared as if it were `moved`.
+  bool Alike(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
+    const float extra = illumination.Error(guide.light, k);
+    if (space) return space->Alike(test, k, guide.normal + moved, guide.rest, at, extra);
+    return test.Alike(guide.normal + moved, exemplar.Normal(at.x, at.y), extra);
+  }
+  // Whether nothing in the exemplar is like a seed within the threshold, `best` being the nearest: a shadow on what faces
+  // the lamp, where the exemplar shows all that faces it lit. Its pieces would end where they begin; instead the pixels
+  // around it are compared as if their guides were off by as much as the seed's (MoveAs). Normals alone are always
+  // compared as they are.
+  bool IsOff(const PixelGuide& seed, Source best, int k) const {
+    return space && space->rest() > 0 && !space->Alike(test, k, seed.normal, seed.rest, best, 0.0f);
+  }
+  void MoveAs(const PixelGuide& seed, Source best, int k, PixelGuide& guide) const {
+    guide.normal += exemplar.Normal(best.x, best.y) - seed.normal;
+    const float* there = space->RestAt(k, best);
+    for (int d = 0; d < space->rest(); ++d) guide.rest[d] += there[d] - seed.rest[d];
+  }
+
+  // What is compared with the threshold there.
+  float Distance(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
+    const float extra = illumination.Error(guide.light, k);
+    if (space) return space->Distance(test, k, guide.normal + moved, guide.rest, at) + extra;
+    return test.Distance(guide.normal + moved, exemplar.Normal(at.x, at.y)) + extra;
+  }
 };
 
 // A piece of an exemplar: its nearest neighbour to a pixel's guide, and the exemplar that suits the pixel's light.
@@ -42,6 +89,7 @@ struct Offer {
   glm::vec3 moved{0.0f};  // by what the seed moved the source's guide: a pixel's own counts as if moved by the same
 };
 Offer OwnOffer(const MatchInput& input, std::size_t pixel);
+Offer OwnOffer(const MatchInput& input, const PixelGuide& guide);  // the same for what was read of the pixel
 
 // Every pixel takes its own nearest neighbour.
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress);

@@ -34,8 +34,23 @@ int ScaledRadius(int radius, int reference_height, int output_height) {
   return static_cast<int>(std::clamp(std::floor(scaled + 0.5), radius > 0 ? 1.0 : 0.0, 1024.0));
 }
 
+Status CheckWeights(const GuideWeights& weights) {
+  for (const LayerInfo& info : AllLayers()) {
+    const std::string key = "transfer.guide_weights." + std::string(info.name);
+    if (!(weights[info.layer] >= 0.0f && std::isfinite(weights[info.layer]))) {
+      return UsageError(key + " must be 0 or more, and finite");
+    }
+    if (weights[info.layer] > 0.0f && !GuideWeights::CanWeigh(info.layer)) {
+      return UsageError(key + ": only normals, albedo, luminance, shadow and light paths can have a weight");
+    }
+  }
+  if (weights.Layers().empty()) return UsageError("transfer.guide_weights are all 0: nothing is left to match by");
+  return Ok();
+}
+
 Status CheckSettings(const TransferSettings& settings) {
   if (!(settings.threshold >= 0.0f)) return UsageError("transfer.threshold must be 0 or more, infinity included");
+  SCUMBLE_RETURN_IF_ERROR(CheckWeights(settings.guide_weights));
   if (settings.levels < 1 || settings.levels > 16) return UsageError("transfer.levels must be 1 to 16");
   if (!(settings.jitter >= 0.0f && settings.jitter <= 1.0f)) return UsageError("transfer.jitter must be 0 to 1");
   if (settings.blend_radius < 0 || settings.blend_radius > 64) {
@@ -177,6 +192,10 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   prepared.levels = ScaledLevels(settings.levels, settings.reference_height, output_height);
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
+  if (!settings.guide_weights.ArePlain()) {
+    SCUMBLE_ASSIGN(GuideSpace space, GuideSpace::Build(settings.guide_weights, style.exemplars, prepared.exemplar));
+    prepared.space = std::make_shared<GuideSpace>(std::move(space));
+  }
   prepared.illumination = Illumination(luminances, settings.luminance_weight, settings.luminance_error);
   if (settings.colorize > 0.0 && settings.colorize_mode == ColorizeMode::kOklab) {
     prepared.reference_lightness = internal::ReferenceLightness(*prepared.exemplar);

@@ -13,7 +13,12 @@ struct SeedOffer {
   Offer offer;
   // What `variety` moved the source's guide by: a pixel is compared as if its own guide were moved by the same.
   glm::vec3 moved{0.0f};
+  bool off = false;  // MatchInput::IsOff, by `best`
+  Source best{};     // the nearest neighbour, whatever `variety` took instead
 };
+
+// The seed of a pixel whose guide was read, before `variety`.
+SeedOffer SeedOf(const MatchInput& input, const PixelGuide& guide, const Offer& offer);
 
 // `variety` may choose another source by the hash, where the surface around q is flat; whether it is.
 bool Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made);
@@ -21,6 +26,6 @@ bool Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t has
 // What p may take of the seed at q, if anything: u + (p - q), where that is usable and its guide like p's, light
 // included.
 std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, PixelPosition q, PixelPosition p,
-                               glm::vec3 guide, float light);
+                               const PixelGuide& guide);
 
 }  // namespace scumble::internal

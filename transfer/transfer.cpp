@@ -190,7 +190,7 @@ class Run {
 
   Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from, double to) {
     const TransferSettings& settings = style.settings;
-    const internal::MatchInput input{
+    internal::MatchInput input{
         guides_,
         scratch_.active,
         *style.exemplar,
@@ -202,6 +202,8 @@ class Run {
         settings.variety,
         FlatReach(style),
         matched};
+    input.space = style.space.get();
+    input.brightness = static_cast<float>(Exp2(options_.exposure));
     Stopwatch watch;
     const auto part = [&](double share) { return from + (to - from) * share; };
     const int step = std::max(settings.match_step, options_.match_step);
@@ -224,7 +226,8 @@ class Run {
     if (style.tones.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
-      const internal::HybridInput hybrid{votes, guides_, style.illumination, input.luminance, style.tones};
+      const internal::HybridInput hybrid{votes, guides_, style.illumination, input.luminance, style.tones,
+                                         input.space, input.brightness};
       if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
     }
     scratch_.times.vote_ms += watch.Lap();

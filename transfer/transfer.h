@@ -15,6 +15,7 @@
 #include "image/progress.h"
 #include "image/status.h"
 #include "image/style.h"
+#include "transfer/guide_space.h"
 #include "transfer/illumination.h"
 #include "transfer/look_up_table.h"
 #include "transfer/prepared_exemplar.h"
@@ -33,6 +34,7 @@ struct PreparedStyle {
   std::shared_ptr<const PreparedExemplar> exemplar;
   Illumination illumination;
   float reference_lightness = 0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
+  std::shared_ptr<const GuideSpace> space;  // what is matched in; null: normals alone, each counting 1
   std::vector<Picture> tones;         // by exemplar, see MakeTones; only where transfer.hybrid is above 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
@@ -51,13 +53,18 @@ struct PrepareOptions {
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
 // Fails where an exemplar is empty; where a sphere's picture is not square; where guides do not fit their picture, or
-// those of one style's exemplars are not of one scene; or where a setting is outside the range that image/style.h
+// those of one style's exemplars are not of one scene; where one lacks a layer that has a weight; or where a setting is outside the range that image/style.h
 // states.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
 // The luminance of the light that an exemplar is painted for: what the style says, else the mean of the luminance layer
 // of its guides, else that of its paint; over the pixels that are usable with a rim of so many pixels.
 double LuminanceOf(const Exemplar& exemplar, double rim);
+
+// The exposure that suits all of these styles, as MeasureExposure of illumination.h has it: for those that weigh light, the
+// 90th percentile of their exemplars' guides counts; for other styles of several exemplars, their luminances. Nothing
+// where no style looks at light. The guides must hold what the styles require.
+std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides);
 
 struct TransferOptions {
   std::uint64_t seed = 0;

@@ -15,6 +15,7 @@ struct Matched {
   int exemplar = 0;
   int level = 0;
   glm::vec3 moved{0.0f};
+  bool off = false;  // MatchInput::IsOff
 
   bool SameChunk(const Matched& other) const {
     return source.x - pixel.x == other.source.x - other.pixel.x &&
@@ -31,10 +32,10 @@ int BlockBefore(int position, int step) { return FloorDivide(2 * position + 1 - 
 // The field at the pixels of a grid: it is overwritten while it is upsampled.
 class MatchedGrid {
  public:
-  MatchedGrid(const CoarseGrid& grid, const SourceField& field, const Region& region)
-      : first_column_(BlockBefore(region.x0, grid.step())), first_row_(BlockBefore(region.y0, grid.step())) {
-    columns_ = BlockBefore(region.x1 - 1, grid.step()) + 2 - first_column_;
-    const int rows = BlockBefore(region.y1 - 1, grid.step()) + 2 - first_row_;
+  MatchedGrid(const MatchInput& input, const CoarseGrid& grid, const SourceField& field)
+      : first_column_(BlockBefore(input.region.x0, grid.step())), first_row_(BlockBefore(input.region.y0, grid.step())) {
+    columns_ = BlockBefore(input.region.x1 - 1, grid.step()) + 2 - first_column_;
+    const int rows = BlockBefore(input.region.y1 - 1, grid.step()) + 2 - first_row_;
     matched_.resize(std::size_t(columns_) * rows);
     for (std::size_t b = 0; b < matched_.size(); ++b) {
       const PixelPosition* pixel = grid.Find(first_column_ + int(b % columns_), first_row_ + int(b / columns_));
@@ -42,6 +43,10 @@ class MatchedGrid {
       const std::size_t i = field.Index(pixel->x, pixel->y);
       matched_[b] = Matched{*pixel, {field.x[i], field.y[i]}, field.exemplar[i], field.level[i]};
       if (!field.moved.empty()) matched_[b]->moved = field.moved[i];
+      PixelGuide guide;
+      input.ReadGuide(i, guide);
+      guide.normal += matched_[b]->moved;
+      matched_[b]->off = input.IsOff(guide, matched_[b]->source, matched_[b]->exemplar);
     }
     in_one_piece_.resize(matched_.size());
     for (std::size_t b = 0; b + columns_ + 1 < matched_.size(); ++b) {
@@ -77,30 +82,33 @@ std::array<PixelPosition, 4> BlocksAround(int x, int y, int column, int row, int
 }
 
 // What p takes from a block, if its guide is like p's there.
-std::optional<Offer> Accept(const MatchInput& input, const Matched& matched, int x, int y, glm::vec3 guide,
-                            float light) {
+std::optional<Offer> Accept(const MatchInput& input, const Matched& matched, int x, int y, const PixelGuide& guide) {
   const Source candidate{matched.source.x + (x - matched.pixel.x), matched.source.y + (y - matched.pixel.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
-  const float extra = input.illumination.Error(light, matched.exemplar);
-  if (!input.test.Alike(guide + matched.moved, input.exemplar.Normal(candidate.x, candidate.y), extra))
-    return std::nullopt;
+  if (matched.off) {
+    PixelGuide of_block, moved = guide;
+    input.ReadGuide(input.guides.Index(matched.pixel.x, matched.pixel.y), of_block);
+    of_block.normal += matched.moved;
+    input.MoveAs(of_block, matched.source, matched.exemplar, moved);
+    if (!input.Alike(moved, matched.moved, candidate, matched.exemplar)) return std::nullopt;
+    return Offer{candidate, matched.exemplar, matched.moved};
+  }
+  if (!input.Alike(guide, matched.moved, candidate, matched.exemplar)) return std::nullopt;
   return Offer{candidate, matched.exemplar, matched.moved};
 }
 
 // What p takes from the blocks around it, and the level of that.
 std::optional<Offer> Best(const MatchInput& input, const MatchedGrid& matched,
-                          const std::array<PixelPosition, 4>& blocks, int x, int y, glm::vec3 guide, float light,
+                          const std::array<PixelPosition, 4>& blocks, int x, int y, const PixelGuide& guide,
                           int& level) {
   std::optional<Offer> best;
   float least = 0.0f;
   for (const PixelPosition& block : blocks) {
     const std::optional<Matched>& there = matched.At(block.x, block.y);
     if (!there || (best && there->level < level)) continue;
-    const auto offer = Accept(input, *there, x, y, guide, light);
+    const auto offer = Accept(input, *there, x, y, guide);
     if (!offer) continue;
-    const glm::vec3 normal = input.exemplar.Normal(offer->source.x, offer->source.y);
-    const float error =
-        input.test.Distance(guide + offer->moved, normal) + input.illumination.Error(light, offer->exemplar);
+    const float error = input.Distance(guide, offer->moved, offer->source, offer->exemplar);
     if (best && there->level == level && !(error < least)) continue;
     best = offer, level = there->level, least = error;
   }
@@ -145,7 +153,7 @@ void CoarseGrid::Mark(std::uint8_t value, int width, std::vector<std::uint8_t>& 
 
 bool UpsampleField(const MatchInput& input, const CoarseGrid& grid, SourceField& field, RowProgress& progress) {
   if (input.region.empty()) return !progress.cancelled();
-  const MatchedGrid matched(grid, field, input.region);
+  const MatchedGrid matched(input, grid, field);
   const int step = grid.step();
   return ForEachRow(input.region, progress, [&](int y) {
     const int row = BlockBefore(y, step);
@@ -154,17 +162,17 @@ bool UpsampleField(const MatchInput& input, const CoarseGrid& grid, SourceField&
       if (2 * x + 1 - step >= 2 * step * (column + 1)) ++column;
       const std::size_t i = field.Index(x, y);
       if (!input.active[i]) continue;
-      const glm::vec3 guide = input.guides.Vec3(Layer::kNormal, i);
-      const float light = input.LuminanceAt(i);
+      PixelGuide guide;
+      input.ReadGuide(i, guide);
       std::optional<Offer> best;
       int level = 0;
       if (matched.InOnePiece(column, row)) {
         const Matched& one = *matched.At(column, row);
-        best = Accept(input, one, x, y, guide, light), level = one.level;
+        best = Accept(input, one, x, y, guide), level = one.level;
       } else {
-        best = Best(input, matched, BlocksAround(x, y, column, row, step), x, y, guide, light, level);
+        best = Best(input, matched, BlocksAround(x, y, column, row, step), x, y, guide, level);
       }
-      if (!best) best = OwnOffer(input, i), level = 0;
+      if (!best) best = OwnOffer(input, guide), level = 0;
       field.Set(i, best->source.x, best->source.y, best->exemplar, level);
     }
   });

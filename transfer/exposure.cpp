@@ -1,0 +1,26 @@
+#include "transfer/transfer.h"
+
+namespace scumble {
+
+std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides) {
+  std::vector<float> brightest;
+  std::optional<Layer> layer;
+  // Luminance before all others: it does not depend on what things are made of.
+  const auto measure = [&](Layer one) {
+    if (!layer || one == Layer::kLuminance) layer = one;
+  };
+  for (const PreparedStyle& style : styles) {
+    if (style.space && style.space->has_radiance()) {
+      brightest.push_back(style.space->white());
+      measure(style.space->radiance());
+    } else if (style.illumination.active()) {
+      const auto luminances = style.illumination.luminances();
+      brightest.insert(brightest.end(), luminances.begin(), luminances.end());
+      measure(Layer::kLuminance);
+    }
+  }
+  if (!layer) return std::nullopt;
+  return MeasureExposure(guides, brightest, *layer);
+}
+
+}  // namespace scumble
