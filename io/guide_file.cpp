@@ -225,6 +225,20 @@ LayerSet CompleteLayers(const std::vector<FoundChannel>& channels) {
   return complete;
 }
 
+// "; of normal it holds normal.X, normal.Y only" for layers of which some channels are there.
+std::string PartsOf(const LayerSet& missing, const std::vector<FoundChannel>& channels) {
+  std::string parts;
+  for (const LayerInfo& info : AllLayers()) {
+    std::string names;
+    for (const FoundChannel& found : channels) {
+      if (found.meaning.layer != info.layer || !missing.Has(info.layer)) continue;
+      names += (names.empty() ? "" : ", ") + std::string(info.channels[std::size_t(found.meaning.component)]);
+    }
+    if (!names.empty()) parts += "; of " + std::string(info.name) + " it holds " + names + " only";
+  }
+  return parts;
+}
+
 // A channel and the plane of the picture's size that it fills.
 struct PlaneRead {
   int subimage;
@@ -457,7 +471,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
     const LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
     return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
-                      (there.empty() ? "none" : there.ToString()));
+                      (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels));
   }
   GuideSet guides(contents.spec.full_width, contents.spec.full_height);
   for (const LayerInfo& info : AllLayers()) {

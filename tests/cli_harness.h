@@ -121,6 +121,29 @@ class CliTest : public testing::Test {
   }
 
   std::string Bytes(const std::string& name) const { return ReadAll(At(name).string()); }
+  // What a picture or a guide file shows, without what its header tells of how it was made.
+  std::string Pixels(const std::string& name) const {
+    const Expected<Picture> picture = ReadPicture(At(name));
+    EXPECT_TRUE(picture.ok()) << name << (picture.ok() ? "" : ": " + picture.error().message);
+    if (!picture.ok()) return {};
+    return std::to_string(picture->width) + BytesOf(picture->rgba);
+  }
+  std::string Layers(const std::string& name) const {
+    const Expected<GuideSet> guides = ReadGuides(At(name), {});
+    EXPECT_TRUE(guides.ok()) << name << (guides.ok() ? "" : ": " + guides.error().message);
+    if (!guides.ok()) return {};
+    std::string all = guides->layers().ToString();
+    for (const LayerInfo& info : AllLayers()) {
+      for (std::size_t c = 0; guides->Has(info.layer) && c < info.channels.size(); ++c) {
+        all += BytesOf(guides->Plane(info.layer, static_cast<int>(c)));
+      }
+    }
+    return all;
+  }
+  template <class Values>
+  static std::string BytesOf(const Values& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0])};
+  }
   bool Exists(const std::string& name) const { return std::filesystem::exists(At(name)); }
 
   // A picture that fits no other one by chance: shaded like a lit sphere, with strokes all over it.

@@ -152,7 +152,7 @@ TEST_F(CliLights, InAnyOrder) {
   EXPECT_FALSE(Contains(Paint("down.png").err, "warning"));
   WriteLights({{"half", 0.31}, {"dark", 0.07}, {"light", 0.83}});
   EXPECT_FALSE(Contains(Paint("mixed.png").err, "warning"));
-  EXPECT_TRUE(Bytes("down.png") == Bytes("mixed.png"));
+  EXPECT_TRUE(Pixels("down.png") == Pixels("mixed.png"));
 }
 
 TEST_F(CliLights, EqualOnesAreSaidAndTheFirstIsUsed) {
@@ -164,14 +164,14 @@ TEST_F(CliLights, EqualOnesAreSaidAndTheFirstIsUsed) {
   for (const char* words : {"style/half.png has the luminance 0.8 as style/light.png has", "give each [[exemplar]] its own"}) {
     EXPECT_TRUE(Contains(three.err, words)) << three.err;
   }
-  EXPECT_TRUE(Bytes("two.png") == Bytes("three.png"));
+  EXPECT_TRUE(Pixels("two.png") == Pixels("three.png"));
   EXPECT_TRUE(Contains(RunOk({"styles", "check", "style"}).err, "style/half.png has the luminance 0.8"));
   // All alike: as if there were no light.
   WriteLights({{"half", 0.4}, {"light", 0.4}});
   Paint("alike.png");
   WriteLights({{"half", 0.4}});
   Paint("alone.png");
-  EXPECT_TRUE(Bytes("alike.png") == Bytes("alone.png"));
+  EXPECT_TRUE(Pixels("alike.png") == Pixels("alone.png"));
 }
 
 // Scenes change, and a style sheet is made for many: what is not there is said and does no harm.
@@ -186,9 +186,9 @@ TEST_F(CliInputs, NamesThatTheSceneHasNot) {
   EXPECT_TRUE(Contains(result.err, "Plinth")) << result.err;
   EXPECT_TRUE(Contains(result.err, "warning: --assign Tree*=rendered: ")) << result.err;
   EXPECT_FALSE(Contains(result.err, "warning: --assign Bal*")) << result.err;
-  EXPECT_FALSE(Bytes("out.png") == Bytes("plain.png"));
+  EXPECT_FALSE(Pixels("out.png") == Pixels("plain.png"));
   RunOk(With(stylize, {"--assign", "Balll=other.png", "-o", "none.png"}));
-  EXPECT_TRUE(Bytes("none.png") == Bytes("plain.png")) << "nothing is assigned, nothing changes";
+  EXPECT_TRUE(Pixels("none.png") == Pixels("plain.png")) << "nothing is assigned, nothing changes";
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ TEST_F(CliUsage, MissingArgumentsAreNamed) {
   ExpectError({"guidegen", Scene("suzanne.glb")}, 2, {"-o FILE is required", "--explain"});
   ExpectError({"transfer"}, 2, {"is required"});
   ExpectError({"transfer", "g.exr", "-o", "p.png"}, 2, {"--style is required"});
-  ExpectError({"stylize", "s.glb", "--style", "x"}, 2, {"--output is required"});
+  ExpectError({"stylize", "s.glb", "--style", "x"}, 2, {"-o FILE is required"});
   ExpectError({"compare", "a.png"}, 2, {"b is required"});
   ExpectError({"info"}, 2, {"file is required"});
   ExpectError({"styles", "check"}, 2, {"style is required"});
@@ -154,7 +154,7 @@ TEST_F(CliVerbs, CamerasByName) {
   const std::string camera = info["cameras"][0];
   RunOk({"guidegen", scene, "--size", "32x18", "--camera", camera, "-o", "named.exr"});
   RunOk({"guidegen", scene, "--size", "32x18", "-o", "first.exr"});
-  EXPECT_EQ(Bytes("named.exr"), Bytes("first.exr"));
+  EXPECT_TRUE(Layers("named.exr") == Layers("first.exr"));
   ExpectError({"guidegen", scene, "--camera", "bogus", "-o", "g.exr"}, 2, {scene, "no camera 'bogus'", camera});
   ExpectError({"guidegen", scene, "--camera", camera, "--view", "1,2", "-o", "g.exr"}, 2, {"give one of them"});
 }

@@ -302,7 +302,7 @@ TEST(GuideFile, AMissingLayerIsNamedWithWhatThereIs) {
   GuideReadOptions options;
   options.required.Add(Layer::kLuminance);
   ExpectRefusal(ReadGuides(folder / "ball.exr", options), ErrorKind::kInput,
-                {"ball.exr", "no layer depth, luminance", "normal.X", "object.ID"});
+                {"ball.exr", "no layer depth, luminance", "It has A, normal, object"});
   WriteExr(folder / "half.exr", OIIO::ImageSpec(2, 2, 1, OIIO::TypeDesc::FLOAT), {"A", "normal.X", "normal.Y"},
            [](std::size_t, std::size_t) { return 1.0f; });
   ExpectRefusal(ReadGuides(folder / "half.exr", OnlyNormals()), ErrorKind::kInput, {"no layer normal", "normal.Y"});

@@ -167,7 +167,7 @@ TEST_F(CliMoving, CameraAndKeyLightAreDecidedAtTimeZero) {
   b.json.erase("animations");
   WriteGlb("bare.glb", b);
   RunOk(With(guidegen, {"-o", "still.exr"}));
-  EXPECT_EQ(Bytes("still.exr"), Bytes("g.0005.exr"));
+  EXPECT_TRUE(Layers("still.exr") == Layers("g.0005.exr"));
 
   // A camera of the file goes where the file sends it, by name as well.
   GltfBuilder eye = Wall();

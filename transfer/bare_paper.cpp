@@ -12,6 +12,7 @@ namespace {
 
 // Distances in Oklab: below the first is the paper's own grain, above the second is full paint.
 constexpr float kGrain = 0.06f, kFullPaint = 0.30f;
+constexpr float kUneven = 0.15f;  // paper may be lit this much otherwise from corner to corner
 constexpr double kCornersFrom = 1.15, kMostPaintInCorners = 0.25;
 
 glm::vec3 Linear(const std::uint16_t* texel) {
@@ -21,6 +22,11 @@ glm::vec3 Linear(const std::uint16_t* texel) {
 float SmoothStep(float from, float to, float value) {
   const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);
   return t * t * (3.0f - 2.0f * t);
+}
+
+bool InCorner(const Picture& picture, int x, int y) {
+  const double dx = 2.0 * x + 1 - picture.width, dy = 2.0 * y + 1 - picture.height;
+  return std::sqrt(dx * dx + dy * dy) >= kCornersFrom * picture.width;
 }
 
 glm::vec3 Median(std::vector<glm::vec3> colors) {
@@ -33,35 +39,40 @@ glm::vec3 Median(std::vector<glm::vec3> colors) {
   return median;
 }
 
-// 0 for paper, 1 for paint that hides it.
-float Opacity(glm::vec3 color, glm::vec3 paper) {
-  const glm::vec3 off = OklabFromLinear(color) - OklabFromLinear(paper);
-  return SmoothStep(kGrain, kFullPaint, std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z));
+float Difference(glm::vec3 a, glm::vec3 b) {
+  const glm::vec3 off = OklabFromLinear(a) - OklabFromLinear(b);
+  return std::sqrt(off.x * off.x + off.y * off.y + off.z * off.z);
 }
+
+// 0 for paper, 1 for paint that hides it.
+float Opacity(glm::vec3 color, glm::vec3 paper) { return SmoothStep(kGrain, kFullPaint, Difference(color, paper)); }
 
 }  // namespace
 
 BarePaper FindBarePaper(const Picture& picture) {
-  std::vector<const std::uint16_t*> corners;
-  double alpha = 0.0;
+  double alpha = 0.0, count = 0.0;
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
-      const double dx = 2.0 * x + 1 - picture.width, dy = 2.0 * y + 1 - picture.height;
-      if (std::sqrt(dx * dx + dy * dy) < kCornersFrom * picture.width) continue;
-      corners.push_back(picture.At(x, y));
-      alpha += picture.At(x, y)[3] / 65535.0;
+      if (InCorner(picture, x, y)) alpha += picture.At(x, y)[3] / 65535.0, count += 1.0;
     }
   }
-  if (corners.empty()) return {};
-  const auto count = static_cast<double>(corners.size());
+  if (!(count > 0.0)) return {};
   if (alpha < kMostPaintInCorners * count) return {BarePaper::Kind::kTransparent, glm::vec3(0.0f)};
-  std::vector<glm::vec3> colors;
-  for (const std::uint16_t* texel : corners) {
-    if (texel[3] > 32767) colors.push_back(Linear(texel));
+  std::vector<glm::vec3> colors, by_corner[4];
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const std::uint16_t* texel = picture.At(x, y);
+      if (!InCorner(picture, x, y) || texel[3] <= 32767) continue;
+      colors.push_back(Linear(texel));
+      by_corner[(2 * x < picture.width ? 0 : 1) + (2 * y < picture.height ? 0 : 2)].push_back(colors.back());
+    }
   }
   // A sheet that is half see-through is no paper.
   if (static_cast<double>(colors.size()) < (1.0 - kMostPaintInCorners) * count) return {};
   const glm::vec3 paper = Median(colors);
+  for (const std::vector<glm::vec3>& corner : by_corner) {
+    if (!corner.empty() && Difference(Median(corner), paper) > kUneven) return {};
+  }
   double paint = 0.0;
   for (const glm::vec3 color : colors) paint += Opacity(color, paper);
   if (paint >= kMostPaintInCorners * static_cast<double>(colors.size())) return {};

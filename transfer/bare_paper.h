@@ -19,7 +19,8 @@ struct BarePaper {
 };
 
 // `picture` is square and its sphere fills it. The corners are what lies beyond 1.15 radii of it. They are bare where at most
-// a quarter of them is painted: opaque, or of another colour than their median.
+// a quarter of them is painted: opaque, or of another colour than their median; and where the four of them are of about one
+// colour.
 BarePaper FindBarePaper(const Picture& picture);
 
 // The paint alone: alpha becomes its opacity, and the colour what it must be so that the paint over the paper is again what
