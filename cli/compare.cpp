@@ -35,6 +35,19 @@ Expected<GuideSet> ReadMotionGuides(const std::string& path, LayerSet required) 
   return ReadGuides(path, options);
 }
 
+// Steps of 255 that a map of flicker shows in full yellow: always the same, so that maps can be laid side by side.
+constexpr double kMostFlicker = 64.0;
+
+Status CheckHeatMap(const CompareVerb& verb) {
+  if (verb.heat_map.empty()) return Ok();
+  RunFiles files;
+  files.Reads("the first file", verb.a), files.Reads("the second file", verb.b);
+  if (!verb.motion.empty()) files.Reads("the guides", verb.motion);
+  if (!verb.motion_next.empty()) files.Reads("the next frame's guides", verb.motion_next);
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.heat_map));
+  return files.CheckOutput(verb.heat_map);
+}
+
 Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
   SCUMBLE_ASSIGN(const Picture a, ReadPicture(verb.a));
   SCUMBLE_ASSIGN(const Picture b, ReadPicture(verb.b));
@@ -45,6 +58,11 @@ Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
   }
   SCUMBLE_ASSIGN(const FlickerReport report,
                  MeasureFlicker(a, b, guides, verb.motion_next.empty() ? nullptr : &next));
+  if (!verb.heat_map.empty()) {
+    const Picture map = ValueHeatMap(report.changes, guides.width(), guides.height(), kMostFlicker);
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map));
+    Say(globals, fmt::format("{}: yellow is a change of {:.0f} of 255", verb.heat_map, kMostFlicker));
+  }
   const nlohmann::ordered_json json = {{"a", verb.a},
                                        {"b", verb.b},
                                        {"flicker", report.mean},
@@ -59,13 +77,8 @@ Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
 }
 
 Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& globals) {
+  SCUMBLE_RETURN_IF_ERROR(CheckHeatMap(verb));
   if (!verb.motion.empty()) return RunFlicker(verb, globals);
-  if (!verb.heat_map.empty()) {
-    RunFiles files;
-    files.Reads("the first file", verb.a), files.Reads("the second file", verb.b);
-    SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.heat_map));
-    SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.heat_map));
-  }
   SCUMBLE_ASSIGN(const ChannelImage a, ReadChannels(verb.a));
   SCUMBLE_ASSIGN(const ChannelImage b, ReadChannels(verb.b));
   SCUMBLE_ASSIGN(const CompareReport report, Compare(a, b, verb.options));
@@ -121,7 +134,7 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->needs(motion);
   for (const CLI::Option* option : sub->get_options()) {
     const std::string name = option->get_name();
-    if (name.starts_with("--") && !name.starts_with("--motion") && name != "--help") {
+    if (name.starts_with("--") && !name.starts_with("--motion") && name != "--help" && name != "--heat-map") {
       motion->excludes(sub->get_option(name));
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace scumble {
@@ -50,6 +51,7 @@ class Flicker {
 
   FlickerReport Measure() const {
     FlickerReport report;
+    report.changes.assign(guides_.pixel_count(), std::numeric_limits<float>::quiet_NaN());
     double sum = 0.0, floor = 0.0;
     for (int y = 0; y < guides_.height(); ++y) {
       for (int x = 0; x < guides_.width(); ++x) {
@@ -60,7 +62,9 @@ class Flicker {
           continue;
         }
         const Color from = OnWhite(a_, x, y);
-        sum += MeanDifference(from, Moved(target));
+        const double change = MeanDifference(from, Moved(target));
+        report.changes[guides_.Index(x, y)] = static_cast<float>(change);
+        sum += change;
         floor += MeanDifference(from, MovedByItself(x, y, target));
         ++report.pixels;
       }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "image/guides.h"
 #include "image/picture.h"
@@ -16,6 +17,7 @@ struct FlickerReport {
   // What the same motion would score if the first picture's colours all moved along: pixels that move by fractions are
   // resampled, and fine paint pays for that. It is 0 for whole pixels. A mean below it is no rest, but a blurred picture.
   double floor = 0.0;
+  std::vector<float> changes;  // by pixel of the first frame, row by row: what `mean` is the mean of; NaN: not compared
 };
 
 // `a` and `b` are a frame and the next one; `guides` are the first one's, with layer `motion`: pixels to the next frame,

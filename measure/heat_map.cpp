@@ -89,4 +89,15 @@ Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b
   return map;
 }
 
+Picture ValueHeatMap(std::span<const float> values, int width, int height, double full_scale) {
+  Picture picture(width, height);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    const Color color = RampColor(std::clamp(values[i] / full_scale, 0.0, 1.0));
+    std::copy(color.begin(), color.end(), picture.rgba.begin() + std::ptrdiff_t(4 * i));
+    picture.rgba[4 * i + 3] = 65535;
+  }
+  return picture;
+}
+
 }  // namespace scumble

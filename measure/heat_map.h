@@ -1,6 +1,7 @@
 // A picture of where two files differ.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,9 @@ struct HeatMap {
 // full scale and above; magenta where a NaN or a lone infinity makes the pixel incomparable. The ramp is straight in
 // Oklab with rising lightness, so it reads alike in grey and with colour-blind eyes. Errors as those of Compare.
 Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b, const HeatMapOptions& options = {});
+
+// The same colours for values of one's own, row by row: 0 is dark blue, full_scale (above 0) and more yellow; transparent
+// where NaN. `values` are width × height.
+Picture ValueHeatMap(std::span<const float> values, int width, int height, double full_scale);
 
 }  // namespace scumble

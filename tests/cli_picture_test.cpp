@@ -247,6 +247,14 @@ TEST_F(CliCompare, FlickerAlongTheMotion) {
   EXPECT_GT(still.Json()["flicker"], 1.0);
   EXPECT_LT(still.Json()["pixels"], moved.Json()["pixels"]);  // beyond the ball's edge the next frame shows nothing
   EXPECT_TRUE(Contains(RunOk({"compare", "a.png", "a.png", "--motion", "g.exr"}).out, "flicker "));
+  RunOk({"compare", "a.png", "b.png", "--motion", "g.exr", "-o", "moved-map.png"});
+  RunOk({"compare", "a.png", "a.png", "--motion", "g.exr", "-o", "still-map.png"});
+  const Expected<Picture> moved_map = ReadPicture(At("moved-map.png")), still_map = ReadPicture(At("still-map.png"));
+  ASSERT_TRUE(moved_map && still_map);
+  EXPECT_EQ(moved_map->At(0, 0)[3], 0) << "not compared";
+  EXPECT_EQ(moved_map->At(12, 12)[3], 65535);
+  EXPECT_TRUE(moved_map->rgba != still_map->rgba);
+  ExpectError({"compare", "a.png", "b.png", "--motion", "g.exr", "-o", "g.exr"}, 2, {"g.exr"});
   ExpectError({"compare", "a.png", "b.png", "--motion", "next.exr"}, 3, {"next.exr", "motion"});
   ExpectError({"compare", "a.png", "b.png", "--motion-next", "g.exr"}, 2, {"--motion-next", "--motion"});
   ExpectError({"compare", "a.png", "b.png", "--motion", "g.exr", "-fail", "1"}, 2, {"--motion", "--fail"});

@@ -52,11 +52,15 @@ TEST(Flicker, WholePixelsThatMoveTheirColoursScoreNothing) {
   EXPECT_EQ(report.floor, 0.0);
   EXPECT_EQ(report.pixels, 34u * 26u);  // 40 × 30 less its own edge, 4 columns more on the right and 2 rows on top
   EXPECT_EQ(report.pixels + report.hidden, 40u * 30u);
+  ASSERT_EQ(report.changes.size(), 40u * 30u);
+  EXPECT_TRUE(std::isnan(report.changes[0])) << "an edge is not compared";
+  EXPECT_EQ(report.changes[15 * 40 + 15], 0.0f);
 }
 
 TEST(Flicker, StandingStillUnderAMotionScoresTheDifference) {
   const Picture stripes = Painted(40, 30, [](int x, int) { return x % 2 * 100.0; });
   EXPECT_NEAR(Must(stripes, stripes, Moving(40, 30, 1.0f, 0.0f)).mean, 100.0, 0.01);
+  EXPECT_NEAR(Must(stripes, stripes, Moving(40, 30, 1.0f, 0.0f)).changes[15 * 40 + 15], 100.0f, 0.01f);
   EXPECT_NEAR(Must(stripes, stripes, Moving(40, 30, 2.0f, 7.0f)).mean, 0.0, 0.01);
   const Picture lighter = Painted(40, 30, [](int x, int) { return x % 2 * 100.0 + 12.0; });
   EXPECT_NEAR(Must(stripes, lighter, Moving(40, 30, 0.0f, 0.0f)).mean, 12.0, 0.01);
