@@ -60,7 +60,7 @@ TEST_F(CliMoving, AFrameIsTheSameHoweverTheRangeIsCut) {
   const Arguments guidegen = {"guidegen", Toys(), "--size", "96x54", "--layers", "motion,pref,luminance"};
   RunOk(With(guidegen, {"--frames", "1-24", "-o", "g.####.exr", "--threads", "4"}));
   for (int frame = 2; frame <= 24; ++frame) {
-    EXPECT_NE(Bytes(Numbered("g.", frame, ".exr")), Bytes(Numbered("g.", frame - 1, ".exr"))) << "stands still";
+    EXPECT_FALSE(Layers(Numbered("g.", frame, ".exr")) == Layers(Numbered("g.", frame - 1, ".exr"))) << "stands still";
   }
   RunOk(With(guidegen, {"--frame", "7", "-o", "one.exr", "--threads", "1"}));
   EXPECT_EQ(Bytes("one.exr"), Bytes("g.0007.exr"));
@@ -88,7 +88,7 @@ TEST_F(CliMoving, AFrameIsTheSameHoweverTheRangeIsCut) {
   RunOk(With(stylize, {"--frames", "6-8", "-o", "p.####.png", "--threads", "4"}));
   RunOk(With(stylize, {"--frame", "7", "-o", "one.png", "--threads", "1"}));
   EXPECT_EQ(Bytes("one.png"), Bytes("p.0007.png"));
-  EXPECT_NE(Bytes("p.0006.png"), Bytes("p.0007.png"));
+  EXPECT_FALSE(Pixels("p.0006.png") == Pixels("p.0007.png"));
   RunOk({"transfer", "g.####.exr", "--style", "style", "--frame", "7", "-o", "two.png"});
   EXPECT_EQ(Bytes("two.png"), Bytes("p.0007.png")) << "through a guide file";
 }
