@@ -1,10 +1,6 @@
 // Charcoal and white chalk on warm toned paper: the side of the stick first, a finger to smudge it, then the corner of
 // the stick for the shade, and chalk where the light strikes.
-#include "exemplars/paint/brush.h"
 #include "exemplars/paint/drawing.h"
-#include "exemplars/paint/paper.h"
-#include "exemplars/paint/sphere.h"
-#include "exemplars/paint/strokes.h"
 #include "exemplars/paint/styles.h"
 
 namespace scumble::paint {
@@ -13,12 +9,8 @@ namespace {
 constexpr Stock kPaper{Tooth::kLaid, 5.0f, {0.85f, 0.775f, 0.66f}, 0.055f};
 constexpr glm::vec3 kCharcoal{0.11f, 0.095f, 0.09f};
 constexpr glm::vec3 kChalk{0.985f, 0.97f, 0.93f};
-// Poles of the hatching stay in the light or beyond the rim, where no circle of it closes.
-constexpr glm::vec3 kAlongShade{-0.62f, 0.66f, 0.42f};
-constexpr glm::vec3 kDiagonal{-0.85f, 0.25f, 0.30f};
-constexpr glm::vec3 kAcross{0.25f, 0.90f, 0.20f};
 
-enum Pass : std::uint64_t { kTooth, kMottle, kTone, kSmudge, kRim, kLights, kAccents, kFirstRound };
+enum Pass : std::uint64_t { kTone = kFirstStream, kSmudge, kRim, kLights, kAccents, kFirstRound };
 
 // Darkness wanted: bare paper in the light, nearly black in the core of the shade.
 float Target(glm::vec2 at) {
@@ -38,18 +30,8 @@ Status LayTone(Drawing& drawing, const Studio& studio) {
   round.hatch.length_max = 150.0f;
   HatchRound(drawing, stick, chance, Target, round);
 
-  SCUMBLE_ASSIGN(Brush finger, Brush::Load(studio.brushes, "deevad/blending"));
-  finger.Radius(15.0f);
-  Chance smudge(studio.seed, kSmudge);
-  HatchOptions hatch;
-  hatch.patches = 160;
-  hatch.strokes_min = 2;
-  hatch.strokes_max = 4;
-  hatch.spacing = 24.0f;
-  hatch.length_min = 60.0f;
   const Touch rub = [](glm::vec2 at) { return 0.35f * Ramp(0.35f, 0.75f, DarknessAt(at)); };
-  finger.Paint(drawing.canvas(), PlanHatching(smudge, AroundAxis, kAlongShade, rub, hatch));
-  return Ok();
+  return Smudge(drawing, studio, kSmudge, kAlongShade, rub);
 }
 
 // The corner of the stick: strokes that stay visible, each round looking at what the last one left too light.
@@ -65,12 +47,8 @@ Status LayStrokes(Drawing& drawing, const Studio& studio) {
   hatch.length_min = 55.0f;
   hatch.length_max = 130.0f;
   constexpr glm::vec3 kTurns[] = {kDiagonal, kAlongShade, kAlongShade, kAcross};
-  for (int round = 0; round < 12; ++round) {
-    Chance chance(studio.seed, kFirstRound + static_cast<std::uint64_t>(round));
-    const float progress = static_cast<float>(round) / 11.0f;
-    const Round plan{kTurns[round % 4], glm::mix(0.88f, 1.02f, progress), glm::mix(0.22f, 0.45f, progress), hatch};
-    HatchRound(drawing, corner, chance, Target, plan);
-  }
+  HatchRounds(drawing, corner, studio.seed, kFirstRound, Target,
+              {.count = 12, .axes = kTurns, .share = {0.88f, 1.02f}, .heaviest = {0.22f, 0.45f}, .hatch = hatch});
   hatch.patches = 260;
   hatch.spacing = 7.0f;
   hatch.length_max = 100.0f;
@@ -107,19 +85,16 @@ Status LayChalk(Drawing& drawing, const Studio& studio) {
 }  // namespace
 
 Expected<Picture> PaintCharcoal(const Studio& studio) {
-  const Field tooth = MakeTooth({studio.size}, kPaper, Hash(studio.seed, kTooth));
-  const Colors paper = MakePaper(tooth, kPaper, Hash(studio.seed, kMottle));
-  Drawing dark(paper, tooth, {.bite = 0.8f, .softness = 0.34f, .density = 1.05f});
+  Drawing dark(PrepareGround({studio.size}, kPaper, studio.seed), {.bite = 0.8f, .softness = 0.34f, .density = 1.05f});
   SCUMBLE_RETURN_IF_ERROR(LayTone(dark, studio));
   SCUMBLE_RETURN_IF_ERROR(LayStrokes(dark, studio));
-  Drawing light(dark.Look(), tooth, {.bite = 0.85f, .softness = 0.25f, .density = 1.0f});
+  Drawing light(dark.AsGround(), {.bite = 0.85f, .softness = 0.25f, .density = 1.0f});
   SCUMBLE_RETURN_IF_ERROR(LayChalk(light, studio));
   return ToPicture(light.Look());
 }
 
 Expected<Picture> CharcoalPaper(const Studio& studio) {
-  const Field tooth = MakeTooth(TileFor(studio.size), kPaper, Hash(studio.seed, kTooth));
-  return ToPicture(MakePaper(tooth, kPaper, Hash(studio.seed, kMottle)));
+  return PaperTile(studio, kPaper);
 }
 
 }  // namespace scumble::paint

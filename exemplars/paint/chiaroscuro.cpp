@@ -1,10 +1,7 @@
 // Charcoal and chalk on grey-brown paper, three times the same ball. In the light the paper is the half-tone and white
 // chalk models what is above it; in half-light a little chalk and more of the paper; in the shade charcoal nearly
 // closes over it, and a cool grey chalk is what the sky gives.
-#include "exemplars/paint/brush.h"
 #include "exemplars/paint/drawing.h"
-#include "exemplars/paint/paper.h"
-#include "exemplars/paint/strokes.h"
 #include "exemplars/paint/styles.h"
 
 namespace scumble::paint {
@@ -14,12 +11,8 @@ constexpr Stock kPaper{Tooth::kLaid, 5.0f, {0.60f, 0.555f, 0.49f}, 0.05f};
 constexpr glm::vec3 kCharcoal{0.10f, 0.088f, 0.085f};
 constexpr glm::vec3 kChalk{0.985f, 0.965f, 0.92f};
 constexpr glm::vec3 kCoolChalk{0.37f, 0.42f, 0.50f};
-// Poles of the hatching stay in the light or beyond the rim, where no circle of it closes.
-constexpr glm::vec3 kAlongShade{-0.62f, 0.66f, 0.42f};
-constexpr glm::vec3 kDiagonal{-0.85f, 0.25f, 0.30f};
-constexpr glm::vec3 kAcross{0.25f, 0.90f, 0.20f};
 
-enum Pass : std::uint64_t { kTooth, kMottle, kTone, kSmudge, kRim, kAccents, kFirstRound, kFirstChalk = 100 };
+enum Pass : std::uint64_t { kTone = kFirstStream, kSmudge, kRim, kAccents, kFirstRound, kFirstChalk = 100 };
 
 // The darkness wanted, of which the bare paper has 0.44.
 Touch Target(Light light) {
@@ -43,18 +36,8 @@ Status LayTone(Drawing& drawing, const Studio& studio, const Touch& target) {
   round.hatch.length_max = 150.0f;
   HatchRound(drawing, stick, chance, target, round);
 
-  SCUMBLE_ASSIGN(Brush finger, Brush::Load(studio.brushes, "deevad/blending"));
-  finger.Radius(15.0f);
-  Chance smudge(studio.seed, kSmudge);
-  HatchOptions hatch;
-  hatch.patches = 160;
-  hatch.strokes_min = 2;
-  hatch.strokes_max = 4;
-  hatch.spacing = 24.0f;
-  hatch.length_min = 60.0f;
   const Touch rub = [&](glm::vec2 at) { return (shade ? 0.15f : 0.35f) * Ramp(0.45f, 0.80f, target(at)); };
-  finger.Paint(drawing.canvas(), PlanHatching(smudge, AroundAxis, kAlongShade, rub, hatch));
-  return Ok();
+  return Smudge(drawing, studio, kSmudge, kAlongShade, rub);
 }
 
 // The corner of the stick: strokes that stay visible. In the shade they cross and lie closer.
@@ -68,14 +51,9 @@ Status LayStrokes(Drawing& drawing, const Studio& studio, const Touch& target) {
   hatch.length_min = 60.0f;
   hatch.length_max = 140.0f;
   constexpr glm::vec3 kTurns[] = {kDiagonal, kAlongShade, kAlongShade, kAcross};
-  constexpr int kRounds = 12;
-  for (int round = 0; round < kRounds; ++round) {
-    Chance chance(studio.seed, kFirstRound + static_cast<std::uint64_t>(round));
-    const float progress = static_cast<float>(round) / (kRounds - 1);
-    HatchRound(
-        drawing, corner, chance, target,
-        {kTurns[round % 4], glm::mix(0.92f, 1.03f, progress), glm::mix(0.24f, shade ? 0.38f : 0.48f, progress), hatch});
-  }
+  const float last = shade ? 0.38f : 0.48f;
+  HatchRounds(drawing, corner, studio.seed, kFirstRound, target,
+              {.count = 12, .axes = kTurns, .share = {0.92f, 1.03f}, .heaviest = {0.24f, last}, .hatch = hatch});
 
   SCUMBLE_ASSIGN(Brush point, Brush::Load(studio.brushes, "classic/charcoal"));
   point.Radius(3.0f).Color(kCharcoal);
@@ -126,19 +104,16 @@ Status LayChalk(Drawing& drawing, const Studio& studio, const Touch& target) {
 
 Expected<Picture> PaintChiaroscuro(const Studio& studio) {
   const Touch target = Target(studio.light);
-  const Field tooth = MakeTooth({studio.size}, kPaper, Hash(studio.seed, kTooth));
-  const Colors paper = MakePaper(tooth, kPaper, Hash(studio.seed, kMottle));
-  Drawing dark(paper, tooth, {.bite = 0.8f, .softness = 0.34f, .density = 1.05f});
+  Drawing dark(PrepareGround({studio.size}, kPaper, studio.seed), {.bite = 0.8f, .softness = 0.34f, .density = 1.05f});
   SCUMBLE_RETURN_IF_ERROR(LayTone(dark, studio, target));
   SCUMBLE_RETURN_IF_ERROR(LayStrokes(dark, studio, target));
-  Drawing light(dark.Look(), tooth, {.bite = 0.75f, .softness = 0.30f, .density = 1.05f});
+  Drawing light(dark.AsGround(), {.bite = 0.75f, .softness = 0.30f, .density = 1.05f});
   SCUMBLE_RETURN_IF_ERROR(LayChalk(light, studio, target));
   return ToPicture(light.Look());
 }
 
 Expected<Picture> ChiaroscuroPaper(const Studio& studio) {
-  const Field tooth = MakeTooth(TileFor(studio.size), kPaper, Hash(studio.seed, kTooth));
-  return ToPicture(MakePaper(tooth, kPaper, Hash(studio.seed, kMottle)));
+  return PaperTile(studio, kPaper);
 }
 
 }  // namespace scumble::paint

@@ -1,10 +1,6 @@
 // Graphite on white drawing paper: patches of hatching laid over one another, a hard pencil first and a soft one for
 // the core of the shade.
-#include "exemplars/paint/brush.h"
 #include "exemplars/paint/drawing.h"
-#include "exemplars/paint/paper.h"
-#include "exemplars/paint/sphere.h"
-#include "exemplars/paint/strokes.h"
 #include "exemplars/paint/styles.h"
 
 namespace scumble::paint {
@@ -14,7 +10,7 @@ constexpr Stock kPaper{Tooth::kFine, 4.0f, {0.965f, 0.96f, 0.945f}, 0.04f};
 constexpr glm::vec3 kHard{0.27f, 0.275f, 0.295f};
 constexpr glm::vec3 kSoft{0.12f, 0.122f, 0.138f};
 
-enum Pass : std::uint64_t { kTooth, kMottle, kRim, kSoftPass, kFirstHatch };
+enum Pass : std::uint64_t { kRim = kFirstStream, kSoftPass, kFirstHatch };
 
 // Darkness wanted: white paper in the light.
 float Target(glm::vec2 at) {
@@ -22,10 +18,8 @@ float Target(glm::vec2 at) {
   return 0.04f + 0.44f * Ramp(0.94f, 0.30f, value) + 0.31f * Ramp(0.38f, 0.05f, value);
 }
 
-// The axes lie in the light or near the rim, so that no circle of hatching closes in sight.
-constexpr glm::vec3 kAlongShade{-0.62f, 0.66f, 0.42f};
-constexpr glm::vec3 kDiagonal{-0.85f, 0.20f, 0.30f};
-constexpr glm::vec3 kAcross{0.20f, 0.90f, 0.25f};
+constexpr glm::vec3 kPencilDiagonal{-0.85f, 0.20f, 0.30f};
+constexpr glm::vec3 kPencilAcross{0.20f, 0.90f, 0.25f};
 
 Status DrawHatching(Drawing& drawing, const Studio& studio) {
   SCUMBLE_ASSIGN(Brush pencil, Brush::Load(studio.brushes, "deevad/2B_pencil"));
@@ -38,14 +32,9 @@ Status DrawHatching(Drawing& drawing, const Studio& studio) {
   hatch.length_min = 60.0f;
   hatch.length_max = 140.0f;
   hatch.sway = 0.10f;
-  constexpr glm::vec3 kTurns[] = {kAlongShade, kAlongShade, kDiagonal, kAlongShade, kAcross};
-  constexpr int kRounds = 12;
-  for (int round = 0; round < kRounds; ++round) {
-    Chance chance(studio.seed, kFirstHatch + static_cast<std::uint64_t>(round));
-    const float progress = static_cast<float>(round) / (kRounds - 1);
-    const Round plan{kTurns[round % 5], glm::mix(0.60f, 1.0f, progress), glm::mix(0.42f, 0.80f, progress), hatch};
-    HatchRound(drawing, pencil, chance, Target, plan);
-  }
+  constexpr glm::vec3 kTurns[] = {kAlongShade, kAlongShade, kPencilDiagonal, kAlongShade, kPencilAcross};
+  HatchRounds(drawing, pencil, studio.seed, kFirstHatch, Target,
+              {.count = 12, .axes = kTurns, .share = {0.60f, 1.0f}, .heaviest = {0.42f, 0.80f}, .hatch = hatch});
   return Ok();
 }
 
@@ -61,7 +50,7 @@ Status DrawAccents(Drawing& drawing, const Studio& studio) {
   const Touch core = [](glm::vec2 at) { return Target(at) * Ramp(0.60f, 0.75f, DarknessAt(at)); };
   for (int round = 0; round < 4; ++round) {
     Chance chance(studio.seed, Hash(kSoftPass, round));
-    HatchRound(drawing, soft, chance, core, {round == 1 ? kAcross : kAlongShade, 1.03f, 0.65f, hatch});
+    HatchRound(drawing, soft, chance, core, {round == 1 ? kPencilAcross : kAlongShade, 1.03f, 0.65f, hatch});
   }
 
   SCUMBLE_ASSIGN(Brush pencil, Brush::Load(studio.brushes, "deevad/2B_pencil"));
@@ -77,17 +66,14 @@ Status DrawAccents(Drawing& drawing, const Studio& studio) {
 }  // namespace
 
 Expected<Picture> PaintGraphite(const Studio& studio) {
-  const Field tooth = MakeTooth({studio.size}, kPaper, Hash(studio.seed, kTooth));
-  const Colors paper = MakePaper(tooth, kPaper, Hash(studio.seed, kMottle));
-  Drawing drawing(paper, tooth, {.bite = 0.55f, .softness = 0.40f, .density = 1.1f});
+  Drawing drawing(PrepareGround({studio.size}, kPaper, studio.seed), {.bite = 0.55f, .softness = 0.40f, .density = 1.1f});
   SCUMBLE_RETURN_IF_ERROR(DrawHatching(drawing, studio));
   SCUMBLE_RETURN_IF_ERROR(DrawAccents(drawing, studio));
   return ToPicture(drawing.Look());
 }
 
 Expected<Picture> GraphitePaper(const Studio& studio) {
-  const Field tooth = MakeTooth(TileFor(studio.size), kPaper, Hash(studio.seed, kTooth));
-  return ToPicture(MakePaper(tooth, kPaper, Hash(studio.seed, kMottle)));
+  return PaperTile(studio, kPaper);
 }
 
 }  // namespace scumble::paint

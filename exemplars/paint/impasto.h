@@ -10,8 +10,7 @@
 
 #include "exemplars/paint/brush.h"
 #include "exemplars/paint/chance.h"
-#include "exemplars/paint/sphere.h"
-#include "exemplars/paint/styles.h"
+#include "exemplars/paint/studio.h"
 
 namespace scumble::paint {
 

@@ -5,8 +5,8 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "exemplars/paint/styles.h"
@@ -50,14 +50,12 @@ Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, con
     return Ok();
   };
   SCUMBLE_RETURN_IF_ERROR(write("paper.png", style.paper(studio)));
-  SCUMBLE_RETURN_IF_ERROR(write("lit.png", style.paint(studio)));
-  if (!style.three_lights) return Ok();
-  for (const auto& [name, light] : {std::pair("half.png", Light::kGrazing), std::pair("shade.png", Light::kSky)}) {
+  for (const paint::LightEntry& entry : std::span(paint::kLights).first(static_cast<std::size_t>(style.lights))) {
+    paint::Studio sheet = studio;
+    sheet.light = entry.light;
     // Another sheet, other strokes.
-    paint::Studio other = studio;
-    other.light = light;
-    other.seed = Hash(studio.seed, static_cast<std::uint64_t>(light));
-    SCUMBLE_RETURN_IF_ERROR(write(name, style.paint(other)));
+    if (entry.light != Light::kKey) sheet.seed = Hash(studio.seed, static_cast<std::uint64_t>(entry.light));
+    SCUMBLE_RETURN_IF_ERROR(write(entry.file, style.paint(sheet)));
   }
   return Ok();
 }
@@ -79,7 +77,7 @@ int main(int argc, char** argv) {
 
   CLI::App app{
       "Paints spheres and papers in the styles that come with Scumble: FOLDER/NAME/lit.png and paper.png, and "
-      "half.png and shade.png for styles that are painted for three lights"};
+      "half.png, shade.png and deep.png for styles that are painted for several lights"};
   app.add_option("--style", chosen, "Which one")->check(CLI::IsMember(names))->capture_default_str();
   app.add_option("--size", studio.size, "Pixels along a side")->check(CLI::Range(64, 8192))->capture_default_str();
   app.add_option("--seed", studio.seed, "The same number paints the same picture")->capture_default_str();

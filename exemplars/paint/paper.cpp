@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "exemplars/paint/chance.h"
 
@@ -74,6 +75,16 @@ Colors MakePaper(const Field& tooth, const Stock& stock, std::uint64_t seed) {
     }
   }
   return paper;
+}
+
+Ground PrepareGround(const Sheet& sheet, const Stock& stock, std::uint64_t seed) {
+  Field tooth = MakeTooth(sheet, stock, Hash(seed, 0));
+  Colors paper = MakePaper(tooth, stock, Hash(seed, 1));
+  return {std::move(tooth), std::move(paper)};
+}
+
+Picture PaperTile(const Studio& studio, const Stock& stock) {
+  return ToPicture(PrepareGround(TileFor(studio.size), stock, studio.seed).paper);
 }
 
 }  // namespace scumble::paint

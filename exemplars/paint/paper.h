@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "exemplars/paint/canvas.h"
+#include "exemplars/paint/studio.h"
 
 namespace scumble::paint {
 
@@ -26,5 +27,15 @@ Field MakeTooth(const Sheet& sheet, const Stock& stock, std::uint64_t seed);
 
 // Bare paper with that tooth, mottled a little.
 Colors MakePaper(const Field& tooth, const Stock& stock, std::uint64_t seed);
+
+// A sheet to begin on, and the same paper as a tile for what lies around. They take the streams 0 and 1 of the studio's
+// seed; a style's own passes begin at kFirstStream.
+inline constexpr std::uint64_t kFirstStream = 2;
+struct Ground {
+  Field tooth;
+  Colors paper;
+};
+Ground PrepareGround(const Sheet& sheet, const Stock& stock, std::uint64_t seed);
+Picture PaperTile(const Studio& studio, const Stock& stock);
 
 }  // namespace scumble::paint

@@ -63,7 +63,7 @@ Expected<Picture> PaintPleinAir(const Studio& studio) {
     case Light::kGrazing:
       painting.WorkOver(kGrazed, kTouches);
       break;
-    case Light::kSky:
+    default:
       painting.WorkOver(kSky, kScumbles);
       break;
   }

@@ -4,6 +4,9 @@
 #include <cmath>
 
 namespace scumble::paint {
+namespace {
+constexpr glm::vec3 kBounce{0.60f, -0.78f, -0.12f};  // where light comes back from below
+}  // namespace
 
 float RimDistance(glm::vec2 at) { return glm::length(at - kRadius) / kRadius; }
 
@@ -22,17 +25,19 @@ glm::vec3 Towards(Light light) {
       return glm::normalize(kKeyLight + glm::vec3(0.0f, -0.1f, 0.5f));
     case Light::kSky:
       return glm::normalize(glm::vec3(-0.25f, 0.85f, 0.35f));
-    default:
-      return kKeyLight;
+    case Light::kCrevice:
+      return glm::normalize(kBounce);
+    case Light::kKey:
+      break;
   }
+  return kKeyLight;
 }
 
 Shading ShadingOf(glm::vec3 normal, Light light) {
   static const glm::vec3 kHalfway = glm::normalize(kKeyLight + glm::vec3(0, 0, 1));
-  static const glm::vec3 kBounce = glm::normalize(glm::vec3(0.60f, -0.78f, -0.12f));
   Shading shading{};
   const float facing = glm::dot(normal, Towards(light));
-  const float bounce = std::max(glm::dot(normal, kBounce), 0.0f);
+  const float bounce = std::max(glm::dot(normal, glm::normalize(kBounce)), 0.0f);
   shading.reflected = bounce * bounce;
   switch (light) {
     case Light::kKey:
@@ -48,6 +53,10 @@ Shading ShadingOf(glm::vec3 normal, Light light) {
     case Light::kSky:
       shading.light = std::pow(std::max(0.5f + 0.5f * facing, 0.0f), 1.4f);
       shading.value = 0.05f + 0.26f * shading.light + 0.10f * shading.reflected;
+      break;
+    case Light::kCrevice:
+      shading.light = std::pow(std::max(0.5f + 0.5f * facing, 0.0f), 1.4f);
+      shading.value = 0.02f + 0.05f * shading.light + 0.08f * shading.reflected;
       break;
   }
   shading.value = glm::clamp(shading.value, 0.0f, 1.0f);

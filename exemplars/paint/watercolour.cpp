@@ -16,7 +16,7 @@ namespace {
 
 constexpr Stock kPaper{Tooth::kColdPress, 6.5f, {0.985f, 0.975f, 0.95f}, 0.035f};
 
-enum Pass : std::uint64_t { kTooth, kMottle, kFirstGlaze };
+constexpr std::uint64_t kFirstGlaze = kFirstStream;
 
 struct Glaze {
   glm::vec3 pigment;  // what one full layer lets through
@@ -95,8 +95,7 @@ void Dry(Colors& picture, const Layer& layer, const Field& tooth, const Glaze& g
 Expected<Picture> PaintWatercolour(const Studio& studio) {
   SCUMBLE_ASSIGN(Brush brush, Brush::Load(studio.brushes, "deevad/brush"));
   brush.Color(glm::vec3(0.2f));
-  const Field tooth = MakeTooth({studio.size}, kPaper, Hash(studio.seed, kTooth));
-  Colors picture = MakePaper(tooth, kPaper, Hash(studio.seed, kMottle));
+  auto [tooth, picture] = PrepareGround({studio.size}, kPaper, studio.seed);
   std::uint64_t pass = kFirstGlaze;
   for (const Glaze& glaze : kGlazes) {
     const std::uint64_t stream = Hash(studio.seed, pass);
@@ -110,8 +109,7 @@ Expected<Picture> PaintWatercolour(const Studio& studio) {
 }
 
 Expected<Picture> WatercolourPaper(const Studio& studio) {
-  const Field tooth = MakeTooth(TileFor(studio.size), kPaper, Hash(studio.seed, kTooth));
-  return ToPicture(MakePaper(tooth, kPaper, Hash(studio.seed, kMottle)));
+  return PaperTile(studio, kPaper);
 }
 
 }  // namespace scumble::paint

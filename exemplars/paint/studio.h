@@ -1,0 +1,18 @@
+// What every style is painted with.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "exemplars/paint/sphere.h"
+
+namespace scumble::paint {
+
+struct Studio {
+  std::filesystem::path brushes;  // the folder that holds tanda/, deevad/, classic/
+  int size = 1024;
+  std::uint64_t seed = 1;
+  Light light = Light::kKey;  // heeded by the styles that are painted for several
+};
+
+}  // namespace scumble::paint
