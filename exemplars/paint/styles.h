@@ -15,7 +15,9 @@ Painter PaintChiaroscuro;
 Painter PaintGraphite;
 Painter PaintOil;
 Painter PaintPleinAir;
+Painter PaintSumiE;
 Painter PaintWatercolour;
+Painter PaintWoodcut;
 
 // What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
 Painter CharcoalPaper;
@@ -23,7 +25,9 @@ Painter ChiaroscuroPaper;
 Painter GraphitePaper;
 Painter OilGround;
 Painter PleinAirGround;
+Painter SumiEPaper;
 Painter WatercolourPaper;
+Painter WoodcutPaper;
 
 struct StyleEntry {
   const char* name;
@@ -37,7 +41,9 @@ inline constexpr StyleEntry kStyles[] = {
     {"graphite", PaintGraphite, GraphitePaper},
     {"oil", PaintOil, OilGround},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
+    {"sumi-e", PaintSumiE, SumiEPaper},
     {"watercolour", PaintWatercolour, WatercolourPaper},
+    {"woodcut", PaintWoodcut, WoodcutPaper},
 };
 
 // Each light's painting is a file of its own.
