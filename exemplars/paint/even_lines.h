@@ -1,6 +1,6 @@
 // Lines side by side, as an engraver cuts them: none comes much nearer to its neighbour than the spacing, and none
-// leaves a gap where another fits (after Jobard and Lefer, Creating Evenly-Spaced Streamlines of Arbitrary Density, 1997).
-// Nothing here touches a canvas.
+// leaves a gap where another fits (after Jobard and Lefer, Creating Evenly-Spaced Streamlines of Arbitrary Density,
+// 1997). Nothing here touches a canvas.
 #pragma once
 
 #include <vector>

@@ -36,7 +36,8 @@ std::vector<Stroke> PartIntoHairs(Chance& chance, const Stroke& path, const Tuft
   for (int k = 0; k < count; ++k) {
     const float across = (static_cast<float>(k) + 0.5f) / static_cast<float>(count) - 0.5f;
     const float place = across * tuft.width + chance.Bell(0.35f * tuft.hair);
-    const float ink = tuft.ink * (1.0f + 2.0f * tuft.side * across) * (1.0f + chance.Bell(0.10f + 0.12f * tuft.dryness));
+    const float ink =
+        tuft.ink * (1.0f + 2.0f * tuft.side * across) * (1.0f + chance.Bell(0.10f + 0.12f * tuft.dryness));
     // The tuft is round where it touches down and where it leaves; dry, its hairs leave one by one.
     const float round = 0.5f * tuft.width * (1.0f - std::sqrt(1.0f - 4.0f * across * across)) / length;
     const float begin = round + chance.Uniform(0.0f, 0.02f + 0.08f * tuft.dryness);

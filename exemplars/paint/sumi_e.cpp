@@ -21,7 +21,7 @@ constexpr glm::vec3 kSweep{-0.56f, 0.65f, 0.51f};  // the strokes' circles go ro
 
 enum Pass : std::uint64_t { kFibres = kFirstStream, kContour = 4, kFirstWash = 50 };
 
-// Gives up what lies under it in the pulp: long fibres, some lighter and some darker.
+// Long fibres in the pulp, some lighter and some darker.
 Status LayFibres(Ground& ground, const Studio& studio) {
   SCUMBLE_ASSIGN(Brush fibre, Brush::Load(studio.brushes, "deevad/rigger_brush"));
   Canvas canvas(ground.paper.sheet);
@@ -68,25 +68,60 @@ struct Wash {
 };
 constexpr Wash kWashes[] = {
     // Pale, wet in wet.
-    {.from = 0.0f, .below = 0.46f, .ragged = 0.08f, .spacing = 120.0f, .width{100.0f, 150.0f}, .length{360.0f, 640.0f},
+    {.from = 0.0f,
+     .below = 0.46f,
+     .ragged = 0.08f,
+     .spacing = 120.0f,
+     .width{100.0f, 150.0f},
+     .length{360.0f, 640.0f},
      .tuft{.width = 0.0f, .hair = 5.0f, .ink = 0.30f},
-     .wetness = 15.0f, .strength = 0.36f, .inside = 0.2f},
+     .wetness = 15.0f,
+     .strength = 0.36f,
+     .inside = 0.2f},
     // Pale, on paper that has nearly dried: the strokes keep their edges.
-    {.from = 0.0f, .below = 0.40f, .ragged = 0.10f, .spacing = 104.0f, .width{60.0f, 110.0f}, .length{300.0f, 620.0f},
+    {.from = 0.0f,
+     .below = 0.40f,
+     .ragged = 0.10f,
+     .spacing = 104.0f,
+     .width{60.0f, 110.0f},
+     .length{300.0f, 620.0f},
      .tuft{.width = 0.0f, .hair = 2.4f, .gap = 1.6f, .ink = 0.36f, .dryness = 0.30f},
-     .wetness = 2.5f, .strength = 0.48f, .inside = 0.2f},
+     .wetness = 2.5f,
+     .strength = 0.48f,
+     .inside = 0.2f},
     // Middle grey, into the shade.
-    {.from = 0.0f, .below = 0.22f, .ragged = 0.04f, .spacing = 110.0f, .width{70.0f, 110.0f}, .length{320.0f, 560.0f},
+    {.from = 0.0f,
+     .below = 0.22f,
+     .ragged = 0.04f,
+     .spacing = 86.0f,
+     .width{70.0f, 110.0f},
+     .length{320.0f, 560.0f},
      .tuft{.width = 0.0f, .hair = 2.6f, .gap = 1.6f, .ink = 0.42f, .dryness = 0.35f},
-     .wetness = 5.0f, .strength = 0.78f, .inside = 0.2f},
+     .wetness = 5.0f,
+     .strength = 0.78f,
+     .inside = 0.1f},
     // Black pools in the core.
-    {.from = 0.0f, .below = 0.13f, .ragged = 0.01f, .spacing = 62.0f, .width{50.0f, 86.0f}, .length{260.0f, 480.0f},
+    {.from = 0.0f,
+     .below = 0.112f,
+     .ragged = 0.01f,
+     .spacing = 62.0f,
+     .width{50.0f, 86.0f},
+     .length{260.0f, 480.0f},
      .tuft{.width = 0.0f, .hair = 2.2f, .gap = 1.6f, .ink = 0.66f, .dryness = 0.38f},
-     .wetness = 8.0f, .strength = 1.5f, .inside = 0.25f},
+     .wetness = 8.0f,
+     .strength = 1.5f,
+     .inside = 0.5f},
     // Flying white along the turn.
-    {.from = 0.04f, .below = 0.32f, .ragged = 0.07f, .spacing = 112.0f, .width{70.0f, 120.0f}, .length{380.0f, 680.0f},
+    {.from = 0.04f,
+     .below = 0.32f,
+     .ragged = 0.07f,
+     .spacing = 112.0f,
+     .width{70.0f, 120.0f},
+     .length{380.0f, 680.0f},
      .tuft{.width = 0.0f, .hair = 0.8f, .gap = 2.0f, .ink = 0.95f, .dryness = 0.88f},
-     .wetness = 0.0f, .strength = 1.0f, .inside = 0.3f},
+     .wetness = 0.0f,
+     .strength = 1.0f,
+     .inside = 0.3f},
 };
 
 void BrushWash(Canvas& canvas, Brush& brush, const Wash& wash, std::uint64_t stream) {
@@ -118,7 +153,8 @@ void BrushWash(Canvas& canvas, Brush& brush, const Wash& wash, std::uint64_t str
   }
 }
 
-// Ink in wet paper: it runs along the fibres, further where the sheet is wetter, and leaves a darker line where it stops.
+// Ink in wet paper: it runs along the fibres, further where the sheet is wetter, and leaves a darker line where it
+// stops.
 void Soak(Ground& ground, const Field& ink, const Wash& wash, std::uint64_t stream) {
   const Field near = Blur(ink, std::max(1.0f, 0.12f * wash.wetness));
   const Field far = Blur(ink, wash.wetness);
@@ -151,7 +187,8 @@ void DrawContour(Canvas& canvas, Brush& brush, const Studio& studio) {
   const Touch weight = [](glm::vec2 at) { return 0.06f + 0.94f * Ramp(0.15f, 0.9f, DarknessAt(at)); };
   Tuft tuft{.width = 0.0f, .hair = 0.8f, .gap = 1.8f, .ink = 0.75f, .dryness = 0.55f, .narrowest = 0.15f};
   brush.Radius(tuft.hair);
-  for (const Stroke& line : PlanRim(chance, weight, {.lines = 13, .inset = 1.0f, .length_min = 0.8f, .length_max = 1.9f})) {
+  for (const Stroke& line :
+       PlanRim(chance, weight, {.lines = 13, .inset = 1.0f, .length_min = 0.8f, .length_max = 1.9f})) {
     tuft.width = chance.Uniform(14.0f, 26.0f);
     brush.Paint(canvas, PartIntoHairs(chance, line, tuft));
   }

@@ -88,12 +88,14 @@ class Block {
     Chance chance(studio_.seed, kContour);
     const Touch weight = [](glm::vec2 at) { return PressureFor(3.2f + 2.6f * DarknessAt(at)); };
     gouge_.Set(MYPAINT_BRUSH_SETTING_ERASER, 1.0f);
-    gouge_.Paint(cuts_, PlanRim(chance, weight, {.lines = 26, .inset = 2.5f, .deviation = 1.2f, .length_min = 0.7f, .length_max = 1.8f}));
+    gouge_.Paint(cuts_,
+                 PlanRim(chance, weight,
+                         {.lines = 26, .inset = 2.5f, .deviation = 1.2f, .length_min = 0.7f, .length_max = 1.8f}));
     gouge_.Set(MYPAINT_BRUSH_SETTING_ERASER, 0.0f);
   }
 
-  // What prints, 0 … 1, when the block lies `shift` units from its place: all that was not cut away, as far as the block
-  // is inked, with the burr of the wood's edges.
+  // What prints, 0 … 1, when the block lies `shift` units from its place: all that was not cut away, as far as the
+  // block is inked, with the burr of the wood's edges.
   Field Inked(glm::vec2 shift, std::uint64_t stream) const {
     const Field cut = Plane(cuts_.Read(), 3);
     const float scale = static_cast<float>(cut.size) / kSide;
@@ -121,10 +123,11 @@ class Block {
   Canvas cuts_;
 };
 
-// Clears the light in broad strokes, once along and once across, so that nothing stays standing there.
-void ClearOpenLight(Block& block, std::uint64_t first_pass, const Touch& width) {
-  block.Cut({first_pass, kAlongTheLight, NarrowRoom, width, 10.0f});
-  block.Cut({first_pass + 1, kAlongTheLight + 60.0f, NarrowRoom, width, 10.0f});
+// Clears the light in broad strokes as wide as `share` of `widest`, and once more across where nothing is to stay.
+void ClearOpenLight(Block& block, std::uint64_t first_pass, float widest, const Touch& share) {
+  block.Cut({first_pass, kAlongTheLight, NarrowRoom, [&](glm::vec2 at) { return widest * share(at); }, 10.0f});
+  const Touch across = [&](glm::vec2 at) { return widest * Ramp(0.96f, 1.0f, share(at)); };
+  block.Cut({first_pass + 1, kAlongTheLight + 60.0f, NarrowRoom, across, 10.0f});
 }
 
 Field PrintBlack(Brush& gouge, const Studio& studio) {
@@ -132,10 +135,11 @@ Field PrintBlack(Brush& gouge, const Studio& studio) {
   block.Cut({kBlackCuts, kAlongTheLight, Room, [](glm::vec2 at) { return 1.12f * Room(at) * Cleared(at); }});
   // Light that comes back into the shade; a contour stays outside it.
   const Touch reflected = [](glm::vec2 at) {
-    return 9.5f * Ramp(0.20f, 0.9f, ShadingAt(at).reflected) * (1.0f - Cleared(at)) * Ramp(1.0f, 0.99f, RimDistance(at));
+    return 9.5f * Ramp(0.20f, 0.9f, ShadingAt(at).reflected) * (1.0f - Cleared(at)) *
+           Ramp(1.0f, 0.99f, RimDistance(at));
   };
   block.Cut({kBlackCuts + 1, 60.0f, [](glm::vec2 at) { return 1.25f * Room(at); }, reflected});
-  ClearOpenLight(block, kBlackCuts + 2, [](glm::vec2 at) { return 17.0f * Ramp(0.80f, 0.92f, Cleared(at)); });
+  ClearOpenLight(block, kBlackCuts + 2, 17.0f, [](glm::vec2 at) { return Ramp(0.80f, 0.92f, Cleared(at)); });
   block.KeepContour();
   return block.Inked({0.0f, 0.0f}, Hash(studio.seed, kEdges, 0));
 }
@@ -144,7 +148,7 @@ Field PrintColor(Brush& gouge, const Studio& studio) {
   Block block(gouge, studio);
   block.Cut({kColorCuts, kAlongTheLight, Room,
              [](glm::vec2 at) { return 1.2f * Room(at) * Ramp(0.48f, 0.82f, ShadingAt(at).value); }});
-  ClearOpenLight(block, kColorCuts + 1, [](glm::vec2 at) { return 18.0f * Ramp(0.70f, 0.86f, ShadingAt(at).value); });
+  ClearOpenLight(block, kColorCuts + 1, 18.0f, [](glm::vec2 at) { return Ramp(0.70f, 0.86f, ShadingAt(at).value); });
   return block.Inked(kOutOfRegister, Hash(studio.seed, kEdges, 1));
 }
 
@@ -175,8 +179,6 @@ Expected<Picture> PaintWoodcut(const Studio& studio) {
   return ToPicture(picture);
 }
 
-Expected<Picture> WoodcutPaper(const Studio& studio) {
-  return PaperTile(studio, kPaper);
-}
+Expected<Picture> WoodcutPaper(const Studio& studio) { return PaperTile(studio, kPaper); }
 
 }  // namespace scumble::paint
