@@ -12,17 +12,21 @@ using Painter = Expected<Picture>(const Studio& studio);
 
 Painter PaintCharcoal;
 Painter PaintChiaroscuro;
+Painter PaintGouache;
 Painter PaintGraphite;
 Painter PaintOil;
 Painter PaintPleinAir;
+Painter PaintPointillism;
 Painter PaintWatercolour;
 
 // What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
 Painter CharcoalPaper;
 Painter ChiaroscuroPaper;
+Painter GouacheGround;
 Painter GraphitePaper;
 Painter OilGround;
 Painter PleinAirGround;
+Painter PointillismGround;
 Painter WatercolourPaper;
 
 struct StyleEntry {
@@ -34,9 +38,11 @@ struct StyleEntry {
 inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
     {"chiaroscuro", PaintChiaroscuro, ChiaroscuroPaper, 3},
+    {"gouache", PaintGouache, GouacheGround, 4},
     {"graphite", PaintGraphite, GraphitePaper},
     {"oil", PaintOil, OilGround},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
+    {"pointillism", PaintPointillism, PointillismGround},
     {"watercolour", PaintWatercolour, WatercolourPaper},
 };
 
