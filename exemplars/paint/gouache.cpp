@@ -41,8 +41,8 @@ struct Flat {
 // Cream, mustard and coral against petrol and teal.
 constexpr std::array<Flat, 7> kLit{{
     {{0.905f, 0.440f, 0.325f}},
-    {{0.940f, 0.720f, 0.330f}, Shape::kAbove, 0.625f, 0.045f, {-0.5f, -0.3f, -0.6f}},
-    {{0.975f, 0.885f, 0.680f}, Shape::kAbove, 0.80f, 0.03f, {0.6f, 0.2f, -0.5f}},
+    {{0.940f, 0.720f, 0.330f}, Shape::kAbove, 0.61f, 0.040f, {-0.5f, -0.3f, -0.6f}},
+    {{0.975f, 0.885f, 0.680f}, Shape::kAbove, 0.84f, 0.03f, {0.6f, 0.2f, -0.5f}},
     {{0.640f, 0.225f, 0.290f}, Shape::kBelow, 0.42f, 0.04f, {0.4f, 0.4f, 0.0f}},
     {{0.105f, 0.285f, 0.355f}, Shape::kBelow, 0.27f, 0.04f, {-0.3f, -0.4f, -0.5f}},
     {{0.165f, 0.500f, 0.510f}, Shape::kReflected, 0.50f, 0.06f, {0.3f, 0.2f, 0.1f}},
@@ -51,9 +51,9 @@ constexpr std::array<Flat, 7> kLit{{
 // Old rose between a dusty coral and plum, sage in the bounce. No lighter than the sunlit side where the two meet.
 constexpr std::array<Flat, 7> kHalf{{
     {{0.560f, 0.270f, 0.345f}},
-    {{0.690f, 0.350f, 0.360f}, Shape::kAbove, 0.37f, 0.030f, {-0.5f, 0.2f, -1.0f}},
-    {{0.825f, 0.510f, 0.375f}, Shape::kAbove, 0.52f, 0.020f, {0.6f, 0.2f, -1.0f}},
-    {{0.895f, 0.670f, 0.440f}, Shape::kAbove, 0.605f, 0.010f, {-0.5f, 0.4f, -1.0f}},
+    {{0.690f, 0.350f, 0.360f}, Shape::kAbove, 0.35f, 0.025f, {-0.5f, 0.2f, -1.0f}},
+    {{0.825f, 0.510f, 0.375f}, Shape::kAbove, 0.59f, 0.012f, {0.6f, 0.2f, -1.0f}},
+    {{0.895f, 0.670f, 0.440f}, Shape::kAbove, 0.635f, 0.006f, {-0.5f, 0.4f, -1.0f}},
     {{0.385f, 0.190f, 0.320f}, Shape::kBelow, 0.27f, 0.03f, {0.4f, 0.5f, 0.0f}},
     {{0.120f, 0.290f, 0.355f}, Shape::kBelow, 0.16f, 0.03f, {-0.4f, -0.4f, -0.6f}},
     {{0.240f, 0.470f, 0.450f}, Shape::kReflected, 0.50f, 0.06f, {0.3f, 0.2f, 0.1f}},
@@ -95,13 +95,20 @@ float FromHighlight(glm::vec3 normal) {
   return glm::length(glm::vec2(0.7f * (0.8f * away.x + 0.6f * away.y), 1.4f * (0.8f * away.y - 0.6f * away.x)));
 }
 
+// Lightness as a poster sees it: in the light what lies flat is lighter than what stands, so that floors and walls,
+// which face one way only, each keep well inside a tone.
+float ValueAt(glm::vec2 at, Light light) {
+  const float sky = light == Light::kKey || light == Light::kGrazing ? 0.06f : 0.0f;
+  return ShadingAt(at, light).value + sky * NormalAt(at).y;
+}
+
 // How far inside the tone's shape a place lies, in units of its border.
 float Inside(const Flat& flat, glm::vec2 at, Light light) {
   switch (flat.shape) {
     case Shape::kAbove:
-      return ShadingAt(at, light).value - flat.border;
+      return ValueAt(at, light) - flat.border;
     case Shape::kBelow:
-      return flat.border - ShadingAt(at, light).value;
+      return flat.border - ValueAt(at, light);
     case Shape::kReflected:
       return ShadingAt(at, light).reflected - flat.border;
     case Shape::kHighlight:

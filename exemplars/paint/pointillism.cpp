@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -18,79 +19,29 @@ constexpr Stock kPriming{Tooth::kLaid, 6.0f, {0.955f, 0.925f, 0.85f}, 0.05f};
 
 enum Pass : std::uint64_t { kFirstLayer = kFirstStream, kHighlight = 20, kAir };
 
-struct Pigment {
-  glm::vec3 color;
-  float share;  // of the dabs
-};
-
 // The colours of one tone: what makes its hue first, then neighbours, then sparks of the complement.
 struct Tone {
-  float value;  // where the tone is at home
-  std::array<Pigment, 6> pigments;
+  float value;                       // where the tone is at home
+  std::array<std::uint32_t, 6> rgb;  // sRGB-encoded bytes
+  std::array<float, 6> share;        // of the dabs
 };
 
 constexpr std::array<Tone, 5> kTones{{
-    {0.08f,
-     {{{{0.15f, 0.19f, 0.56f}, 0.34f},
-       {{0.30f, 0.17f, 0.52f}, 0.26f},
-       {{0.05f, 0.32f, 0.40f}, 0.20f},
-       {{0.10f, 0.30f, 0.66f}, 0.12f},
-       {{0.52f, 0.12f, 0.36f}, 0.06f},
-       {{0.62f, 0.24f, 0.16f}, 0.03f}}}},
-    {0.30f,
-     {{{{0.13f, 0.50f, 0.48f}, 0.28f},
-       {{0.27f, 0.40f, 0.76f}, 0.22f},
-       {{0.56f, 0.30f, 0.60f}, 0.20f},
-       {{0.28f, 0.58f, 0.36f}, 0.16f},
-       {{0.84f, 0.38f, 0.26f}, 0.09f},
-       {{0.78f, 0.46f, 0.20f}, 0.05f}}}},
-    {0.52f,
-     {{{{0.95f, 0.55f, 0.24f}, 0.30f},
-       {{0.91f, 0.46f, 0.45f}, 0.25f},
-       {{0.68f, 0.74f, 0.34f}, 0.17f},
-       {{0.95f, 0.72f, 0.28f}, 0.14f},
-       {{0.46f, 0.68f, 0.64f}, 0.06f},
-       {{0.68f, 0.50f, 0.72f}, 0.06f}}}},
-    {0.76f,
-     {{{{0.99f, 0.80f, 0.32f}, 0.36f},
-       {{0.99f, 0.69f, 0.32f}, 0.20f},
-       {{0.98f, 0.69f, 0.62f}, 0.18f},
-       {{0.97f, 0.90f, 0.48f}, 0.14f},
-       {{0.72f, 0.84f, 0.58f}, 0.07f},
-       {{0.76f, 0.70f, 0.90f}, 0.05f}}}},
-    {0.98f,
-     {{{{1.00f, 0.96f, 0.78f}, 0.38f},
-       {{1.00f, 0.92f, 0.56f}, 0.24f},
-       {{1.00f, 0.86f, 0.76f}, 0.18f},
-       {{0.99f, 0.98f, 0.93f}, 0.12f},
-       {{0.84f, 0.92f, 0.94f}, 0.05f},
-       {{0.88f, 0.92f, 0.74f}, 0.03f}}}},
+    {0.08f, {0x26308f, 0x4c2b85, 0x0d5266, 0x1a4ca8, 0x851f5c, 0x9e3d29}, {0.34f, 0.26f, 0.20f, 0.12f, 0.06f, 0.03f}},
+    {0.30f, {0x21807a, 0x4566c2, 0x8f4c99, 0x47945c, 0xd66142, 0xc77533}, {0.28f, 0.22f, 0.20f, 0.16f, 0.09f, 0.05f}},
+    {0.52f, {0xf28c3d, 0xe87573, 0xadbd57, 0xf2b847, 0x75ada3, 0xad80b8}, {0.30f, 0.25f, 0.17f, 0.14f, 0.06f, 0.06f}},
+    {0.76f, {0xfccc52, 0xfcb052, 0xfab09e, 0xf7e67a, 0xb8d694, 0xc2b2e6}, {0.36f, 0.20f, 0.18f, 0.14f, 0.07f, 0.05f}},
+    {0.98f, {0xfff5c7, 0xffeb8f, 0xffdbc2, 0xfcfaed, 0xd6ebf0, 0xe0ebbd}, {0.38f, 0.24f, 0.18f, 0.12f, 0.05f, 0.03f}},
 }};
 // Where light comes back into the shade.
-constexpr Tone kReflected{0.34f,
-                          {{{{0.22f, 0.52f, 0.74f}, 0.30f},
-                            {{0.18f, 0.56f, 0.56f}, 0.24f},
-                            {{0.50f, 0.38f, 0.74f}, 0.20f},
-                            {{0.70f, 0.42f, 0.56f}, 0.12f},
-                            {{0.42f, 0.68f, 0.44f}, 0.08f},
-                            {{0.80f, 0.48f, 0.34f}, 0.05f}}}};
-
+constexpr Tone kReflected{
+    0.34f, {0x3885bd, 0x2e8f8f, 0x8061bd, 0xb26b8f, 0x6bad70, 0xcc7a57}, {0.30f, 0.24f, 0.20f, 0.12f, 0.08f, 0.05f}};
 // The lamp itself, mirrored.
-constexpr Tone kSparkle{1.0f,
-                        {{{{1.00f, 0.99f, 0.93f}, 0.50f},
-                          {{1.00f, 0.97f, 0.82f}, 0.25f},
-                          {{1.00f, 0.94f, 0.90f}, 0.15f},
-                          {{0.92f, 0.96f, 0.97f}, 0.06f},
-                          {{1.00f, 0.95f, 0.70f}, 0.02f},
-                          {{0.97f, 0.93f, 0.97f}, 0.02f}}}};
+constexpr Tone kSparkle{
+    1.0f, {0xfffced, 0xfff7d1, 0xfff0e6, 0xebf5f7, 0xfff2b2, 0xf7edf7}, {0.50f, 0.25f, 0.15f, 0.06f, 0.02f, 0.02f}};
 // What lies around: quiet, of one lightness, so that no dab is met again in the next tile.
-constexpr Tone kHaze{0.85f,
-                     {{{{0.80f, 0.87f, 0.90f}, 0.30f},
-                       {{0.86f, 0.88f, 0.86f}, 0.25f},
-                       {{0.83f, 0.84f, 0.92f}, 0.20f},
-                       {{0.80f, 0.90f, 0.86f}, 0.13f},
-                       {{0.91f, 0.86f, 0.82f}, 0.07f},
-                       {{0.88f, 0.83f, 0.89f}, 0.05f}}}};
+constexpr Tone kHaze{
+    0.85f, {0xccdee6, 0xdbe0db, 0xd4d6eb, 0xcce6db, 0xe8dbd1, 0xe0d4e3}, {0.30f, 0.25f, 0.20f, 0.13f, 0.07f, 0.05f}};
 
 // One size of dab, set over the whole picture.
 struct DabLayer {
@@ -108,12 +59,13 @@ constexpr std::array<DabLayer, 3> kLayers{{
 
 glm::vec3 Take(Chance& chance, const Tone& tone, float sparks) {
   float total = 0.0f;
-  const auto share = [&](std::size_t i) { return tone.pigments[i].share * (i >= 3 ? sparks : 1.0f); };
-  for (std::size_t i = 0; i < tone.pigments.size(); ++i) total += share(i);
+  const auto share = [&](std::size_t i) { return tone.share[i] * (i >= 3 ? sparks : 1.0f); };
+  for (std::size_t i = 0; i < tone.share.size(); ++i) total += share(i);
   float left = chance.Uniform(0.0f, total);
   std::size_t taken = 0;
-  while (taken + 1 < tone.pigments.size() && left > share(taken)) left -= share(taken++);
-  return tone.pigments[taken].color;
+  while (taken + 1 < tone.share.size() && left > share(taken)) left -= share(taken++);
+  const std::uint32_t rgb = tone.rgb[taken];
+  return glm::vec3(rgb >> 16, rgb >> 8 & 0xff, rgb & 0xff) / 255.0f;
 }
 
 glm::vec3 ColorOf(Chance& chance, const Shading& shading, const DabLayer& layer) {
@@ -201,7 +153,8 @@ Expected<Picture> PaintPointillism(const Studio& studio) {
     const glm::vec2 middle = PlaceOf(glm::normalize(halfway + chance.Bell3(0.05f)));
     const glm::vec2 direction = AroundAxis(kKeyLight + chance.Bell3(0.3f))(middle);
     const float width = chance.Uniform(9.0f, 13.0f);
-    dabs.Set(chance, middle, direction, width, chance.Uniform(1.0f, 1.9f), Take(chance, kSparkle, 1.0f));
+    const float length = chance.Uniform(1.0f, 1.9f);
+    dabs.Set(chance, middle, direction, width, length, Take(chance, kSparkle, 1.0f));
   }
   return dabs.Finish(1.0f);
 }
@@ -214,7 +167,8 @@ Expected<Picture> PointillismGround(const Studio& studio) {
     for (const glm::vec2 middle : SowEvenly(chance, spacing, tile.units, 0.0f)) {
       const float angle = chance.Bell(0.6f);
       const float width = chance.Uniform(9.0f, 13.0f);
-      const glm::vec3 color = Take(chance, kHaze, 1.0f) * (1.0f + chance.Bell(0.008f));
+      const float brightness = 1.0f + chance.Bell(0.008f);
+      const glm::vec3 color = Take(chance, kHaze, 1.0f) * brightness;
       dabs.Set(chance, middle, {std::cos(angle), std::sin(angle)}, width, chance.Uniform(1.0f, 2.0f), color);
     }
   }
