@@ -67,10 +67,11 @@ constexpr std::array<Flat, 5> kShade{{
     {{0.365f, 0.215f, 0.340f}, Shape::kReflected, 0.60f, 0.07f, {0.3f, -0.3f, 0.1f}},
 }};
 // Aubergine, a last petrol from above, embers of the coral below.
-constexpr std::array<Flat, 5> kDeep{{
+constexpr std::array<Flat, 6> kDeep{{
     {{0.225f, 0.130f, 0.255f}},
-    {{0.305f, 0.175f, 0.315f}, Shape::kAbove, 0.064f, 0.008f, {0.5f, 0.3f, 0.2f}},
-    {{0.430f, 0.205f, 0.280f}, Shape::kAbove, 0.115f, 0.012f, {-0.4f, 0.4f, 0.2f}},
+    {{0.335f, 0.190f, 0.340f}, Shape::kAbove, 0.064f, 0.008f, {0.5f, 0.3f, 0.2f}},
+    {{0.500f, 0.240f, 0.285f}, Shape::kAbove, 0.115f, 0.012f, {-0.4f, 0.4f, 0.2f}},
+    {{0.660f, 0.360f, 0.310f}, Shape::kAbove, 0.135f, 0.006f, {0.4f, 0.4f, 0.2f}},
     {{0.145f, 0.100f, 0.205f}, Shape::kBelow, 0.046f, 0.003f, {0.4f, -0.4f, 0.2f}},
     {{0.095f, 0.190f, 0.260f}, Shape::kBelow, 0.028f, 0.002f, {-0.4f, 0.2f, 0.2f}},
 }};
