@@ -26,3 +26,6 @@ done
 for name in chiaroscuro plein-air; do
   for light in lit half shade; do [ -s "$folder/first/$name/$light.png" ] || { echo "$name: no $light.png"; exit 1; }; done
 done
+for light in lit half shade deep; do
+  [ -s "$folder/first/gouache/$light.png" ] || { echo "gouache: no $light.png"; exit 1; }
+done

@@ -12,9 +12,11 @@ using Painter = Expected<Picture>(const Studio& studio);
 
 Painter PaintCharcoal;
 Painter PaintChiaroscuro;
+Painter PaintGouache;
 Painter PaintGraphite;
 Painter PaintOil;
 Painter PaintPleinAir;
+Painter PaintPointillism;
 Painter PaintSumiE;
 Painter PaintWatercolour;
 Painter PaintWoodcut;
@@ -22,9 +24,11 @@ Painter PaintWoodcut;
 // What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
 Painter CharcoalPaper;
 Painter ChiaroscuroPaper;
+Painter GouacheGround;
 Painter GraphitePaper;
 Painter OilGround;
 Painter PleinAirGround;
+Painter PointillismGround;
 Painter SumiEPaper;
 Painter WatercolourPaper;
 Painter WoodcutPaper;
@@ -38,9 +42,11 @@ struct StyleEntry {
 inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
     {"chiaroscuro", PaintChiaroscuro, ChiaroscuroPaper, 3},
+    {"gouache", PaintGouache, GouacheGround, 4},
     {"graphite", PaintGraphite, GraphitePaper},
     {"oil", PaintOil, OilGround},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
+    {"pointillism", PaintPointillism, PointillismGround},
     {"sumi-e", PaintSumiE, SumiEPaper},
     {"watercolour", PaintWatercolour, WatercolourPaper},
     {"woodcut", PaintWoodcut, WoodcutPaper},
