@@ -12,16 +12,20 @@ using Painter = Expected<Picture>(const Studio& studio);
 
 Painter PaintCharcoal;
 Painter PaintChiaroscuro;
+Painter PaintColouredPencil;
 Painter PaintGraphite;
 Painter PaintOil;
+Painter PaintPastel;
 Painter PaintPleinAir;
 Painter PaintWatercolour;
 
 // What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
 Painter CharcoalPaper;
 Painter ChiaroscuroPaper;
+Painter ColouredPencilPaper;
 Painter GraphitePaper;
 Painter OilGround;
+Painter PastelPaper;
 Painter PleinAirGround;
 Painter WatercolourPaper;
 
@@ -34,8 +38,10 @@ struct StyleEntry {
 inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
     {"chiaroscuro", PaintChiaroscuro, ChiaroscuroPaper, 3},
+    {"coloured-pencil", PaintColouredPencil, ColouredPencilPaper},
     {"graphite", PaintGraphite, GraphitePaper},
     {"oil", PaintOil, OilGround},
+    {"pastel", PaintPastel, PastelPaper, 3},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
     {"watercolour", PaintWatercolour, WatercolourPaper},
 };
