@@ -12,7 +12,7 @@ namespace {
 
 constexpr Stock kPaper{Tooth::kFine, 4.2f, {0.985f, 0.98f, 0.965f}, 0.02f};
 
-enum Pass : std::uint64_t { kClouds = kFirstStream, kHues, kStump, kSpared, kRim, kFirstPencil = 100 };
+enum Pass : std::uint64_t { kClouds = kFirstStream, kHues, kStump, kSpared, kFirstPencil = 100 };
 
 // A pencil of the box, and the light in which it is used: from `dark` to `bright`, the cosine towards the key light.
 struct Pencil {
@@ -67,31 +67,13 @@ Status Burnish(Colouring& drawing, const Studio& studio) {
   SCUMBLE_ASSIGN(Brush stump, Brush::Load(studio.brushes, "deevad/blending"));
   stump.Radius(6.0f);
   Chance chance(studio.seed, kStump);
-  HatchOptions hatch;
-  hatch.patches = 500;
-  hatch.spacing = 14.0f;
+  const HatchOptions hatch{.patches = 500, .spacing = 14.0f};
   const Touch touch = [](glm::vec2 at) {
     const float light = ShadingAt(at).light;
     return 0.25f * Ramp(0.84f, 0.96f, light);
   };
   drawing.Rub(stump, PlanHatching(chance, AroundAxis, kDiagonal, touch, hatch));
   return Ok();
-}
-
-// A contour that comes and goes, warm in the light and blue in the shade.
-void DrawRim(Colouring& drawing, Brush& point, const Studio& studio) {
-  Chance chance(studio.seed, kRim);
-  constexpr Stick kWarm{{0.92f, 0.50f, 0.46f}, true};
-  constexpr Stick kCool{{0.38f, 0.40f, 0.76f}, true};
-  for (const Stick& stick : {kWarm, kCool}) {
-    const bool warm = stick.color.r > stick.color.b;
-    const Touch touch = [=](glm::vec2 at) {
-      const float facing = glm::dot(NormalAt(at), kKeyLight);
-      return warm ? 0.65f * Ramp(0.0f, 0.2f, facing) : 0.75f * Ramp(0.2f, 0.0f, facing);
-    };
-    const RimOptions options{.lines = 16, .inset = 6.0f, .deviation = 2.2f, .length_min = 0.5f, .length_max = 1.4f};
-    drawing.Draw(point, stick, PlanRim(chance, touch, options), kWax);
-  }
 }
 
 }  // namespace
@@ -102,7 +84,6 @@ Expected<Picture> PaintColouredPencil(const Studio& studio) {
   side.Radius(4.5f);
   SCUMBLE_ASSIGN(Brush point, Brush::Load(studio.brushes, "kaerhon_v1/classic_sk"));
   HatchOptions hatch;
-  hatch.patches = 170;
   hatch.strokes_min = 6;
   hatch.strokes_max = 13;
   hatch.spacing = 7.0f;
@@ -133,7 +114,6 @@ Expected<Picture> PaintColouredPencil(const Studio& studio) {
       drawing.Draw(brush, stick, PlanHatching(chance, AroundAxis, axis, touch, hatch), kWax);
     }
   }
-  DrawRim(drawing, point, studio);
   SCUMBLE_RETURN_IF_ERROR(Burnish(drawing, studio));
   return ToPicture(drawing.picture());
 }

@@ -16,11 +16,13 @@ namespace {
 constexpr Stock kPaper{Tooth::kLaid, 4.0f, {0.165f, 0.145f, 0.235f}, 0.05f};
 
 constexpr float kBlockSpacing = 23.0f;
+// How uneven the hand is.
+constexpr float kUnevenness = 0.30f;
 constexpr int kFacets = 4;
 // A facet's radius as a share of the stroke's width, so that neighbours overlap.
 constexpr float kFacet = 0.17f;
 
-enum Pass : std::uint64_t { kClouds = kFirstStream, kFinger, kHighlight, kContour, kSide, kBody = 100, kSparks = 300 };
+enum Pass : std::uint64_t { kClouds = kFirstStream, kFinger, kHighlight, kSide = 6, kBody = 100, kSparks = 300 };
 
 // What the three sheets differ in.
 struct Plan {
@@ -34,7 +36,6 @@ struct Plan {
   int body_rounds;
   glm::vec3 depth;  // of the first layer, against what is wanted
   float cover;      // how far that layer closes over the paper
-  HatchOptions hatch;
 };
 
 constexpr glm::vec3 kLitBox[] = {
@@ -56,70 +57,59 @@ constexpr glm::vec3 kShadeBox[] = {
 };
 constexpr glm::vec3 kShadeSparks[] = {{0.30f, 0.66f, 0.74f}, {0.46f, 0.44f, 0.86f}, {0.66f, 0.30f, 0.50f}};
 
-Plan PlanFor(Light light) {
-  Plan plan{};
-  plan.hatch.unevenness = 0.30f;
-  switch (light) {
-    case Light::kKey:
-      plan.palette = {.high{1.00f, 0.95f, 0.74f},
-                      .light{0.99f, 0.80f, 0.58f},
-                      .middle{0.93f, 0.54f, 0.46f},
-                      .turn{0.62f, 0.30f, 0.54f},
-                      .core{0.24f, 0.20f, 0.54f},
-                      .reflected{0.20f, 0.48f, 0.64f},
-                      .warm{{{0.98f, 0.66f, 0.68f}, {0.96f, 0.86f, 0.42f}}},
-                      .cool{{{0.16f, 0.46f, 0.64f}, {0.50f, 0.22f, 0.54f}}}};
-      plan.box = kLitBox;
-      plan.sparks = kLitSparks;
-      plan.axes = {kAlongShade, kDiagonal, kAgainst, kAcross};
-      plan.side_width = 30.0f;
-      plan.body_width = 17.0f;
-      plan.body_rounds = 3;
-      plan.depth = {0.93f, 0.80f, 0.86f};
-      plan.cover = 1.0f;
-      plan.closed = 0.8f;
-      break;
-    case Light::kGrazing:
-      plan.palette = {.high{0.86f, 0.64f, 0.44f},
-                      .light{0.78f, 0.54f, 0.46f},
-                      .middle{0.62f, 0.40f, 0.52f},
-                      .turn{0.40f, 0.27f, 0.52f},
-                      .core{0.19f, 0.20f, 0.46f},
-                      .reflected{0.20f, 0.42f, 0.52f},
-                      .warm{{{0.52f, 0.56f, 0.50f}, {0.84f, 0.50f, 0.52f}}},
-                      .cool{{{0.22f, 0.46f, 0.56f}, {0.44f, 0.22f, 0.52f}}}};
-      plan.box = kHalfBox;
-      plan.sparks = kHalfSparks;
-      plan.axes = {kDiagonal, kDiagonal, kAlongShade, kDiagonal};
-      plan.side_width = 28.0f;
-      plan.body_width = 15.0f;
-      plan.body_rounds = 3;
-      plan.depth = {0.80f, 0.72f, 0.84f};
-      plan.cover = 0.95f;
-      plan.closed = 0.8f;
-      break;
-    default:
-      plan.palette = {.high{0.36f, 0.50f, 0.76f},
-                      .light{0.28f, 0.38f, 0.70f},
-                      .middle{0.22f, 0.28f, 0.60f},
-                      .turn{0.26f, 0.20f, 0.50f},
-                      .core{0.20f, 0.15f, 0.36f},
-                      .reflected{0.44f, 0.22f, 0.40f},
-                      .warm{{{0.20f, 0.48f, 0.58f}, {0.36f, 0.30f, 0.66f}}},
-                      .cool{{{0.16f, 0.40f, 0.46f}, {0.38f, 0.18f, 0.44f}}}};
-      plan.box = kShadeBox;
-      plan.sparks = kShadeSparks;
-      plan.axes = {kAcross, kAlongShade, kAcross, kAcross};
-      plan.side_width = 34.0f;
-      plan.body_width = 18.0f;
-      plan.body_rounds = 2;
-      plan.depth = {0.8f, 0.8f, 0.9f};
-      plan.cover = 0.85f;
-      plan.closed = 0.45f;
-      break;
-  }
-  return plan;
-}
+constexpr Plan kLit{.palette{.high{1.00f, 0.95f, 0.74f},
+                             .light{0.99f, 0.80f, 0.58f},
+                             .middle{0.93f, 0.54f, 0.46f},
+                             .turn{0.62f, 0.30f, 0.54f},
+                             .core{0.24f, 0.20f, 0.54f},
+                             .reflected{0.20f, 0.48f, 0.64f},
+                             .warm{{{0.98f, 0.66f, 0.68f}, {0.96f, 0.86f, 0.42f}}},
+                             .cool{{{0.16f, 0.46f, 0.64f}, {0.50f, 0.22f, 0.54f}}}},
+                    .box = kLitBox,
+                    .sparks = kLitSparks,
+                    .axes{{kAlongShade, kDiagonal, kAgainst, kAcross}},
+                    .side_width = 30.0f,
+                    .closed = 0.8f,
+                    .body_width = 17.0f,
+                    .body_rounds = 3,
+                    .depth{0.93f, 0.80f, 0.86f},
+                    .cover = 1.0f};
+constexpr Plan kHalf{.palette{.high{0.86f, 0.64f, 0.44f},
+                              .light{0.78f, 0.54f, 0.46f},
+                              .middle{0.62f, 0.40f, 0.52f},
+                              .turn{0.40f, 0.27f, 0.52f},
+                              .core{0.19f, 0.20f, 0.46f},
+                              .reflected{0.20f, 0.42f, 0.52f},
+                              .warm{{{0.52f, 0.56f, 0.50f}, {0.84f, 0.50f, 0.52f}}},
+                              .cool{{{0.22f, 0.46f, 0.56f}, {0.44f, 0.22f, 0.52f}}}},
+                     .box = kHalfBox,
+                     .sparks = kHalfSparks,
+                     .axes{{kDiagonal, kDiagonal, kAlongShade, kDiagonal}},
+                     .side_width = 28.0f,
+                     .closed = 0.8f,
+                     .body_width = 15.0f,
+                     .body_rounds = 3,
+                     .depth{0.80f, 0.72f, 0.84f},
+                     .cover = 0.95f};
+constexpr Plan kShade{.palette{.high{0.36f, 0.50f, 0.76f},
+                               .light{0.28f, 0.38f, 0.70f},
+                               .middle{0.22f, 0.28f, 0.60f},
+                               .turn{0.26f, 0.20f, 0.50f},
+                               .core{0.20f, 0.15f, 0.36f},
+                               .reflected{0.44f, 0.22f, 0.40f},
+                               .warm{{{0.20f, 0.48f, 0.58f}, {0.36f, 0.30f, 0.66f}}},
+                               .cool{{{0.16f, 0.40f, 0.46f}, {0.38f, 0.18f, 0.44f}}}},
+                      .box = kShadeBox,
+                      .sparks = kShadeSparks,
+                      .axes{{kAcross, kAlongShade, kAcross, kAcross}},
+                      .side_width = 34.0f,
+                      .closed = 0.45f,
+                      .body_width = 18.0f,
+                      .body_rounds = 2,
+                      .depth{0.8f, 0.8f, 0.9f},
+                      .cover = 0.85f};
+
+const Plan& PlanFor(Light light) { return light == Light::kKey ? kLit : light == Light::kGrazing ? kHalf : kShade; }
 
 // Clouds of other hues drift over the form, so that neighbouring passages never have one colour.
 Wish WishFor(const Plan& plan, const Studio& studio) {
@@ -206,7 +196,8 @@ Status Work(Colouring& drawing, const Plan& plan, const Studio& studio) {
   SCUMBLE_ASSIGN(Brush finger, Brush::Load(studio.brushes, "deevad/blending"));
   finger.Radius(13.0f);
   Chance rub(studio.seed, kFinger);
-  HatchOptions rubbed = plan.hatch;
+  HatchOptions rubbed;
+  rubbed.unevenness = kUnevenness;
   rubbed.patches = 150;
   rubbed.strokes_min = 2;
   rubbed.strokes_max = 4;
@@ -214,7 +205,8 @@ Status Work(Colouring& drawing, const Plan& plan, const Studio& studio) {
   const Touch soft = [](glm::vec2 at) { return 0.5f * Ramp(1.10f, 1.06f, RimDistance(at)); };
   drawing.Rub(finger, PlanHatching(rub, AroundAxis, plan.axes[0], soft, rubbed));
 
-  HatchOptions hatch = plan.hatch;
+  HatchOptions hatch;
+  hatch.unevenness = kUnevenness;
   hatch.patches = 60;
   hatch.strokes_min = 3;
   hatch.strokes_max = 7;
@@ -272,7 +264,7 @@ Status LayHighlight(Colouring& drawing, const Studio& studio) {
 }  // namespace
 
 Expected<Picture> PaintPastel(const Studio& studio) {
-  const Plan plan = PlanFor(studio.light);
+  const Plan& plan = PlanFor(studio.light);
   Colouring drawing(PrepareGround({studio.size}, kPaper, studio.seed));
   SCUMBLE_RETURN_IF_ERROR(Work(drawing, plan, studio));
   if (studio.light == Light::kKey) SCUMBLE_RETURN_IF_ERROR(LayHighlight(drawing, studio));
