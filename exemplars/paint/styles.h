@@ -12,9 +12,11 @@ using Painter = Expected<Picture>(const Studio& studio);
 
 Painter PaintCharcoal;
 Painter PaintChiaroscuro;
+Painter PaintColouredPencil;
 Painter PaintGouache;
 Painter PaintGraphite;
 Painter PaintOil;
+Painter PaintPastel;
 Painter PaintPleinAir;
 Painter PaintPointillism;
 Painter PaintSumiE;
@@ -24,9 +26,11 @@ Painter PaintWoodcut;
 // What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
 Painter CharcoalPaper;
 Painter ChiaroscuroPaper;
+Painter ColouredPencilPaper;
 Painter GouacheGround;
 Painter GraphitePaper;
 Painter OilGround;
+Painter PastelPaper;
 Painter PleinAirGround;
 Painter PointillismGround;
 Painter SumiEPaper;
@@ -42,9 +46,11 @@ struct StyleEntry {
 inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
     {"chiaroscuro", PaintChiaroscuro, ChiaroscuroPaper, 3},
+    {"coloured-pencil", PaintColouredPencil, ColouredPencilPaper},
     {"gouache", PaintGouache, GouacheGround, 4},
     {"graphite", PaintGraphite, GraphitePaper},
     {"oil", PaintOil, OilGround},
+    {"pastel", PaintPastel, PastelPaper, 3},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
     {"pointillism", PaintPointillism, PointillismGround},
     {"sumi-e", PaintSumiE, SumiEPaper},
