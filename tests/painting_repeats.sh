@@ -23,6 +23,6 @@ for style in "$folder"/first/*/; do
     "$program" styles check "$picture"
   done
 done
-for name in chiaroscuro plein-air; do
+for name in chiaroscuro ink plein-air; do
   for light in lit half shade; do [ -s "$folder/first/$name/$light.png" ] || { echo "$name: no $light.png"; exit 1; }; done
 done

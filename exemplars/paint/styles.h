@@ -13,16 +13,20 @@ using Painter = Expected<Picture>(const Studio& studio);
 Painter PaintCharcoal;
 Painter PaintChiaroscuro;
 Painter PaintGraphite;
+Painter PaintInk;
 Painter PaintOil;
 Painter PaintPleinAir;
+Painter PaintSanguine;
 Painter PaintWatercolour;
 
 // What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
 Painter CharcoalPaper;
 Painter ChiaroscuroPaper;
 Painter GraphitePaper;
+Painter InkPaper;
 Painter OilGround;
 Painter PleinAirGround;
+Painter SanguinePaper;
 Painter WatercolourPaper;
 
 struct StyleEntry {
@@ -35,8 +39,10 @@ inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
     {"chiaroscuro", PaintChiaroscuro, ChiaroscuroPaper, 3},
     {"graphite", PaintGraphite, GraphitePaper},
+    {"ink", PaintInk, InkPaper, 3},
     {"oil", PaintOil, OilGround},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
+    {"sanguine", PaintSanguine, SanguinePaper},
     {"watercolour", PaintWatercolour, WatercolourPaper},
 };
 
