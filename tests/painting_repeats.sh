@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Painting the exemplars twice with one seed gives the same bytes, and another seed another picture; at a small size, to
 # be quick. Usage: painting_repeats.sh PAINT_EXEMPLARS SCUMBLE
+# EXEMPLARS
 set -eu
 paint=$1
 program=$2
+exemplars=$3
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
@@ -23,9 +25,10 @@ for style in "$folder"/first/*/; do
     "$program" styles check "$picture"
   done
 done
-for name in chiaroscuro pastel plein-air; do
-  for light in lit half shade; do [ -s "$folder/first/$name/$light.png" ] || { echo "$name: no $light.png"; exit 1; }; done
-done
-for light in lit half shade deep; do
-  [ -s "$folder/first/gouache/$light.png" ] || { echo "gouache: no $light.png"; exit 1; }
+# What the bundled styles list is what is painted.
+for style in "$exemplars"/*/style.toml; do
+  name=$(basename "$(dirname "$style")")
+  for picture in $(sed -n 's/^\(image\|paper\) = "\(.*\.png\)".*/\2/p' "$style"); do
+    [ -s "$folder/first/$name/$picture" ] || { echo "$name: no $picture"; exit 1; }
+  done
 done

@@ -15,10 +15,12 @@ Painter PaintChiaroscuro;
 Painter PaintColouredPencil;
 Painter PaintGouache;
 Painter PaintGraphite;
+Painter PaintInk;
 Painter PaintOil;
 Painter PaintPastel;
 Painter PaintPleinAir;
 Painter PaintPointillism;
+Painter PaintSanguine;
 Painter PaintSumiE;
 Painter PaintWatercolour;
 Painter PaintWoodcut;
@@ -29,10 +31,12 @@ Painter ChiaroscuroPaper;
 Painter ColouredPencilPaper;
 Painter GouacheGround;
 Painter GraphitePaper;
+Painter InkPaper;
 Painter OilGround;
 Painter PastelPaper;
 Painter PleinAirGround;
 Painter PointillismGround;
+Painter SanguinePaper;
 Painter SumiEPaper;
 Painter WatercolourPaper;
 Painter WoodcutPaper;
@@ -49,10 +53,12 @@ inline constexpr StyleEntry kStyles[] = {
     {"coloured-pencil", PaintColouredPencil, ColouredPencilPaper},
     {"gouache", PaintGouache, GouacheGround, 4},
     {"graphite", PaintGraphite, GraphitePaper},
+    {"ink", PaintInk, InkPaper, 3},
     {"oil", PaintOil, OilGround},
     {"pastel", PaintPastel, PastelPaper, 3},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
     {"pointillism", PaintPointillism, PointillismGround},
+    {"sanguine", PaintSanguine, SanguinePaper},
     {"sumi-e", PaintSumiE, SumiEPaper},
     {"watercolour", PaintWatercolour, WatercolourPaper},
     {"woodcut", PaintWoodcut, WoodcutPaper},
