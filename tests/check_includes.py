@@ -24,6 +24,7 @@ THIRD_PARTY = {
     "OpenImageIO/": {"io"},
     "OpenEXR/": {"io"},
     "Imath/": {"io"},
+    "zip.h": {"io"},
     "embree": {"guidegen"},
     "tiny_gltf": {"guidegen"},
     "tinygltf": {"guidegen"},
