@@ -25,6 +25,7 @@ THIRD_PARTY = {
     "OpenEXR/": {"io"},
     "Imath/": {"io"},
     "zip.h": {"io"},
+    "hpdf.h": {"style"},
     "embree": {"guidegen"},
     "tiny_gltf": {"guidegen"},
     "tinygltf": {"guidegen"},
