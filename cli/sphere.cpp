@@ -60,14 +60,14 @@ Status CheckNames(const SphereVerb& verb, std::size_t lights) {
     return UsageError(fmt::format("{} --name for {} --light: expected one each", verb.names.size(), lights));
   }
   for (const std::string& name : verb.names) {
-    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
-      return std::isalnum(c) || c == '-' || c == '_' || c >= 0x80;
-    });
+    const bool plain = std::all_of(
+        name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c >= 0x80; });
     constexpr std::string_view kTemplate = "template";
     const bool ours = name.size() >= kTemplate.size() &&
                       name.compare(name.size() - kTemplate.size(), kTemplate.size(), kTemplate) == 0;
     if (name.empty() || name[0] == '-' || !plain || ours) {
-      return UsageError("--name " + name + ": expected the name of the painting without its ending, of letters, digits, "
+      return UsageError("--name " + name +
+                        ": expected the name of the painting without its ending, of letters, digits, "
                         "- and _, that does not end in 'template'");
     }
     if (std::count(verb.names.begin(), verb.names.end(), name) > 1) {
@@ -83,8 +83,8 @@ Expected<int> PrintedSize(const std::string& length, int dpi) {
   if (!millimetres) return UsageError("--print-size " + millimetres.error().message);
   const double pixels = *millimetres / MillimetresOf(1, dpi);
   if (!(pixels >= kSmallest && pixels <= kLargest)) {
-    return UsageError(fmt::format("--print-size {} at {} dpi is {:.0f} pixels: expected {} to {}; take another --dpi", length, dpi,
-                                  pixels, kSmallest, kLargest));
+    return UsageError(fmt::format("--print-size {} at {} dpi is {:.0f} pixels: expected {} to {}; take another --dpi",
+                                  length, dpi, pixels, kSmallest, kLargest));
   }
   return static_cast<int>(std::lround(pixels));
 }
@@ -96,35 +96,46 @@ Expected<KitOptions> ReadKitOptions(const SphereVerb& verb) {
   if (verb.only.empty()) return options;
   options.png = options.ora = options.pdf = false;
   for (const std::string& format : verb.only) {
-    if (format == "png") options.png = true;
-    else if (format == "ora") options.ora = true;
-    else if (format == "pdf") options.pdf = true;
-    else return UsageError("--only " + format + ": expected png, ora or pdf, or several with commas between");
+    if (format == "png")
+      options.png = true;
+    else if (format == "ora")
+      options.ora = true;
+    else if (format == "pdf")
+      options.pdf = true;
+    else
+      return UsageError("--only " + format + ": expected png, ora or pdf, or several with commas between");
   }
   return options;
 }
 
 // Which file to paint on, and what to do with it then.
-void SayWhatNext(const SphereVerb& verb, const KitOptions& options, const std::optional<PrintPage>& page, const Globals& globals) {
+void SayWhatNext(const SphereVerb& verb, const KitOptions& options, const std::optional<PrintPage>& page,
+                 const Globals& globals) {
   const std::string stem = verb.names.empty() ? "template" : verb.names[0] + "-template";
   const std::string painting = verb.names.empty() ? "lit.png" : verb.names[0] + ".png";
   std::string files;
   if (options.ora) files = stem + ".ora (layers: Krita, GIMP, MyPaint)";
   if (options.png) files += std::string(files.empty() ? "" : " or ") + stem + ".png";
-  if (!files.empty()) Say(globals, "paint over " + files + ", save it as " + painting + " in the same folder; HOWTO.txt says how");
+  if (!files.empty())
+    Say(globals, "paint over " + files + ", save it as " + painting + " in the same folder; HOWTO.txt says how");
   if (page) {
-    Say(globals, fmt::format("print {}.pdf at 100%: a sphere of {:.1f} mm on {}", stem, MillimetresOf(verb.size, verb.dpi),
-                             page->name == "fit" ? fmt::format("a page of {:.0f} x {:.0f} mm", page->width_mm, page->height_mm)
-                                                 : page->name));
+    Say(globals,
+        fmt::format("print {}.pdf at 100%: a sphere of {:.1f} mm on {}", stem, MillimetresOf(verb.size, verb.dpi),
+                    page->name == "fit" ? fmt::format("a page of {:.0f} x {:.0f} mm", page->width_mm, page->height_mm)
+                                        : page->name));
   }
 }
 
 Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
-  if (!verb.print_size.empty()) { SCUMBLE_ASSIGN(verb.size, PrintedSize(verb.print_size, verb.dpi)); }
+  if (!verb.print_size.empty()) {
+    SCUMBLE_ASSIGN(verb.size, PrintedSize(verb.print_size, verb.dpi));
+  }
   SCUMBLE_ASSIGN(const KitOptions options, ReadKitOptions(verb));
   std::optional<PrintPage> page;
   // A large sphere takes a while to render: what does not fit the paper is said before.
-  if (options.pdf) { SCUMBLE_ASSIGN(page, PlacePage(options.page, verb.size, verb.dpi)); }
+  if (options.pdf) {
+    SCUMBLE_ASSIGN(page, PlacePage(options.page, verb.size, verb.dpi));
+  }
   std::vector<std::string> texts = verb.lights;
   if (texts.empty()) texts = {KeyLightText()};
   SCUMBLE_RETURN_IF_ERROR(CheckNames(verb, texts.size()));
@@ -168,12 +179,14 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->check(CLI::Range(72, 2400))
       ->capture_default_str();
   sub->add_option("--page", verb->page,
-                  "paper of the PDF, true to scale: a4, letter, a3, or fit for a page of the template's own size; auto: A4, A3 or fit, "
+                  "paper of the PDF, true to scale: a4, letter, a3, or fit for a page of the template's own size; "
+                  "auto: A4, A3 or fit, "
                   "the first that holds it")
       ->type_name("NAME")
       ->capture_default_str();
   sub->add_option("--only", verb->only,
-                  "template files to write: png for any painting program, ora in layers for Krita, GIMP and MyPaint, pdf for the "
+                  "template files to write: png for any painting program, ora in layers for Krita, GIMP and MyPaint, "
+                  "pdf for the "
                   "printer; several with commas between. Left out: all three")
       ->type_name("FORMATS")
       ->delimiter(',')
@@ -185,10 +198,11 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
              KeyLightText() + ", upper left over the shoulder. Repeat it for one template per light")
       ->type_name("AZ,EL")
       ->allow_extra_args(false);
-  sub->add_option("--name", verb->names,
-                  "what the painting for a light will be called: shade for shade.png, to be painted over "
-                  "shade-template.png; once for each --light; style.toml lists it, also one that is there already. Left "
-                  "out: lit, lit-2 and so on")
+  sub->add_option(
+         "--name", verb->names,
+         "what the painting for a light will be called: shade for shade.png, to be painted over "
+         "shade-template.png; once for each --light; style.toml lists it, also one that is there already. Left "
+         "out: lit, lit-2 and so on")
       ->type_name("NAME")
       ->allow_extra_args(false);
   sub->add_option("--layers", verb->layers,

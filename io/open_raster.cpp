@@ -25,10 +25,17 @@ std::string Escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -39,16 +46,20 @@ std::string LayerFile(std::size_t index) {
 }
 
 std::string Stack(std::span<const RasterLayer> layers, const Picture& merged, int dpi) {
-  std::string xml = "<?xml version='1.0' encoding='UTF-8'?>\n<image version=\"0.0.5\" w=\"" + std::to_string(merged.width) +
-                    "\" h=\"" + std::to_string(merged.height) + "\"";
+  // MyPaint's canvas has no end; without its frame it would save all that was painted, in steps of 64 pixels.
+  std::string xml =
+      "<?xml version='1.0' encoding='UTF-8'?>\n"
+      "<image xmlns:mypaint=\"http://mypaint.org/ns/openraster\" mypaint:frame-active=\"true\" version=\"0.0.5\" "
+      "w=\"" +
+      std::to_string(merged.width) + "\" h=\"" + std::to_string(merged.height) + "\"";
   if (dpi > 0) xml += " xres=\"" + std::to_string(dpi) + "\" yres=\"" + std::to_string(dpi) + "\"";
   xml += ">\n  <stack>\n";
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const RasterLayer& layer = layers[i];
     char opacity[16];
     std::snprintf(opacity, sizeof opacity, "%.2f", layer.opacity);
-    xml += "    <layer name=\"" + Escaped(layer.name) + "\" src=\"" + LayerFile(i) + "\" x=\"0\" y=\"0\" opacity=\"" + opacity +
-           "\" visibility=\"" + (layer.visible ? "visible" : "hidden") + "\" composite-op=\"svg:src-over\"" +
+    xml += "    <layer name=\"" + Escaped(layer.name) + "\" src=\"" + LayerFile(i) + "\" x=\"0\" y=\"0\" opacity=\"" +
+           opacity + "\" visibility=\"" + (layer.visible ? "visible" : "hidden") + "\" composite-op=\"svg:src-over\"" +
            (layer.locked ? " edit-locked=\"true\"" : "") + (layer.selected ? " selected=\"true\"" : "") + "/>\n";
   }
   return xml + "  </stack>\n</image>\n";
@@ -105,8 +116,9 @@ Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> l
 Expected<Picture> ReadMergedLayers(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(const ZipReader zip, ZipReader::Open(path));
   if (!zip.Has(kMerged)) {
-    return InputError("cannot read " + path.string() + ": it is an archive without " + kMerged +
-                      ", the picture of all its layers: expected an .ora or .kra file of a painting program; export a PNG");
+    return InputError(
+        "cannot read " + path.string() + ": it is an archive without " + kMerged +
+        ", the picture of all its layers: expected an .ora or .kra file of a painting program; export a PNG");
   }
   return ReadPng(zip, kMerged, path.string());
 }

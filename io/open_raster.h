@@ -1,4 +1,5 @@
-// OpenRaster files (.ora), pictures in layers that Krita, GIMP and MyPaint open: https://www.openraster.org, baseline 0.0.5.
+// OpenRaster files (.ora), pictures in layers that Krita, GIMP and MyPaint open: https://www.openraster.org, baseline
+// 0.0.5.
 #pragma once
 
 #include <cstddef>
@@ -23,17 +24,17 @@ struct RasterLayer {
 };
 
 // The bytes of a file with these layers, the topmost first. `merged` is what they show together: painting programs look
-// at the layers, file managers and Scumble at this. `dpi` is noted for printing; 0: none. 8 bits a channel, sRGB. The same
-// layers make the same bytes. `name` is for messages. Thread-safe.
+// at the layers, file managers and Scumble at this. `dpi` is noted for printing; 0: none. 8 bits a channel, sRGB. The
+// same layers make the same bytes. `name` is for messages. Thread-safe.
 Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> layers, const Picture& merged, int dpi,
                                                   const std::string& name);
 
-// What a file of layers shows, by the merged picture that its program put beside them: an .ora, or a .kra of Krita. Reads
-// up to 1 GiB of PNG. Thread-safe.
+// What a file of layers shows, by the merged picture that its program put beside them: an .ora, or a .kra of Krita.
+// Reads up to 1 GiB of PNG. Thread-safe.
 Expected<Picture> ReadMergedLayers(const std::filesystem::path& path);
 
-// Whether a file shows the same pictures, layer by layer, as one of EncodeOpenRaster's with these bytes would, whatever its dpi. A file that
-// cannot be read does not. Thread-safe.
+// Whether a file shows the same pictures, layer by layer, as one that EncodeOpenRaster makes of these, at whatever dpi.
+// A file that cannot be read does not. Thread-safe.
 bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> layers, const Picture& merged);
 
 }  // namespace scumble

@@ -109,7 +109,9 @@ Expected<ZipReader> ZipReader::Open(const std::filesystem::path& path) {
   return ZipReader(std::move(archive), path.string(), std::move(names));
 }
 
-bool ZipReader::Has(const std::string& name) const { return std::find(names_.begin(), names_.end(), name) != names_.end(); }
+bool ZipReader::Has(const std::string& name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
 
 Expected<std::vector<std::byte>> ZipReader::Read(const std::string& name, std::size_t limit) const {
   const std::string what = "cannot read " + name + " in " + file_ + ": ";
@@ -121,7 +123,8 @@ Expected<std::vector<std::byte>> ZipReader::Read(const std::string& name, std::s
   for (std::size_t filled = 0;;) {
     bytes.resize(std::min(filled + kStep, limit + 1));
     const zip_int64_t read = zip_fread(entry.get(), bytes.data() + filled, bytes.size() - filled);
-    if (read < 0) return InputError(what + zip_error_strerror(zip_file_get_error(entry.get())) + "; copy or save it again");
+    if (read < 0)
+      return InputError(what + zip_error_strerror(zip_file_get_error(entry.get())) + "; copy or save it again");
     filled += static_cast<std::size_t>(read);
     if (filled > limit) {
       return InputError(what + "it unpacks to more than " + std::to_string(limit) + " bytes, the most that is read");

@@ -37,8 +37,8 @@ class ZipReader {
   const std::vector<std::string>& names() const { return names_; }
   bool Has(const std::string& name) const;
 
-  // An entry's bytes, `limit` at most: what an archive says of its sizes is not believed, so a small file that unpacks to
-  // something huge is an error. So are a missing entry, a wrong checksum and encryption.
+  // An entry's bytes, `limit` at most: what an archive says of its sizes is not believed, so a small file that unpacks
+  // to something huge is an error. So are a missing entry, a wrong checksum and encryption.
   Expected<std::vector<std::byte>> Read(const std::string& name, std::size_t limit) const;
 
  private:

@@ -16,10 +16,11 @@ namespace {
 
 using Color = std::array<std::uint16_t, 3>;
 constexpr Color Rgb(int r, int g, int b) {
-  return {static_cast<std::uint16_t>(r * 257), static_cast<std::uint16_t>(g * 257), static_cast<std::uint16_t>(b * 257)};
+  return {static_cast<std::uint16_t>(r * 257), static_cast<std::uint16_t>(g * 257),
+          static_cast<std::uint16_t>(b * 257)};
 }
-constexpr Color kBlue = Rgb(30, 90, 220), kOrange = Rgb(235, 130, 20), kRed = Rgb(220, 30, 40), kGreen = Rgb(20, 140, 90),
-                kViolet = Rgb(150, 50, 190);
+constexpr Color kBlue = Rgb(30, 90, 220), kOrange = Rgb(235, 130, 20), kRed = Rgb(220, 30, 40),
+                kGreen = Rgb(20, 140, 90), kViolet = Rgb(150, 50, 190);
 
 // Thin enough to look past, thick enough to be seen when the whole template fits a screen.
 double LineWidth(int size) { return std::max(1.2, size / 450.0); }
@@ -43,11 +44,14 @@ struct Line {
   std::function<bool(glm::dvec3)> where = {};  // parts of the sphere that have the line; empty: all
 };
 
-// Draws lines on the front of the sphere. How far a pixel is from a line follows from the value there and in the pixels around.
+// Draws lines on the front of the sphere. How far a pixel is from a line follows from the value there and in the pixels
+// around.
 void DrawOnSphere(Picture& picture, int size, const std::vector<Line>& lines) {
   const int margin = TemplateMargin(size);
   const double step = 2.0 / size;
-  const auto on_sphere = [](double u, double v) { return glm::dvec3(u, v, std::sqrt(std::max(0.0, 1.0 - u * u - v * v))); };
+  const auto on_sphere = [](double u, double v) {
+    return glm::dvec3(u, v, std::sqrt(std::max(0.0, 1.0 - u * u - v * v)));
+  };
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
       const double u = (x + 0.5) * step - 1.0, v = 1.0 - (y + 0.5) * step;
@@ -59,7 +63,8 @@ void DrawOnSphere(Picture& picture, int size, const std::vector<Line>& lines) {
         const double du = line.value(on_sphere(u + step / 2, v)) - line.value(on_sphere(u - step / 2, v));
         const double dv = line.value(on_sphere(u, v + step / 2)) - line.value(on_sphere(u, v - step / 2));
         const double change = std::hypot(du, dv);  // a pixel
-        if (change > 0.0) Draw(picture, margin + x, margin + y, line.color, Covered(std::abs(value) / change, line.width));
+        if (change > 0.0)
+          Draw(picture, margin + x, margin + y, line.color, Covered(std::abs(value) / change, line.width));
       }
     }
   }
@@ -120,7 +125,8 @@ Picture DrawLightLines(int size, double azimuth, double elevation) {
 }
 
 Picture DrawContourLines(int size) {
-  constexpr double kLean = 25.0, kStep = 15.0, kLastLatitude = 75.0;  // closer to the pole longitudes would run together
+  constexpr double kLean = 25.0, kStep = 15.0,
+                   kLastLatitude = 75.0;  // closer to the pole longitudes would run together
   const double lean = glm::radians(kLean), step = glm::radians(kStep), last = glm::radians(kLastLatitude);
   const glm::dvec3 pole(0, std::cos(lean), std::sin(lean)), front(0, -std::sin(lean), std::cos(lean));
   const auto latitude = [=](glm::dvec3 n) { return std::asin(std::clamp(glm::dot(n, pole), -1.0, 1.0)); };

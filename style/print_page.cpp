@@ -37,7 +37,8 @@ int TemplateSide(int size) { return size + 2 * TemplateMargin(size); }
 
 PrintPage Place(const std::string& name, double width_mm, double height_mm, int side, int dpi) {
   const double width = width_mm / kMmPerInch * dpi, top = kPageEdgeMm / kMmPerInch * dpi;
-  return {name, width_mm, height_mm, static_cast<int>(std::lround((width - side) / 2)), static_cast<int>(std::lround(top))};
+  return {name, width_mm, height_mm, static_cast<int>(std::lround((width - side) / 2)),
+          static_cast<int>(std::lround(top))};
 }
 
 // Width and height that the paper leaves for the template.
@@ -79,10 +80,11 @@ Expected<PrintPage> PlacePage(PaperSize wanted, int size, int dpi) {
     if (wanted == PaperSize::kAuto) continue;
     const int largest = LargestSphere(Room(paper), dpi);
     return UsageError("a sphere of " + Short(MillimetresOf(size, dpi)) + " mm with its margin is " + Short(side) +
-                      " mm wide, and " + paper.name + " paper (" + Short(paper.width_mm) + " × " + Short(paper.height_mm) +
-                      " mm) has room for " + Short(Room(paper)) + " mm: the largest sphere on it is " +
-                      Short(std::floor(10 * MillimetresOf(largest, dpi)) / 10) + " mm, --size " + std::to_string(largest) + " at " +
-                      std::to_string(dpi) + " dpi; or take a larger --page, or --page fit");
+                      " mm wide, and " + paper.name + " paper (" + Short(paper.width_mm) + " × " +
+                      Short(paper.height_mm) + " mm) has room for " + Short(Room(paper)) +
+                      " mm: the largest sphere on it is " + Short(std::floor(10 * MillimetresOf(largest, dpi)) / 10) +
+                      " mm, --size " + std::to_string(largest) + " at " + std::to_string(dpi) +
+                      " dpi; or take a larger --page, or --page fit");
   }
   return Fitting(size, dpi);
 }

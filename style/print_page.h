@@ -18,8 +18,8 @@ enum class PaperSize {
 struct PrintPage {
   std::string name;  // "A4"; "fit" for one of the template's own size
   double width_mm = 0, height_mm = 0;
-  // The template's upper left corner from the page's, in the template's pixels: whole ones, so that the page rasterised at
-  // its resolution shows the template's very pixels.
+  // The template's upper left corner from the page's, in the template's pixels: whole ones, so that the page rasterised
+  // at its resolution shows the template's very pixels.
   int left = 0, top = 0;
 };
 
@@ -30,8 +30,8 @@ inline constexpr double kWordsMm = 62.0;
 
 inline double MillimetresOf(double pixels, int dpi) { return pixels * 25.4 / dpi; }
 
-// Places the template of a sphere `size` pixels across, printed at `dpi` pixels an inch. A template that the paper cannot hold
-// is kUsage, and the message says the largest sphere that it can; so is one that no PDF can hold.
+// Places the template of a sphere `size` pixels across, printed at `dpi` pixels an inch. A template that the paper
+// cannot hold is kUsage, and the message says the largest sphere that it can; so is one that no PDF can hold.
 Expected<PrintPage> PlacePage(PaperSize paper, int size, int dpi);
 
 // "a4", "letter", "a3", "fit", "auto".

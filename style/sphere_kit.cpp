@@ -1,7 +1,9 @@
 #include "style/sphere_kit.h"
 
 #include <algorithm>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "image/check.h"
 #include "image/style.h"
@@ -30,8 +32,6 @@ std::string TemplateName(const KitLight& light, std::size_t index, const std::st
 std::string GuidesName(const KitLight& light, std::size_t index) {
   return light.name.empty() ? Numbered("guides", ".exr", index) : light.name + "-guides.exr";
 }
-
-std::string TemplateStem(const KitLight& light, std::size_t index) { return TemplateName(light, index, ""); }
 
 // Names under which a painting may stand in style.toml.
 std::vector<std::string> PaintingNames(const KitLight& light, std::size_t index) {
@@ -64,46 +64,74 @@ std::string StarterStyle(const std::vector<KitLight>& lights) {
   return text;
 }
 
-std::string Howto(const std::vector<KitLight>& lights, const KitOptions& options) {
-  const KitLight& first = lights.front();
-  const std::string painting = PaintingName(first, 0);
-  std::string text = "PAINT YOUR OWN STYLE\n\nThe sphere's light comes from " + PlaceInWords(first) + " (" + AnglesInWords(first) +
-                     ":\nazimuth to the right of the viewer, elevation above the horizon).\n";
-  if (options.png) {
-    text += "\n" + TemplateName(first, 0) + " is for any painting program\n"
-            "  1. Paint over the sphere. Do not move, scale or crop the picture.\n"
-            "  2. Export it at the same size as " + painting + " into this folder.\n";
+// A text with its "$PAINTING" and the like replaced by what they stand for; no name of a light holds a "$".
+using Words = std::vector<std::pair<std::string_view, std::string>>;
+std::string Filled(std::string text, const Words& words) {
+  for (const auto& [word, meaning] : words) {
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += meaning.size()) {
+      text.replace(at, word.size(), meaning);
+    }
   }
-  if (options.ora) {
-    const std::string ora = TemplateName(first, 0, ".ora");
-    text += "\n" + ora + " is for Krita, GIMP and MyPaint, in layers\n"
-            "  1. Paint on the layer 'paint here', or on as many of your own as you like, under the marks. The layers called\n"
-            "     'guide' show the sphere's edge, where its light ends, contours to lay strokes along, five tones, normals:\n"
-            "     switch them on when you need them, and off again before you save.\n"
-            "  2. Export it as " + painting + " into this folder; or save it as it is, and write image = \"" + ora + "\"\n"
-            "     into style.toml.\n";
-  }
-  if (options.pdf) {
-    text += "\n" + TemplateName(first, 0, ".pdf") + " is for paint on paper\n"
-            "  1. Print it at 100%, on the paper that you like to paint on. Leave the black marks and the white around them free.\n"
-            "  2. Scan the whole page at " + std::to_string(std::max(300, options.dpi)) + " dpi or more, all marks in sight, or photograph it in even light.\n"
-            "  3. scumble sphere --rectify scan.jpg -o " + painting + "   in this folder.\n";
-  }
-  text += "\nThen\n"
-          "  scumble styles check THIS_FOLDER\n"
-          "  scumble stylize scene.glb --style THIS_FOLDER -o picture.png\n"
-          "and tune style.toml: threshold, scale, blend_radius, paper.\n\n"
-          "Let strokes run over the sphere's edge; what lies outside it is never shown. What helps: the whole range from\n"
-          "highlight to reflected light; strokes with a direction; irregular, lively texture. What hurts: a regular pattern (it\n"
-          "tears where patches meet), bare template showing through.\n";
-  for (std::size_t i = 1; i < lights.size(); ++i) {
-    text += "\n" + TemplateStem(lights[i], i) + " is the same sphere in another light: " + AnglesInWords(lights[i]) +
-            ", from " + PlaceInWords(lights[i]) +
-            ".\nPaint it too, for " + PaintingName(lights[i], i) + ", or take its [[exemplar]] out of style.toml.\n";
-  }
-  text += "\nAnother light later:   scumble sphere --size " + std::to_string(first.guides.width()) +
-          " --light AZ,EL --name shade -o THIS_FOLDER\n";
   return text;
+}
+
+constexpr const char* kHowtoHead = R"(PAINT YOUR OWN STYLE
+
+The sphere's light comes from $PLACE ($ANGLES:
+azimuth to the right of the viewer, elevation above the horizon).
+)";
+constexpr const char* kHowtoPng = R"(
+$TEMPLATE.png is for any painting program
+  1. Paint over the sphere. Do not move, scale or crop the picture.
+  2. Export it at the same size as $PAINTING into this folder.
+)";
+constexpr const char* kHowtoOra = R"(
+$TEMPLATE.ora is for Krita, GIMP and MyPaint, in layers
+  1. Paint on the layer "paint here", or on as many of your own as you like, under the marks. The layers called
+     "guide" can be switched on: the sphere's edge; light, with the highlight red, equal light orange, and blue where
+     light turns into shade; contours to lay strokes along; five tones; normals. Switch them off before you save.
+  2. Export it as $PAINTING into this folder; or save it as it is, and write image = "$TEMPLATE.ora" into style.toml.
+)";
+constexpr const char* kHowtoPdf = R"(
+$TEMPLATE.pdf is for paint on paper
+  1. Print it at 100%, on paper that you like to paint on. Leave the black marks and the white around them free.
+  2. Scan the whole page at $DPI dpi or more, all marks in sight, or photograph it in even light.
+  3. In this folder:   scumble sphere --rectify scan.jpg -o $PAINTING
+)";
+constexpr const char* kHowtoEnd = R"(
+Then
+  scumble styles check THIS_FOLDER
+  scumble stylize scene.glb --style THIS_FOLDER -o picture.png
+and tune style.toml: threshold, scale, blend_radius, paper.
+
+Let strokes run over the sphere's edge; what lies outside it is never shown. What helps: the whole range from
+highlight to reflected light; strokes with a direction; irregular, lively texture. What hurts: a regular pattern (it
+tears where patches meet), bare template showing through.
+)";
+constexpr const char* kHowtoOtherLight = R"(
+$TEMPLATE is the same sphere in another light: $ANGLES, from $PLACE.
+Paint it too, for $PAINTING, or take its [[exemplar]] out of style.toml.
+)";
+constexpr const char* kHowtoLater = R"(
+Another light later:   scumble sphere --size $SIZE --light AZ,EL --name shade -o THIS_FOLDER
+)";
+
+std::string Howto(const std::vector<KitLight>& lights, const KitOptions& options) {
+  const auto words = [&](std::size_t i) {
+    return Words{{"$PLACE", PlaceInWords(lights[i])},
+                 {"$ANGLES", AnglesInWords(lights[i])},
+                 {"$DPI", std::to_string(std::max(300, options.dpi))},
+                 {"$SIZE", std::to_string(lights[i].guides.width())},
+                 {"$TEMPLATE", TemplateName(lights[i], i, "")},
+                 {"$PAINTING", PaintingName(lights[i], i)}};
+  };
+  std::string text = kHowtoHead;
+  if (options.png) text += kHowtoPng;
+  if (options.ora) text += kHowtoOra;
+  if (options.pdf) text += kHowtoPdf;
+  text = Filled(text + kHowtoEnd, words(0));
+  for (std::size_t i = 1; i < lights.size(); ++i) text += Filled(kHowtoOtherLight, words(i));
+  return text + Filled(kHowtoLater, words(0));
 }
 
 bool SameIn8Bits(const Picture& file, const Picture& drawn) {
@@ -113,7 +141,8 @@ bool SameIn8Bits(const Picture& file, const Picture& drawn) {
 }
 
 Error MayBePainting(const fs::path& path) {
-  return OutputError(path.string() + " is there already and differs from the template of this size and light: it may be "
+  return OutputError(path.string() +
+                     " is there already and differs from the template of this size and light: it may be "
                      "a painting. Move it away, give this light a --name of its own, or write to another folder");
 }
 
@@ -140,13 +169,14 @@ Status RefuseOtherGuides(const fs::path& folder, const KitLight& light, std::siz
     const auto old = InspectGuides(guides);
     if (!old || (old->width == size && old->height == size)) continue;
     return OutputError(guides.string() + " is of " + std::to_string(old->width) + "² pixels and belongs to " +
-                       painting.string() + ": take --size " + std::to_string(old->width) + ", or write to another folder");
+                       painting.string() + ": take --size " + std::to_string(old->width) +
+                       ", or write to another folder");
   }
   return Ok();
 }
 
-// The layers from the top down, marks over paint over the lit sphere. Guides that are lines lie over the paint, so that they can be
-// seen on it; those that cover the sphere lie under it. All but the layer to paint on are locked.
+// The layers from the top down, marks over paint over the lit sphere. Guides that are lines lie over the paint, so that
+// they can be seen on it; those that cover the sphere lie under it. All but the layer to paint on are locked.
 Expected<std::vector<RasterLayer>> TemplateLayers(const KitLight& light) {
   const int size = light.guides.width(), side = size + 2 * TemplateMargin(size);
   std::vector<RasterLayer> layers;
@@ -157,11 +187,10 @@ Expected<std::vector<RasterLayer>> TemplateLayers(const KitLight& light) {
     return Ok();
   };
   constexpr bool kShown = true, kHidden = false;
-  SCUMBLE_RETURN_IF_ERROR(add("marks: leave them on", 1.0, kShown, DrawMarks(size)));
-  SCUMBLE_RETURN_IF_ERROR(add("guide: edge of the sphere", 0.8, kHidden, DrawEdgeLine(size)));
-  SCUMBLE_RETURN_IF_ERROR(add("guide: light - highlight red, equal light orange, terminator blue", 0.8, kHidden,
-                              DrawLightLines(size, light.azimuth, light.elevation)));
-  SCUMBLE_RETURN_IF_ERROR(add("guide: contours for strokes", 0.6, kHidden, DrawContourLines(size)));
+  SCUMBLE_RETURN_IF_ERROR(add("marks", 1.0, kShown, DrawMarks(size)));
+  SCUMBLE_RETURN_IF_ERROR(add("guide: edge", 0.8, kHidden, DrawEdgeLine(size)));
+  SCUMBLE_RETURN_IF_ERROR(add("guide: light", 0.8, kHidden, DrawLightLines(size, light.azimuth, light.elevation)));
+  SCUMBLE_RETURN_IF_ERROR(add("guide: contours", 0.6, kHidden, DrawContourLines(size)));
   SCUMBLE_RETURN_IF_ERROR(add("paint here", 1.0, kShown, Picture(side, side)));
   layers.back().locked = false, layers.back().selected = true;
   SCUMBLE_RETURN_IF_ERROR(add("guide: five tones", 1.0, kHidden, DrawFiveTones(light)));
@@ -192,7 +221,8 @@ Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::v
   }
   if (text == old) return std::optional<std::string>();
   int exemplars = 0;
-  for (std::size_t at = text.find("\n[[exemplar]]"); at != std::string::npos; at = text.find("\n[[exemplar]]", at + 1)) ++exemplars;
+  for (std::size_t at = text.find("\n[[exemplar]]"); at != std::string::npos; at = text.find("\n[[exemplar]]", at + 1))
+    ++exemplars;
   exemplars += text.rfind("[[exemplar]]", 0) == 0;
   if (exemplars > kMaxExemplars) {
     return OutputError(path.string() + " would list " + std::to_string(exemplars) + " lights: a style takes up to " +
@@ -228,7 +258,8 @@ Status MakeTemplate(const fs::path& folder, const KitLight& light, std::size_t i
     if (Exists(path)) {
       const auto old = ReadWholeFile(path);
       if (!old || !IsTemplatePdf(*old)) {
-        return OutputError(path.string() + " is there already and another program has written to it: move it away, or write "
+        return OutputError(path.string() +
+                           " is there already and another program has written to it: move it away, or write "
                            "to another folder");
       }
     }
@@ -241,7 +272,8 @@ Status MakeTemplate(const fs::path& folder, const KitLight& light, std::size_t i
 
 }  // namespace
 
-Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vector<KitLight> lights, const KitOptions& options) {
+Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vector<KitLight> lights,
+                                               const KitOptions& options) {
   SCUMBLE_CHECK(!lights.empty());
   std::error_code made;
   fs::create_directories(folder, made);

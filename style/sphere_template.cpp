@@ -52,8 +52,8 @@ std::vector<TemplateMark> Crosses(int size) {
   return marks;
 }
 
-// The size of the sphere whose template has so many pixels a side, or nothing. size + 2 · margin(size) grows with the size, so
-// that one fits at most.
+// The size of the sphere whose template has so many pixels a side, or nothing. size + 2 · margin(size) grows with the
+// size, so that one fits at most.
 std::optional<int> SizeOfTemplate(int side) {
   int size = side * 4 / 5 - 8;
   while (size + 2 * TemplateMargin(size) < side) ++size;

@@ -13,9 +13,9 @@ namespace scumble {
 
 // One lighting condition: the sphere's guides with the luminance layer of that light.
 struct KitLight {
-  double azimuth = 0;    // degrees, from +Z towards +X
-  double elevation = 0;  // degrees
-  GuideSet guides;       // N × N, the sphere fills it; needs luminance
+  double azimuth = 0;     // degrees, from +Z towards +X
+  double elevation = 0;   // degrees
+  GuideSet guides;        // N × N, the sphere fills it; needs luminance
   std::string name = {};  // of its painting, "shade" for shade.png; empty: lit, and lit-2, lit-3 … for further ones
 };
 
@@ -32,16 +32,17 @@ std::optional<int> SphereMargin(const GuideSet& guides);
 // The attribute that it is recorded in.
 inline constexpr const char* kMarginAttribute = "scumble:sphereMargin";
 
-// The plain marks of the margin besides the fiducials (style/fiducials.h), in pixels of the template: ticks where the square's sides begin, and crosses
-// in the corners of a template that is too small for fiducials. Pixels [x0, x1) × [y0, y1).
+// The plain marks of the margin besides the fiducials (style/fiducials.h), in pixels of the template: ticks where the
+// square's sides begin, and crosses in the corners of a template that is too small for fiducials. Pixels [x0, x1) ×
+// [y0, y1).
 struct TemplateMark {
   int x0, y0, x1, y1;
   std::uint16_t grey;  // sRGB-encoded
 };
 std::vector<TemplateMark> PlainMarks(int size);
 
-// The parts of the template, each of its whole size and transparent where it shows nothing: the lit sphere, opaque up to
-// the last pixel of its edge, which is mixed with white paper; and the marks.
+// The parts of the template, each of its whole size and transparent where it shows nothing: the lit sphere, opaque up
+// to the last pixel of its edge, which is mixed with white paper; and the marks.
 Picture DrawLitSphere(const KitLight& light);
 Picture DrawMarks(int size);
 
@@ -49,8 +50,8 @@ Picture DrawMarks(int size);
 Picture DrawTemplate(const KitLight& light);
 
 // Whether a picture still shows the template's marks, margin included: most of its fiducials, or the four crosses of
-// small templates and of those that were drawn before there were fiducials. Templates of spheres smaller than 63 pixels are not
-// recognised.
+// small templates and of those that were drawn before there were fiducials. Templates of spheres smaller than 63 pixels
+// are not recognised.
 bool LooksLikeTemplate(const Picture& picture);
 
 // The template with crosses instead of fiducials, as it once was: nobody painted on one that still looks so.

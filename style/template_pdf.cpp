@@ -67,8 +67,8 @@ void DrawPaleSphere(HPDF_Doc document, const Sheet& sheet, const KitLight& light
                                                     static_cast<HPDF_UINT>(size), HPDF_CS_DEVICE_GRAY, 8);
   // A hair smaller than its place: readers paint all pixels that a picture touches, and edges are never exactly theirs.
   constexpr double kHair = 0.02;
-  HPDF_Page_DrawImage(sheet.page(), image, sheet.X(margin + kHair), sheet.Y(margin + size - kHair), sheet.Length(size - 2 * kHair),
-                      sheet.Length(size - 2 * kHair));
+  HPDF_Page_DrawImage(sheet.page(), image, sheet.X(margin + kHair), sheet.Y(margin + size - kHair),
+                      sheet.Length(size - 2 * kHair), sheet.Length(size - 2 * kHair));
   // Where the light falls the sphere is as white as the paper.
   constexpr double kLineMm = 0.2, kLineGrey = 0.72;
   HPDF_Page_SetGrayStroke(sheet.page(), Real(kLineGrey));
@@ -89,7 +89,8 @@ void DrawPrintedMarks(const Sheet& sheet, int size) {
       for (int column = 0; column < kFiducialModules;) {
         int end = column;
         while (end < kFiducialModules && FiducialIsBlack(mark.id, end, row)) ++end;
-        if (end > column) sheet.Box(left + column * module, top + row * module, left + end * module, top + (row + 1) * module, 0);
+        if (end > column)
+          sheet.Box(left + column * module, top + row * module, left + end * module, top + (row + 1) * module, 0);
         column = end + 1;
       }
     }
@@ -117,15 +118,17 @@ std::string WesternLetters(const std::string& utf8) {
 std::vector<std::string> Words(const KitLight& light, int dpi, const std::string& painting) {
   char size_text[160];
   const double across = MillimetresOf(light.guides.width(), dpi);
-  std::snprintf(size_text, sizeof size_text, "The sphere is %.1f mm (%.2f in) across: %d pixels at %d dpi.", across, across / 25.4,
-                light.guides.width(), dpi);
-  return {"The light comes from " + PlaceInWords(light) + ": " + AnglesInWords(light) + ".",
-          std::string(size_text),
-          "1. Print at 100% (\"actual size\", not fitted to the page). The line below is 50 mm long: measure it.",
-          "2. Paint over the sphere, past its edge all round. Keep the black marks and the white around them free of paint.",
-          "3. When it is dry, scan the whole page, all marks in sight, at " + std::to_string(std::max(300, dpi)) +
-              " dpi or more. Or photograph it in even light.",
-          "4. scumble sphere --rectify scan.jpg -o " + painting + "   makes the painting for style.toml out of the scan."};
+  std::snprintf(size_text, sizeof size_text, "The sphere is %.1f mm (%.2f in) across: %d pixels at %d dpi.", across,
+                across / 25.4, light.guides.width(), dpi);
+  return {
+      "The light comes from " + PlaceInWords(light) + ": " + AnglesInWords(light) + ".",
+      std::string(size_text),
+      "1. Print at 100% (\"actual size\", not fitted to the page). The line below is 50 mm long: measure it.",
+      "2. Paint over the sphere, past its edge all round. Keep the black marks and the white around them free of "
+      "paint.",
+      "3. When it is dry, scan the whole page, all marks in sight, at " + std::to_string(std::max(300, dpi)) +
+          " dpi or more. Or photograph it in even light.",
+      "4. scumble sphere --rectify scan.jpg -o " + painting + "   makes the painting for style.toml out of the scan."};
 }
 
 void DrawScaleBar(const Sheet& sheet, double left, double top, double pixels_per_mm) {
@@ -199,7 +202,8 @@ bool IsTemplatePdf(std::span<const std::byte> bytes) {
   const std::size_t end = text.find("%%EOF");
   // A program that writes the file anew leaves its own name in it; one that adds to it, a second end.
   return text.substr(0, 5) == "%PDF-" && text.find(std::string("(") + kCreator + ")") != std::string_view::npos &&
-         text.find("(Haru Free PDF Library") != std::string_view::npos && end != std::string_view::npos && text.size() - end < 8;
+         text.find("(Haru Free PDF Library") != std::string_view::npos && end != std::string_view::npos &&
+         text.size() - end < 8;
 }
 
 }  // namespace scumble

@@ -20,13 +20,15 @@ class CliSphere : public CliTest {
 
 TEST_F(CliSphere, SaysWhatEachFileIsFor) {
   const CommandResult kit = RunOk({"sphere", "--size", "128", "-o", "kit"});
-  EXPECT_EQ(kit.out, "kit/template.png\nkit/template.ora\nkit/template.pdf\nkit/guides.exr\nkit/style.toml\nkit/HOWTO.txt\n");
-  for (const char* part : {"template.ora (layers: Krita, GIMP, MyPaint) or template.png", "save it as lit.png", "template.pdf at 100%",
-                           "a sphere of 10.8 mm on A4"}) {
+  EXPECT_EQ(kit.out,
+            "kit/template.png\nkit/template.ora\nkit/template.pdf\nkit/guides.exr\nkit/style.toml\nkit/HOWTO.txt\n");
+  for (const char* part : {"template.ora (layers: Krita, GIMP, MyPaint) or template.png", "save it as lit.png",
+                           "template.pdf at 100%", "a sphere of 10.8 mm on A4"}) {
     EXPECT_NE(kit.err.find(part), std::string::npos) << part << "\n" << kit.err;
   }
   const std::string howto = Bytes("kit/HOWTO.txt");
-  for (const char* part : {"any painting program", "Krita, GIMP and MyPaint", "300 dpi or more", "--rectify", "the upper left", "--size 128"}) {
+  for (const char* part : {"any painting program", "Krita, GIMP and MyPaint", "300 dpi or more", "--rectify",
+                           "the upper left", "--size 128"}) {
     EXPECT_NE(howto.find(part), std::string::npos) << part << "\n" << howto;
   }
 }
@@ -50,7 +52,8 @@ TEST_F(CliSphere, SizeOnPaper) {
   refused({"--page", "a5"}, {"--page a5", "a4, letter, a3 or fit"});
   refused({"--only", "jpg"}, {"--only jpg", "png, ora or pdf"});
   refused({"--print-size", "200mm", "--page", "a4"},
-          {"a sphere of 200 mm with its margin is 250", "A4 paper (210 × 297 mm)", "the largest sphere on it is 155.", "--page fit"});
+          {"a sphere of 200 mm with its margin is 250", "A4 paper (210 × 297 mm)", "the largest sphere on it is 155.",
+           "--page fit"});
 }
 
 TEST_F(CliSphere, PagesByName) {

@@ -41,8 +41,8 @@ Hue HueOf(const std::uint16_t* pixel) {
 }
 
 // Every point well inside the disc has its pixel drawn, and every drawn pixel of that colour is near a point.
-void ExpectDrawn(const Picture& picture, const std::vector<Point>& points, const std::function<bool(const std::uint16_t*)>& is_line,
-                 double width) {
+void ExpectDrawn(const Picture& picture, const std::vector<Point>& points,
+                 const std::function<bool(const std::uint16_t*)>& is_line, double width) {
   const double centre = picture.width / 2.0;
   for (const Point& point : points) {
     if (std::hypot(point.x - centre, point.y - centre) > 0.95 * kSize / 2) continue;  // lines run together at the rim
@@ -51,7 +51,8 @@ void ExpectDrawn(const Picture& picture, const std::vector<Point>& points, const
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const std::uint16_t* pixel = picture.At(x, y);
-      if (pixel[3] < 6000 || !is_line(pixel) || std::hypot(x + 0.5 - centre, y + 0.5 - centre) > 0.95 * kSize / 2) continue;
+      if (pixel[3] < 6000 || !is_line(pixel) || std::hypot(x + 0.5 - centre, y + 0.5 - centre) > 0.95 * kSize / 2)
+        continue;
       EXPECT_LT(Nearest(points, x + 0.5, y + 0.5), width / 2 + 0.9) << x << ", " << y;
     }
   }
@@ -59,7 +60,8 @@ void ExpectDrawn(const Picture& picture, const std::vector<Point>& points, const
 
 // Points of the circle on the sphere that lies `degrees` from a pole, those on the front.
 std::vector<Point> Circle(glm::dvec3 pole, double degrees) {
-  const glm::dvec3 aside = glm::normalize(glm::cross(pole, std::abs(pole.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+  const glm::dvec3 aside =
+      glm::normalize(glm::cross(pole, std::abs(pole.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
   const glm::dvec3 across = glm::cross(pole, aside);
   const double c = std::cos(glm::radians(degrees)), s = std::sin(glm::radians(degrees));
   std::vector<Point> points;
@@ -75,7 +77,9 @@ std::vector<Point> Circle(glm::dvec3 pole, double degrees) {
 TEST(GuideLayers, TheTerminatorIsWhereLightEnds) {
   for (const auto& [azimuth, elevation] : {std::pair{-40.0, 40.0}, {120.0, -10.0}, {90.0, 0.0}, {10.0, 80.0}}) {
     const Picture picture = DrawLightLines(kSize, azimuth, elevation);
-    ExpectDrawn(picture, Circle(DirectionFromAngles(azimuth, elevation), 90), [](auto* p) { return HueOf(p) == Hue::kBlue; }, 2.4);
+    ExpectDrawn(
+        picture, Circle(DirectionFromAngles(azimuth, elevation), 90), [](auto* p) { return HueOf(p) == Hue::kBlue; },
+        2.4);
   }
 }
 
@@ -84,7 +88,8 @@ TEST(GuideLayers, TheRingIsAroundTheHighlight) {
   const glm::dvec3 mirror = glm::normalize(light + glm::dvec3(0, 0, 1));
   // A polished ball shows the lamp where the view is thrown back to it.
   EXPECT_NEAR(glm::distance(2 * mirror.z * mirror - glm::dvec3(0, 0, 1), light), 0, 1e-12);
-  ExpectDrawn(DrawLightLines(kSize, -40, 40), Circle(mirror, 6), [](auto* p) { return HueOf(p) == Hue::kRed; }, 1.8);
+  ExpectDrawn(
+      DrawLightLines(kSize, -40, 40), Circle(mirror, 6), [](auto* p) { return HueOf(p) == Hue::kRed; }, 1.8);
 }
 
 TEST(GuideLayers, EqualLightIsAtItsAngles) {
@@ -93,13 +98,16 @@ TEST(GuideLayers, EqualLightIsAtItsAngles) {
     const auto circle = Circle(DirectionFromAngles(-40, 40), glm::degrees(std::acos(level)));
     points.insert(points.end(), circle.begin(), circle.end());
   }
-  ExpectDrawn(DrawLightLines(kSize, -40, 40), points, [](auto* p) { return HueOf(p) == Hue::kOther; }, 1.2);
+  ExpectDrawn(
+      DrawLightLines(kSize, -40, 40), points, [](auto* p) { return HueOf(p) == Hue::kOther; }, 1.2);
 }
 
 TEST(GuideLayers, ALampBehindHasNoHighlight) {
   const Picture picture = DrawLightLines(kSize, 180, 0);
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-    if (picture.rgba[i + 3] > 0) { EXPECT_NE(HueOf(&picture.rgba[i]), Hue::kRed); }
+    if (picture.rgba[i + 3] > 0) {
+      EXPECT_NE(HueOf(&picture.rgba[i]), Hue::kRed);
+    }
   }
 }
 
@@ -108,7 +116,8 @@ TEST(GuideLayers, ContoursAreAGlobes) {
   const glm::dvec3 pole(0, std::cos(lean), std::sin(lean)), front(0, -std::sin(lean), std::cos(lean)), right(1, 0, 0);
   std::vector<Point> points;
   const auto add = [&](double latitude, double longitude) {
-    const glm::dvec3 n = std::sin(latitude) * pole + std::cos(latitude) * (std::cos(longitude) * front + std::sin(longitude) * right);
+    const glm::dvec3 n =
+        std::sin(latitude) * pole + std::cos(latitude) * (std::cos(longitude) * front + std::sin(longitude) * right);
     if (n.z > 0) points.push_back(OnTemplate(n));
   };
   for (int line = -12; line <= 12; ++line) {
@@ -117,7 +126,8 @@ TEST(GuideLayers, ContoursAreAGlobes) {
       add(i / 1000.0 * 5 * step, line * step);
     }
   }
-  ExpectDrawn(DrawContourLines(kSize), points, [](auto*) { return true; }, 1.2);
+  ExpectDrawn(
+      DrawContourLines(kSize), points, [](auto*) { return true; }, 1.2);
 }
 
 TEST(GuideLayers, TheEdgeIsTheDisc) {
@@ -125,8 +135,12 @@ TEST(GuideLayers, TheEdgeIsTheDisc) {
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       const double from_edge = std::hypot(x + 0.5 - picture.width / 2.0, y + 0.5 - picture.width / 2.0) - kSize / 2.0;
-      if (std::abs(from_edge) < 0.1) { EXPECT_EQ(picture.At(x, y)[3], 65535); }
-      if (std::abs(from_edge) > 1.1) { EXPECT_EQ(picture.At(x, y)[3], 0); }
+      if (std::abs(from_edge) < 0.1) {
+        EXPECT_EQ(picture.At(x, y)[3], 65535);
+      }
+      if (std::abs(from_edge) > 1.1) {
+        EXPECT_EQ(picture.At(x, y)[3], 0);
+      }
     }
   }
 }
@@ -147,7 +161,8 @@ TEST(GuideLayers, FiveTonesKeepTheOrderOfLight) {
   for (std::size_t i = 1; i < pairs.size(); ++i) ASSERT_LE(pairs[i - 1].second, pairs[i].second);
   // Equal steps to the eye: in the encoding, not in light.
   const std::vector<int> sorted(greys.begin(), greys.end());
-  for (int i = 1; i < 5; ++i) EXPECT_NEAR(sorted[i] - sorted[i - 1], (pairs.back().first - pairs.front().first) / 5.0, 2);
+  for (int i = 1; i < 5; ++i)
+    EXPECT_NEAR(sorted[i] - sorted[i - 1], (pairs.back().first - pairs.front().first) / 5.0, 2);
 }
 
 TEST(GuideLayers, NormalsAreTheGuides) {
@@ -160,7 +175,8 @@ TEST(GuideLayers, NormalsAreTheGuides) {
       const std::uint16_t* pixel = picture.At(margin + x, margin + y);
       ASSERT_EQ(pixel[3] > 0, light.guides.Plane(Layer::kCoverage)[i] > 0);
       if (pixel[3] == 0) continue;
-      for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c] / 65535.0 * 2 - 1, light.guides.Vec3(Layer::kNormal, i)[c], 1e-4);
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(pixel[c] / 65535.0 * 2 - 1, light.guides.Vec3(Layer::kNormal, i)[c], 1e-4);
     }
   }
 }

@@ -12,7 +12,8 @@
 namespace scumble {
 namespace {
 
-constexpr PaperSize kEverySize[] = {PaperSize::kAuto, PaperSize::kA4, PaperSize::kLetter, PaperSize::kA3, PaperSize::kFit};
+constexpr PaperSize kEverySize[] = {PaperSize::kAuto, PaperSize::kA4, PaperSize::kLetter, PaperSize::kA3,
+                                    PaperSize::kFit};
 
 TEST(PrintPage, TheTemplateAndItsWordsAreOnThePage) {
   for (const PaperSize paper : kEverySize) {
@@ -21,7 +22,8 @@ TEST(PrintPage, TheTemplateAndItsWordsAreOnThePage) {
         const auto page = PlacePage(paper, size, dpi);
         if (!page) continue;
         const double side = size + 2 * TemplateMargin(size), pixel = 25.4 / dpi;
-        const double right = page->width_mm - (page->left + side) * pixel, below = page->height_mm - (page->top + side) * pixel;
+        const double right = page->width_mm - (page->left + side) * pixel,
+                     below = page->height_mm - (page->top + side) * pixel;
         // To a pixel: the corner is a whole one.
         EXPECT_GE(page->left * pixel, kPageEdgeMm - pixel);
         EXPECT_GE(right, kPageEdgeMm - pixel);

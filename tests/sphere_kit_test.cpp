@@ -122,8 +122,8 @@ TEST(SphereKit, FurtherLightsGetFilesOfTheirOwn) {
       WriteSphereKit(folder.path(), {KitLight{-45, 35, SphereGuides(16)}, KitLight{60, 10, SphereGuides(16)}});
   ASSERT_TRUE(written) << written.error().message;
   EXPECT_EQ(folder.List(), (std::vector<std::string>{"HOWTO.txt", "guides-2.exr", "guides.exr", "style.toml",
-                                                     "template-2.ora", "template-2.pdf", "template-2.png", "template.ora",
-                                                     "template.pdf", "template.png"}));
+                                                     "template-2.ora", "template-2.pdf", "template-2.png",
+                                                     "template.ora", "template.pdf", "template.png"}));
   const auto howto = ReadWholeFile(folder / "HOWTO.txt");
   ASSERT_TRUE(howto);
   const std::string text(reinterpret_cast<const char*>(howto->data()), howto->size());
@@ -260,7 +260,8 @@ TEST(SphereKit, APaintingInLayersIsAnExemplar) {
   fs::copy_file(folder / "template.png", folder / "lit.png");
   fs::copy_file(folder / "template.ora", folder / "lit-2.ora");
   ASSERT_TRUE(WriteFileAtomically(folder / "other.toml", "[[exemplar]]\nimage = 'lit-2.png'\n"));
-  ExpectRefusal(LoadStyle(folder / "other.toml"), ErrorKind::kInput, {"lit-2.png is not there", "image = \"lit-2.ora\"", "other.toml"});
+  ExpectRefusal(LoadStyle(folder / "other.toml"), ErrorKind::kInput,
+                {"lit-2.png is not there", "image = \"lit-2.ora\"", "other.toml"});
   text.replace(text.find("template.ora\""), 12, "lit.png");
   ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", text));
   const auto flat = LoadStyle(folder.path());
@@ -278,7 +279,8 @@ TEST(SphereKit, ALightThatIsListedByItsLayersIsNotListedTwice) {
 }
 
 TEST(SphereKit, OnlyWhatIsAskedForIsWritten) {
-  for (const auto& [png, ora, pdf] : {std::tuple{true, false, false}, {false, true, false}, {false, false, true}, {true, true, false}}) {
+  for (const auto& [png, ora, pdf] :
+       {std::tuple{true, false, false}, {false, true, false}, {false, false, true}, {true, true, false}}) {
     const TemporaryFolder folder;
     KitOptions options;
     options.png = png, options.ora = ora, options.pdf = pdf;
