@@ -1,8 +1,10 @@
 #include "style/rectify.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "image/check.h"
 #include "image/color.h"
@@ -242,7 +244,34 @@ Status CheckFit(const TemplateFit& fit, const std::string& name, const RectifyOp
                       " of the sphere's diameter apart, at most " + Percent(kMaxRegistrationError) + " is let through; worst at the " +
                       FiducialPlace(fit.worst_id) + " (" + Percent(fit.worst) + "). Most likely " + why);
   }
+  if (!(fit.on_sphere <= kMaxRegistrationError)) {
+    std::vector<int> found, missing;
+    SplitIds(fit.marks, found, missing);
+    return InputError("the marks that " + name + " shows (" + Places(found) + ") leave open where the sphere is, by " +
+                      Percent(fit.on_sphere) + " of its diameter; at most " + Percent(kMaxRegistrationError) +
+                      " is let through: expected marks on all sides of it");
+  }
   return Ok();
+}
+
+// The sphere must be in the picture.
+Status CheckSphereIsWhole(const TemplateMap& map, const Picture& scan, const std::string& name) {
+  constexpr double kSpare = 0.01;  // of a diameter may be cut off
+  const double spare = kSpare * map.SpherePixels();
+  double outside = 0;
+  std::string side;
+  for (int k = 0; k < 64; ++k) {
+    const double angle = k * std::acos(-1.0) / 32;
+    const glm::dvec2 p = map.ToPicture(glm::dvec2(0.5) + 0.5 * glm::dvec2(std::cos(angle), std::sin(angle)));
+    const std::array<std::pair<double, const char*>, 4> beyond{
+        {{-p.x, "left"}, {p.x - scan.width, "right"}, {-p.y, "top"}, {p.y - scan.height, "bottom"}}};
+    for (const auto& [pixels, which] : beyond) {
+      if (pixels > outside) outside = pixels, side = which;
+    }
+  }
+  if (outside <= spare) return Ok();
+  return InputError(name + " shows a part of the sphere only: " + Percent(outside / map.SpherePixels()) + " of it lies beyond the " +
+                    side + " border: take the whole sheet into the picture");
 }
 
 }  // namespace
@@ -270,13 +299,14 @@ Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const Rec
     return InputError(name + " shows two templates: cut the picture to one of them");
   }
   if (fit->marks.size() < std::size_t(kFiducialCount)) FindTheRest(scan, *fit);
+  SCUMBLE_RETURN_IF_ERROR(CheckSphereIsWhole(fit->map, scan, name));
   SCUMBLE_RETURN_IF_ERROR(CheckFit(*fit, name, options));
 
   Rectified result;
   result.map = fit->map;
   RectifyReport& report = result.report;
   SplitIds(fit->marks, report.found, report.missing);
-  report.error = fit->held_out, report.error_at_marks = fit->at_marks;
+  report.error = std::max(fit->held_out, fit->on_sphere), report.error_at_marks = fit->at_marks;
   report.sphere_pixels = fit->map.SpherePixels();
   for (const FoundMark& mark : fit->marks) report.blur += mark.blur_pixels / double(fit->marks.size());
   MeasurePose(fit->map, report);

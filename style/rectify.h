@@ -20,7 +20,8 @@ struct RectifyOptions {
 struct RectifyReport {
   std::vector<int> found;      // ids of the marks that the map rests on, and of those that are not there
   std::vector<int> missing;
-  // Registration error as shares of the sphere's diameter: of marks held out of the fit, and what the fit leaves at them.
+  // Registration error as shares of the sphere's diameter: the larger of how far marks are from where the others expect them
+  // and of what that leaves open on the sphere; and what the fit leaves at the marks.
   double error = 0;
   double error_at_marks = 0;
   double sphere_pixels = 0;    // the sphere's diameter in the scan

@@ -71,53 +71,106 @@ double Cost(const TemplateMap& map, std::span<const Pair> pairs, double scale, s
   return cost;
 }
 
+// How the places of points change with each of the map's numbers.
+class Slopes {
+ public:
+  Slopes(const TemplateMap& map, int numbers) : map_(map), numbers_(numbers) {
+    const Numbers at = NumbersOf(map);
+    for (int n = 0; n < numbers; ++n) {
+      Numbers next = at;
+      next[n] += Step(n);
+      stepped_[n] = MapOf(next, map);
+    }
+  }
+  std::array<glm::dvec2, kNumbers> At(glm::dvec2 printed) const {
+    const glm::dvec2 here = map_.ToPicture(printed);
+    std::array<glm::dvec2, kNumbers> slopes{};
+    for (int n = 0; n < numbers_; ++n) slopes[n] = (stepped_[n].ToPicture(printed) - here) / Step(n);
+    return slopes;
+  }
+
+ private:
+  static double Step(int number) { return number < 6 ? 1e-3 : 1e-6; }  // pixels, or shares
+
+  TemplateMap map_;
+  int numbers_;
+  std::array<TemplateMap, kNumbers> stepped_;
+};
+
+// The equations a · x = b of least squares, every number in units of its own, so that pixels beside shares do not look
+// like a singular matrix.
+struct Equations {
+  std::array<double, kNumbers * kNumbers> a{};
+  std::array<double, kNumbers> b{}, unit{};
+};
+
+Equations EquationsOf(const TemplateMap& map, std::span<const Pair> pairs, int numbers, std::span<const double> weights) {
+  Equations e;
+  const Slopes slopes(map, numbers);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const glm::dvec2 off = pairs[i].seen - map.ToPicture(pairs[i].printed);
+    const auto slope = slopes.At(pairs[i].printed);
+    for (int r = 0; r < numbers; ++r) {
+      for (int c = 0; c < numbers; ++c) e.a[r * numbers + c] += weights[i] * glm::dot(slope[r], slope[c]);
+      e.b[r] += weights[i] * glm::dot(slope[r], off);
+    }
+  }
+  for (int n = 0; n < numbers; ++n) e.unit[n] = e.a[n * numbers + n] > 0 ? 1 / std::sqrt(e.a[n * numbers + n]) : 1.0;
+  for (int r = 0; r < numbers; ++r) {
+    for (int c = 0; c < numbers; ++c) e.a[r * numbers + c] *= e.unit[r] * e.unit[c];
+    e.b[r] *= e.unit[r];
+  }
+  return e;
+}
+
 // Levenberg and Marquardt's steps. `numbers`: 8 for the perspective alone, 9 with the lens.
 void Improve(TemplateMap& map, std::span<const Pair> pairs, int numbers, double scale) {
   double damping = 1e-3;
   std::vector<double> weights;
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < 40 && damping < 1e6; ++round) {
     const double cost = Cost(map, pairs, scale, &weights);
-    const Numbers at = NumbersOf(map);
-    std::array<double, kNumbers * kNumbers> a{};
-    std::array<double, kNumbers> b{};
-    std::array<TemplateMap, kNumbers> stepped;
-    std::array<double, kNumbers> steps{};
-    for (int n = 0; n < numbers; ++n) {
-      Numbers next = at;
-      steps[n] = n < 6 ? 1e-3 : 1e-6;  // pixels, or shares
-      next[n] += steps[n];
-      stepped[n] = MapOf(next, map);
-    }
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const glm::dvec2 here = map.ToPicture(pairs[i].printed), off = pairs[i].seen - here;
-      std::array<glm::dvec2, kNumbers> slope;
-      for (int n = 0; n < numbers; ++n) slope[n] = (stepped[n].ToPicture(pairs[i].printed) - here) / steps[n];
-      for (int r = 0; r < numbers; ++r) {
-        for (int c = 0; c < numbers; ++c) a[r * numbers + c] += weights[i] * glm::dot(slope[r], slope[c]);
-        b[r] += weights[i] * glm::dot(slope[r], off);
-      }
-    }
-    for (int n = 0; n < numbers; ++n) a[n * numbers + n] *= 1 + damping;
-    // Every number in units of its own, so that pixels beside shares do not look like a singular matrix.
-    std::array<double, kNumbers> unit{};
-    for (int n = 0; n < numbers; ++n) unit[n] = a[n * numbers + n] > 0 ? 1 / std::sqrt(a[n * numbers + n]) : 1.0;
-    for (int r = 0; r < numbers; ++r) {
-      for (int c = 0; c < numbers; ++c) a[r * numbers + c] *= unit[r] * unit[c];
-      b[r] *= unit[r];
-    }
-    if (!SolveLinear(a.data(), b.data(), numbers)) return;
-    Numbers next = at;
-    for (int n = 0; n < numbers; ++n) next[n] += unit[n] * b[n];
+    Equations e = EquationsOf(map, pairs, numbers, weights);
+    for (int n = 0; n < numbers; ++n) e.a[n * numbers + n] += damping;
+    if (!SolveLinear(e.a.data(), e.b.data(), numbers)) return;
+    Numbers next = NumbersOf(map);
+    for (int n = 0; n < numbers; ++n) next[n] += e.unit[n] * e.b[n];
     const TemplateMap tried = MapOf(next, map);
     const double now = Cost(tried, pairs, scale, nullptr);
     if (!(now < cost)) {
       damping *= 8;
-      if (damping > 1e6) return;
       continue;
     }
     map = tried, damping = std::max(1e-9, damping / 8);
     if (cost - now < 1e-12 * cost) return;
   }
+}
+
+// Where four marks on one side leave open how the rest lies, holding one out does not show it. So the spread of what is
+// left at the corners is carried over to the sphere's outline (the covariance of least squares): its largest
+// standard deviation, in pixels. A mark's corners err together, which counts double.
+double SpreadOnSphere(const TemplateMap& map, std::span<const Pair> pairs, int numbers) {
+  constexpr double kTogether = 2.0, kLeastSpread = 0.02;
+  double squares = 0;
+  for (const Pair& pair : pairs) squares += std::pow(Distance(map, pair), 2);
+  const double spread = std::max(kLeastSpread, std::sqrt(squares / double(2 * pairs.size() - std::size_t(numbers))));
+  const Equations e = EquationsOf(map, pairs, numbers, std::vector<double>(pairs.size(), 1.0));
+  const Slopes slopes(map, numbers);
+  double most = 0;
+  for (int k = 0; k < 32; ++k) {
+    const double angle = k * std::acos(-1.0) / 16;
+    const auto slope = slopes.At(glm::dvec2(0.5) + 0.5 * glm::dvec2(std::cos(angle), std::sin(angle)));
+    double variance = 0;
+    for (int axis = 0; axis < 2; ++axis) {
+      auto a = e.a;
+      std::array<double, kNumbers> x{};
+      for (int n = 0; n < numbers; ++n) x[n] = slope[n][axis] * e.unit[n];
+      const auto g = x;
+      if (!SolveLinear(a.data(), x.data(), numbers)) return map.SpherePixels();
+      for (int n = 0; n < numbers; ++n) variance += g[n] * x[n];
+    }
+    most = std::max(most, std::sqrt(variance));
+  }
+  return kTogether * spread * most;
 }
 
 double Median(std::vector<double> values) {
@@ -158,6 +211,7 @@ TemplateFit Measure(TemplateMap map, std::span<const FoundMark> marks, bool lens
   }
   fit.at_marks = std::sqrt(left / double(pairs.size())) / sphere;
   fit.held_out = std::sqrt(held_out / double(pairs.size())) / sphere;
+  fit.on_sphere = SpreadOnSphere(map, pairs, numbers) / sphere;
   return fit;
 }
 

@@ -27,9 +27,11 @@ struct TemplateMap {
 struct TemplateFit {
   TemplateMap map;
   std::vector<FoundMark> marks;  // those that lie where the map has them, by id, one of each
-  // All as shares of the sphere's diameter, from the marks' corners. `held_out`: root mean square of where each mark is
-  // expected by the others alone, which is what can be said of places between the marks, such as the sphere's; `at_marks` is what the fit leaves.
+  // All as shares of the sphere's diameter. `held_out`: root mean square of how far each mark's corners are from where the
+  // others alone expect them; `on_sphere`: the standard error of the sphere's outline that follows from `at_marks`, which
+  // is what the fit leaves at the corners.
   double held_out = 0;
+  double on_sphere = 0;
   double at_marks = 0;
   int worst_id = 0;  // of the mark that is farthest from where the others expect it
   double worst = 0;

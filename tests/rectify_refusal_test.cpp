@@ -45,6 +45,17 @@ TEST(RectifyRefusal, TooFewMarksAreNamed) {
   ExpectRefused(Cropped(sheet, 1170, 1170), {"too small"});
 }
 
+TEST(RectifyRefusal, HalfAPage) {
+  ExpectRefused(Cropped(CharcoalSheet(), 640, 0), {"a part of the sphere only", "50% of it lies beyond the left border"});
+}
+
+// The four marks of the left side, coarse and noisy: where the sphere's right side is they do not tell.
+TEST(RectifyRefusal, MarksOnOneSideThatLeaveTheOtherOpen) {
+  Scan scan;
+  scan.covered = {1, 2, 3, 4, 5, 6, 7, 8}, scan.noise = 8, scan.blur = 0.8, scan.fill = 0.36;
+  ExpectRefused(TakeScan(CharcoalSheet(), scan), {"leave open where the sphere is", "on all sides"});
+}
+
 TEST(RectifyRefusal, MirroredPictures) {
   Scan scan;
   scan.mirrored = true, scan.tilt = 10, scan.noise = 2;

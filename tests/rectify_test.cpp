@@ -45,6 +45,7 @@ std::vector<Case> Cases() {
   add("jpeg", [](Scan& s) { s.jpeg_quality = 60, s.rotation = 5; });
   add("light", [](Scan& s) { s.gradient = 0.4, s.cast = {1.0, 0.85, 0.6}, s.glare = 0.06, s.noise = 2; });
   add("covered", [](Scan& s) { s.covered = {0, 3, 5, 8}, s.tilt = 12, s.noise = 3; });
+  add("left", [](Scan& s) { s.covered = {1, 2, 3, 4, 5, 6, 7, 8}, s.rotation = 5; });
   add("lens", [](Scan& s) { s.barrel = 0.03, s.tilt = 8, s.towards = 30, s.noise = 2; });
   add("all", [](Scan& s) {
     s.tilt = 20, s.towards = 110, s.rotation = -40, s.fill = 0.62, s.noise = 5, s.blur = 1.0, s.jpeg_quality = 75;

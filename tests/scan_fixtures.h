@@ -1,8 +1,6 @@
 // Scans and photographs of a painted template, made with a known camera, known light and known faults.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "image/check.h"
 #include "image/color.h"
 #include "image/hash.h"
 #include "io/picture_file.h"
@@ -39,7 +38,7 @@ inline Picture PaintedTemplate(const Picture& paint) {
 inline const Picture& CharcoalSheet() {
   static const Picture sheet = [] {
     const auto paint = ReadPicture(SCUMBLE_SOURCE_DIR "/exemplars/charcoal/lit.png");
-    EXPECT_TRUE(paint) << paint.error().message;
+    SCUMBLE_CHECK(paint.ok());
     return PaintedTemplate(*paint);
   }();
   return sheet;
@@ -196,10 +195,10 @@ inline Picture TakeScan(const Picture& sheet, const Scan& scan) {
   const TemporaryFolder folder;
   PictureWriteOptions options;
   options.jpeg_quality = scan.jpeg_quality;
-  EXPECT_TRUE(WritePicture(folder / "scan.jpg", picture, options));
+  SCUMBLE_CHECK(WritePicture(folder / "scan.jpg", picture, options).ok());
   const auto read = ReadPicture(folder / "scan.jpg");
-  EXPECT_TRUE(read);
-  return read ? *read : picture;
+  SCUMBLE_CHECK(read.ok());
+  return *read;
 }
 
 // The largest registration error anywhere on the sphere, a share of its diameter.
