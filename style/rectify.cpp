@@ -190,9 +190,6 @@ void Warn(const RectifyOptions& options, RectifyReport& report) {
                   std::to_string(options.size) + ": " + FinerScan(options.size / report.sphere_pixels, options.dpi) +
                   ", or take a smaller --size");
   }
-  if (report.clipped > 0.5) {
-    say.push_back("the paper is overexposed: light paint may have lost its tones; take the picture darker");
-  }
   if (report.unevenness > 0.5) {
     say.push_back("the light falls off by " + Percent(report.unevenness) + " across the sheet: what the shade of it hides cannot be brought back");
   }
