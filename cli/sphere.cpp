@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/json_text.h"
 #include "cli/options.h"
+#include "cli/rectify.h"
 #include "guidegen/guidegen.h"
 #include "image/direction.h"
 #include "style/sphere_kit.h"
@@ -32,6 +33,7 @@ struct SphereVerb {
   int aa = 4;
   std::string isa;
   std::string output;
+  RectifyRequest rectify;
 };
 
 // As --light takes it.
@@ -216,11 +218,18 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--isa", verb->isa,
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine")
       ->type_name("NAME");
-  sub->add_option("-o,--output", verb->output, "folder to write to; what is painted there is kept")
+  sub->add_option("-o,--output", verb->output, "folder to write to; what is painted there is kept. With --rectify the picture to write: the kit's lit.png")
       ->type_name("FOLDER")
       ->required();
+  AddRectifyOptions(*sub, verb->rectify);
   AddGlobalOptions(*sub, globals);
-  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunSphereVerb(*verb, globals); }; });
+  sub->callback([verb, sub, &globals, &chosen] {
+    chosen = [verb, sub, &globals]() -> Expected<ExitCode> {
+      if (sub->count("--rectify") == 0) return RunSphereVerb(*verb, globals);
+      verb->rectify.size = verb->size, verb->rectify.output = verb->output;
+      return RunRectify(*sub, verb->rectify, globals);
+    };
+  });
 }
 
 }  // namespace scumble

@@ -239,6 +239,20 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path) {
   return Upright(stored, input->spec().get_int_attribute("Orientation", 1));
 }
 
+Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  const OIIO::ImageSpec& spec = input->spec();
+  const double per_unit = spec.get_float_attribute("XResolution", 0.0f);
+  const std::string unit(spec.get_string_attribute("ResolutionUnit"));
+  PictureHeader header{spec.width, spec.height, static_cast<int>(spec.format.size() * 8), 0};
+  if (unit == "in" || unit == "inch") header.dpi = per_unit;
+  if (unit == "cm") header.dpi = per_unit * 2.54;
+  if (unit == "m") header.dpi = per_unit * 0.0254;
+  constexpr double kLeast = 97, kMost = 20000;
+  if (!(header.dpi >= kLeast && header.dpi <= kMost)) header.dpi = 0;
+  return header;
+}
+
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.empty()) return InputError("cannot read " + name + ": it is empty");
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());

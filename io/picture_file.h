@@ -21,7 +21,16 @@ namespace scumble {
 // an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
-// The same from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
+// What a file's header says, without its pixels. Thread-safe.
+struct PictureHeader {
+  int width = 0;  // as stored, before a photograph is turned upright
+  int height = 0;
+  int bits = 8;   // per channel
+  double dpi = 0;  // 0: none, or a camera's or screen's 72 or 96, which say nothing of a picture
+};
+Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
+
+// ReadPicture from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
 // messages.
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 

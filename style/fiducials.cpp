@@ -15,20 +15,14 @@ constexpr double At(int modules) { return modules * kFiducialModule; }
 constexpr int kLow = 11, kHigh = 64 - kLow - kFiducialModules;
 constexpr int kBefore = -1 - kFiducialModules, kBehind = 64 + 1;
 
+// clang-format off: a side of the square a line.
 constexpr std::array<Fiducial, kFiducialCount> kFiducials{{
-    {0, At(kBefore), At(kBefore)},
-    {1, At(kLow), At(kBefore)},
-    {2, At(kHigh), At(kBefore)},
-    {3, At(kBehind), At(kBefore)},
-    {4, At(kBehind), At(kLow)},
-    {5, At(kBehind), At(kHigh)},
-    {6, At(kBehind), At(kBehind)},
-    {7, At(kHigh), At(kBehind)},
-    {8, At(kLow), At(kBehind)},
-    {9, At(kBefore), At(kBehind)},
-    {10, At(kBefore), At(kHigh)},
-    {11, At(kBefore), At(kLow)},
+    {0, At(kBefore), At(kBefore)}, {1, At(kLow), At(kBefore)}, {2, At(kHigh), At(kBefore)},
+    {3, At(kBehind), At(kBefore)}, {4, At(kBehind), At(kLow)}, {5, At(kBehind), At(kHigh)},
+    {6, At(kBehind), At(kBehind)}, {7, At(kHigh), At(kBehind)}, {8, At(kLow), At(kBehind)},
+    {9, At(kBefore), At(kBehind)}, {10, At(kBefore), At(kHigh)}, {11, At(kBefore), At(kLow)},
 }};
+// clang-format on
 
 constexpr std::array<const char*, kFiducialCount> kPlaces{
     "upper left corner", "top side, left",     "top side, right",   "upper right corner", "right side, upper", "right side, lower",
