@@ -8,6 +8,8 @@
 #include "image/color.h"
 #include "io/atomic_file.h"
 #include "io/oiio.h"
+#include "io/open_raster.h"
+#include "io/zip_archive.h"
 
 namespace scumble {
 namespace {
@@ -144,13 +146,12 @@ OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureW
   if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("png:compressionLevel", options.png_level);
   spec.attribute("CompressionQuality", options.jpeg_quality);
+  if (options.dpi > 0) {
+    spec.attribute("XResolution", static_cast<float>(options.dpi));
+    spec.attribute("YResolution", static_cast<float>(options.dpi));
+    spec.attribute("ResolutionUnit", "in");
+  }
   return spec;
-}
-
-std::vector<std::uint8_t> In8Bits(const Picture& picture) {
-  std::vector<std::uint8_t> bytes(picture.rgba.size());
-  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>((picture.rgba[i] + 128u) / 257u);
-  return bytes;
 }
 
 Status WriteEncoded(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
@@ -228,6 +229,7 @@ Status CheckJpegIsWhole(std::span<const std::byte> bytes, const std::string& nam
 }  // namespace
 
 Expected<Picture> ReadPicture(const std::filesystem::path& path) {
+  if (IsZip(path)) return ReadMergedLayers(path);
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   if (input->format_name() == std::string("jpeg")) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
@@ -235,6 +237,20 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path) {
   }
   SCUMBLE_ASSIGN(const Picture stored, ReadFrom(*input, path.string()));
   return Upright(stored, input->spec().get_int_attribute("Orientation", 1));
+}
+
+Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  const OIIO::ImageSpec& spec = input->spec();
+  const double per_unit = spec.get_float_attribute("XResolution", 0.0f);
+  const std::string unit(spec.get_string_attribute("ResolutionUnit"));
+  PictureHeader header{spec.width, spec.height, static_cast<int>(spec.format.size() * 8), 0};
+  if (unit == "in" || unit == "inch") header.dpi = per_unit;
+  if (unit == "cm") header.dpi = per_unit * 2.54;
+  if (unit == "m") header.dpi = per_unit * 0.0254;
+  constexpr double kLeast = 97, kMost = 20000;
+  if (!(header.dpi >= kLeast && header.dpi <= kMost)) header.dpi = 0;
+  return header;
 }
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
@@ -277,9 +293,17 @@ Status WritePicture(const std::filesystem::path& path, const Picture& picture, c
   return WriteEncoded(path, picture, options);
 }
 
-Expected<std::vector<std::byte>> EncodePng(const Picture& picture) {
+std::vector<std::uint8_t> In8Bits(const Picture& picture) {
+  std::vector<std::uint8_t> bytes(picture.rgba.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>((picture.rgba[i] + 128u) / 257u);
+  return bytes;
+}
+
+Expected<std::vector<std::byte>> EncodePng(const Picture& picture, int dpi) {
   const std::vector<std::uint8_t> bytes = In8Bits(picture);
-  return internal::Encode("picture.png", EncodedSpec(picture, 4, {}), [&](OIIO::ImageOutput& output) {
+  PictureWriteOptions options;
+  options.dpi = dpi;
+  return internal::Encode("picture.png", EncodedSpec(picture, 4, options), [&](OIIO::ImageOutput& output) {
     return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
   });
 }

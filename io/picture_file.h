@@ -1,7 +1,9 @@
-// Pictures from and to files, by OpenImageIO: PNG, JPEG, TIFF, EXR and what else it reads.
+// Pictures from and to files, by OpenImageIO: PNG, JPEG, TIFF, EXR and what else it reads; layered OpenRaster files by
+// io/open_raster.h.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -16,10 +18,19 @@ namespace scumble {
 // kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
 // Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
 // turned upright by its Exif orientation; colour profiles are not applied. A file that ends early is
-// an error, JPEG included. Thread-safe.
+// an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
-// The same from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
+// What a file's header says, without its pixels. Thread-safe.
+struct PictureHeader {
+  int width = 0;  // as stored, before a photograph is turned upright
+  int height = 0;
+  int bits = 8;   // per channel
+  double dpi = 0;  // 0: none, or a camera's or screen's 72 or 96, which say nothing of a picture
+};
+Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
+
+// ReadPicture from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
 // messages.
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 
@@ -27,6 +38,7 @@ struct PictureWriteOptions {
   int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR is half floats, or floats at 32
   int png_level = 6;  // 0 … 9, zlib's compression level
   int jpeg_quality = 92;
+  int dpi = 0;        // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted
   std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
 };
 
@@ -40,7 +52,10 @@ Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteO
 // linear with associated alpha. The file appears whole under its name or not at all.
 Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options = {});
 
-// The bytes of an 8-bit PNG, for pictures inside other files.
-Expected<std::vector<std::byte>> EncodePng(const Picture& picture);
+// The bytes of an 8-bit PNG; `dpi` as in PictureWriteOptions.
+Expected<std::vector<std::byte>> EncodePng(const Picture& picture, int dpi = 0);
+
+// The values that 8-bit files hold, 4 · width · height.
+std::vector<std::uint8_t> In8Bits(const Picture& picture);
 
 }  // namespace scumble

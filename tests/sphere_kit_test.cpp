@@ -7,14 +7,20 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "image/hash.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
+#include "io/open_raster.h"
 #include "io/picture_file.h"
+#include "io/zip_archive.h"
+#include "style/fiducials.h"
 #include "style/style_file.h"
+#include "style/template_pdf.h"
 #include "tests/refusal.h"
+#include "tests/sphere_guides.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {
@@ -28,26 +34,6 @@ Picture RandomPicture(int width, int height) {
     picture.rgba[i] = i % 4 == 3 ? 65535 : static_cast<std::uint16_t>(Hash(width, i) % 256 * 257);
   }
   return picture;
-}
-
-// An orthographic unit sphere that fills the square, lit from the upper left.
-GuideSet SphereGuides(int size) {
-  GuideSet guides(size, size);
-  for (Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kLuminance}) guides.Add(layer);
-  const glm::vec3 light = glm::normalize(glm::vec3(-1, 1, 1));
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const float nx = (2.0f * x + 1.0f) / size - 1.0f, ny = 1.0f - (2.0f * y + 1.0f) / size;
-      if (nx * nx + ny * ny >= 1.0f) continue;
-      const std::size_t i = guides.Index(x, y);
-      const glm::vec3 n(nx, ny, std::sqrt(1.0f - nx * nx - ny * ny));
-      guides.Plane(Layer::kCoverage)[i] = 1.0f;
-      for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = n[c];
-      guides.Plane(Layer::kDepth)[i] = 2.0f - n.z;
-      guides.Plane(Layer::kLuminance)[i] = std::max(0.0f, glm::dot(n, light));
-    }
-  }
-  return guides;
 }
 
 Picture InnerSquare(const Picture& picture, int margin) {
@@ -70,10 +56,11 @@ TEST(SphereKit, TheTemplateShowsTheLitSphereAndMarksOnlyTheMargin) {
     const Picture marks = DrawTemplate({-45, 35, nothing});
     for (std::uint16_t value : InnerSquare(marks, margin).rgba)
       ASSERT_EQ(value, 65535) << "a mark inside, size " << size;
-    if (size >= 33) {
+    if (size >= 33 && size < 128) {
       EXPECT_EQ(marks.At(margin / 2, margin / 2)[0], 0) << "the cross in the corner";
       EXPECT_EQ(marks.At(size + 2 * margin - margin / 2 - 1, margin / 2)[0], 0) << "and in the next";
     }
+    EXPECT_EQ(FiducialsInPlace(picture, size, margin), size < 128 ? 0 : kFiducialCount) << size;
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) ASSERT_EQ(picture.rgba[i], 65535) << "paper is opaque";
   }
   const Picture picture = DrawTemplate({-45, 35, SphereGuides(64)});
@@ -88,7 +75,7 @@ TEST(SphereKit, FromTemplateToStyle) {
   const TemporaryFolder folder;
   const auto written = WriteSphereKit(folder / "mine", {KitLight{-45, 35, SphereGuides(64)}});
   ASSERT_TRUE(written) << written.error().message;
-  EXPECT_EQ(written->size(), 4u);
+  EXPECT_EQ(written->size(), 6u);
   for (const fs::path& path : *written) EXPECT_TRUE(fs::is_regular_file(path)) << path;
   ExpectRefusal(LoadStyle(folder / "mine"), ErrorKind::kInput, {"lit.png", "not there yet", "template.png"});
 
@@ -123,7 +110,7 @@ TEST(SphereKit, AnArtistsStyleFileIsKept) {
   ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", "# mine\n"));
   const auto written = WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16)}});
   ASSERT_TRUE(written) << written.error().message;
-  EXPECT_EQ(written->size(), 3u) << "what was kept is not listed as written";
+  EXPECT_EQ(written->size(), 5u) << "what was kept is not listed as written";
   const auto kept = ReadWholeFile(folder / "style.toml");
   ASSERT_TRUE(kept);
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(kept->data()), kept->size()), "# mine\n");
@@ -135,7 +122,8 @@ TEST(SphereKit, FurtherLightsGetFilesOfTheirOwn) {
       WriteSphereKit(folder.path(), {KitLight{-45, 35, SphereGuides(16)}, KitLight{60, 10, SphereGuides(16)}});
   ASSERT_TRUE(written) << written.error().message;
   EXPECT_EQ(folder.List(), (std::vector<std::string>{"HOWTO.txt", "guides-2.exr", "guides.exr", "style.toml",
-                                                     "template-2.png", "template.png"}));
+                                                     "template-2.ora", "template-2.pdf", "template-2.png",
+                                                     "template.ora", "template.pdf", "template.png"}));
   const auto howto = ReadWholeFile(folder / "HOWTO.txt");
   ASSERT_TRUE(howto);
   const std::string text(reinterpret_cast<const char*>(howto->data()), howto->size());
@@ -144,12 +132,18 @@ TEST(SphereKit, FurtherLightsGetFilesOfTheirOwn) {
 }
 
 TEST(SphereKit, ATemplateIsRecognisedAtEverySizeAndOtherPicturesAreNot) {
-  for (int size : {63, 64, 65, 200, 511, 512}) {
-    const Picture drawn = DrawTemplate({-40, 40, SphereGuides(size)});
+  for (int size : {63, 64, 65, 127, 128, 200, 511, 512}) {
+    const KitLight light{-40, 40, SphereGuides(size)};
+    const Picture drawn = DrawTemplate(light);
     EXPECT_TRUE(LooksLikeTemplate(drawn)) << size;
+    EXPECT_TRUE(LooksLikeTemplate(DrawTemplateWithCrosses(light))) << "as it once was, " << size;
     EXPECT_FALSE(LooksLikeTemplate(InnerSquare(drawn, TemplateMargin(size)))) << size;
     EXPECT_FALSE(LooksLikeTemplate(RandomPicture(drawn.width, drawn.width))) << size;
   }
+  // Paint that runs over some marks leaves the others.
+  Picture painted = DrawTemplate({-40, 40, SphereGuides(256)});
+  std::fill_n(painted.At(0, 0), 4 * painted.width * (TemplateMargin(256) + 60), std::uint16_t{30000});
+  EXPECT_TRUE(LooksLikeTemplate(painted));
   EXPECT_FALSE(LooksLikeTemplate(Picture()));
   EXPECT_FALSE(LooksLikeTemplate(Picture(1, 1)));
   EXPECT_FALSE(LooksLikeTemplate(Picture(30, 20)));
@@ -177,6 +171,140 @@ TEST(SphereKit, APaintedTemplateIsNotOverwritten) {
   ExpectRefusal(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(32)}}), ErrorKind::kOutput,
                 {"template.png", "painting"});
   EXPECT_EQ(ReadPicture(folder / "template.png")->rgba, before->rgba);
+}
+
+TEST(SphereKit, ATemplateWithTheCrossesOfOldIsDrawnAnew) {
+  const TemporaryFolder folder;
+  const KitLight light{0, 0, SphereGuides(128)};
+  ASSERT_TRUE(WritePicture(folder / "template.png", DrawTemplateWithCrosses(light)));
+  const auto written = WriteSphereKit(folder.path(), {light});
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(FiducialsInPlace(*ReadPicture(folder / "template.png"), 128, TemplateMargin(128)), kFiducialCount);
+}
+
+TEST(SphereKit, PaintedLayersAreNotOverwritten) {
+  const TemporaryFolder folder;
+  const auto kit = [&](int dpi) {
+    KitOptions options;
+    options.dpi = dpi;
+    return WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(32)}}, options);
+  };
+  ASSERT_TRUE(kit(300));
+  EXPECT_TRUE(kit(300)) << "the same may be written again";
+  EXPECT_TRUE(kit(150)) << "and for other paper: nobody has painted on it";
+  // Layers as another program names and numbers them; what they show is the same but for a dot of paint.
+  Picture paint(48, 48), merged = DrawTemplate({0, 0, SphereGuides(32)});
+  for (std::uint16_t* pixel : {paint.At(20, 20), merged.At(20, 20)}) pixel[0] = 40000, pixel[3] = 65535;
+  const auto saved = EncodeOpenRaster(std::vector<RasterLayer>{{"mine", *EncodePng(paint)}}, merged, 0, "template.ora");
+  ASSERT_TRUE(saved);
+  ASSERT_TRUE(WriteFileAtomically(folder / "template.ora", *saved));
+  ExpectRefusal(kit(300), ErrorKind::kOutput, {"template.ora", "painting"});
+  EXPECT_EQ(*ReadWholeFile(folder / "template.ora"), *saved);
+  // Nor are they by a template of another size that comes without layers: the guides would no longer fit.
+  std::filesystem::remove(folder / "template.png");
+  KitOptions png;
+  png.ora = png.pdf = false;
+  ExpectRefusal(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(64)}}, png), ErrorKind::kOutput,
+                {"guides.exr is of 32²", "template.ora", "--size 32"});
+}
+
+TEST(SphereKit, AHiddenLayerThatWasPaintedCountsToo) {
+  const TemporaryFolder folder;
+  const KitLight light{0, 0, SphereGuides(32)};
+  ASSERT_TRUE(WriteSphereKit(folder.path(), {light}));
+  // The layers as they are in the file, one of them changed, and the merged picture the same.
+  const auto zip = ZipReader::Open(folder / "template.ora");
+  ASSERT_TRUE(zip);
+  std::vector<RasterLayer> layers;
+  for (const std::string& name : zip->names()) {
+    if (name.rfind("data/", 0) == 0) layers.push_back({name, *zip->Read(name, 1 << 20)});
+  }
+  const auto rewrite = [&] {
+    const auto saved = EncodeOpenRaster(layers, DrawTemplate(light), 72, "template.ora");
+    return WriteFileAtomically(folder / "template.ora", *saved);
+  };
+  ASSERT_TRUE(rewrite());
+  EXPECT_TRUE(WriteSphereKit(folder.path(), {light})) << "nothing was painted";
+  Picture paint(40, 40);
+  paint.At(3, 3)[3] = 65535;
+  layers[1].png = *EncodePng(paint);
+  ASSERT_TRUE(rewrite());
+  ExpectRefusal(WriteSphereKit(folder.path(), {light}), ErrorKind::kOutput, {"template.ora", "painting"});
+}
+
+TEST(SphereKit, APageThatAnotherProgramHasChangedIsKept) {
+  const TemporaryFolder folder;
+  const std::vector<KitLight> lights = {{0, 0, SphereGuides(32)}};
+  ASSERT_TRUE(WriteSphereKit(folder.path(), lights));
+  const std::vector<std::byte> page = *ReadWholeFile(folder / "template.pdf");
+  EXPECT_TRUE(IsTemplatePdf(page));
+  std::vector<std::byte> noted = page;
+  for (const char c : std::string("\n1 0 obj\n<<>>\nendobj\n%%EOF\n")) noted.push_back(std::byte(c));
+  EXPECT_FALSE(IsTemplatePdf(noted)) << "something was added behind its end";
+  EXPECT_FALSE(IsTemplatePdf({}));
+  ASSERT_TRUE(WriteFileAtomically(folder / "template.pdf", noted));
+  ExpectRefusal(WriteSphereKit(folder.path(), lights), ErrorKind::kOutput, {"template.pdf", "another program"});
+  EXPECT_EQ(*ReadWholeFile(folder / "template.pdf"), noted);
+}
+
+TEST(SphereKit, APaintingInLayersIsAnExemplar) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(WriteSphereKit(folder.path(), {KitLight{-45, 35, SphereGuides(64)}}));
+  const auto toml = ReadWholeFile(folder / "style.toml");
+  std::string text(reinterpret_cast<const char*>(toml->data()), toml->size());
+  text.replace(text.find("image = \"lit.png\""), 17, "image = \"template.ora\"");
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", text));
+  const auto layered = LoadStyle(folder.path());
+  ASSERT_TRUE(layered) << layered.error().message;
+  EXPECT_EQ(layered->exemplars[0].picture.width, 64) << "without the margin";
+  fs::copy_file(folder / "template.png", folder / "lit.png");
+  fs::copy_file(folder / "template.ora", folder / "lit-2.ora");
+  ASSERT_TRUE(WriteFileAtomically(folder / "other.toml", "[[exemplar]]\nimage = 'lit-2.png'\n"));
+  ExpectRefusal(LoadStyle(folder / "other.toml"), ErrorKind::kInput,
+                {"lit-2.png is not there", "image = \"lit-2.ora\"", "other.toml"});
+  text.replace(text.find("template.ora\""), 12, "lit.png");
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", text));
+  const auto flat = LoadStyle(folder.path());
+  ASSERT_TRUE(flat) << flat.error().message;
+  EXPECT_EQ(layered->exemplars[0].picture.rgba, flat->exemplars[0].picture.rgba);
+}
+
+TEST(SphereKit, ALightThatIsListedByItsLayersIsNotListedTwice) {
+  const TemporaryFolder folder;
+  const std::string mine = "[[exemplar]]\nimage = \"shade-template.ora\"\nguides = \"shade-guides.exr\"\n";
+  ASSERT_TRUE(WriteFileAtomically(folder / "style.toml", mine));
+  ASSERT_TRUE(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16), "shade"}}));
+  const auto kept = ReadWholeFile(folder / "style.toml");
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(kept->data()), kept->size()), mine);
+}
+
+TEST(SphereKit, OnlyWhatIsAskedForIsWritten) {
+  for (const auto& [png, ora, pdf] :
+       {std::tuple{true, false, false}, {false, true, false}, {false, false, true}, {true, true, false}}) {
+    const TemporaryFolder folder;
+    KitOptions options;
+    options.png = png, options.ora = ora, options.pdf = pdf;
+    ASSERT_TRUE(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16)}}, options));
+    EXPECT_EQ(fs::exists(folder / "template.png"), png);
+    EXPECT_EQ(fs::exists(folder / "template.ora"), ora);
+    EXPECT_EQ(fs::exists(folder / "template.pdf"), pdf);
+    const auto howto = ReadWholeFile(folder / "HOWTO.txt");
+    const std::string text(reinterpret_cast<const char*>(howto->data()), howto->size());
+    EXPECT_EQ(text.find("template.png is for") != std::string::npos, png);
+    EXPECT_EQ(text.find("template.ora is for") != std::string::npos, ora);
+    EXPECT_EQ(text.find("template.pdf is for") != std::string::npos, pdf);
+  }
+}
+
+TEST(SphereKit, WhereTheLightComesFromInWords) {
+  const auto place = [](double azimuth, double elevation) { return PlaceInWords({azimuth, elevation, {}}); };
+  EXPECT_EQ(place(-40, 40), "the upper left");
+  EXPECT_EQ(place(40, -40), "the lower right");
+  EXPECT_EQ(place(0, 90), "above");
+  EXPECT_EQ(place(90, 0), "the right");
+  EXPECT_EQ(place(0, 0), "the viewer");
+  EXPECT_EQ(place(120, -10), "the right, behind the sphere");
+  EXPECT_EQ(place(180, 0), "behind");
 }
 
 TEST(SphereKit, TheMarginIsInTheGuides) {

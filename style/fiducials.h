@@ -1,0 +1,62 @@
+// The marks that are printed around the sphere's template, by which a scan or a photograph of it is laid back onto the
+// template's pixels. They are square ArUco markers (S. Garrido-Jurado, R. Muñoz-Salinas, F. J. Madrid-Cuevas, M. J.
+// Marín-Jiménez, "Automatic generation and detection of highly reliable fiducial markers under occlusion", Pattern
+// Recognition 47 (6), 2014), ids 0 … 11 of the dictionary that other programs call DICT_4X4_50, so that those find them too.
+//
+// Coordinates: the sphere's square is [0, 1]², x to the right, y down from the picture's top; the template's margin
+// reaches at least kFiducialMargin further on every side. A picture of the template with `size` pixels across the sphere's square and a
+// margin of `margin` pixels has (x, y) at pixel (margin + x · size, margin + y · size), where pixel i covers [i, i + 1).
+// Everything lies on a grid of 1/64: at sizes that 64 divides, all edges are pixel edges.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "image/picture.h"
+
+namespace scumble {
+
+// A printed sphere of 100 mm has modules of 1.6 mm: 9 pixels in a scan at 150 dpi.
+inline constexpr double kFiducialModule = 1.0 / 64.0;
+// 4 × 4 bits within a black border of one module.
+inline constexpr int kFiducialModules = 6;
+inline constexpr double kFiducialSide = kFiducialModules * kFiducialModule;
+// White paper around each marker, in which nothing else may be printed.
+inline constexpr double kFiducialQuiet = kFiducialModule;
+// What the markers take of the margin, quiet zones included.
+inline constexpr double kFiducialMargin = kFiducialSide + 2 * kFiducialQuiet;
+
+// A marker; (left, top) is the corner of its black border.
+struct Fiducial {
+  int id = 0;
+  double left = 0, top = 0;
+};
+
+inline constexpr int kFiducialCount = 12;
+
+// All markers, in the order of their ids: clockwise from the upper left corner. Besides the four corners there are two
+// on each side, away from its middle, where the sphere comes close and paint runs over the margin.
+const std::array<Fiducial, kFiducialCount>& Fiducials();
+
+// Where a marker lies, in words: "upper left corner", "right side, lower".
+const char* FiducialPlace(int id);
+
+// The 16 bits of a marker, rows from the top, the highest bit first; 1 is white. `id` in 0 … kFiducialCount - 1.
+std::uint16_t FiducialBits(int id);
+
+// Whether a module is black; column and row in 0 … kFiducialModules - 1, the border included.
+bool FiducialIsBlack(int id, int column, int row);
+
+// Whether the modules are large enough, two pixels, to be drawn in a template with `size` pixels across the sphere.
+bool FiducialsFit(int size);
+
+// Draws the markers, black on their white quiet zones, and leaves the rest as it is. Edges between pixels
+// are mixed in linear light, so that their place is exact at any size; transparent pixels become opaque under a mark.
+// `margin` in pixels, at least kFiducialMargin · size; needs FiducialsFit(size) and a picture of (size + 2 · margin)².
+void DrawFiducials(Picture& picture, int size, int margin);
+
+// How many markers stand in a picture exactly where DrawFiducials puts them: all twelve in a template, also one that
+// was saved as JPEG; none where the picture has another size than (size + 2 · margin)².
+int FiducialsInPlace(const Picture& picture, int size, int margin);
+
+}  // namespace scumble

@@ -1,0 +1,67 @@
+// From a scan or photograph of the painted template back to the template's own pixels: the exemplar.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "image/picture.h"
+#include "image/status.h"
+#include "style/template_fit.h"
+
+namespace scumble {
+
+struct RectifyOptions {
+  int size = 1024;            // pixels across the sphere's square, 16 … 8192
+  bool with_margin = true;    // with the template's margin around it, as the style of a kit takes it
+  bool white_balance = true;  // paper becomes white, printed black becomes black, light becomes even
+  double dpi = 0;             // what the file says of its fineness, for messages; 0: unknown
+};
+
+struct RectifyReport {
+  std::vector<int> found;      // ids of the marks that the map rests on, and of those that are not there
+  std::vector<int> missing;
+  // Registration error as shares of the sphere's diameter: the larger of how far marks are from where the others expect them
+  // and of what that leaves open on the sphere; and what the fit leaves at the marks.
+  double error = 0;
+  double error_at_marks = 0;
+  double sphere_pixels = 0;    // the sphere's diameter in the scan
+  double rotation = 0;         // degrees clockwise that the template is turned in the picture, -180 … 180
+  double tilt = 0;             // degrees between the paper and the picture plane, for a lens of the usual angle
+  double lens = 0;             // radial distortion at the picture's corner, a share; 0 where none was fitted
+  double blur = 0;             // standard deviation, pixels of the scan
+  // What was found of the light, also where it was not taken out.
+  double paper[3] = {1, 1, 1};  // colour of the paper amid the template: linear, the largest 1
+  double paper_light = 1;       // its brightest channel, linear, 1 the brightest that the file can hold
+  double unevenness = 0;        // share of the light that its darkest place lacks
+  double black = 0;             // what the printed black reflects, a share of the paper
+  double clipped = 0;           // share of the bare paper at the file's limit
+  // Of the disc: what is not as light as paper, and the same of its outermost fiftieth.
+  double painted = 0;
+  double painted_rim = 0;
+  std::vector<std::string> warnings;  // sentences: what may be wrong with the exemplar, and how to mend it
+};
+
+struct Rectified {
+  Picture picture;  // opaque; size² or (size + 2 · TemplateMargin(size))²
+  TemplateMap map;  // where the template lies in the scan
+  RectifyReport report;
+};
+
+// Largest registration error that is let through, a share of the sphere's diameter: at 1024 pixels 10 pixels.
+inline constexpr double kMaxRegistrationError = 0.01;
+// Fewest pixels across the sphere in the scan.
+inline constexpr int kMinScanSphere = 200;
+// Most pixels of a scan: an A4 page at 1200 dpi, a gigabyte in memory.
+inline constexpr double kMaxScanPixels = 150e6;
+// What white paper becomes, in linear light. Room is left above for white paint, which is often lighter than paper.
+inline constexpr double kPaperWhite = 0.96;
+
+// Whether a scan of so many pixels is worth reading; `name` and `dpi` (0: unknown) are for the message.
+Status CheckScanSize(int width, int height, double dpi, const std::string& name);
+
+// Alpha is laid on white first. `name` stands for the scan in messages. Errors (kInput) say what is missing and how to mend it: no
+// marks, marks of other programs, fewer than four, a mirrored picture, two templates, marks that no plane holds, too few
+// pixels. The same bytes for the same scan; single-threaded; holds the scan and one more of the output's size.
+Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options = {});
+
+}  // namespace scumble

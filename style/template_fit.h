@@ -1,0 +1,47 @@
+// Where the template lies in a scan or photograph: a perspective map, and a lens's distortion where the marks show one.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "style/marker_detection.h"
+
+namespace scumble {
+
+// Template coordinates (style/fiducials.h: the sphere's square is [0, 1]²) → pixels of the picture.
+struct TemplateMap {
+  glm::dmat3 perspective{1.0};
+  // A lens moves what lies r away from the picture's middle by the factor 1 + bend · r², r in halves of the diagonal:
+  // negative for a barrel, positive for a cushion.
+  double bend = 0;
+  glm::dvec2 middle{0.0};
+  double half_diagonal = 1;
+
+  glm::dvec2 ToPicture(glm::dvec2 on_template) const;
+  // Pixels across the sphere, the mean of both directions.
+  double SpherePixels() const;
+};
+
+struct TemplateFit {
+  TemplateMap map;
+  std::vector<FoundMark> marks;  // those that lie where the map has them, by id, one of each
+  // All as shares of the sphere's diameter. `held_out`: root mean square of how far each mark's corners are from where the
+  // others alone expect them; `on_sphere`: the standard error of the sphere's outline that follows from `at_marks`, which
+  // is what the fit leaves at the corners.
+  double held_out = 0;
+  double on_sphere = 0;
+  double at_marks = 0;
+  int worst_id = 0;  // of the mark that is farthest from where the others expect it
+  double worst = 0;
+};
+
+// The map on which most marks agree. Marks that are elsewhere (other squares read as marks, a second sheet) are left out.
+// Nothing if no four marks agree on one that is not mirrored, or with `mirrored` on one that is.
+std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height, bool mirrored);
+
+// A corner of a marker in template coordinates; `corner` as in FoundMark.
+glm::dvec2 PrintedCorner(int id, int corner);
+
+}  // namespace scumble

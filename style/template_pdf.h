@@ -1,0 +1,24 @@
+// The template as a page for the printer, by libharu.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/status.h"
+#include "style/print_page.h"
+#include "style/sphere_template.h"
+
+namespace scumble {
+
+// One page, true to scale: the sphere so pale (0 to 18% grey) that paint covers it, the same marks as in the picture
+// but as shapes, and words that say how it is lit, printed and scanned. `painting` is the name of the file that the
+// painting is to become. The same input makes the same bytes: no date is in it. `name` is for messages. Thread-safe.
+Expected<std::vector<std::byte>> EncodeTemplatePdf(const KitLight& light, const PrintPage& page, int dpi,
+                                                   const std::string& painting, const std::string& name);
+
+// Whether a file's bytes are a page of EncodeTemplatePdf that no other program has changed or added to.
+bool IsTemplatePdf(std::span<const std::byte> bytes);
+
+}  // namespace scumble
