@@ -140,6 +140,28 @@ Load FullLoad(Chance& chance, const Flat& flat) {
   return load;
 }
 
+// A look at what was missed: it would come again on every wall. In a small picture a bristle is finer than a pixel and
+// covers none in full; there nothing can be told from a gap.
+template <class MakeFlow>
+void FillGaps(Canvas& colors, Canvas& heights, Brushes& brushes, Chance& chance, const Flat& flat, const Touch& inside,
+              const MakeFlow& flow) {
+  constexpr float kLeastPixelsPerUnit = 0.5f;
+  if (colors.pixels_per_unit() < kLeastPixelsPerUnit) return;
+  const bool small = flat.shape == Shape::kHighlight;
+  const Touch held = [&](glm::vec2 at) { return inside(at) > 0.0f ? 1.0f : 0.0f; };
+  const Layer seen = colors.Read();
+  for (const glm::vec2 middle : SowEvenly(chance, 5.0f, kSide, 0.0f)) {
+    const glm::vec2 pixel = glm::min(middle, kSide - 1.0f) * colors.pixels_per_unit();
+    if (inside(middle) < 0.4f * flat.wobble || seen.At(static_cast<int>(pixel.x), static_cast<int>(pixel.y)).w > 0.9f)
+      continue;
+    Load load = FullLoad(chance, flat);
+    load.width *= 0.6f;
+    load.ragged *= 0.4f;
+    const Stroke path = ShortPath(chance, middle, flow()(middle), small ? 24.0f : 70.0f);
+    brushes.full.Drag(colors, &heights, chance, path, load, held);
+  }
+}
+
 // Strokes that stop where the tone ends, then a few that are begun inside it and run dry beyond.
 void LayFlat(Canvas& colors, Canvas& heights, Brushes& brushes, const Studio& studio, const Flat& flat,
              std::uint64_t pass) {
@@ -162,19 +184,7 @@ void LayFlat(Canvas& colors, Canvas& heights, Brushes& brushes, const Studio& st
     brushes.full.Drag(colors, &heights, chance, path, FullLoad(chance, flat), held);
   }
   if (flat.shape == Shape::kAll) return;
-
-  // A look at what was missed: it would come again on every wall.
-  const Layer seen = colors.Read();
-  for (const glm::vec2 middle : SowEvenly(chance, 5.0f, kSide, 0.0f)) {
-    const glm::vec2 pixel = glm::min(middle, kSide - 1.0f) * colors.pixels_per_unit();
-    if (inside(middle) < 0.4f * flat.wobble || seen.At(static_cast<int>(pixel.x), static_cast<int>(pixel.y)).w > 0.9f)
-      continue;
-    Load load = FullLoad(chance, flat);
-    load.width *= 0.6f;
-    load.ragged *= 0.4f;
-    const Stroke path = ShortPath(chance, middle, flow()(middle), small ? 24.0f : 70.0f);
-    brushes.full.Drag(colors, &heights, chance, path, load, held);
-  }
+  FillGaps(colors, heights, brushes, chance, flat, inside, flow);
   if (small) return;
 
   for (const glm::vec2 middle : SowEvenly(chance, 27.0f, kSide, 40.0f)) {
