@@ -27,6 +27,7 @@ struct PictureWriteOptions {
   int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR is half floats, or floats at 32
   int png_level = 6;  // 0 … 9, zlib's compression level
   int jpeg_quality = 92;
+  bool grey = false;          // PNG and TIFF: the red channel alone, for pictures that are grey and opaque
   std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
 };
 

@@ -15,6 +15,12 @@ Painter PaintChiaroscuro;
 Painter PaintGraphite;
 Painter PaintOil;
 Painter PaintPleinAir;
+Painter PaintSceneInk;
+Painter PaintSceneOil;
+Painter PaintScenePastel;
+Painter PaintTintedOil;
+Painter PaintTintedPencil;
+Painter PaintTintedWash;
 Painter PaintWatercolour;
 
 // What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
@@ -23,6 +29,12 @@ Painter ChiaroscuroPaper;
 Painter GraphitePaper;
 Painter OilGround;
 Painter PleinAirGround;
+Painter SceneInkPaper;
+Painter SceneOilGround;
+Painter ScenePastelPaper;
+Painter TintedOilGround;
+Painter TintedPencilPaper;
+Painter TintedWashPaper;
 Painter WatercolourPaper;
 
 struct StyleEntry {
@@ -30,6 +42,7 @@ struct StyleEntry {
   Painter* paint;
   Painter* paper;
   int lights = 1;  // how many of kLights it is painted for, from the first
+  bool scene = false;  // paints the ball on its floor (scene.h), not the sphere that fills the picture
 };
 inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
@@ -37,6 +50,12 @@ inline constexpr StyleEntry kStyles[] = {
     {"graphite", PaintGraphite, GraphitePaper},
     {"oil", PaintOil, OilGround},
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
+    {"scene-ink", PaintSceneInk, SceneInkPaper, 1, true},
+    {"scene-oil", PaintSceneOil, SceneOilGround, 1, true},
+    {"scene-pastel", PaintScenePastel, ScenePastelPaper, 1, true},
+    {"tinted-oil", PaintTintedOil, TintedOilGround},
+    {"tinted-pencil", PaintTintedPencil, TintedPencilPaper},
+    {"tinted-wash", PaintTintedWash, TintedWashPaper},
     {"watercolour", PaintWatercolour, WatercolourPaper},
 };
 
