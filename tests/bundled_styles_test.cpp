@@ -111,6 +111,10 @@ Painter MakePainter(Style style, const Variant& variant, const GuideSet& guides)
   Painter painter;
   painter.mapped = variant.mapped;
   variant.set(style.transfer);
+  // Only a sphere has a painted edge that goes on along outlines.
+  for (const Exemplar& exemplar : style.exemplars) {
+    if (!exemplar.is_sphere) style.transfer.edge = EdgeMode::kExact;
+  }
   if (variant.lit && style.exemplars.size() == 1) {
     style.exemplars.push_back(style.exemplars.front());
     style.exemplars[0].luminance = 0.7, style.exemplars[1].luminance = 0.1;
