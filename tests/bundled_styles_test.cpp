@@ -50,7 +50,11 @@ std::vector<Variant> Variants() {
       more(settings);
     };
   };
-  const auto oklab = [](TransferSettings& s) { s.colorize = 1.0, s.colorize_mode = ColorizeMode::kOklab; };
+  // Styles in greys are so by themselves: those the other way.
+  const auto oklab = [](TransferSettings& s) {
+    const bool already = s.colorize == 1.0 && s.colorize_mode == ColorizeMode::kOklab;
+    s.colorize = 1.0, s.colorize_mode = already ? ColorizeMode::kMultiply : ColorizeMode::kOklab;
+  };
   const auto edge = [](TransferSettings& s) { s.edge = EdgeMode::kExemplar, s.scale = 2.0; };
   return {
       {"as it is", [](TransferSettings&) {}},
