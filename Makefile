@@ -42,7 +42,7 @@ exemplars: ## repaint the bundled styles (libmypaint), their thumbnails and docs
 	@.ci/install test
 	@cmake --preset release
 	@cmake --build build --target paint_exemplars scumble -j $(JOBS)
-	@build/exemplars/paint/paint_exemplars --style all --size 1024 --seed 1 -o exemplars
+	@build/exemplars/paint/paint_exemplars --style all --seed 1 -o exemplars
 	@.ci/optimise_png exemplars
 	@.ci/traits
 

@@ -21,7 +21,13 @@ Painter PaintPastel;
 Painter PaintPleinAir;
 Painter PaintPointillism;
 Painter PaintSanguine;
+Painter PaintSceneInk;
+Painter PaintSceneOil;
+Painter PaintScenePastel;
 Painter PaintSumiE;
+Painter PaintTintedOil;
+Painter PaintTintedPencil;
+Painter PaintTintedWash;
 Painter PaintWatercolour;
 Painter PaintWoodcut;
 
@@ -37,7 +43,13 @@ Painter PastelPaper;
 Painter PleinAirGround;
 Painter PointillismGround;
 Painter SanguinePaper;
+Painter SceneInkPaper;
+Painter SceneOilGround;
+Painter ScenePastelPaper;
 Painter SumiEPaper;
+Painter TintedOilGround;
+Painter TintedPencilPaper;
+Painter TintedWashPaper;
 Painter WatercolourPaper;
 Painter WoodcutPaper;
 
@@ -46,6 +58,7 @@ struct StyleEntry {
   Painter* paint;
   Painter* paper;
   int lights = 1;  // how many of kLights it is painted for, from the first
+  bool scene = false;  // paints the ball on its floor (scene.h), not the sphere that fills the picture
 };
 inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
@@ -59,7 +72,13 @@ inline constexpr StyleEntry kStyles[] = {
     {"plein-air", PaintPleinAir, PleinAirGround, 3},
     {"pointillism", PaintPointillism, PointillismGround},
     {"sanguine", PaintSanguine, SanguinePaper},
+    {"scene-ink", PaintSceneInk, SceneInkPaper, 1, true},
+    {"scene-oil", PaintSceneOil, SceneOilGround, 1, true},
+    {"scene-pastel", PaintScenePastel, ScenePastelPaper, 1, true},
     {"sumi-e", PaintSumiE, SumiEPaper},
+    {"tinted-oil", PaintTintedOil, TintedOilGround},
+    {"tinted-pencil", PaintTintedPencil, TintedPencilPaper},
+    {"tinted-wash", PaintTintedWash, TintedWashPaper},
     {"watercolour", PaintWatercolour, WatercolourPaper},
     {"woodcut", PaintWoodcut, WoodcutPaper},
 };
