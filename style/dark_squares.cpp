@@ -35,7 +35,8 @@ Mask DarkerThanAround(const GreyPlane& plane, int radius) {
     const std::size_t y0 = std::max(0, y - radius), y1 = std::min(plane.height, y + radius + 1);
     for (int x = 0; x < plane.width; ++x) {
       const std::size_t x0 = std::max(0, x - radius), x1 = std::min(plane.width, x + radius + 1);
-      const double sum = sums[y1 * stride + x1] - sums[y0 * stride + x1] - sums[y1 * stride + x0] + sums[y0 * stride + x0];
+      const double sum =
+          sums[y1 * stride + x1] - sums[y0 * stride + x1] - sums[y1 * stride + x0] + sums[y0 * stride + x0];
       const double mean = sum / double((x1 - x0) * (y1 - y0));
       mask.dark[std::size_t(y + 1) * mask.width + x + 1] = plane.At(x, y) < kDarker * mean;
     }
@@ -93,10 +94,10 @@ double DistanceToLine(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b) {
   return length > 0 ? std::abs(along.x * to.y - along.y * to.x) / length : glm::length(to);
 }
 
-// Points of an outline between which it stays closer than `tolerance` to straight lines (Ramer, Douglas and Peucker), but
-// no more than `most`: then nothing is a quadrilateral any more.
-void Simplify(std::span<const glm::dvec2> outline, std::size_t begin, std::size_t end, double tolerance, std::size_t most,
-              std::vector<std::size_t>& kept) {
+// Points of an outline between which it stays closer than `tolerance` to straight lines (Ramer, Douglas and Peucker),
+// but no more than `most`: then nothing is a quadrilateral any more.
+void Simplify(std::span<const glm::dvec2> outline, std::size_t begin, std::size_t end, double tolerance,
+              std::size_t most, std::vector<std::size_t>& kept) {
   const auto at = [&](std::size_t i) { return outline[i % outline.size()]; };
   double worst = tolerance;
   std::size_t where = begin;
@@ -111,7 +112,9 @@ void Simplify(std::span<const glm::dvec2> outline, std::size_t begin, std::size_
 }
 
 std::size_t Farthest(std::span<const glm::dvec2> points, glm::dvec2 from) {
-  const auto nearer = [&](glm::dvec2 a, glm::dvec2 b) { return glm::dot(a - from, a - from) < glm::dot(b - from, b - from); };
+  const auto nearer = [&](glm::dvec2 a, glm::dvec2 b) {
+    return glm::dot(a - from, a - from) < glm::dot(b - from, b - from);
+  };
   return std::size_t(std::max_element(points.begin(), points.end(), nearer) - points.begin());
 }
 

@@ -22,9 +22,9 @@ struct GreyPlane {
 // Four corners, clockwise as seen on the screen, whichever first; pixel i covers [i, i + 1).
 using Quad = std::array<glm::dvec2, 4>;
 
-// Patches of connected pixels that are darker than 0.9 of the mean of the window of (2 · `radius` + 1)² around them, and
-// whose outer outline is a convex quadrilateral, sides at least `least_side` long. A patch may have holes: a window that
-// is smaller than a mark leaves its black border as a ring.
+// Patches of connected pixels that are darker than 0.9 of the mean of the window of (2 · `radius` + 1)² around them,
+// and whose outer outline is a convex quadrilateral, sides at least `least_side` long. A patch may have holes: a window
+// that is smaller than a mark leaves its black border as a ring.
 std::vector<Quad> FindDarkSquares(const GreyPlane& plane, int radius, double least_side);
 
 }  // namespace scumble

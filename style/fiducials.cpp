@@ -10,12 +10,13 @@ namespace scumble {
 namespace {
 
 constexpr double At(int modules) { return modules * kFiducialModule; }
-// The marker at a side's low end begins so far along it, that at its high end so far before the end. At these places the
-// sphere is 1/17 of its diameter away from the square's side.
+// The marker at a side's low end begins so far along it, that at its high end so far before the end. At these places
+// the sphere is 1/17 of its diameter away from the square's side.
 constexpr int kLow = 11, kHigh = 64 - kLow - kFiducialModules;
 constexpr int kBefore = -1 - kFiducialModules, kBehind = 64 + 1;
 
-// clang-format off: a side of the square a line.
+// A side of the square a line.
+// clang-format off
 constexpr std::array<Fiducial, kFiducialCount> kFiducials{{
     {0, At(kBefore), At(kBefore)}, {1, At(kLow), At(kBefore)}, {2, At(kHigh), At(kBefore)},
     {3, At(kBehind), At(kBefore)}, {4, At(kBehind), At(kLow)}, {5, At(kBehind), At(kHigh)},
@@ -25,8 +26,9 @@ constexpr std::array<Fiducial, kFiducialCount> kFiducials{{
 // clang-format on
 
 constexpr std::array<const char*, kFiducialCount> kPlaces{
-    "upper left corner", "top side, left",     "top side, right",   "upper right corner", "right side, upper", "right side, lower",
-    "lower right corner", "bottom side, right", "bottom side, left", "lower left corner",  "left side, lower",  "left side, upper"};
+    "upper left corner", "top side, left",    "top side, right",    "upper right corner",
+    "right side, upper", "right side, lower", "lower right corner", "bottom side, right",
+    "bottom side, left", "lower left corner", "left side, lower",   "left side, upper"};
 
 constexpr std::array<std::uint16_t, kFiducialCount> kBits{0xB532, 0x0F9A, 0x332D, 0x9946, 0x549E, 0x79CD,
                                                           0x9E2E, 0xC4F2, 0xFEDA, 0xCF56, 0xF991, 0x11A7};
@@ -100,7 +102,8 @@ void DrawFiducials(Picture& picture, int size, int margin) {
 
 int FiducialsInPlace(const Picture& picture, int size, int margin) {
   const int side = size + 2 * margin;
-  if (!FiducialsFit(size) || margin < kFiducialMargin * size || picture.width != side || picture.height != side) return 0;
+  if (!FiducialsFit(size) || margin < kFiducialMargin * size || picture.width != side || picture.height != side)
+    return 0;
   constexpr int kDark = 20000, kLight = 45000;  // of 65535: JPEG's noise stays on the right side
   int found = 0;
   for (const Fiducial& mark : kFiducials) {

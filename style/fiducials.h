@@ -1,12 +1,13 @@
 // The marks that are printed around the sphere's template, by which a scan or a photograph of it is laid back onto the
 // template's pixels. They are square ArUco markers (S. Garrido-Jurado, R. Muñoz-Salinas, F. J. Madrid-Cuevas, M. J.
 // Marín-Jiménez, "Automatic generation and detection of highly reliable fiducial markers under occlusion", Pattern
-// Recognition 47 (6), 2014), ids 0 … 11 of the dictionary that other programs call DICT_4X4_50, so that those find them too.
+// Recognition 47 (6), 2014), ids 0 … 11 of the dictionary that other programs call DICT_4X4_50, so that those find them
+// too.
 //
 // Coordinates: the sphere's square is [0, 1]², x to the right, y down from the picture's top; the template's margin
-// reaches at least kFiducialMargin further on every side. A picture of the template with `size` pixels across the sphere's square and a
-// margin of `margin` pixels has (x, y) at pixel (margin + x · size, margin + y · size), where pixel i covers [i, i + 1).
-// Everything lies on a grid of 1/64: at sizes that 64 divides, all edges are pixel edges.
+// reaches at least kFiducialMargin further on every side. A picture of the template with `size` pixels across the
+// sphere's square and a margin of `margin` pixels has (x, y) at pixel (margin + x · size, margin + y · size), where
+// pixel i covers [i, i + 1). Everything lies on a grid of 1/64: at sizes that 64 divides, all edges are pixel edges.
 #pragma once
 
 #include <array>

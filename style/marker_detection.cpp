@@ -38,7 +38,8 @@ GreyPlane Reduced(const Picture& picture, int factor) {
 
 // Linear luminance between pixel centres of the whole picture. Linear, because there blur moves no edge.
 double LightAt(const Picture& picture, glm::dvec2 at) {
-  const double u = std::clamp(at.x - 0.5, 0.0, picture.width - 1.0), v = std::clamp(at.y - 0.5, 0.0, picture.height - 1.0);
+  const double u = std::clamp(at.x - 0.5, 0.0, picture.width - 1.0),
+               v = std::clamp(at.y - 0.5, 0.0, picture.height - 1.0);
   const int x = int(u), y = int(v), x1 = std::min(x + 1, picture.width - 1), y1 = std::min(y + 1, picture.height - 1);
   const auto light = [&](int i, int j) {
     const std::uint16_t* p = picture.At(i, j);
@@ -56,7 +57,8 @@ struct Reading {
   std::uint16_t Bits() const {
     std::uint16_t bits = 0;
     for (int row = 1; row <= 4; ++row) {
-      for (int column = 1; column <= 4; ++column) bits = static_cast<std::uint16_t>(bits << 1 | !black[row * kModules + column]);
+      for (int column = 1; column <= 4; ++column)
+        bits = static_cast<std::uint16_t>(bits << 1 | !black[row * kModules + column]);
     }
     return bits;
   }
@@ -105,7 +107,8 @@ std::optional<Reading> Read(const Quad& quad, const Brightness& brightness) {
 // The bits after a quarter turn clockwise.
 std::uint16_t Turned(std::uint16_t bits) {
   std::uint16_t turned = 0;
-  for (int i = 0; i < 16; ++i) turned = static_cast<std::uint16_t>(turned << 1 | (bits >> (15 - (4 * (3 - i % 4) + i / 4)) & 1));
+  for (int i = 0; i < 16; ++i)
+    turned = static_cast<std::uint16_t>(turned << 1 | (bits >> (15 - (4 * (3 - i % 4) + i / 4)) & 1));
   return turned;
 }
 
@@ -135,7 +138,8 @@ Line FitLine(std::span<const glm::dvec2> points, std::span<const double> weights
   double w = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double k = weights[i];
-    w += k, x += k * points[i].x, y += k * points[i].y, xx += k * points[i].x * points[i].x, xy += k * points[i].x * points[i].y;
+    w += k, x += k * points[i].x, y += k * points[i].y, xx += k * points[i].x * points[i].x,
+        xy += k * points[i].x * points[i].y;
   }
   const double determinant = w * xx - x * x;
   if (!(determinant > 1e-9 * w * w)) return {w > 0 ? y / w : 0.0, 0.0};
@@ -288,9 +292,8 @@ void SearchAt(const Picture& picture, int factor, MarkSearch& search, std::vecto
         continue;
       }
       for (glm::dvec2& corner : mark->corners) corner *= factor;
-      const bool known = std::any_of(search.marks.begin(), search.marks.end(), [&](const FoundMark& other) {
-        return near(Middle(other.corners));
-      });
+      const bool known = std::any_of(search.marks.begin(), search.marks.end(),
+                                     [&](const FoundMark& other) { return near(Middle(other.corners)); });
       if (!known && Refine(picture, *mark)) search.marks.push_back(*mark);
     }
   }
@@ -302,7 +305,8 @@ MarkSearch FindMarks(const Picture& picture) {
   MarkSearch search;
   std::vector<glm::dvec2> unknown;
   int last_factor = 0;
-  // From small to large: most marks are seen soonest in a small picture, where noise is gone; small ones need more pixels.
+  // From small to large: most marks are seen soonest in a small picture, where noise is gone; small ones need more
+  // pixels.
   for (const int longest : {900, 1800, 3600, 7200}) {
     const int factor = (std::max(picture.width, picture.height) + longest - 1) / longest;
     if (factor == last_factor || picture.empty()) continue;

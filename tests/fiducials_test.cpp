@@ -92,7 +92,8 @@ TEST(Fiducials, DrawnAsTheMeanOfManyPoints) {
           const double v = (y + (j / points + 0.5) / points - margin) / size;
           double here = Srgb16ToLinear(kGround);
           for (const Fiducial& mark : Fiducials()) {
-            const double column = std::floor((u - mark.left) / kFiducialModule), row = std::floor((v - mark.top) / kFiducialModule);
+            const double column = std::floor((u - mark.left) / kFiducialModule),
+                         row = std::floor((v - mark.top) / kFiducialModule);
             if (std::min(column, row) < -1 || std::max(column, row) > 6) continue;
             const bool border = std::min(column, row) < 0 || std::max(column, row) > 5;
             here = border || !FiducialIsBlack(mark.id, int(column), int(row)) ? 1.0 : 0.0;

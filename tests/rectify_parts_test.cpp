@@ -26,7 +26,8 @@ TEST(Homography, FourPointsAreMetAndMoreAreAveraged) {
     if (i != 3 && i != 39) continue;
     const auto map = FitHomography(from, to);
     ASSERT_TRUE(map);
-    for (int k = 0; k < 9; ++k) EXPECT_NEAR((*map)[k / 3][k % 3], truth[k / 3][k % 3], 1e-6 * (1 + std::abs(truth[k / 3][k % 3])));
+    for (int k = 0; k < 9; ++k)
+      EXPECT_NEAR((*map)[k / 3][k % 3], truth[k / 3][k % 3], 1e-6 * (1 + std::abs(truth[k / 3][k % 3])));
   }
 }
 
@@ -112,7 +113,8 @@ TEST(ResampleScan, RampsStayRampsAtAnyScale) {
   const Picture ramp = Grey(400, 300, [](int x, int y) { return 0.1 + 0.0015 * (x + 0.5) + 0.0005 * (y + 0.5); });
   for (const double shrink : {0.4, 1.0, 1.7, 3.0, 6.3}) {
     const int width = 40, height = 30;
-    const auto seen = ResampleScan(ramp, width, height, shrink, [&](glm::dvec2 p) { return glm::dvec2(30, 20) + p * shrink; });
+    const auto seen =
+        ResampleScan(ramp, width, height, shrink, [&](glm::dvec2 p) { return glm::dvec2(30, 20) + p * shrink; });
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         const double px = 30 + (x + 0.5) * shrink, py = 20 + (y + 0.5) * shrink;
