@@ -1,7 +1,12 @@
 #include "style/fiducials.h"
 
+#include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 
 #include "image/check.h"
 #include "image/color.h"
@@ -30,8 +35,22 @@ constexpr std::array<const char*, kFiducialCount> kPlaces{
     "right side, upper", "right side, lower", "lower right corner", "bottom side, right",
     "bottom side, left", "lower left corner", "left side, lower",   "left side, upper"};
 
-constexpr std::array<std::uint16_t, kFiducialCount> kBits{0xB532, 0x0F9A, 0x332D, 0x9946, 0x549E, 0x79CD,
-                                                          0x9E2E, 0xC4F2, 0xFEDA, 0xCF56, 0xF991, 0x11A7};
+// A marker's 16 bits, rows from the top, the highest bit first; 1 is white.
+using Bits = std::array<std::uint16_t, kFiducialCount>;
+
+// From the library's codes, whose bits go around in quarters.
+Bits ReadFamily() {
+  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag16h5_create(), tag16h5_destroy);
+  Bits bits{};
+  for (std::size_t id = 0; id < bits.size(); ++id) {
+    for (unsigned i = 0; i < family->nbits; ++i) {
+      const auto bit = family->codes[id] >> (family->nbits - 1 - i) & 1;
+      bits[id] =
+          static_cast<std::uint16_t>(bits[id] | bit << (15 - 4 * (family->bit_y[i] - 1) - (family->bit_x[i] - 1)));
+    }
+  }
+  return bits;
+}
 
 // Share of the pixel [i, i + 1) between `from` and `to`.
 double Covered(int i, double from, double to) {
@@ -74,12 +93,11 @@ const std::array<Fiducial, kFiducialCount>& Fiducials() { return kFiducials; }
 
 const char* FiducialPlace(int id) { return kPlaces.at(std::size_t(id)); }
 
-std::uint16_t FiducialBits(int id) { return kBits.at(std::size_t(id)); }
-
 bool FiducialIsBlack(int id, int column, int row) {
   const auto border = [](int i) { return i == 0 || i == kFiducialModules - 1; };
   if (border(column) || border(row)) return true;
-  return (FiducialBits(id) >> (15 - 4 * (row - 1) - (column - 1)) & 1) == 0;
+  static const Bits bits = ReadFamily();
+  return (bits.at(std::size_t(id)) >> (15 - 4 * (row - 1) - (column - 1)) & 1) == 0;
 }
 
 bool FiducialsFit(int size) { return size * kFiducialModule >= 2.0; }

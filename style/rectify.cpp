@@ -57,17 +57,21 @@ std::string FinerScan(double factor, double dpi) {
          " times as fine (300 dpi do for a sphere of 90 mm), or go closer with the camera";
 }
 
-// Why no map could be laid through the marks.
-Error NoTemplate(const Picture& scan, const std::string& name, const MarkSearch& search,
-                 const RectifyOptions& options) {
-  std::vector<FoundMark> upright;
-  for (const FoundMark& mark : search.marks) {
-    if (!mark.mirrored) upright.push_back(mark);
+Picture Mirrored(const Picture& picture) {
+  Picture mirrored(picture.width, picture.height);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) std::copy_n(picture.At(x, y), 4, mirrored.At(picture.width - 1 - x, y));
   }
+  return mirrored;
+}
+
+// Why no map could be laid through the marks.
+Error NoTemplate(const Picture& scan, const std::string& name, const std::vector<FoundMark>& marks,
+                 const RectifyOptions& options) {
   std::vector<int> found, missing;
-  SplitIds(upright, found, missing);
+  SplitIds(marks, found, missing);
   const std::string size = name + " (" + Pixels(scan.width, scan.height) + ")";
-  if (FitTemplate(search.marks, scan.width, scan.height, true)) {
+  if (FitTemplate(FindMarks(Mirrored(scan)), scan.width, scan.height)) {
     return InputError(name +
                       " shows the template mirrored: flip it left to right, or switch off mirroring in the camera or "
                       "scanner program");
@@ -87,48 +91,23 @@ Error NoTemplate(const Picture& scan, const std::string& name, const MarkSearch&
     const double factor = 1.25 * 2 * kMinScanSphere / std::min(scan.width, scan.height);
     return InputError(size + " is too small to read the template's marks: " + FinerScan(factor, options.dpi));
   }
-  if (search.unknown_squares > 0) {
-    return InputError(size + " shows " + std::to_string(search.unknown_squares) + " black square" +
-                      (search.unknown_squares > 1 ? "s" : "") + " like a printed mark, but none of the " +
-                      std::to_string(kFiducialCount) +
-                      " of the template: print the template that `scumble sphere` wrote. If it "
-                      "is, the picture is too blurred to read them");
-  }
   return InputError(
       size + " shows none of the template's " + std::to_string(kFiducialCount) +
       " printed marks: expected a scan or photograph of a whole sheet from `scumble sphere`, sharp, evenly lit, "
-      "the marks not covered. Templates whose corners have plain crosses are older, or too small to have marks");
+      "the marks not covered. Marks of other programs will not do; templates whose corners have plain crosses are "
+      "older, or too small to have marks");
 }
 
 // Marks of a whole second sheet, or nothing.
-bool HasSecondTemplate(const MarkSearch& search, const TemplateFit& fit, int width, int height) {
+bool HasSecondTemplate(const std::vector<FoundMark>& marks, const TemplateFit& fit, int width, int height) {
   std::vector<FoundMark> rest;
-  for (const FoundMark& mark : search.marks) {
+  for (const FoundMark& mark : marks) {
     const bool used = std::any_of(fit.marks.begin(), fit.marks.end(), [&](const FoundMark& other) {
       return glm::length(other.corners[0] - mark.corners[0]) < other.module_pixels;
     });
     if (!used) rest.push_back(mark);
   }
-  return FitTemplate(rest, width, height, false).has_value();
-}
-
-// Marks that are hidden from a search without a map may be found where it says.
-void FindTheRest(const Picture& scan, TemplateFit& fit) {
-  std::vector<FoundMark> expected;
-  for (int id = 0; id < kFiducialCount; ++id) {
-    const bool there =
-        std::any_of(fit.marks.begin(), fit.marks.end(), [&](const FoundMark& mark) { return mark.id == id; });
-    if (there) continue;
-    FoundMark mark;
-    mark.id = id;
-    for (int c = 0; c < 4; ++c) mark.corners[std::size_t(c)] = fit.map.ToPicture(PrintedCorner(id, c));
-    expected.push_back(mark);
-  }
-  std::vector<FoundMark> all = FindMarksAt(scan, expected);
-  if (all.empty()) return;
-  all.insert(all.end(), fit.marks.begin(), fit.marks.end());
-  const auto more = FitTemplate(all, scan.width, scan.height, false);
-  if (more && more->marks.size() > fit.marks.size()) fit = *more;
+  return FitTemplate(rest, width, height).has_value();
 }
 
 // How the sheet was held: from the map's slopes amid the template, and from how they change across it.
@@ -307,13 +286,12 @@ Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const Rec
   SCUMBLE_CHECK(options.size >= 16 && options.size <= 8192);
   SCUMBLE_RETURN_IF_ERROR(CheckScanSize(scan.width, scan.height, options.dpi, name));
   LayOnWhite(scan);
-  const MarkSearch search = FindMarks(scan);
-  auto fit = FitTemplate(search.marks, scan.width, scan.height, false);
-  if (!fit) return NoTemplate(scan, name, search, options);
-  if (HasSecondTemplate(search, *fit, scan.width, scan.height)) {
+  const std::vector<FoundMark> marks = FindMarks(scan);
+  const auto fit = FitTemplate(marks, scan.width, scan.height);
+  if (!fit) return NoTemplate(scan, name, marks, options);
+  if (HasSecondTemplate(marks, *fit, scan.width, scan.height)) {
     return InputError(name + " shows two templates: cut the picture to one of them");
   }
-  if (fit->marks.size() < std::size_t(kFiducialCount)) FindTheRest(scan, *fit);
   SCUMBLE_RETURN_IF_ERROR(CheckSphereIsWhole(fit->map, scan, name));
   SCUMBLE_RETURN_IF_ERROR(CheckFit(*fit, name, options));
 

@@ -267,33 +267,29 @@ glm::dvec2 PrintedCorner(int id, int corner) {
   return {mark.left + (right ? kFiducialSide : 0), mark.top + (low ? kFiducialSide : 0)};
 }
 
-std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height, bool mirrored) {
-  std::vector<FoundMark> candidates;
-  for (const FoundMark& mark : marks) {
-    if (mark.mirrored == mirrored) candidates.push_back(mark);
-  }
+std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height) {
   // Every pair of marks proposes a map; all of them are asked, so that chance has no part in it.
   std::vector<FoundMark> best;
   TemplateMap start, best_map;
   start.middle = glm::dvec2(width, height) / 2.0;
   start.half_diagonal = glm::length(start.middle);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    for (std::size_t j = i + 1; j < candidates.size(); ++j) {
-      if (candidates[i].id == candidates[j].id) continue;
-      const std::array two{candidates[i], candidates[j]};
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    for (std::size_t j = i + 1; j < marks.size(); ++j) {
+      if (marks[i].id == marks[j].id) continue;
+      const std::array two{marks[i], marks[j]};
       const auto proposed = Perspective(PairsOf(two));
       if (!proposed) continue;
       start.perspective = *proposed;
-      if (IsMirrored(start) != mirrored) continue;
-      std::vector<FoundMark> agreeing = Agreeing(start, candidates, kFarAtFirst);
+      if (IsMirrored(start)) continue;
+      std::vector<FoundMark> agreeing = Agreeing(start, marks, kFarAtFirst);
       if (agreeing.size() > best.size()) best = std::move(agreeing), best_map = start;
     }
   }
   for (int round = 0; round < 2 && best.size() >= kLeastMarks; ++round) {
     if (const auto all = Perspective(PairsOf(best))) best_map.perspective = *all;
-    best = Agreeing(best_map, candidates, kFarAtLast);
+    best = Agreeing(best_map, marks, kFarAtLast);
   }
-  if (best.size() < kLeastMarks || IsMirrored(best_map) != mirrored) return std::nullopt;
+  if (best.size() < kLeastMarks || IsMirrored(best_map)) return std::nullopt;
   TemplateFit plain = Measure(best_map, best, false);
   if (best.size() < kLeastMarksForLens) return plain;
   TemplateFit bent = Measure(plain.map, best, true);

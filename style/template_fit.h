@@ -38,8 +38,8 @@ struct TemplateFit {
 };
 
 // The map on which most marks agree. Marks that are elsewhere (other squares read as marks, a second sheet) are left
-// out. Nothing if no four marks agree on one that is not mirrored, or with `mirrored` on one that is.
-std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height, bool mirrored);
+// out. Nothing if no four marks agree on one, or on a mirrored one only.
+std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height);
 
 // A corner of a marker in template coordinates; `corner` as in FoundMark.
 glm::dvec2 PrintedCorner(int id, int corner);

@@ -85,7 +85,7 @@ TEST(RectifyRefusal, MarksOfOtherPrograms) {
       if (black) std::fill_n(page.At(60 + k % 4 * 200 + i % 60, 60 + k / 4 * 200 + i / 60), 3, std::uint16_t(0));
     }
   }
-  ExpectRefused(page, {"12 black squares like a printed mark", "none of the 12 of the template"});
+  ExpectRefused(page, {"none of the template's 12", "Marks of other programs"});
 }
 
 TEST(RectifyRefusal, CurledPaper) {
