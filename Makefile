@@ -1,6 +1,6 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo test test-asan bench bench-cycles exemplars scenes gallery format clean
+.PHONY: help build demo test test-asan bench bench-cycles exemplars traits scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -38,11 +38,17 @@ bench-cycles: build ## our speed beside Cycles' on the same scene, into out/benc
 	@.ci/install test
 	@/usr/bin/python3 bench/cycles_bench.py --scumble build/scumble $(BENCH_ARGS)
 
-exemplars: ## repaint the bundled styles (libmypaint)
+exemplars: ## repaint the bundled styles (libmypaint), their thumbnails and docs/exemplars.md
 	@.ci/install test
 	@cmake --preset release
-	@cmake --build build --target paint_exemplars -j $(JOBS)
-	@build/exemplars/paint/paint_exemplars --style all --size 1024 --seed 1 -o exemplars
+	@cmake --build build --target paint_exemplars scumble -j $(JOBS)
+	@build/exemplars/paint/paint_exemplars --style all --seed 1 -o exemplars
+	@.ci/optimise_png exemplars
+	@.ci/traits
+
+traits: build ## measure the bundled styles: docs/exemplars.md, and thumbnails
+	@.ci/install test
+	@.ci/traits
 
 scenes: ## make the sample scenes again (Blender)
 	@.ci/install test

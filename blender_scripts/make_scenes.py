@@ -439,7 +439,31 @@ def toys():
     scene.frame_set(TOYS_FRAMES[0])
 
 
-SCENES = {"suzanne": suzanne, "snail": snail, "stilllife": stilllife, "toys": toys}
+# ---- ball -----------------------------------------------------------------------------------------------------------
+
+
+def ball():
+    """What painters learn on: a ball on a floor before a wall, under one square lamp where the bundled exemplars have
+    their key. The lamp is a mesh that shines, for glTF has no area lamps."""
+    Shape().ball((0, 0, 0), (1, 1, 1), 96, 144).place("Ball", kit.material("Ball", (0.62, 0.36, 0.24), 0.25),
+                                                      at=(0, 0, 1))
+    # One quadrangle each: their normals are everywhere the same.
+    floor = [[(-9, -9, 0), (9, -9, 0)], [(-9, 3, 0), (9, 3, 0)]]
+    Shape().grid(floor).place("Floor", kit.material("Floor", (0.60, 0.53, 0.44), 1.0), closed=False)
+    wall = [[(-9, 3, 0), (9, 3, 0)], [(-9, 3, 9), (9, 3, 9)]]
+    Shape().grid(wall).place("Wall", kit.material("Wall", (0.46, 0.50, 0.54), 1.0), closed=False)
+    shining = kit.material("Lamp", (0.0, 0.0, 0.0))
+    shader = shining.node_tree.nodes["Principled BSDF"]
+    shader.inputs["Emission"].default_value = (1.0, 0.97, 0.92, 1.0)
+    shader.inputs["Emission Strength"].default_value = 30.0
+    at, target, half = Vector((-2.95, -3.52, 4.86)), Vector((0.0, 0.0, 1.0)), 0.8
+    lamp = Shape().grid([[(-half, -half, 0), (half, -half, 0)], [(-half, half, 0), (half, half, 0)]], flip=True).place(
+        "Lamp", shining, at, closed=False)
+    lamp.rotation_euler = (target - at).to_track_quat("-Z", "Y").to_euler()
+    kit.camera("Camera", (0.0, -7.6, 2.8), (0.32, 0.0, 0.90), 74)
+
+
+SCENES = {"suzanne": suzanne, "snail": snail, "stilllife": stilllife, "toys": toys, "ball": ball}
 MOVING = {"toys"}
 
 

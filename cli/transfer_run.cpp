@@ -293,7 +293,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
   // All of them, or those that the scene has asked for since.
   for (std::size_t i = memory.prepared.size(); i < styles.styles.size(); ++i) {
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareOne(styles.styles[i], height, globals.threads));
-    WarnOfEqualLight(styles.styles[i], one);
+    for (const auto& [image, what, mend] : EqualLights(styles.styles[i], one)) Warn(image + " " + what + ": " + mend);
     memory.prepared.push_back(std::move(one));
   }
   if (!memory.exposure) {
@@ -302,16 +302,19 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
   return Ok();
 }
 
-void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared) {
+std::vector<EqualLight> EqualLights(const Style& style, const PreparedStyle& prepared) {
+  std::vector<EqualLight> equal;
   const auto luminances = prepared.illumination.luminances();
   for (std::size_t later = 1; later < luminances.size(); ++later) {
     const auto first = std::find(luminances.begin(), luminances.begin() + std::ptrdiff_t(later), luminances[later]);
     const auto index = static_cast<std::size_t>(first - luminances.begin());
     if (index == later) continue;
-    Warn(fmt::format("{} has the luminance {:.4g} as {} has, which stands first and is taken, so it never shows: give "
-                     "each [[exemplar]] its own",
-                     style.exemplars[later].name, luminances[later], style.exemplars[index].name));
+    equal.push_back({style.exemplars[later].name,
+                     fmt::format("has the luminance {:.4g} as {} has, which stands first and is taken, so it never shows",
+                                 luminances[later], style.exemplars[index].name),
+                     "give each [[exemplar]] its own"});
   }
+  return equal;
 }
 
 std::string LightInWords(const Exemplar& exemplar, double rim) {

@@ -65,8 +65,12 @@ struct TransferMemory {
 // Reads --over, unless `memory` has it already.
 Status ReadOver(const std::string& file, TransferMemory& memory);
 
-// Of two lighting conditions with one luminance only the first is ever chosen: warns of the other.
-void WarnOfEqualLight(const Style& style, const PreparedStyle& prepared);
+// Of two lighting conditions with one luminance only the first is ever chosen: the others, with what is wrong
+// and how to mend it.
+struct EqualLight {
+  std::string image, what, mend;
+};
+std::vector<EqualLight> EqualLights(const Style& style, const PreparedStyle& prepared);
 
 // "luminance 0.8, given" or where it is measured. `rim` is the style's.
 std::string LightInWords(const Exemplar& exemplar, double rim);

@@ -121,6 +121,7 @@ struct Exemplar {
   bool is_sphere = true;            // the geometry is the sphere that fills the picture, whatever the guides say;
                                     // false needs guides
   std::filesystem::path guides_file = {};  // where guides are or would be read from; empty: nowhere
+  int margin = 0;                          // pixels of the template that were cut off the file on every side
 };
 
 inline constexpr int kMaxExemplars = 4;

@@ -155,10 +155,18 @@ OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureW
 }
 
 Status WriteEncoded(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
-  OIIO::ImageSpec spec = EncodedSpec(picture, 4, options);
+  OIIO::ImageSpec spec = EncodedSpec(picture, options.grey ? 1 : 4, options);
   // A TIFF would say sRGB in a second directory, which OpenImageIO 2.4 spoils in memory; integers are sRGB without it.
-  if (Upper(path.extension().string()) != ".PNG") spec.erase_attribute("oiio:ColorSpace");
-  else if (!options.settings.empty()) spec.attribute(internal::kSettings, options.settings);
+  if (Upper(path.extension().string()) != ".PNG")
+    spec.erase_attribute("oiio:ColorSpace");
+  else if (!options.settings.empty())
+    spec.attribute(internal::kSettings, options.settings);
+  if (options.grey) {
+    std::vector<std::uint16_t> grey(picture.rgba.size() / 4);
+    for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = picture.rgba[4 * i];
+    return internal::EncodeAndWrite(
+        path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT16, grey.data()); });
+  }
   if (options.bits == 8) {
     const std::vector<std::uint8_t> bytes = In8Bits(picture);
     return internal::EncodeAndWrite(

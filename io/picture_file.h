@@ -39,6 +39,7 @@ struct PictureWriteOptions {
   int png_level = 6;  // 0 … 9, zlib's compression level
   int jpeg_quality = 92;
   int dpi = 0;        // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted
+  bool grey = false;  // PNG and TIFF: the red channel alone, for pictures that are grey and opaque
   std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
 };
 

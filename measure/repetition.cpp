@@ -7,6 +7,7 @@
 #include "image/check.h"
 #include "image/color.h"
 #include "image/oklab.h"
+#include "measure/gaussian_blur.h"
 
 namespace scumble {
 namespace {
@@ -34,31 +35,6 @@ std::vector<float> Lightness(const Picture& picture, const PictureRegion& region
     for (int x = 0; x < region.width; ++x) tones.push_back(LabAt(picture, region.x + x, region.y + y).x);
   }
   return tones;
-}
-
-// One direction of a Gaussian blur; what lies outside has no weight.
-std::vector<float> BlurredAlong(const std::vector<float>& tones, int count, int stride, int lines, int line_stride,
-                                const std::vector<double>& weights) {
-  const int reach = static_cast<int>(weights.size()) - 1;
-  std::vector<float> out(tones.size());
-  for (int line = 0; line < lines; ++line) {
-    for (int i = 0; i < count; ++i) {
-      double sum = 0.0, weight = 0.0;
-      for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k) {
-        const double w = weights[std::size_t(std::abs(k - i))];
-        sum += w * tones[std::size_t(line) * line_stride + std::size_t(k) * stride], weight += w;
-      }
-      out[std::size_t(line) * line_stride + std::size_t(i) * stride] = static_cast<float>(sum / weight);
-    }
-  }
-  return out;
-}
-
-std::vector<float> Blurred(const std::vector<float>& tones, int width, int height, double sigma) {
-  if (!(sigma > 0.0)) return tones;
-  std::vector<double> weights;
-  for (int k = 0; k <= std::ceil(4.0 * sigma); ++k) weights.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
-  return BlurredAlong(BlurredAlong(tones, width, 1, height, width, weights), height, width, width, 1, weights);
 }
 
 // Pearson's correlation of the tones with themselves, (dx, dy) away, where both are inside.
@@ -95,7 +71,7 @@ AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const Picture
   SCUMBLE_CHECK(step >= 1);
   std::vector<float> tones = Lightness(picture, region);
   if (options.subtract_sigma > 0.0) {
-    const std::vector<float> blurred = Blurred(tones, region.width, region.height, options.subtract_sigma);
+    const std::vector<float> blurred = GaussianBlur(tones, region.width, region.height, options.subtract_sigma);
     for (std::size_t i = 0; i < tones.size(); ++i) tones[i] -= blurred[i];
   }
   AutocorrelationPeak peak{-1.0, 0, 0};
@@ -112,7 +88,7 @@ AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const Picture
 }
 
 double ToneSpread(const Picture& picture, const PictureRegion& region, double sigma) {
-  const std::vector<float> tones = Blurred(Lightness(picture, region), region.width, region.height, sigma);
+  const std::vector<float> tones = GaussianBlur(Lightness(picture, region), region.width, region.height, sigma);
   if (tones.empty()) return 0.0;
   double mean = 0.0, variance = 0.0;
   for (const float tone : tones) mean += tone;

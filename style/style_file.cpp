@@ -153,6 +153,7 @@ Status FitToSphere(int size, int margin, const fs::path& guides, Exemplar& exemp
   Picture cut(size, size);
   for (int y = 0; y < size; ++y) std::copy_n(picture.At(margin, y + margin), 4 * size, cut.At(0, y));
   picture = std::move(cut);
+  exemplar.margin = margin;
   return Ok();
 }
 

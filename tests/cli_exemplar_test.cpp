@@ -147,7 +147,8 @@ TEST_F(CliExemplar, CheckReportsDirectionsAndRepeats) {
   EXPECT_NE(sphere.out.find("test: 64² pixels"), std::string::npos) << sphere.out;
   EXPECT_NE(sphere.out.find("\ndirections: "), std::string::npos) << sphere.out;
   EXPECT_NE(sphere.out.find("\nrepeats: "), std::string::npos) << sphere.out;
-  EXPECT_EQ(sphere.Warning(), "");
+  EXPECT_EQ(sphere.err.find("directions"), std::string::npos) << sphere.err;
+  EXPECT_EQ(sphere.err.find("flat faces"), std::string::npos) << sphere.err;
   const nlohmann::json json = RunOk({"styles", "check", "style", "--json"}).Json();
   EXPECT_EQ(json["shape"], "sphere");
   EXPECT_GT(json["directions"]["covered_percent"], 65.0);
@@ -164,8 +165,8 @@ TEST_F(CliExemplar, CheckReportsDirectionsAndRepeats) {
   WritePainted("wedge/wedge.png", 64, 64);
   WriteText("wedge/style.toml", "[[exemplar]]\nimage = \"wedge.png\"\nguides = \"wedge.exr\"\n");
   const CommandResult flat = RunOk({"styles", "check", "wedge"});
-  EXPECT_NE(flat.Warning().find("100% of the painting shows flat faces: 2 of"), std::string::npos) << flat.err;
-  EXPECT_NE(flat.Warning().find("use a rounded shape"), std::string::npos) << flat.err;
+  EXPECT_NE(flat.err.find("100% of the painting shows flat faces: 2 of"), std::string::npos) << flat.err;
+  EXPECT_NE(flat.err.find("use a rounded shape"), std::string::npos) << flat.err;
   EXPECT_EQ(RunOk({"styles", "check", "wedge", "--json"}).Json()["directions"]["shown"], 2);
   EXPECT_EQ(RunOk({"styles", "check", "wedge", "--json"}).out, RunOk({"styles", "check", "wedge", "--json"}).out);
   ExpectError({"transfer", "wedge/wedge.exr", "--style", "wedge", "--set", "transfer.nearest=analytic", "-o", "x.png"},

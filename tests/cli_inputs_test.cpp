@@ -165,7 +165,7 @@ TEST_F(CliLights, EqualOnesAreSaidAndTheFirstIsUsed) {
     EXPECT_TRUE(Contains(three.err, words)) << three.err;
   }
   EXPECT_TRUE(Pixels("two.png") == Pixels("three.png"));
-  EXPECT_TRUE(Contains(RunOk({"styles", "check", "style"}).err, "style/half.png has the luminance 0.8"));
+  EXPECT_TRUE(Contains(RunOk({"styles", "check", "style"}).err, "style/half.png: it has the luminance 0.8"));
   // All alike: as if there were no light.
   WriteLights({{"half", 0.4}, {"light", 0.4}});
   Paint("alike.png");

@@ -57,10 +57,10 @@ TEST_F(CliStyleLight, LightsThatAreTheWrongWayRoundOrEqual) {
   EXPECT_FALSE(Contains(RunOk({"styles", "check", "style"}).err, "more light"));
   WriteTwo("0.1", "0.8");
   const std::string opposite = RunOk({"styles", "check", "style"}).err;
-  EXPECT_TRUE(Contains(opposite, "style/dark.png is for more light than style/light.png (0.8 and 0.1), and its paint is darker")) << opposite;
+  EXPECT_TRUE(Contains(opposite, "style/dark.png: it is for more light than style/light.png (0.8 and 0.1), and its paint is darker")) << opposite;
   WriteTwo("0.4", "0.4");
   const std::string equal = RunOk({"styles", "check", "style"}).err;
-  EXPECT_TRUE(Contains(equal, "style/dark.png has the luminance 0.4 as style/light.png has, which stands first and is taken")) << equal;
+  EXPECT_TRUE(Contains(equal, "style/dark.png: it has the luminance 0.4 as style/light.png has, which stands first and is taken")) << equal;
   // And so it is: nothing of the second is in the picture.
   RunOk({"stylize", Scene("suzanne.glb"), "--size", "48x27", "--style", "style", "-o", "p.png", "-q"});
   const Expected<Picture> picture = ReadPicture(At("p.png"));

@@ -347,11 +347,11 @@ TEST_F(CliVerbs, StyleCheckWarnsOfFlatAndHoledPaint) {
   Picture flat(32, 32);
   for (std::size_t i = 0; i < flat.rgba.size(); ++i) flat.rgba[i] = i % 4 == 3 ? 65535 : 30000;
   ASSERT_TRUE(WritePicture(At("flat.png"), flat));
-  EXPECT_TRUE(Contains(RunOk({"styles", "check", "flat.png"}).Warning(), "flat.png: light and dark differ by 0%"));
+  EXPECT_TRUE(Contains(RunOk({"styles", "check", "flat.png"}).err, "flat.png: light and dark differ by 0%"));
   Picture holed = Painted(32, 32);
   holed.At(16, 16)[3] = 0;
   ASSERT_TRUE(WritePicture(At("holed.png"), holed));
-  EXPECT_TRUE(Contains(RunOk({"styles", "check", "holed.png"}).Warning(), "is transparent"));
+  EXPECT_TRUE(Contains(RunOk({"styles", "check", "holed.png"}).err, "is transparent"));
 }
 
 // A dark triangle and, a metre before it, one that shines on it.

@@ -77,7 +77,7 @@ double ShareWithoutChunk(const SourceField& field) {
 }
 
 TEST(Figure23, WithoutWeightLightChoosesAtTheSeedAndCutsNothing) {
-  for (const char* name : {"plein-air", "chiaroscuro"}) {
+  for (const char* name : {"plein-air", "chiaroscuro", "pastel"}) {
     Style style = Bundled(name);
     style.transfer.luminance_weight = 0.0f;
     Style first_only = style;
@@ -101,7 +101,7 @@ TEST(Figure23, WithoutWeightLightChoosesAtTheSeedAndCutsNothing) {
 }
 
 TEST(Figure23, MoreWeightBringsShadowsNearerUntilTheyAreExact) {
-  for (const char* name : {"plein-air", "chiaroscuro"}) {
+  for (const char* name : {"plein-air", "chiaroscuro", "pastel"}) {
     Style style = Bundled(name);
     const auto luminance = StillLife().Plane(Layer::kLuminance);
     std::size_t last = std::numeric_limits<std::size_t>::max();

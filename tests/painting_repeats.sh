@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # Painting the exemplars twice with one seed gives the same bytes, and another seed another picture; at a small size, to
 # be quick. Usage: painting_repeats.sh PAINT_EXEMPLARS SCUMBLE
+# EXEMPLARS
 set -eu
 paint=$1
 program=$2
+exemplars=$3
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
@@ -20,9 +22,17 @@ for style in "$folder"/first/*/; do
     cmp "$picture" "$folder/second/$file"
     case $file in */paper.png) continue ;; esac
     if cmp -s "$picture" "$folder/other/$file"; then echo "$file: the seed changes nothing"; exit 1; fi
+    case $file in scene-*) continue ;; esac  # no sphere fills them
     "$program" styles check "$picture"
   done
 done
-for name in chiaroscuro plein-air; do
-  for light in lit half shade; do [ -s "$folder/first/$name/$light.png" ] || { echo "$name: no $light.png"; exit 1; }; done
+# What the bundled styles list is what is painted.
+for style in "$exemplars"/*/style.toml; do
+  name=$(basename "$(dirname "$style")")
+  for picture in $(sed -n 's/^\(image\|paper\) = "\(.*\.png\)".*/\2/p' "$style"); do
+    [ -s "$folder/first/$name/$picture" ] || { echo "$name: no $picture"; exit 1; }
+  done
 done
+# A scene's painting has its guides' size unless another is asked for; without those guides nothing is painted.
+if "$paint" --style scene-ink --scene "$folder/none.exr" -o "$folder" 2> "$folder/message"; then exit 1; fi
+grep -q "none.exr" "$folder/message" || { cat "$folder/message"; exit 1; }

@@ -68,6 +68,29 @@ std::vector<std::uint16_t> Pixel(const Picture& picture, int x, int y) {
 
 // ---- round trips -----------------------------------------------------------------------------------------------
 
+TEST(PictureFile, GreyIsOneChannelAndComesBackEqual) {
+  TemporaryFolder folder;
+  for (const int bits : {8, 16}) {
+    Picture grey = RandomPicture(37, 23, bits);
+    for (std::size_t i = 0; i < grey.rgba.size(); i += 4) {
+      grey.rgba[i + 1] = grey.rgba[i + 2] = grey.rgba[i];
+      grey.rgba[i + 3] = 65535;
+    }
+    for (const char* name : {"grey.png", "grey.tif"}) {
+      SCOPED_TRACE(name);
+      const fs::path path = folder.path() / name;
+      PictureWriteOptions options;
+      options.bits = bits, options.grey = true;
+      ASSERT_TRUE(WritePicture(path, grey, options));
+      const auto file = OIIO::ImageInput::open(path.string());
+      ASSERT_TRUE(file);
+      EXPECT_EQ(file->spec().nchannels, 1);
+      EXPECT_EQ(file->spec().format.basesize(), bits == 8 ? 1u : 2u);
+      ExpectSame(Read(path), grey);
+    }
+  }
+}
+
 TEST(PictureFile, PngAndTiffAreExactAt8And16Bits) {
   const TemporaryFolder folder;
   for (const char* name : {"p.png", "p.tif", "p.TIFF", "p.PNG"}) {
@@ -431,7 +454,8 @@ TEST(PictureFile, PhotographsAreTurnedUpright) {
     for (int i = 0; i < 18; ++i) pixels.push_back(static_cast<std::uint8_t>(40 * (i / 3)));
     const std::string name = (folder / "photo.tif").string();
     auto file = OIIO::ImageOutput::create(name);
-    ASSERT_TRUE(file && file->open(name, spec) && file->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && file->close());
+    ASSERT_TRUE(file && file->open(name, spec) && file->write_image(OIIO::TypeDesc::UINT8, pixels.data()) &&
+                file->close());
     const auto picture = ReadPicture(name);
     ASSERT_TRUE(picture) << picture.error().message;
     ASSERT_EQ(picture->width, orientation <= 4 ? 3 : 2);

@@ -5,7 +5,7 @@
 #include "image/color.h"
 #include "image/oklab.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/bare_paper.h"
+#include "image/bare_paper.h"
 #include "transfer/silhouettes.h"
 
 namespace scumble {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "transfer/bare_paper.h"
+#include "image/bare_paper.h"
 #include "transfer/resample.h"
 
 namespace scumble {

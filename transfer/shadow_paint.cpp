@@ -8,7 +8,7 @@
 #include "image/color.h"
 #include "image/exact_math.h"
 #include "image/hash.h"
-#include "transfer/bare_paper.h"
+#include "image/bare_paper.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "image/picture.h"
-#include "transfer/bare_paper.h"
+#include "image/bare_paper.h"
 #include "transfer/prepared_exemplar.h"
 
 namespace scumble {

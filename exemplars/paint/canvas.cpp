@@ -80,6 +80,14 @@ void Canvas::Fill(glm::vec3 color) {
   });
 }
 
+void Canvas::Put(const Colors& colors) {
+  ForEachPixel(false, [&](int x, int y, std::uint16_t* pixel) {
+    const glm::vec3 color = glm::clamp(colors.At(x, y), 0.0f, 1.0f);
+    for (int k = 0; k < 3; ++k) pixel[k] = static_cast<std::uint16_t>(std::lround(color[k] * kOne));
+    pixel[3] = static_cast<std::uint16_t>(kOne);
+  });
+}
+
 Layer Canvas::Read() const {
   Layer layer(sheet_);
   ForEachPixel(true, [&](int x, int y, const std::uint16_t* pixel) {

@@ -61,6 +61,7 @@ class Canvas {
   const Sheet& sheet() const { return sheet_; }
   float pixels_per_unit() const { return static_cast<float>(sheet_.pixels) / sheet_.units; }
   void Fill(glm::vec3 color);
+  void Put(const Colors& colors);  // of the same sheet
   Layer Read() const;
 
   // For Brush.

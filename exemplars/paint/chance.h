@@ -26,6 +26,8 @@ class Chance {
     const float y = Bell(deviation);
     return {x, y, Bell(deviation)};
   }
+  // A key for noise or for another stream.
+  std::uint64_t Draw() { return Hash(key_, count_++); }
   bool Happens(float probability) { return Uniform() < probability; }
   // A whole number in [low, high].
   int Whole(int low, int high) {

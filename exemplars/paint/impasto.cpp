@@ -33,12 +33,9 @@ Stroke OneBristle(Chance& chance, const Stroke& path, float offset, float outer,
   const int end = count - static_cast<int>(chance.Uniform() * outer * 3.0f + dry);
   Stroke line;
   for (int i = begin; i < end; ++i) {
-    const glm::vec2 before = path[static_cast<std::size_t>(std::max(0, i - 1))].at;
-    const glm::vec2 after = path[static_cast<std::size_t>(std::min(count - 1, i + 1))].at;
-    const glm::vec2 along = (after - before) / std::max(glm::distance(after, before), 1e-5f);
     const float u = static_cast<float>(i) / static_cast<float>(count - 1);
     const float pressure = press * (0.5f + 0.5f * Ramp(0.0f, 0.15f, u)) * Ramp(1.04f, 0.8f, u);
-    line.push_back({path[static_cast<std::size_t>(i)].at + glm::vec2(-along.y, along.x) * offset, pressure});
+    line.push_back({Beside(path, static_cast<std::size_t>(i), offset), pressure});
   }
   return line;
 }

@@ -43,6 +43,15 @@ class Impasto {
   // Works over the sphere, lit as the studio says, in strokes of the layers' sizes.
   void WorkOver(const Palette& palette, std::span<const BrushLayer> layers);
 
+  // One stroke of a brush of that kind, whatever the plan.
+  struct Tuft {
+    float width;
+    float bristle;
+    float load;            // how thick the paint is, 0 … 1
+    float streaks = 1.0f;  // how far the colours of its bristles part
+  };
+  void DragBristles(Chance& chance, const Stroke& path, const Tuft& tuft, glm::vec3 color);
+
   // Thick dabs of one colour where the key light mirrors.
   void PlaceHighlight(glm::vec3 color, int dabs);
 
@@ -54,15 +63,7 @@ class Impasto {
   Colors Finish(float depth = 1.0f) const;
 
  private:
-  struct Tuft {
-    float width;
-    float bristle;
-    float load;            // how thick the paint is, 0 … 1
-    float streaks = 1.0f;  // how far the colours of its bristles part
-  };
-
   Impasto(const Sheet& sheet, const Studio& studio, glm::vec3 undertone, float thickness, Brush paint, Brush relief);
-  void DragBristles(Chance& chance, const Stroke& path, const Tuft& tuft, glm::vec3 color);
 
   std::uint64_t seed_;
   Light light_;

@@ -11,6 +11,7 @@
 
 #include "exemplars/paint/styles.h"
 #include "image/hash.h"
+#include "io/guide_file.h"
 #include "io/picture_file.h"
 
 namespace {
@@ -32,6 +33,21 @@ int Report(const Error& error) {
   }
 }
 
+// Whether one channel holds all of it.
+bool IsGrey(const Picture& picture) {
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    const std::uint16_t* texel = picture.rgba.data() + i;
+    if (texel[0] != texel[1] || texel[0] != texel[2] || texel[3] != 65535) return false;
+  }
+  return true;
+}
+
+// As many pixels as the guides have, for a scene's painting and its guides are of one size.
+Expected<int> SizeOfGuides(const std::filesystem::path& guides) {
+  SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(guides));
+  return info.width;
+}
+
 Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, const std::filesystem::path& folder) {
   const std::filesystem::path style_folder = folder / style.name;
   std::error_code failure;
@@ -40,11 +56,12 @@ Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, con
     return OutputError(style_folder.string() + " cannot be made: " + failure.message() +
                        "; choose another folder with -o");
   }
-  PictureWriteOptions options;
-  options.png_level = 9;
   const auto write = [&](const char* name, const Expected<Picture>& picture) -> Status {
     if (!picture) return picture.error();
     const std::filesystem::path file = style_folder / name;
+    PictureWriteOptions options;
+    options.png_level = 9;
+    options.grey = IsGrey(*picture);
     SCUMBLE_RETURN_IF_ERROR(WritePicture(file, *picture, options));
     std::cout << file.string() << "\n";
     return Ok();
@@ -70,6 +87,7 @@ int main(int argc, char** argv) {
 #endif
   paint::Studio studio;
   studio.brushes = SCUMBLE_MYPAINT_BRUSHES;
+  studio.scene = SCUMBLE_BALL_GUIDES;
   std::string chosen = "all";
   std::filesystem::path folder = ".";
   std::vector<std::string> names{"all"};
@@ -79,9 +97,13 @@ int main(int argc, char** argv) {
       "Paints spheres and papers in the styles that come with Scumble: FOLDER/NAME/lit.png and paper.png, and "
       "half.png, shade.png and deep.png for styles that are painted for several lights"};
   app.add_option("--style", chosen, "Which one")->check(CLI::IsMember(names))->capture_default_str();
-  app.add_option("--size", studio.size, "Pixels along a side")->check(CLI::Range(64, 8192))->capture_default_str();
+  const CLI::Option* size =
+      app.add_option("--size", studio.size, "Pixels along a side; left out: 1024, for scenes that of their guides")
+          ->check(CLI::Range(64, 8192));
   app.add_option("--seed", studio.seed, "The same number paints the same picture")->capture_default_str();
   app.add_option("--brushes", studio.brushes, "Folder of the brushes of mypaint-brushes")->capture_default_str();
+  app.add_option("--scene", studio.scene, "Guides of scenes/ball.glb, for the styles that paint a scene")
+      ->capture_default_str();
   app.add_option("-o", folder, "Folder to write to")->capture_default_str();
   try {
     app.parse(argc, argv);
@@ -90,7 +112,13 @@ int main(int argc, char** argv) {
   }
   for (const paint::StyleEntry& style : paint::kStyles) {
     if (chosen != "all" && chosen != style.name) continue;
-    if (const Status status = PaintOne(style, studio, folder); !status) return Report(status.error());
+    paint::Studio own = studio;
+    if (style.scene && size->empty()) {
+      const Expected<int> side = SizeOfGuides(studio.scene);
+      if (!side) return Report(side.error());
+      own.size = *side;
+    }
+    if (const Status status = PaintOne(style, own, folder); !status) return Report(status.error());
   }
   return kOk;
 }

@@ -34,7 +34,7 @@ void RubInto(Colors& ground, const Layer& layer, const Field& tooth, const DryMe
     const float caught = Ramp(hollow - media.softness, hollow + media.softness, paint.w);
     const float cover =
         glm::clamp(media.density * glm::mix(paint.w, caught, media.bite) * std::sqrt(paint.w), 0.0f, 1.0f);
-    ground.pixels[i] = glm::mix(ground.pixels[i], glm::vec3(paint) / paint.w, cover);
+    ground.pixels[i] = glm::mix(ground.pixels[i], media.stick.value_or(glm::vec3(paint) / paint.w), cover);
   }
 }
 

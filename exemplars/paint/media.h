@@ -2,6 +2,8 @@
 // makes a mark of its own.
 #pragma once
 
+#include <optional>
+
 #include "exemplars/paint/canvas.h"
 
 namespace scumble::paint {
@@ -11,6 +13,8 @@ struct DryMedia {
   float bite = 0.75f;      // 0: covers hollows like peaks, 1: the tooth alone decides
   float softness = 0.30f;  // of the grain's edges
   float density = 1.0f;    // of the covered grain
+  // The colour of the stick, where there is but one: the faintest strokes have too few bits left to tell it.
+  std::optional<glm::vec3> stick = std::nullopt;
 };
 void RubInto(Colors& ground, const Layer& layer, const Field& tooth, const DryMedia& media);
 

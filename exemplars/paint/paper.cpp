@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "exemplars/paint/chance.h"
@@ -27,6 +28,13 @@ float RawHeight(Tooth tooth, const NoisePlace& place, std::uint64_t seed) {
     }
     case Tooth::kFine:
       return CloudNoise(place, 3, Hash(seed, 1));
+    case Tooth::kRibbed: {
+      const NoisePlace ribs = place.Finer({0.22f, 0.62f});
+      const float sway = 0.5f * SmoothNoise(ribs.Finer({0.3f, 0.1f}), Hash(seed, 1));
+      const float rib = 0.5f + 0.5f * std::cos(2.0f * std::numbers::pi_v<float> * (ribs.at.y + sway));
+      const float worn = 0.4f + 0.6f * SmoothNoise(ribs, Hash(seed, 2));
+      return 0.85f * CloudNoise(place, 3, Hash(seed, 3)) + 0.13f * rib * worn;
+    }
     case Tooth::kColdPress: {
       const NoisePlace wide = place.Finer(glm::vec2(0.3f));
       const glm::vec2 bend(CloudNoise(wide, 2, Hash(seed, 1)), CloudNoise(wide, 2, Hash(seed, 2)));

@@ -13,6 +13,7 @@ enum class Tooth {
   kLaid,       // fibres with a faint weave: charcoal and pastel paper
   kFine,       // even and close: drawing paper
   kColdPress,  // rounded hollows: watercolour paper
+  kRibbed,     // fibres over the fine level lines of a mould: old laid paper
 };
 
 struct Stock {

@@ -73,6 +73,13 @@ Stroke TraceStroke(const Flow& flow, glm::vec2 middle, float length, float offse
   return stroke;
 }
 
+glm::vec2 Beside(const Stroke& stroke, std::size_t i, float offset) {
+  const glm::vec2 before = stroke[i > 0 ? i - 1 : 0].at;
+  const glm::vec2 after = stroke[std::min(stroke.size() - 1, i + 1)].at;
+  const glm::vec2 along = (after - before) / std::max(glm::distance(after, before), 1e-5f);
+  return stroke[i].at + glm::vec2(-along.y, along.x) * offset;
+}
+
 std::vector<Stroke> Press(const Stroke& stroke, const Touch& touch, float gain, float taper) {
   std::vector<Stroke> pieces;
   Stroke piece;

@@ -25,6 +25,9 @@ Flow TowardsAxis(glm::vec3 axis);
 // sideways. Pressures are 1.
 Stroke TraceStroke(const Flow& flow, glm::vec2 middle, float length, float offset = 0.0f);
 
+// The place `offset` units beside the stroke's point `i`, to its right as it goes.
+glm::vec2 Beside(const Stroke& stroke, std::size_t i, float offset);
+
 // Multiplies the pressures by the touch under them and by a soft start and end, and cuts the stroke where the tool
 // lifts.
 std::vector<Stroke> Press(const Stroke& stroke, const Touch& touch, float gain = 1.0f, float taper = 0.22f);

@@ -12,7 +12,8 @@ struct Studio {
   std::filesystem::path brushes;  // the folder that holds tanda/, deevad/, classic/
   int size = 1024;
   std::uint64_t seed = 1;
-  Light light = Light::kKey;  // heeded by the styles that are painted for several
+  std::filesystem::path scene;  // guides of the ball on its floor, for the styles that paint it
+  Light light = Light::kKey;    // heeded by the styles that are painted for several
 };
 
 }  // namespace scumble::paint

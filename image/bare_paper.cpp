@@ -1,4 +1,4 @@
-#include "transfer/bare_paper.h"
+#include "image/bare_paper.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,16 @@
+// The kit's sphere as it is before anybody paints on it.
+#pragma once
+
+#include <optional>
+
+#include "image/picture.h"
+#include "image/status.h"
+#include "image/style.h"
+
+namespace scumble {
+
+// What the exemplar was painted over, the size of its picture: drawn in the light that its guides show; without guides in the
+// key light. Nothing for painted scenes, for guides without luminance, and for pictures below 16 pixels.
+Expected<std::optional<Picture>> BareTemplate(const Exemplar& exemplar, int threads);
+
+}  // namespace scumble

@@ -1,0 +1,12 @@
+#include "exemplars/paint/neutral.h"
+
+#include "image/color.h"
+
+namespace scumble::paint {
+
+Colors Neutral(Colors colors) {
+  for (glm::vec3& color : colors.pixels) color = glm::vec3(Luminance(color.r, color.g, color.b));
+  return colors;
+}
+
+}  // namespace scumble::paint

@@ -1,0 +1,44 @@
+// A painted exemplar as the measures of paint see it: its picture, the pixels that a transfer may show, how they are turned.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "image/style.h"
+
+namespace scumble {
+
+// Refers to the exemplar, which must outlive it. Pixels are those of the exemplar's picture, rows from the top; angles and
+// axes are those of view space (image/guides.h).
+class PaintSheet {
+ public:
+  // Usable is, on a sphere, what lies `rim` pixels or more inside the circle that fills the square; in a painted scene, what
+  // its guides cover. The picture is not empty; that of a sphere is square.
+  PaintSheet(const Exemplar& exemplar, double rim);
+
+  const Picture& picture() const { return exemplar_.picture; }
+  bool is_sphere() const { return exemplar_.is_sphere; }
+  int width() const { return picture().width; }
+  int height() const { return picture().height; }
+  std::size_t Index(int x, int y) const { return std::size_t(y) * width() + x; }
+  bool Usable(int x, int y) const { return usable_[Index(x, y)] != 0; }
+  std::size_t usable_pixels() const { return usable_pixels_; }
+  double rim() const { return rim_; }
+
+  // The unit normal at a usable pixel's centre.
+  glm::vec3 Normal(int x, int y) const;
+
+  // CIE L* (0 black … 100 white) of every pixel's colour, whatever its alpha.
+  const std::vector<float>& lightness() const { return lightness_; }
+
+ private:
+  const Exemplar& exemplar_;
+  double rim_;
+  std::vector<std::uint8_t> usable_;
+  std::size_t usable_pixels_ = 0;
+  std::vector<float> lightness_;
+};
+
+}  // namespace scumble
