@@ -3,8 +3,8 @@
 //
 //   rectify_bench [FOLDER]     FOLDER keeps the scans and what is true of them, for other programs to be tried on
 //
-// Each cell is the worst of three scans, turned differently: true error / reported error, in % of the sphere's diameter; in
-// brackets how many marks were found, where it is not all; a dash where a scan is refused.
+// Each cell is the worst of three scans, turned differently: true error / reported error, in % of the sphere's
+// diameter; in brackets how many marks were found, where it is not all; a dash where a scan is refused.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -58,15 +58,19 @@ void Cell(Scan scan, Keeper& keeper) {
     error = std::max(error, TrueError(done->map, scan)), reported = std::max(reported, done->report.error);
     marks = std::min(marks, done->report.found.size());
   }
-  if (refused) std::printf(" – |");
-  else if (marks < std::size_t(kFiducialCount)) std::printf(" %.3f / %.3f (%zu) |", 100 * error, 100 * reported, marks);
-  else std::printf(" %.3f / %.3f |", 100 * error, 100 * reported);
+  if (refused)
+    std::printf(" – |");
+  else if (marks < std::size_t(kFiducialCount))
+    std::printf(" %.3f / %.3f (%zu) |", 100 * error, 100 * reported, marks);
+  else
+    std::printf(" %.3f / %.3f |", 100 * error, 100 * reported);
   std::fflush(stdout);
 }
 
 void Run(Keeper keeper) {
   Scan usual;
-  usual.width = 1000, usual.height = 800, usual.fill = 0.62, usual.blur = 0.7, usual.jpeg_quality = 80, usual.gradient = 0.3;
+  usual.width = 1000, usual.height = 800, usual.fill = 0.62, usual.blur = 0.7, usual.jpeg_quality = 80,
+  usual.gradient = 0.3;
   std::printf("| tilt | no noise | noise 4 | noise 8 | noise 16 |\n|---|---|---|---|---|\n");
   for (const double tilt : {0, 10, 20, 30, 40}) {
     std::printf("| %.0f° |", tilt);

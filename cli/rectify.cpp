@@ -23,13 +23,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // Options of `scumble sphere` that mean something here; the others draw templates.
-constexpr std::array<std::string_view, 8> kOptionsHere{"--rectify", "--square",  "--no-white-balance", "--size",
-                                                       "--output",  "--threads", "--json",             "--quiet"};
+constexpr std::array<std::string_view, 8> kOptionsHere{
+    "--rectify", "--square", "--no-white-balance", "--size", "--output", "--threads", "--json", "--quiet"};
 
 Status CheckOptions(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
-    if (option->count() == 0 || std::find(kOptionsHere.begin(), kOptionsHere.end(), name) != kOptionsHere.end()) continue;
+    if (option->count() == 0 || std::find(kOptionsHere.begin(), kOptionsHere.end(), name) != kOptionsHere.end())
+      continue;
     return UsageError(name + " says how a template is made, and --rectify reads one: leave " + name + " out");
   }
   return Ok();
@@ -55,7 +56,9 @@ std::optional<int> KitSize(const fs::path& output) {
 std::string Cast(const double (&paper)[3]) {
   const auto [least, most] = std::minmax({paper[0], paper[1], paper[2]});
   if (most - least < 0.03) return "none";
-  const std::string hue = paper[0] == most ? (paper[2] == least ? "warm" : "pink") : paper[1] == most ? "green" : "cool";
+  const std::string hue = paper[0] == most   ? (paper[2] == least ? "warm" : "pink")
+                          : paper[1] == most ? "green"
+                                             : "cool";
   return fmt::format("{}, the paper is {:.2f} : {:.2f} : {:.2f}", hue, paper[0], paper[1], paper[2]);
 }
 
@@ -76,17 +79,23 @@ std::string ReportText(const RectifyReport& report, int size) {
   std::string marks = fmt::format("{} of {}", report.found.size(), kFiducialCount);
   if (!report.missing.empty()) marks += "; not seen: " + Places(report.missing);
   out(text, "marks", marks);
-  out(text, "registration", fmt::format("error {:.3f}% of the sphere, {:.2f} of its {} pixels; {:.3f}% at the marks", 100 * report.error,
-                                        report.error * size, size, 100 * report.error_at_marks));
-  out(text, "sphere", fmt::format("{:.0f} pixels across in the scan, blurred by {:.1f}", report.sphere_pixels, report.blur));
+  out(text, "registration",
+      fmt::format("error {:.3f}% of the sphere, {:.2f} of its {} pixels; {:.3f}% at the marks", 100 * report.error,
+                  report.error * size, size, 100 * report.error_at_marks));
+  out(text, "sphere",
+      fmt::format("{:.0f} pixels across in the scan, blurred by {:.1f}", report.sphere_pixels, report.blur));
   const std::string lens = report.lens == 0 ? "" : fmt::format(", lens {:+.1f}% at the corners", 100 * report.lens);
-  out(text, "held", fmt::format("turned {:.1f}° clockwise, tilted about {:.0f}°{}", Tidy(report.rotation, 0.1), report.tilt, lens));
+  out(text, "held",
+      fmt::format("turned {:.1f}° clockwise, tilted about {:.0f}°{}", Tidy(report.rotation, 0.1), report.tilt, lens));
   out(text, "cast", Cast(report.paper));
   // Scanners often have it so on purpose, which is why this is no warning.
-  const std::string limit = report.clipped > 0.5 ? "; the paper is at the file's limit, lighter paint is not told from it" : "";
-  out(text, "light", fmt::format("falls off by {:.0f}% across the sheet; printed black reflects {:.0f}% of the paper{}", 100 * report.unevenness,
-                                 100 * report.black, limit));
-  out(text, "paint", fmt::format("covers {:.0f}% of the sphere, {:.0f}% of its edge", 100 * report.painted, 100 * report.painted_rim));
+  const std::string limit =
+      report.clipped > 0.5 ? "; the paper is at the file's limit, lighter paint is not told from it" : "";
+  out(text, "light",
+      fmt::format("falls off by {:.0f}% across the sheet; printed black reflects {:.0f}% of the paper{}",
+                  100 * report.unevenness, 100 * report.black, limit));
+  out(text, "paint",
+      fmt::format("covers {:.0f}% of the sphere, {:.0f}% of its edge", 100 * report.painted, 100 * report.painted_rim));
   return text;
 }
 
@@ -113,6 +122,7 @@ nlohmann::ordered_json ReportJson(const RectifyReport& report, const std::string
   json["paper_light"] = report.paper_light;
   json["uneven_percent"] = 100 * report.unevenness;
   json["black_percent"] = 100 * report.black;
+  json["bare_margin_percent"] = 100 * report.bare_margin;
   json["overexposed_percent"] = 100 * report.clipped;
   json["painted_percent"] = 100 * report.painted;
   json["painted_edge_percent"] = 100 * report.painted_rim;
@@ -126,13 +136,15 @@ void AddRectifyOptions(CLI::App& verb, RectifyRequest& request) {
   constexpr const char* kGroup = "From a scan to the exemplar";
   CLI::Option* rectify =
       verb.add_option("--rectify", request.scan,
-                      "lay a scan or photograph of the printed and painted template back onto its pixels, by its printed marks; "
+                      "lay a scan or photograph of the printed and painted template back onto its pixels, by its "
+                      "printed marks; "
                       "the paper becomes white and the light even. -o is the picture; --size, left out, is "
                       "that of the kit in its folder, or 1024")
           ->type_name("SCAN")
           ->check(RefuseEmpty)
           ->group(kGroup);
-  verb.add_flag("--square", request.square, "the sphere's square alone, without the template's margin: an exemplar without a kit")
+  verb.add_flag("--square", request.square,
+                "the sphere's square alone, without the template's margin: an exemplar without a kit")
       ->needs(rectify)
       ->group(kGroup);
   verb.add_flag("--no-white-balance", request.no_white_balance, "keep colours and light as they are in the scan")
@@ -159,8 +171,8 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   write.bits = header.bits > 8 && PictureBits(request.output, {.bits = 16}) == 16 ? 16 : 8;
   SCUMBLE_RETURN_IF_ERROR(WritePicture(request.output, rectified.picture, write));
   if (kit && *kit != options.size) {
-    Warn(fmt::format("{} has {} pixels and the kit's {} {}: the style there will refuse it; take --size {}", request.output, options.size,
-                     GuidesBeside(request.output).string(), *kit, *kit));
+    Warn(fmt::format("{} has {} pixels and the kit's {} {}: the style there will refuse it; take --size {}",
+                     request.output, options.size, GuidesBeside(request.output).string(), *kit, *kit));
   }
   for (const std::string& warning : rectified.report.warnings) Warn(request.scan + ": " + warning);
   if (globals.json) {

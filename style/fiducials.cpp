@@ -1,7 +1,12 @@
 #include "style/fiducials.h"
 
+#include <apriltag/apriltag.h>
+#include <apriltag/tag16h5.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 
 #include "image/check.h"
 #include "image/color.h"
@@ -10,12 +15,13 @@ namespace scumble {
 namespace {
 
 constexpr double At(int modules) { return modules * kFiducialModule; }
-// The marker at a side's low end begins so far along it, that at its high end so far before the end. At these places the
-// sphere is 1/17 of its diameter away from the square's side.
+// The marker at a side's low end begins so far along it, that at its high end so far before the end. At these places
+// the sphere is 1/17 of its diameter away from the square's side.
 constexpr int kLow = 11, kHigh = 64 - kLow - kFiducialModules;
 constexpr int kBefore = -1 - kFiducialModules, kBehind = 64 + 1;
 
-// clang-format off: a side of the square a line.
+// A side of the square a line.
+// clang-format off
 constexpr std::array<Fiducial, kFiducialCount> kFiducials{{
     {0, At(kBefore), At(kBefore)}, {1, At(kLow), At(kBefore)}, {2, At(kHigh), At(kBefore)},
     {3, At(kBehind), At(kBefore)}, {4, At(kBehind), At(kLow)}, {5, At(kBehind), At(kHigh)},
@@ -25,11 +31,26 @@ constexpr std::array<Fiducial, kFiducialCount> kFiducials{{
 // clang-format on
 
 constexpr std::array<const char*, kFiducialCount> kPlaces{
-    "upper left corner", "top side, left",     "top side, right",   "upper right corner", "right side, upper", "right side, lower",
-    "lower right corner", "bottom side, right", "bottom side, left", "lower left corner",  "left side, lower",  "left side, upper"};
+    "upper left corner", "top side, left",    "top side, right",    "upper right corner",
+    "right side, upper", "right side, lower", "lower right corner", "bottom side, right",
+    "bottom side, left", "lower left corner", "left side, lower",   "left side, upper"};
 
-constexpr std::array<std::uint16_t, kFiducialCount> kBits{0xB532, 0x0F9A, 0x332D, 0x9946, 0x549E, 0x79CD,
-                                                          0x9E2E, 0xC4F2, 0xFEDA, 0xCF56, 0xF991, 0x11A7};
+// A marker's 16 bits, rows from the top, the highest bit first; 1 is white.
+using Bits = std::array<std::uint16_t, kFiducialCount>;
+
+// From the library's codes, whose bits go around in quarters.
+Bits ReadFamily() {
+  const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag16h5_create(), tag16h5_destroy);
+  Bits bits{};
+  for (std::size_t id = 0; id < bits.size(); ++id) {
+    for (unsigned i = 0; i < family->nbits; ++i) {
+      const auto bit = family->codes[id] >> (family->nbits - 1 - i) & 1;
+      bits[id] =
+          static_cast<std::uint16_t>(bits[id] | bit << (15 - 4 * (family->bit_y[i] - 1) - (family->bit_x[i] - 1)));
+    }
+  }
+  return bits;
+}
 
 // Share of the pixel [i, i + 1) between `from` and `to`.
 double Covered(int i, double from, double to) {
@@ -72,12 +93,11 @@ const std::array<Fiducial, kFiducialCount>& Fiducials() { return kFiducials; }
 
 const char* FiducialPlace(int id) { return kPlaces.at(std::size_t(id)); }
 
-std::uint16_t FiducialBits(int id) { return kBits.at(std::size_t(id)); }
-
 bool FiducialIsBlack(int id, int column, int row) {
   const auto border = [](int i) { return i == 0 || i == kFiducialModules - 1; };
   if (border(column) || border(row)) return true;
-  return (FiducialBits(id) >> (15 - 4 * (row - 1) - (column - 1)) & 1) == 0;
+  static const Bits bits = ReadFamily();
+  return (bits.at(std::size_t(id)) >> (15 - 4 * (row - 1) - (column - 1)) & 1) == 0;
 }
 
 bool FiducialsFit(int size) { return size * kFiducialModule >= 2.0; }
@@ -100,7 +120,8 @@ void DrawFiducials(Picture& picture, int size, int margin) {
 
 int FiducialsInPlace(const Picture& picture, int size, int margin) {
   const int side = size + 2 * margin;
-  if (!FiducialsFit(size) || margin < kFiducialMargin * size || picture.width != side || picture.height != side) return 0;
+  if (!FiducialsFit(size) || margin < kFiducialMargin * size || picture.width != side || picture.height != side)
+    return 0;
   constexpr int kDark = 20000, kLight = 45000;  // of 65535: JPEG's noise stays on the right side
   int found = 0;
   for (const Fiducial& mark : kFiducials) {

@@ -1,16 +1,15 @@
 // The marks that are printed around the sphere's template, by which a scan or a photograph of it is laid back onto the
-// template's pixels. They are square ArUco markers (S. Garrido-Jurado, R. Muñoz-Salinas, F. J. Madrid-Cuevas, M. J.
-// Marín-Jiménez, "Automatic generation and detection of highly reliable fiducial markers under occlusion", Pattern
-// Recognition 47 (6), 2014), ids 0 … 11 of the dictionary that other programs call DICT_4X4_50, so that those find them too.
+// template's pixels. They are AprilTags (E. Olson, "AprilTag: A robust and flexible visual fiducial system", ICRA 2011;
+// J. Wang, E. Olson, "AprilTag 2: Efficient and robust fiducial detection", IROS 2016), ids 0 … 11 of the family
+// tag16h5, whose bits the library keeps.
 //
 // Coordinates: the sphere's square is [0, 1]², x to the right, y down from the picture's top; the template's margin
-// reaches at least kFiducialMargin further on every side. A picture of the template with `size` pixels across the sphere's square and a
-// margin of `margin` pixels has (x, y) at pixel (margin + x · size, margin + y · size), where pixel i covers [i, i + 1).
-// Everything lies on a grid of 1/64: at sizes that 64 divides, all edges are pixel edges.
+// reaches at least kFiducialMargin further on every side. A picture of the template with `size` pixels across the
+// sphere's square and a margin of `margin` pixels has (x, y) at pixel (margin + x · size, margin + y · size), where
+// pixel i covers [i, i + 1). Everything lies on a grid of 1/64: at sizes that 64 divides, all edges are pixel edges.
 #pragma once
 
 #include <array>
-#include <cstdint>
 
 #include "image/picture.h"
 
@@ -41,10 +40,8 @@ const std::array<Fiducial, kFiducialCount>& Fiducials();
 // Where a marker lies, in words: "upper left corner", "right side, lower".
 const char* FiducialPlace(int id);
 
-// The 16 bits of a marker, rows from the top, the highest bit first; 1 is white. `id` in 0 … kFiducialCount - 1.
-std::uint16_t FiducialBits(int id);
-
-// Whether a module is black; column and row in 0 … kFiducialModules - 1, the border included.
+// Whether a module is black; `id` in 0 … kFiducialCount - 1, column and row in 0 … kFiducialModules - 1, the border
+// included.
 bool FiducialIsBlack(int id, int column, int row);
 
 // Whether the modules are large enough, two pixels, to be drawn in a template with `size` pixels across the sphere.

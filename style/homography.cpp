@@ -53,8 +53,8 @@ std::optional<glm::dmat3> FitHomography(std::span<const glm::dvec2> from, std::s
   std::array<double, 8> b{};
   for (std::size_t i = 0; i < from.size(); ++i) {
     const glm::dvec2 p = Project(before, from[i]), q = Project(after, to[i]);
-    const std::array<std::array<double, 8>, 2> rows{{{p.x, p.y, 1, 0, 0, 0, -p.x * q.x, -p.y * q.x},
-                                                     {0, 0, 0, p.x, p.y, 1, -p.x * q.y, -p.y * q.y}}};
+    const std::array<std::array<double, 8>, 2> rows{
+        {{p.x, p.y, 1, 0, 0, 0, -p.x * q.x, -p.y * q.x}, {0, 0, 0, p.x, p.y, 1, -p.x * q.y, -p.y * q.y}}};
     for (int k = 0; k < 2; ++k) {
       for (int r = 0; r < 8; ++r) {
         for (int c = 0; c < 8; ++c) a[r * 8 + c] += rows[k][r] * rows[k][c];

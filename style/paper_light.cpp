@@ -60,7 +60,8 @@ bool AmidBlack(int id, int column, int row) {
 }
 
 // Where there is bare paper unless somebody painted on it, and where there is printed black.
-void CollectPatches(const Picture& picture, const TemplateFit& fit, std::vector<Patch>& white, std::vector<Patch>& black) {
+void CollectPatches(const Picture& picture, const TemplateFit& fit, std::vector<Patch>& white,
+                    std::vector<Patch>& black) {
   const auto take = [&](glm::dvec2 at, std::vector<Patch>& patches) {
     if (const auto patch = PatchAt(picture, fit.map, at)) patches.push_back(*patch);
   };
@@ -70,8 +71,10 @@ void CollectPatches(const Picture& picture, const TemplateFit& fit, std::vector<
       for (int column = -1; column <= kFiducialModules; ++column) {
         const bool outside = std::min(row, column) < 0 || std::max(row, column) >= kFiducialModules;
         const glm::dvec2 at = glm::dvec2(mark.left, mark.top) + glm::dvec2(column + 0.5, row + 0.5) * kFiducialModule;
-        if (outside || !FiducialIsBlack(mark.id, column, row)) take(at, white);
-        else if (AmidBlack(mark.id, column, row)) take(at, black);
+        if (outside || !FiducialIsBlack(mark.id, column, row))
+          take(at, white);
+        else if (AmidBlack(mark.id, column, row))
+          take(at, black);
       }
     }
   }
@@ -117,7 +120,8 @@ double Quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Of the differences from the fit in log light, the channel's in which a patch is darkest: coloured paint may be as bright as paper in one.
+// Of the differences from the fit in log light, the channel's in which a patch is darkest: coloured paint may be as
+// bright as paper in one.
 std::vector<double> DarkestDifferences(const std::vector<Patch>& white, const std::array<Terms, 3>& fit) {
   std::vector<double> differences;
   for (const Patch& patch : white) {
@@ -170,7 +174,8 @@ PaperLight MeasurePaperLight(const Picture& picture, const TemplateFit& fit) {
     for (const double d : differences) {
       if (std::abs(d) < 0.15) close.push_back(std::abs(d));
     }
-    reach = 0.015 + 4 * 1.4826 * Quantile(close, 0.5);
+    // Grain and noise stay far below a tenth; a shadow's edge must not pass for them.
+    reach = std::min(0.1, 0.015 + 4 * 1.4826 * Quantile(close, 0.5));
     for (std::size_t i = 0; i < white.size(); ++i) {
       const double t = differences[i] / reach;
       weights[i] = std::abs(t) < 1 ? (1 - t * t) * (1 - t * t) : 0.0;

@@ -9,9 +9,9 @@
 
 namespace scumble {
 
-// Per channel, in linear light: the paper's brightness at a place of the template is exp of a polynomial of second order in
-// it, which is positive everywhere and cannot follow a brush stroke; black is what the printed black still reflects, as a
-// share of the paper there (ink, and glare on it).
+// Per channel, in linear light: the paper's brightness at a place of the template is exp of a polynomial of second
+// order in it, which is positive everywhere and cannot follow a brush stroke; black is what the printed black still
+// reflects, as a share of the paper there (ink, and glare on it).
 struct PaperLight {
   // Coefficients of 1, x, y, x², xy, y²; x and y from the template's middle, in diameters of the sphere.
   std::array<std::array<double, 6>, 3> log_white{};

@@ -57,17 +57,23 @@ std::string FinerScan(double factor, double dpi) {
          " times as fine (300 dpi do for a sphere of 90 mm), or go closer with the camera";
 }
 
-// Why no map could be laid through the marks.
-Error NoTemplate(const Picture& scan, const std::string& name, const MarkSearch& search, const RectifyOptions& options) {
-  std::vector<FoundMark> upright;
-  for (const FoundMark& mark : search.marks) {
-    if (!mark.mirrored) upright.push_back(mark);
+Picture Mirrored(const Picture& picture) {
+  Picture mirrored(picture.width, picture.height);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) std::copy_n(picture.At(x, y), 4, mirrored.At(picture.width - 1 - x, y));
   }
+  return mirrored;
+}
+
+// Why no map could be laid through the marks.
+Error NoTemplate(const Picture& scan, const std::string& name, const std::vector<FoundMark>& marks,
+                 const RectifyOptions& options) {
   std::vector<int> found, missing;
-  SplitIds(upright, found, missing);
+  SplitIds(marks, found, missing);
   const std::string size = name + " (" + Pixels(scan.width, scan.height) + ")";
-  if (FitTemplate(search.marks, scan.width, scan.height, true)) {
-    return InputError(name + " shows the template mirrored: flip it left to right, or switch off mirroring in the camera or "
+  if (FitTemplate(FindMarks(Mirrored(scan)), scan.width, scan.height)) {
+    return InputError(name +
+                      " shows the template mirrored: flip it left to right, or switch off mirroring in the camera or "
                       "scanner program");
   }
   if (found.size() >= 4) {
@@ -76,53 +82,32 @@ Error NoTemplate(const Picture& scan, const std::string& name, const MarkSearch&
                       "and pasted?");
   }
   if (!found.empty()) {
-    return InputError(size + " shows " + std::to_string(found.size()) + " of the template's " + std::to_string(kFiducialCount) +
-                      " marks (" + Places(found) + "); at least 4 are needed, and these are missing: " + Places(missing) +
+    return InputError(size + " shows " + std::to_string(found.size()) + " of the template's " +
+                      std::to_string(kFiducialCount) + " marks (" + Places(found) +
+                      "); at least 4 are needed, and these are missing: " + Places(missing) +
                       ". Take the whole sheet into the picture, sharp and without shadows on the marks");
   }
   if (std::min(scan.width, scan.height) < kMinScanSphere) {
     const double factor = 1.25 * 2 * kMinScanSphere / std::min(scan.width, scan.height);
     return InputError(size + " is too small to read the template's marks: " + FinerScan(factor, options.dpi));
   }
-  if (search.unknown_squares > 0) {
-    return InputError(size + " shows " + std::to_string(search.unknown_squares) + " black square" +
-                      (search.unknown_squares > 1 ? "s" : "") + " like a printed mark, but none of the " +
-                      std::to_string(kFiducialCount) + " of the template: print the template that `scumble sphere` wrote. If it "
-                      "is, the picture is too blurred to read them");
-  }
-  return InputError(size + " shows none of the template's " + std::to_string(kFiducialCount) +
-                    " printed marks: expected a scan or photograph of a whole sheet from `scumble sphere`, sharp, evenly lit, "
-                    "the marks not covered. Templates whose corners have plain crosses are older, or too small to have marks");
+  return InputError(
+      size + " shows none of the template's " + std::to_string(kFiducialCount) +
+      " printed marks: expected a scan or photograph of a whole sheet from `scumble sphere`, sharp, evenly lit, "
+      "the marks not covered. Marks of other programs will not do; templates whose corners have plain crosses are "
+      "older, or too small to have marks");
 }
 
 // Marks of a whole second sheet, or nothing.
-bool HasSecondTemplate(const MarkSearch& search, const TemplateFit& fit, int width, int height) {
+bool HasSecondTemplate(const std::vector<FoundMark>& marks, const TemplateFit& fit, int width, int height) {
   std::vector<FoundMark> rest;
-  for (const FoundMark& mark : search.marks) {
+  for (const FoundMark& mark : marks) {
     const bool used = std::any_of(fit.marks.begin(), fit.marks.end(), [&](const FoundMark& other) {
       return glm::length(other.corners[0] - mark.corners[0]) < other.module_pixels;
     });
     if (!used) rest.push_back(mark);
   }
-  return FitTemplate(rest, width, height, false).has_value();
-}
-
-// Marks that are hidden from a search without a map may be found where it says.
-void FindTheRest(const Picture& scan, TemplateFit& fit) {
-  std::vector<FoundMark> expected;
-  for (int id = 0; id < kFiducialCount; ++id) {
-    const bool there = std::any_of(fit.marks.begin(), fit.marks.end(), [&](const FoundMark& mark) { return mark.id == id; });
-    if (there) continue;
-    FoundMark mark;
-    mark.id = id;
-    for (int c = 0; c < 4; ++c) mark.corners[std::size_t(c)] = fit.map.ToPicture(PrintedCorner(id, c));
-    expected.push_back(mark);
-  }
-  std::vector<FoundMark> all = FindMarksAt(scan, expected);
-  if (all.empty()) return;
-  all.insert(all.end(), fit.marks.begin(), fit.marks.end());
-  const auto more = FitTemplate(all, scan.width, scan.height, false);
-  if (more && more->marks.size() > fit.marks.size()) fit = *more;
+  return FitTemplate(rest, width, height).has_value();
 }
 
 // How the sheet was held: from the map's slopes amid the template, and from how they change across it.
@@ -159,12 +144,13 @@ void NoteLight(const PaperLight& light, RectifyReport& report) {
   for (int c = 0; c < 3; ++c) report.paper[c] = white[c] / report.paper_light;
   report.unevenness = light.Unevenness();
   report.black = (light.black[0] + light.black[1] + light.black[2]) / 3;
+  report.bare_margin = light.bare_share;
   report.clipped = light.clipped_share;
 }
 
 // Bare paper is as light as the fit of the paper's light in all channels.
-void MeasurePaint(const LinearPicture& pixels, const PaperLight& light, const std::function<glm::dvec2(glm::dvec2)>& on_template,
-                  RectifyReport& report) {
+void MeasurePaint(const LinearPicture& pixels, const PaperLight& light,
+                  const std::function<glm::dvec2(glm::dvec2)>& on_template, RectifyReport& report) {
   constexpr double kAsPaper = 0.9, kRim = 0.98;
   double disc = 0, painted = 0, rim = 0, painted_rim = 0;
   for (int y = 0; y < pixels.height; ++y) {
@@ -191,21 +177,29 @@ void Warn(const RectifyOptions& options, RectifyReport& report) {
                   ", or take a smaller --size");
   }
   if (report.unevenness > 0.5) {
-    say.push_back("the light falls off by " + Percent(report.unevenness) + " across the sheet: what the shade of it hides cannot be brought back");
+    say.push_back("the light falls off by " + Percent(report.unevenness) +
+                  " across the sheet: what the shade of it hides cannot be brought back");
+  }
+  if (report.bare_margin < 0.8) {
+    say.push_back("only " + Percent(report.bare_margin) +
+                  " of the margin looks like bare paper in even light: colours may be off where a "
+                  "shadow lies on the sheet, or much of the margin is painted");
   }
   if (report.black > 0.3) {
-    say.push_back("the printed black is " + Percent(report.black) + " as light as the paper: is there glare on the sheet?");
+    say.push_back("the printed black is " + Percent(report.black) +
+                  " as light as the paper: is there glare on the sheet?");
   }
   if (report.painted_rim < 0.9) {
-    say.push_back(Percent(1 - report.painted_rim) + " of the sphere's edge is bare paper, which will show at silhouettes: let "
+    say.push_back(Percent(1 - report.painted_rim) +
+                  " of the sphere's edge is bare paper, which will show at silhouettes: let "
                   "strokes run over the edge");
   }
   if (report.painted < 0.9) say.push_back(Percent(1 - report.painted) + " of the sphere is bare paper");
 }
 
 // Turned to what it would be on white paper in even white light.
-Picture Finish(const LinearPicture& pixels, const PaperLight& light, const std::function<glm::dvec2(glm::dvec2)>& on_template,
-               bool balance) {
+Picture Finish(const LinearPicture& pixels, const PaperLight& light,
+               const std::function<glm::dvec2(glm::dvec2)>& on_template, bool balance) {
   Picture picture(pixels.width, pixels.height);
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
@@ -234,12 +228,14 @@ Status CheckFit(const TemplateFit& fit, const std::string& name, const RectifyOp
   if (!(fit.held_out <= kMaxRegistrationError)) {
     double blur = 0;
     for (const FoundMark& mark : fit.marks) blur = std::max(blur, mark.blur_pixels / mark.module_pixels);
-    const std::string why = blur > 0.35 ? "the picture is too blurred: keep the camera still and in focus"
-                                        : "the paper is curled or folded, or the lens bends straight lines: lay the sheet flat "
-                                          "under glass, scan it, or take it from farther away";
+    const std::string why = blur > 0.35
+                                ? "the picture is too blurred: keep the camera still and in focus"
+                                : "the paper is curled or folded, or the lens bends straight lines: lay the sheet flat "
+                                  "under glass, scan it, or take it from farther away";
     return InputError("the marks in " + name + " do not lie as on a flat sheet: " + Percent(fit.held_out) +
-                      " of the sphere's diameter apart, at most " + Percent(kMaxRegistrationError) + " is let through; worst at the " +
-                      FiducialPlace(fit.worst_id) + " (" + Percent(fit.worst) + "). Most likely " + why);
+                      " of the sphere's diameter apart, at most " + Percent(kMaxRegistrationError) +
+                      " is let through; worst at the " + FiducialPlace(fit.worst_id) + " (" + Percent(fit.worst) +
+                      "). Most likely " + why);
   }
   if (!(fit.on_sphere <= kMaxRegistrationError)) {
     std::vector<int> found, missing;
@@ -267,8 +263,8 @@ Status CheckSphereIsWhole(const TemplateMap& map, const Picture& scan, const std
     }
   }
   if (outside <= spare) return Ok();
-  return InputError(name + " shows a part of the sphere only: " + Percent(outside / map.SpherePixels()) + " of it lies beyond the " +
-                    side + " border: take the whole sheet into the picture");
+  return InputError(name + " shows a part of the sphere only: " + Percent(outside / map.SpherePixels()) +
+                    " of it lies beyond the " + side + " border: take the whole sheet into the picture");
 }
 
 }  // namespace
@@ -279,7 +275,8 @@ Status CheckScanSize(int width, int height, double dpi, const std::string& name)
   std::string mend = "scale it down, or scan it at 300 to 600 dpi";
   if (dpi > 0) {
     const double most = std::floor(dpi * std::sqrt(kMaxScanPixels / pixels) / 50) * 50;
-    mend = "the file says " + Number("%.0f", dpi) + " dpi: scan it at " + Number("%.0f", std::max(50.0, std::min(most, 600.0))) + " dpi, or cut it to the sheet";
+    mend = "the file says " + Number("%.0f", dpi) + " dpi: scan it at " +
+           Number("%.0f", std::max(50.0, std::min(most, 600.0))) + " dpi, or cut it to the sheet";
   }
   return InputError(name + " is " + Pixels(width, height) + ", more than the " + Number("%.0f", kMaxScanPixels / 1e6) +
                     " million that are read at most: " + mend);
@@ -289,13 +286,12 @@ Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const Rec
   SCUMBLE_CHECK(options.size >= 16 && options.size <= 8192);
   SCUMBLE_RETURN_IF_ERROR(CheckScanSize(scan.width, scan.height, options.dpi, name));
   LayOnWhite(scan);
-  const MarkSearch search = FindMarks(scan);
-  auto fit = FitTemplate(search.marks, scan.width, scan.height, false);
-  if (!fit) return NoTemplate(scan, name, search, options);
-  if (HasSecondTemplate(search, *fit, scan.width, scan.height)) {
+  const std::vector<FoundMark> marks = FindMarks(scan);
+  const auto fit = FitTemplate(marks, scan.width, scan.height);
+  if (!fit) return NoTemplate(scan, name, marks, options);
+  if (HasSecondTemplate(marks, *fit, scan.width, scan.height)) {
     return InputError(name + " shows two templates: cut the picture to one of them");
   }
-  if (fit->marks.size() < std::size_t(kFiducialCount)) FindTheRest(scan, *fit);
   SCUMBLE_RETURN_IF_ERROR(CheckSphereIsWhole(fit->map, scan, name));
   SCUMBLE_RETURN_IF_ERROR(CheckFit(*fit, name, options));
 

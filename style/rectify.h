@@ -18,22 +18,23 @@ struct RectifyOptions {
 };
 
 struct RectifyReport {
-  std::vector<int> found;      // ids of the marks that the map rests on, and of those that are not there
+  std::vector<int> found;  // ids of the marks that the map rests on, and of those that are not there
   std::vector<int> missing;
-  // Registration error as shares of the sphere's diameter: the larger of how far marks are from where the others expect them
-  // and of what that leaves open on the sphere; and what the fit leaves at the marks.
+  // Registration error as shares of the sphere's diameter: the larger of how far marks are from where the others expect
+  // them and of what that leaves open on the sphere; and what the fit leaves at the marks.
   double error = 0;
   double error_at_marks = 0;
-  double sphere_pixels = 0;    // the sphere's diameter in the scan
-  double rotation = 0;         // degrees clockwise that the template is turned in the picture, -180 … 180
-  double tilt = 0;             // degrees between the paper and the picture plane, for a lens of the usual angle
-  double lens = 0;             // radial distortion at the picture's corner, a share; 0 where none was fitted
-  double blur = 0;             // standard deviation, pixels of the scan
+  double sphere_pixels = 0;  // the sphere's diameter in the scan
+  double rotation = 0;       // degrees clockwise that the template is turned in the picture, -180 … 180
+  double tilt = 0;           // degrees between the paper and the picture plane, for a lens of the usual angle
+  double lens = 0;           // radial distortion at the picture's corner, a share; 0 where none was fitted
+  double blur = 0;           // standard deviation, pixels of the scan
   // What was found of the light, also where it was not taken out.
   double paper[3] = {1, 1, 1};  // colour of the paper amid the template: linear, the largest 1
   double paper_light = 1;       // its brightest channel, linear, 1 the brightest that the file can hold
   double unevenness = 0;        // share of the light that its darkest place lacks
   double black = 0;             // what the printed black reflects, a share of the paper
+  double bare_margin = 1;       // share of the margin that was taken for bare paper
   double clipped = 0;           // share of the bare paper at the file's limit
   // Of the disc: what is not as light as paper, and the same of its outermost fiftieth.
   double painted = 0;
@@ -59,9 +60,10 @@ inline constexpr double kPaperWhite = 0.96;
 // Whether a scan of so many pixels is worth reading; `name` and `dpi` (0: unknown) are for the message.
 Status CheckScanSize(int width, int height, double dpi, const std::string& name);
 
-// Alpha is laid on white first. `name` stands for the scan in messages. Errors (kInput) say what is missing and how to mend it: no
-// marks, marks of other programs, fewer than four, a mirrored picture, two templates, marks that no plane holds, too few
-// pixels. The same bytes for the same scan; single-threaded; holds the scan and one more of the output's size.
+// Alpha is laid on white first. `name` stands for the scan in messages. Errors (kInput) say what is missing and how to
+// mend it: no marks, marks of other programs, fewer than four, a mirrored picture, two templates, marks that no plane
+// holds, too few pixels. The same bytes for the same scan; single-threaded; holds the scan and one more of the output's
+// size.
 Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options = {});
 
 }  // namespace scumble

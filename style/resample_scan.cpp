@@ -67,7 +67,8 @@ LinearPicture ResampleScan(const Picture& scan, int width, int height, double sh
     std::fill(row.begin(), row.end(), 0.0f);
     for (int x = 0; x < width; ++x) {
       for (std::size_t k = 0; k < window.size(); ++k) {
-        for (int c = 0; c < 3; ++c) row[std::size_t(3 * x + c)] += window[k] * line[3 * (std::size_t(x) * fine + k) + std::size_t(c)];
+        for (int c = 0; c < 3; ++c)
+          row[std::size_t(3 * x + c)] += window[k] * line[3 * (std::size_t(x) * fine + k) + std::size_t(c)];
       }
     }
     // The pixels whose windows this line is in.

@@ -13,7 +13,8 @@ constexpr std::size_t kLeastMarks = 4;
 // A lens is asked for by this many marks, and must mend this share of the error: one more number always mends a little.
 constexpr std::size_t kLeastMarksForLens = 6;
 constexpr double kLensMustMend = 0.15;
-// How far a mark may lie from where the map has it, in sides of a mark: first while only two marks are known, and at last.
+// How far a mark may lie from where the map has it, in sides of a mark: first while only two marks are known, and at
+// last.
 constexpr double kFarAtFirst = 0.6, kFarAtLast = 0.35;
 
 // Template coordinates around the sphere's middle, where the perspective's last element is surely not 0.
@@ -40,7 +41,9 @@ std::optional<glm::dmat3> Perspective(std::span<const Pair> pairs) {
   return map;
 }
 
-double Distance(const TemplateMap& map, const Pair& pair) { return glm::length(map.ToPicture(pair.printed) - pair.seen); }
+double Distance(const TemplateMap& map, const Pair& pair) {
+  return glm::length(map.ToPicture(pair.printed) - pair.seen);
+}
 
 // The map as numbers around the template's middle: eight of the perspective, one of the lens.
 constexpr int kNumbers = 9;
@@ -104,7 +107,8 @@ struct Equations {
   std::array<double, kNumbers> b{}, unit{};
 };
 
-Equations EquationsOf(const TemplateMap& map, std::span<const Pair> pairs, int numbers, std::span<const double> weights) {
+Equations EquationsOf(const TemplateMap& map, std::span<const Pair> pairs, int numbers,
+                      std::span<const double> weights) {
   Equations e;
   const Slopes slopes(map, numbers);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -239,7 +243,8 @@ std::vector<FoundMark> Agreeing(const TemplateMap& map, std::span<const FoundMar
 }
 
 bool IsMirrored(const TemplateMap& map) {
-  const glm::dvec2 o = map.ToPicture({0.5, 0.5}), x = map.ToPicture({0.51, 0.5}) - o, y = map.ToPicture({0.5, 0.51}) - o;
+  const glm::dvec2 o = map.ToPicture({0.5, 0.5}), x = map.ToPicture({0.51, 0.5}) - o,
+                   y = map.ToPicture({0.5, 0.51}) - o;
   return x.x * y.y - x.y * y.x < 0;
 }
 
@@ -251,7 +256,9 @@ glm::dvec2 TemplateMap::ToPicture(glm::dvec2 on_template) const {
 }
 
 double TemplateMap::SpherePixels() const {
-  return (glm::length(ToPicture({1, 0.5}) - ToPicture({0, 0.5})) + glm::length(ToPicture({0.5, 1}) - ToPicture({0.5, 0}))) / 2;
+  return (glm::length(ToPicture({1, 0.5}) - ToPicture({0, 0.5})) +
+          glm::length(ToPicture({0.5, 1}) - ToPicture({0.5, 0}))) /
+         2;
 }
 
 glm::dvec2 PrintedCorner(int id, int corner) {
@@ -260,33 +267,29 @@ glm::dvec2 PrintedCorner(int id, int corner) {
   return {mark.left + (right ? kFiducialSide : 0), mark.top + (low ? kFiducialSide : 0)};
 }
 
-std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height, bool mirrored) {
-  std::vector<FoundMark> candidates;
-  for (const FoundMark& mark : marks) {
-    if (mark.mirrored == mirrored) candidates.push_back(mark);
-  }
+std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height) {
   // Every pair of marks proposes a map; all of them are asked, so that chance has no part in it.
   std::vector<FoundMark> best;
   TemplateMap start, best_map;
   start.middle = glm::dvec2(width, height) / 2.0;
   start.half_diagonal = glm::length(start.middle);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    for (std::size_t j = i + 1; j < candidates.size(); ++j) {
-      if (candidates[i].id == candidates[j].id) continue;
-      const std::array two{candidates[i], candidates[j]};
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    for (std::size_t j = i + 1; j < marks.size(); ++j) {
+      if (marks[i].id == marks[j].id) continue;
+      const std::array two{marks[i], marks[j]};
       const auto proposed = Perspective(PairsOf(two));
       if (!proposed) continue;
       start.perspective = *proposed;
-      if (IsMirrored(start) != mirrored) continue;
-      std::vector<FoundMark> agreeing = Agreeing(start, candidates, kFarAtFirst);
+      if (IsMirrored(start)) continue;
+      std::vector<FoundMark> agreeing = Agreeing(start, marks, kFarAtFirst);
       if (agreeing.size() > best.size()) best = std::move(agreeing), best_map = start;
     }
   }
   for (int round = 0; round < 2 && best.size() >= kLeastMarks; ++round) {
     if (const auto all = Perspective(PairsOf(best))) best_map.perspective = *all;
-    best = Agreeing(best_map, candidates, kFarAtLast);
+    best = Agreeing(best_map, marks, kFarAtLast);
   }
-  if (best.size() < kLeastMarks || IsMirrored(best_map) != mirrored) return std::nullopt;
+  if (best.size() < kLeastMarks || IsMirrored(best_map)) return std::nullopt;
   TemplateFit plain = Measure(best_map, best, false);
   if (best.size() < kLeastMarksForLens) return plain;
   TemplateFit bent = Measure(plain.map, best, true);

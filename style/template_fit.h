@@ -27,9 +27,9 @@ struct TemplateMap {
 struct TemplateFit {
   TemplateMap map;
   std::vector<FoundMark> marks;  // those that lie where the map has them, by id, one of each
-  // All as shares of the sphere's diameter. `held_out`: root mean square of how far each mark's corners are from where the
-  // others alone expect them; `on_sphere`: the standard error of the sphere's outline that follows from `at_marks`, which
-  // is what the fit leaves at the corners.
+  // All as shares of the sphere's diameter. `held_out`: root mean square of how far each mark's corners are from where
+  // the others alone expect them; `on_sphere`: the standard error of the sphere's outline that follows from `at_marks`,
+  // which is what the fit leaves at the corners.
   double held_out = 0;
   double on_sphere = 0;
   double at_marks = 0;
@@ -37,9 +37,9 @@ struct TemplateFit {
   double worst = 0;
 };
 
-// The map on which most marks agree. Marks that are elsewhere (other squares read as marks, a second sheet) are left out.
-// Nothing if no four marks agree on one that is not mirrored, or with `mirrored` on one that is.
-std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height, bool mirrored);
+// The map on which most marks agree. Marks that are elsewhere (other squares read as marks, a second sheet) are left
+// out. Nothing if no four marks agree on one, or on a mirrored one only.
+std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height);
 
 // A corner of a marker in template coordinates; `corner` as in FoundMark.
 glm::dvec2 PrintedCorner(int id, int corner);

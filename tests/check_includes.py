@@ -36,7 +36,7 @@ THIRD_PARTY = {
     "nanoflann": {"transfer"},
     "hwy/": {"transfer"},
     "toml++/": {"style"},
-    "opencv": {"style"},
+    "apriltag/": {"style"},
     "fmt/": {"measure", "cli"},
     "nlohmann/": {"measure", "cli"},
     "CLI/": {"cli"},

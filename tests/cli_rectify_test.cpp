@@ -13,17 +13,21 @@ class RectifyCliTest : public CliTest {
     const Status written = WritePicture(At(name), TakeScan(CharcoalSheet(), scan), options);
     ASSERT_TRUE(written) << written.error().message;
   }
-  static bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+  static bool Contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
 };
 
 TEST_F(RectifyCliTest, FromAPhotographToAStyle) {
   Scan scan;
-  scan.rotation = 90, scan.tilt = 12, scan.fill = 0.7, scan.noise = 2, scan.gradient = 0.3, scan.cast = {1.0, 0.9, 0.7}, scan.covered = {5};
+  scan.rotation = 90, scan.tilt = 12, scan.fill = 0.7, scan.noise = 2, scan.gradient = 0.3, scan.cast = {1.0, 0.9, 0.7},
+  scan.covered = {5};
   WriteScan("photo.jpg", scan);
   RunOk({"sphere", "--size", "256", "-q", "-o", "kit"});
   const CommandResult result = RunOk({"sphere", "--rectify", "photo.jpg", "-o", "kit/lit.png"});
   for (const char* part : {"kit/lit.png\n", "11 of 12; not seen: right side, lower", "error 0.0", "of its 256 pixels",
-                           "° clockwise, tilted about 1", "warm, the paper is 1.00 : 0.89 : 0.70", "falls off by ", "covers 100% of the sphere"}) {
+                           "° clockwise, tilted about 1", "warm, the paper is 1.00 : 0.89 : 0.70", "falls off by ",
+                           "covers 100% of the sphere"}) {
     EXPECT_TRUE(Contains(result.out, part)) << "lacks '" << part << "'\n" << result.out;
   }
   EXPECT_EQ(result.Warning(), "");
@@ -52,13 +56,16 @@ TEST_F(RectifyCliTest, TheReportAsJson) {
   EXPECT_EQ(json["marks"]["found"].size(), 12u);
   EXPECT_EQ(json["marks"]["missing"].size(), 0u);
   EXPECT_LT(json["registration_error_percent"].get<double>(), 0.3);
-  EXPECT_NEAR(json["registration_error_pixels"].get<double>(), 1.28 * json["registration_error_percent"].get<double>(), 1e-9);
+  EXPECT_NEAR(json["registration_error_pixels"].get<double>(), 1.28 * json["registration_error_percent"].get<double>(),
+              1e-9);
   EXPECT_LT(json["lens_percent"].get<double>(), -2);
   EXPECT_GT(json["uneven_percent"].get<double>(), 10);
   EXPECT_EQ(json["white_balance"], true);
   EXPECT_EQ(json["paper"].size(), 3u);
   const std::string balanced = Pixels("lit.png");
-  const auto raw = RunOk({"sphere", "--rectify", "scan.png", "--size", "128", "--no-white-balance", "-o", "lit.png", "--json"}).Json();
+  const auto raw =
+      RunOk({"sphere", "--rectify", "scan.png", "--size", "128", "--no-white-balance", "-o", "lit.png", "--json"})
+          .Json();
   EXPECT_EQ(raw["white_balance"], false);
   EXPECT_NE(Pixels("lit.png"), balanced);
 }
@@ -84,7 +91,8 @@ TEST_F(RectifyCliTest, MistakesAreNamedAndNothingIsWritten) {
   WriteScan("scan.jpg");
   WritePainted("blank.png", 300, 300);
   WriteText("lit.png", "an older painting");
-  ExpectError({"sphere", "--rectify", "blank.png", "-o", "lit.png"}, 3, {"blank.png (300×300 pixels)", "none of the template's 12"});
+  ExpectError({"sphere", "--rectify", "blank.png", "-o", "lit.png"}, 3,
+              {"blank.png (300×300 pixels)", "none of the template's 12"});
   const std::string whole = Bytes("scan.jpg");
   WriteText("half.jpg", whole.substr(0, whole.size() / 2));
   ExpectError({"sphere", "--rectify", "half.jpg", "-o", "lit.png"}, 3, {"half.jpg", "ends before its picture does"});

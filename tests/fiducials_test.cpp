@@ -16,6 +16,14 @@
 namespace scumble {
 namespace {
 
+// A marker's 4 × 4 bits, rows from the top; 1 is white.
+std::uint16_t Bits(int id) {
+  std::uint16_t bits = 0;
+  for (int i = 0; i < 16; ++i)
+    bits = static_cast<std::uint16_t>(bits << 1 | !FiducialIsBlack(id, 1 + i % 4, 1 + i / 4));
+  return bits;
+}
+
 // A quarter turn clockwise of a marker's 4 × 4 bits.
 std::uint16_t Turned(std::uint16_t bits) {
   std::uint16_t turned = 0;
@@ -53,25 +61,24 @@ TEST(Fiducials, TheyLieInTheMarginApartFromEachOtherAndFromTheSphere) {
 TEST(Fiducials, TwoWrongBitsNeverMakeAnotherMarkerNorAnotherDirection) {
   for (int a = 0; a < kFiducialCount; ++a) {
     for (int b = 0; b < kFiducialCount; ++b) {
-      std::uint16_t turned = FiducialBits(b);
+      std::uint16_t turned = Bits(b);
       for (int turn = 0; turn < 4; ++turn, turned = Turned(turned)) {
         if (a == b && turn == 0) continue;
-        EXPECT_GE(std::popcount(unsigned(FiducialBits(a) ^ turned)), 5) << a << " against " << b << " turned " << turn;
+        EXPECT_GE(std::popcount(unsigned(Bits(a) ^ turned)), 5) << a << " against " << b << " turned " << turn;
       }
-      EXPECT_EQ(turned, FiducialBits(b)) << "four turns are none";
+      EXPECT_EQ(turned, Bits(b)) << "four turns are none";
     }
   }
 }
 
-// As the dictionary is published: marker 0 is 181, 50 and marker 3 is 153, 70.
+// As the library draws them: markers 0 and 1 of tag16h5.
 TEST(Fiducials, BitsAreReadFromTheUpperLeft) {
-  EXPECT_EQ(FiducialBits(0), 181 * 256 + 50);
-  EXPECT_EQ(FiducialBits(3), 153 * 256 + 70);
-  const std::string rows[] = {"######", "# #  #", "## # #", "###  #", "### ##", "######"};
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) {
-      EXPECT_EQ(FiducialIsBlack(0, column, row), rows[row][column] == '#') << column << ", " << row;
-    }
+  const std::string drawn[2][6] = {{"######", "### ##", "###  #", "#### #", "# #  #", "######"},
+                                   {"######", "### ##", "#   ##", "# # ##", "## # #", "######"}};
+  for (int i = 0; i < 72; ++i) {
+    const int id = i / 36, row = i / 6 % 6, column = i % 6;
+    EXPECT_EQ(FiducialIsBlack(id, column, row), drawn[id][row][std::size_t(column)] == '#')
+        << id << ": " << column << ", " << row;
   }
 }
 
@@ -92,7 +99,8 @@ TEST(Fiducials, DrawnAsTheMeanOfManyPoints) {
           const double v = (y + (j / points + 0.5) / points - margin) / size;
           double here = Srgb16ToLinear(kGround);
           for (const Fiducial& mark : Fiducials()) {
-            const double column = std::floor((u - mark.left) / kFiducialModule), row = std::floor((v - mark.top) / kFiducialModule);
+            const double column = std::floor((u - mark.left) / kFiducialModule),
+                         row = std::floor((v - mark.top) / kFiducialModule);
             if (std::min(column, row) < -1 || std::max(column, row) > 6) continue;
             const bool border = std::min(column, row) < 0 || std::max(column, row) > 5;
             here = border || !FiducialIsBlack(mark.id, int(column), int(row)) ? 1.0 : 0.0;

@@ -8,7 +8,6 @@
 
 #include "image/color.h"
 #include "image/hash.h"
-#include "style/dark_squares.h"
 #include "style/homography.h"
 #include "style/marker_detection.h"
 #include "style/resample_scan.h"
@@ -26,7 +25,8 @@ TEST(Homography, FourPointsAreMetAndMoreAreAveraged) {
     if (i != 3 && i != 39) continue;
     const auto map = FitHomography(from, to);
     ASSERT_TRUE(map);
-    for (int k = 0; k < 9; ++k) EXPECT_NEAR((*map)[k / 3][k % 3], truth[k / 3][k % 3], 1e-6 * (1 + std::abs(truth[k / 3][k % 3])));
+    for (int k = 0; k < 9; ++k)
+      EXPECT_NEAR((*map)[k / 3][k % 3], truth[k / 3][k % 3], 1e-6 * (1 + std::abs(truth[k / 3][k % 3])));
   }
 }
 
@@ -37,64 +37,6 @@ TEST(Homography, WhatDoesNotDetermineItGivesNone) {
   std::array<double, 4> singular{1, 2, 2, 4};
   std::array<double, 2> right{1, 2};
   EXPECT_FALSE(SolveLinear(singular.data(), right.data(), 2));
-}
-
-// Dark where the formula says so, each pixel the mean of 8 × 8 points.
-template <class Inside>
-GreyPlane Drawn(int size, const Inside& inside) {
-  GreyPlane plane{size, size, std::vector<float>(std::size_t(size) * size)};
-  for (int i = 0; i < size * size; ++i) {
-    int dark = 0;
-    for (int k = 0; k < 64; ++k) dark += inside(i % size + (k % 8 + 0.5) / 8, i / size + (k / 8 + 0.5) / 8);
-    plane.values[std::size_t(i)] = 0.9f - 0.8f * float(dark) / 64;
-  }
-  return plane;
-}
-
-TEST(DarkSquares, ATurnedSquareIsFoundAndADiscIsNot) {
-  for (int degrees = 0; degrees < 90; degrees += 9) {
-    const double a = degrees * std::acos(-1.0) / 180, c = std::cos(a), s = std::sin(a), half = 26;
-    const auto plane = Drawn(110, [&](double x, double y) {
-      const double u = c * (x - 55) + s * (y - 55), v = -s * (x - 55) + c * (y - 55);
-      return std::max(std::abs(u), std::abs(v)) < half;
-    });
-    for (const int radius : {5, 40}) {
-      const auto found = FindDarkSquares(plane, radius, 9);
-      ASSERT_EQ(found.size(), 1u) << degrees << "°, radius " << radius;
-      double area = 0;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const glm::dvec2 p = found[0][i] - 55.0, q = found[0][(i + 1) % 4] - 55.0;
-        EXPECT_NEAR(glm::length(p), half * std::sqrt(2.0), 2.0) << degrees;
-        area += (p.x * q.y - p.y * q.x) / 2;
-      }
-      EXPECT_NEAR(area, 4 * half * half, 260) << "clockwise on the screen";
-    }
-  }
-  const auto disc = Drawn(110, [](double x, double y) { return std::hypot(x - 55, y - 55) < 26; });
-  EXPECT_TRUE(FindDarkSquares(disc, 40, 9).empty());
-  const auto nothing = Drawn(110, [](double, double) { return false; });
-  EXPECT_TRUE(FindDarkSquares(nothing, 5, 9).empty());
-  EXPECT_TRUE(FindDarkSquares(GreyPlane{1, 1, {0.5f}}, 5, 9).empty());
-}
-
-TEST(MarkerDetection, CornersAreFoundToAFractionOfAPixel) {
-  Scan scan;
-  scan.rotation = 17, scan.tilt = 15, scan.fill = 0.7, scan.noise = 4, scan.blur = 0.8;
-  const ScanCamera camera(scan);
-  const MarkSearch search = FindMarks(TakeScan(CharcoalSheet(), scan));
-  ASSERT_EQ(search.marks.size(), std::size_t(kFiducialCount));
-  double squares = 0;
-  for (const FoundMark& mark : search.marks) {
-    EXPECT_FALSE(mark.mirrored);
-    EXPECT_EQ(mark.wrong_bits, 0);
-    EXPECT_NEAR(mark.blur_pixels, 0.9, 0.4) << "and what the pixels' own size adds";
-    for (int c = 0; c < 4; ++c) {
-      const double off = glm::length(mark.corners[std::size_t(c)] - camera.ToPicture(PrintedCorner(mark.id, c)));
-      EXPECT_LT(off, 0.6);
-      squares += off * off / 48;
-    }
-  }
-  EXPECT_LT(std::sqrt(squares), 0.2) << "pixels, root mean square";
 }
 
 Picture Grey(int width, int height, const auto& light) {
@@ -108,11 +50,47 @@ Picture Grey(int width, int height, const auto& light) {
   return picture;
 }
 
+TEST(MarkerDetection, CornersAreFoundToAFractionOfAPixel) {
+  Scan scan;
+  scan.rotation = 17, scan.tilt = 15, scan.fill = 0.7, scan.noise = 4, scan.blur = 0.8;
+  const ScanCamera camera(scan);
+  const std::vector<FoundMark> marks = FindMarks(TakeScan(CharcoalSheet(), scan));
+  ASSERT_EQ(marks.size(), std::size_t(kFiducialCount));
+  double squares = 0;
+  for (const FoundMark& mark : marks) {
+    EXPECT_NEAR(mark.blur_pixels, 0.9, 0.4) << "and what the pixels' own size adds";
+    for (int c = 0; c < 4; ++c) {
+      const double off = glm::length(mark.corners[std::size_t(c)] - camera.ToPicture(PrintedCorner(mark.id, c)));
+      EXPECT_LT(off, 0.6);
+      squares += off * off / 48;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares), 0.2) << "pixels, root mean square";
+}
+
+// From the smallest template that a scan may show: all marks, at their places. Half a pixel off would show.
+TEST(MarkerDetection, DrawnMarksAreReadAtAnySize) {
+  for (int size = 200; size < 1300; size += 97) {
+    const int margin = TemplateMargin(size), side = size + 2 * margin;
+    Picture picture = Grey(side, side, [](int, int) { return 1.0; });
+    DrawFiducials(picture, size, margin);
+    const std::vector<FoundMark> marks = FindMarks(picture);
+    ASSERT_EQ(marks.size(), std::size_t(kFiducialCount)) << size;
+    for (const FoundMark& mark : marks) {
+      for (int c = 0; c < 4; ++c) {
+        const glm::dvec2 truth = double(margin) + PrintedCorner(mark.id, c) * double(size);
+        EXPECT_LT(glm::length(mark.corners[std::size_t(c)] - truth), 0.1) << size << ", " << FiducialPlace(mark.id);
+      }
+    }
+  }
+}
+
 TEST(ResampleScan, RampsStayRampsAtAnyScale) {
   const Picture ramp = Grey(400, 300, [](int x, int y) { return 0.1 + 0.0015 * (x + 0.5) + 0.0005 * (y + 0.5); });
   for (const double shrink : {0.4, 1.0, 1.7, 3.0, 6.3}) {
     const int width = 40, height = 30;
-    const auto seen = ResampleScan(ramp, width, height, shrink, [&](glm::dvec2 p) { return glm::dvec2(30, 20) + p * shrink; });
+    const auto seen =
+        ResampleScan(ramp, width, height, shrink, [&](glm::dvec2 p) { return glm::dvec2(30, 20) + p * shrink; });
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         const double px = 30 + (x + 0.5) * shrink, py = 20 + (y + 0.5) * shrink;

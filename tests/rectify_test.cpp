@@ -33,11 +33,11 @@ std::vector<Case> Cases() {
     cases.push_back({name, scan});
   };
   add("flatbed", [](Scan&) {});
-  for (const int turn : {90, 180, 270}) add("turned" + std::to_string(turn), [&](Scan& s) { s.rotation = turn, s.noise = 2; });
+  for (const int turn : {90, 180, 270})
+    add("turned" + std::to_string(turn), [&](Scan& s) { s.rotation = turn, s.noise = 2; });
   for (const int towards : {0, 60, 135, 250}) {
-    add("tilted" + std::to_string(towards), [&](Scan& s) {
-      s.tilt = 20, s.towards = towards, s.rotation = 23 + towards, s.fill = 0.65, s.noise = 2;
-    });
+    add("tilted" + std::to_string(towards),
+        [&](Scan& s) { s.tilt = 20, s.towards = towards, s.rotation = 23 + towards, s.fill = 0.65, s.noise = 2; });
   }
   add("small", [](Scan& s) { s.fill = 0.4, s.noise = 2, s.blur = 0.7; });
   add("noisy", [](Scan& s) { s.noise = 14; });
@@ -93,7 +93,8 @@ TEST(Rectify, HowTheSheetWasHeldIsTold) {
 
 // CIE Lab of linear Rec.709, D65.
 glm::dvec3 Lab(glm::dvec3 rgb) {
-  const glm::dvec3 xyz(0.4124 * rgb.r + 0.3576 * rgb.g + 0.1805 * rgb.b, 0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b,
+  const glm::dvec3 xyz(0.4124 * rgb.r + 0.3576 * rgb.g + 0.1805 * rgb.b,
+                       0.2126 * rgb.r + 0.7152 * rgb.g + 0.0722 * rgb.b,
                        0.0193 * rgb.r + 0.1192 * rgb.g + 0.9505 * rgb.b);
   const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; };
   const double x = f(xyz.x / 0.9505), y = f(xyz.y), z = f(xyz.z / 1.089);
@@ -130,7 +131,8 @@ std::pair<double, double> ColourError(const Picture& sheet, const Picture& pictu
 
 TEST(Rectify, ColoursComeBackFromUnevenColouredLight) {
   Scan scan;
-  scan.gradient = 0.4, scan.cast = {1.0, 0.85, 0.6}, scan.glare = 0.06, scan.noise = 3, scan.jpeg_quality = 85, scan.rotation = 12;
+  scan.gradient = 0.4, scan.cast = {1.0, 0.85, 0.6}, scan.glare = 0.06, scan.noise = 3, scan.jpeg_quality = 85,
+  scan.rotation = 12;
   RectifyOptions options;
   options.size = 256;
   const Picture seen = TakeScan(CharcoalSheet(), scan);
@@ -215,6 +217,16 @@ TEST(Rectify, WhatMaySpoilTheExemplarIsWarnedOf) {
   EXPECT_TRUE(warns(*done, "of the sphere is bare paper"));
   EXPECT_TRUE(warns(*done, "edge is bare paper"));
 
+  Picture shadowed = CharcoalSheet();
+  for (int y = 0; y < shadowed.height; ++y) {
+    for (int x = 0; x < shadowed.width / 2; ++x) {
+      for (int c = 0; c < 3; ++c) shadowed.At(x, y)[c] = static_cast<std::uint16_t>(shadowed.At(x, y)[c] * 0.7);
+    }
+  }
+  const auto shadow = RectifyScan(shadowed, "shadow.png", Small());
+  ASSERT_TRUE(shadow) << shadow.error().message;
+  EXPECT_TRUE(warns(*shadow, "shadow lies on the sheet"));
+
   Scan scan;
   scan.fill = 0.45;
   RectifyOptions options;
@@ -222,7 +234,7 @@ TEST(Rectify, WhatMaySpoilTheExemplarIsWarnedOf) {
   const auto coarse = RectifyScan(TakeScan(CharcoalSheet(), scan), "small.png", options);
   ASSERT_TRUE(coarse) << coarse.error().message;
   EXPECT_TRUE(warns(*coarse, "enlarged to 512"));
-  EXPECT_FALSE(warns(*coarse, "bare"));
+  EXPECT_FALSE(warns(*coarse, "bare")) << "neither sphere nor margin";
 }
 
 }  // namespace

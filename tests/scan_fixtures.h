@@ -46,20 +46,20 @@ inline const Picture& CharcoalSheet() {
 
 struct Scan {
   int width = 900, height = 720;
-  double fill = 0.85;          // of the shorter side, by the template
-  double rotation = 0;         // degrees clockwise
-  double tilt = 0, towards = 0;  // degrees; about an axis in that direction of the sheet
+  double fill = 0.85;               // of the shorter side, by the template
+  double rotation = 0;              // degrees clockwise
+  double tilt = 0, towards = 0;     // degrees; about an axis in that direction of the sheet
   double shift_x = 0, shift_y = 0;  // pixels
-  double barrel = 0;           // share by which the picture's corner is pulled in
+  double barrel = 0;                // share by which the picture's corner is pulled in
   bool mirrored = false;
-  double curl = 0;             // height of the sheet's wave, in diameters of the sphere
-  double blur = 0;             // standard deviation, pixels
-  double noise = 0;            // standard deviation, of 255
-  int jpeg_quality = 0;        // 0: none
-  double gradient = 0;         // share of light that is lost from the left to the right of the picture
+  double curl = 0;       // height of the sheet's wave, in diameters of the sphere
+  double blur = 0;       // standard deviation, pixels
+  double noise = 0;      // standard deviation, of 255
+  int jpeg_quality = 0;  // 0: none
+  double gradient = 0;   // share of light that is lost from the left to the right of the picture
   std::array<double, 3> cast{1, 1, 1};
-  double glare = 0;            // light added everywhere, a share of white
-  std::vector<int> covered;    // marks under a thumb
+  double glare = 0;          // light added everywhere, a share of white
+  std::vector<int> covered;  // marks under a thumb
   int seed = 1;
 };
 
@@ -67,7 +67,8 @@ struct Scan {
 class ScanCamera {
  public:
   explicit ScanCamera(const Scan& scan) : scan_(scan), middle_(scan.width / 2.0, scan.height / 2.0) {
-    const double radians = std::acos(-1.0) / 180, a = scan.rotation * radians, t = scan.tilt * radians, d = scan.towards * radians;
+    const double radians = std::acos(-1.0) / 180, a = scan.rotation * radians, t = scan.tilt * radians,
+                 d = scan.towards * radians;
     const auto about = [](glm::dvec3 axis, double angle) {  // Rodrigues
       const glm::dmat3 k(0, axis.z, -axis.y, -axis.z, 0, axis.x, axis.y, -axis.x, 0);
       return glm::dmat3(1.0) + std::sin(angle) * k + (1 - std::cos(angle)) * k * k;
@@ -94,7 +95,8 @@ class ScanCamera {
       const double h = 1e-4;
       const glm::dvec2 here = ToPicture(at), off = in_picture - here;
       if (std::abs(off.x) + std::abs(off.y) < 1e-6) break;
-      const glm::dvec2 dx = (ToPicture(at + glm::dvec2(h, 0)) - here) / h, dy = (ToPicture(at + glm::dvec2(0, h)) - here) / h;
+      const glm::dvec2 dx = (ToPicture(at + glm::dvec2(h, 0)) - here) / h,
+                       dy = (ToPicture(at + glm::dvec2(0, h)) - here) / h;
       at += glm::inverse(glm::dmat2(dx, dy)) * off;
     }
     return at;
@@ -145,7 +147,8 @@ inline void BlurLight(std::vector<glm::dvec3>& light, int width, int height, dou
         double all = 0;
         for (int i = -reach; i <= reach; ++i) {
           const int u = std::clamp(across ? x + i : x, 0, width - 1), v = std::clamp(across ? y : y + i, 0, height - 1);
-          sum += weights[std::size_t(i + reach)] * old[std::size_t(v) * width + u], all += weights[std::size_t(i + reach)];
+          sum += weights[std::size_t(i + reach)] * old[std::size_t(v) * width + u],
+              all += weights[std::size_t(i + reach)];
         }
         light[std::size_t(y) * width + x] = sum / all;
       }
@@ -185,8 +188,10 @@ inline Picture TakeScan(const Picture& sheet, const Scan& scan) {
       const double lamp = 0.85 * (1 - scan.gradient * x / scan.width);
       for (int c = 0; c < 3; ++c) {
         const double seen = (light[i][c] * (1 - scan.glare) + scan.glare) * lamp * scan.cast[std::size_t(c)];
-        const double encoded = Srgb16FromLinear(float(seen)) / 257.0 + scan.noise * Gaussian(scan.seed, 3 * i + std::size_t(c));
-        picture.rgba[4 * i + std::size_t(c)] = static_cast<std::uint16_t>(257 * std::lround(std::clamp(encoded, 0.0, 255.0)));
+        const double encoded =
+            Srgb16FromLinear(float(seen)) / 257.0 + scan.noise * Gaussian(scan.seed, 3 * i + std::size_t(c));
+        picture.rgba[4 * i + std::size_t(c)] =
+            static_cast<std::uint16_t>(257 * std::lround(std::clamp(encoded, 0.0, 255.0)));
       }
       picture.rgba[4 * i + 3] = 65535;
     }
