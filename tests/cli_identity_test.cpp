@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "io/guide_file.h"
 #include "style/style_file.h"
 #include "tests/cli_harness.h"
 #include "transfer/resample.h"
@@ -14,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFrames = 6;
+constexpr int kPaint = 128;  // pixels along a painting's side
 
 class CliIdentity : public CliTest {
  protected:
@@ -38,6 +40,24 @@ class CliIdentity : public CliTest {
     for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_TRUE(frames[i] == expected[i]) << what << ", frame " << i + 1;
   }
 
+  // Coverage and normals of every so many pixels.
+  static GuideSet Smaller(const GuideSet& guides) {
+    GuideSet small(kPaint, kPaint);
+    small.Add(Layer::kCoverage);
+    small.Add(Layer::kNormal);
+    for (int y = 0; y < kPaint; ++y) {
+      for (int x = 0; x < kPaint; ++x) {
+        const std::size_t from = guides.Index(x * guides.width() / kPaint, y * guides.height() / kPaint);
+        for (const Layer layer : {Layer::kCoverage, Layer::kNormal}) {
+          for (int c = 0; c < ChannelCount(layer); ++c) {
+            small.Plane(layer, c)[small.Index(x, y)] = guides.Plane(layer, c)[from];
+          }
+        }
+      }
+    }
+    return small;
+  }
+
   // The bundled style's paint with everything turned on that styles can have: two lights, a base colour,
   // a painted edge, shadows, variety; and with keys that change from frame to frame. The paint is made smaller, so that
   // preparing it anew for each frame takes no time.
@@ -53,9 +73,11 @@ class CliIdentity : public CliTest {
     for (std::size_t i = 0; i < lights; ++i) {
       const Exemplar& exemplar = style->exemplars[std::min(i, style->exemplars.size() - 1)];
       const std::string name = "light" + std::to_string(i) + ".png";
-      ASSERT_TRUE(exemplar.is_sphere) << "an exemplar of another scene: write its guides here too";
-      ASSERT_TRUE(WritePicture(At(folder + "/" + name), Resample(exemplar.picture, 128, 128)));
+      ASSERT_TRUE(WritePicture(At(folder + "/" + name), Resample(exemplar.picture, kPaint, kPaint)));
       text += "[[exemplar]]\nimage = \"" + name + "\"\nluminance = " + std::to_string(0.7 / double(1 + 3 * i)) + "\n";
+      if (exemplar.is_sphere) continue;
+      ASSERT_TRUE(WriteGuides(At(folder + "/guides.exr"), Smaller(*exemplar.guides)));
+      text += "guides = \"guides.exr\"\n";
     }
     WriteText(folder + "/style.toml", text);
   }
