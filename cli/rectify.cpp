@@ -36,18 +36,21 @@ Status CheckOptions(const CLI::App& verb) {
   return Ok();
 }
 
-// The guides that a kit puts beside a painting of that name.
-fs::path GuidesBeside(const fs::path& painting) {
-  const std::string stem = painting.stem().string();
-  if (stem == "lit" || stem.rfind("lit-", 0) == 0) return painting.parent_path() / ("guides" + stem.substr(3) + ".exr");
-  return painting.parent_path() / (stem + "-guides.exr");
+// The output is a painting: neither a folder nor what was to be painted over.
+Status CheckIsPainting(const std::string& output) {
+  const fs::path path(output);
+  std::error_code failed;
+  if (fs::is_directory(path, failed) || (!output.empty() && output.back() == '/'))
+    return UsageError("-o " + output + " is a folder, and with --rectify -o is the picture: " + (path / "lit.png").string());
+  if (const auto painting = PaintingOfTemplate(path.stem().string())) {
+    return UsageError("-o " + output + " is the name of a kit's template, which stays as it is: save it as " +
+                      (path.parent_path() / (*painting + ".png")).string());
+  }
+  return Ok();
 }
 
-// The side of the kit's sphere whose painting the output will be.
-std::optional<int> KitSize(const fs::path& output) {
-  std::error_code failed;
-  const fs::path guides = GuidesBeside(output);
-  if (!fs::is_regular_file(guides, failed)) return std::nullopt;
+// The side of the sphere in the kit's guides.
+std::optional<int> KitSize(const fs::path& guides) {
   const auto info = InspectGuides(guides);
   return info && info->width == info->height && SphereMargin(info->header) ? std::optional(info->width) : std::nullopt;
 }
@@ -62,12 +65,6 @@ std::string Cast(const double (&paper)[3]) {
   return fmt::format("{}, the paper is {:.2f} : {:.2f} : {:.2f}", hue, paper[0], paper[1], paper[2]);
 }
 
-std::string Places(const std::vector<int>& ids) {
-  std::string text;
-  for (const int id : ids) text += (text.empty() ? "" : ", ") + std::string(FiducialPlace(id));
-  return text;
-}
-
 // A number that is not "-0.0".
 double Tidy(double value, double step) { return std::abs(value) < step / 2 ? 0.0 : value; }
 
@@ -77,7 +74,7 @@ std::string ReportText(const RectifyReport& report, int size) {
   };
   std::string text;
   std::string marks = fmt::format("{} of {}", report.found.size(), kFiducialCount);
-  if (!report.missing.empty()) marks += "; not seen: " + Places(report.missing);
+  if (!report.missing.empty()) marks += "; not seen: " + FiducialPlaces(report.missing);
   out(text, "marks", marks);
   out(text, "registration",
       fmt::format("error {:.3f}% of the sphere, {:.2f} of its {} pixels; {:.3f}% at the marks", 100 * report.error,
@@ -154,13 +151,15 @@ void AddRectifyOptions(CLI::App& verb, RectifyRequest& request) {
 
 Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& request, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckOptions(verb));
+  SCUMBLE_RETURN_IF_ERROR(CheckIsPainting(request.output));
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output));
   RunFiles files;
   files.Reads("the scan", request.scan);
   SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(request.output));
   SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(request.scan));
   SCUMBLE_RETURN_IF_ERROR(CheckScanSize(header.width, header.height, header.dpi, request.scan));
-  const std::optional<int> kit = KitSize(request.output);
+  const std::optional<fs::path> guides = GuidesOfPainting(request.output);
+  const std::optional<int> kit = guides ? KitSize(*guides) : std::nullopt;
   RectifyOptions options;
   options.size = verb.count("--size") > 0 ? request.size : kit.value_or(request.size);
   options.with_margin = !request.square, options.white_balance = !request.no_white_balance;
@@ -172,7 +171,7 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   SCUMBLE_RETURN_IF_ERROR(WritePicture(request.output, rectified.picture, write));
   if (kit && *kit != options.size) {
     Warn(fmt::format("{} has {} pixels and the kit's {} {}: the style there will refuse it; take --size {}",
-                     request.output, options.size, GuidesBeside(request.output).string(), *kit, *kit));
+                     request.output, options.size, guides->string(), *kit, *kit));
   }
   for (const std::string& warning : rectified.report.warnings) Warn(request.scan + ": " + warning);
   if (globals.json) {

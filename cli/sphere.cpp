@@ -14,18 +14,21 @@
 #include "cli/rectify.h"
 #include "guidegen/guidegen.h"
 #include "image/direction.h"
+#include "style/fiducials.h"
 #include "style/sphere_kit.h"
 
 namespace scumble {
 namespace {
 
 constexpr int kUsualSize = 1024, kSmallest = 16, kLargest = 8192;
+constexpr int kSmallestPrinted = 128;  // FiducialsFit
 
 struct SphereVerb {
   int size = kUsualSize;
   std::string print_size;  // instead of pixels
   int dpi = KitOptions().dpi;
   std::string page = "auto";
+  bool page_given = false;
   std::vector<std::string> only;
   std::vector<std::string> lights;
   std::vector<std::string> names;  // none, or one a light
@@ -110,6 +113,27 @@ Expected<KitOptions> ReadKitOptions(const SphereVerb& verb) {
   return options;
 }
 
+// Paper asked for that cannot be had, and paper that is of little use.
+Status CheckPaper(const SphereVerb& verb, const KitOptions& options) {
+  if (!options.pdf) {
+    if (verb.page_given) Warn("--page is the paper of the PDF, which --only leaves out: it changes nothing");
+    return Ok();
+  }
+  if (!options.png && !options.ora && !FiducialsFit(verb.size)) {
+    return UsageError(fmt::format("--only pdf with a sphere of {} pixels: it is too small to have the marks by which "
+                                  "--rectify reads a painting on paper; expected --size {} or more",
+                                  verb.size, kSmallestPrinted));
+  }
+  constexpr double kLeastMm = 20;
+  const double across = MillimetresOf(verb.size, verb.dpi);
+  if (FiducialsFit(verb.size) && across < kLeastMm) {
+    Warn(fmt::format("the printed sphere is {:.1f} mm across, small for a brush, and must be scanned at {} dpi or more: "
+                     "take a larger --size, or --print-size",
+                     across, ScanDpi(verb.size, verb.dpi)));
+  }
+  return Ok();
+}
+
 // Which file to paint on, and what to do with it then.
 void SayWhatNext(const SphereVerb& verb, const KitOptions& options, const std::optional<PrintPage>& page,
                  const Globals& globals) {
@@ -133,6 +157,7 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
     SCUMBLE_ASSIGN(verb.size, PrintedSize(verb.print_size, verb.dpi));
   }
   SCUMBLE_ASSIGN(const KitOptions options, ReadKitOptions(verb));
+  SCUMBLE_RETURN_IF_ERROR(CheckPaper(verb, options));
   std::optional<PrintPage> page;
   // A large sphere takes a while to render: what does not fit the paper is said before.
   if (options.pdf) {
@@ -225,6 +250,7 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, sub, &globals, &chosen] {
     chosen = [verb, sub, &globals]() -> Expected<ExitCode> {
+      verb->page_given = sub->count("--page") > 0;
       if (sub->count("--rectify") == 0) return RunSphereVerb(*verb, globals);
       verb->rectify.size = verb->size, verb->rectify.output = verb->output;
       return RunRectify(*sub, verb->rectify, globals);

@@ -90,12 +90,45 @@ Picture Thumbnail(const Picture& picture) {
   return small;
 }
 
+// What a PNG in an archive says of its size, before it is unpacked.
+Expected<MergedHeader> InspectPng(const ZipReader& zip, const std::string& entry, const std::string& file) {
+  SCUMBLE_ASSIGN(const auto start, zip.ReadStart(entry, internal::kPngHeaderBytes));
+  const std::string name = file + ": " + entry;
+  const auto header = internal::ReadPngHeader(start);
+  if (!header) return InputError("cannot read " + name + ": it is no PNG; save the file again");
+  constexpr std::uint32_t kLongest = 1u << 24;  // what OpenImageIO takes is judged by the reader
+  if (header->width == 0 || header->height == 0 || std::max(header->width, header->height) > kLongest) {
+    return InputError("cannot read " + name + ": it says that it is " + std::to_string(header->width) + "×" +
+                      std::to_string(header->height) + " pixels; save the file again");
+  }
+  return MergedHeader{int(header->width), int(header->height), header->bits};
+}
+
 // A PNG in an archive. Its name there says nothing certain, and no other reader shall get to see a stranger's bytes.
 Expected<Picture> ReadPng(const ZipReader& zip, const std::string& entry, const std::string& file) {
-  SCUMBLE_ASSIGN(const auto bytes, zip.Read(entry, kMaxPngBytes));
-  const std::string name = file + ": " + entry;
-  if (!internal::IsPng(bytes)) return InputError("cannot read " + name + ": it is no PNG; save the file again");
-  return DecodePicture(bytes, name);
+  SCUMBLE_ASSIGN(const MergedHeader header, InspectPng(zip, entry, file));
+  // Uncompressed at 16 bits, and words and colour profiles beside it. A small archive can unpack to gigabytes.
+  constexpr std::size_t kBeside = std::size_t(1) << 24;
+  const std::size_t picture = std::size_t(header.width) * std::size_t(header.height) * 8;
+  SCUMBLE_ASSIGN(const auto bytes, zip.Read(entry, std::min(kMaxPngBytes, picture + picture / 64 + kBeside)));
+  return DecodePicture(bytes, file + ": " + entry);
+}
+
+Expected<ZipReader> OpenMerged(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(ZipReader zip, ZipReader::Open(path));
+  if (zip.Has(kMerged)) return zip;
+  return InputError(
+      "cannot read " + path.string() + ": it is an archive without " + kMerged +
+      ", the picture of all its layers: expected an .ora or .kra file of a painting program; export a PNG");
+}
+
+// `xml` without the resolutions that Stack may note.
+std::string WithoutDpi(std::string xml) {
+  for (const std::string name : {" xres=\"", " yres=\""}) {
+    const std::size_t at = xml.find(name), end = at == xml.npos ? at : xml.find('"', at + name.size());
+    if (end != xml.npos) xml.erase(at, end + 1 - at);
+  }
+  return xml;
 }
 
 }  // namespace
@@ -114,19 +147,27 @@ Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> l
 }
 
 Expected<Picture> ReadMergedLayers(const std::filesystem::path& path) {
-  SCUMBLE_ASSIGN(const ZipReader zip, ZipReader::Open(path));
-  if (!zip.Has(kMerged)) {
-    return InputError(
-        "cannot read " + path.string() + ": it is an archive without " + kMerged +
-        ", the picture of all its layers: expected an .ora or .kra file of a painting program; export a PNG");
-  }
+  SCUMBLE_ASSIGN(const ZipReader zip, OpenMerged(path));
   return ReadPng(zip, kMerged, path.string());
+}
+
+Expected<MergedHeader> InspectMergedLayers(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(const ZipReader zip, OpenMerged(path));
+  return InspectPng(zip, kMerged, path.string());
 }
 
 bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> layers, const Picture& merged) {
   const auto zip = ZipReader::Open(path);
   constexpr std::size_t kOthers = 4;  // mimetype, stack.xml, mergedimage.png, the thumbnail
   if (!zip || zip->names().size() != layers.size() + kOthers) return false;
+  const std::string stack = Stack(layers, merged, 0);
+  // Names, order and what is shown are the artist's too.
+  constexpr std::size_t kNoted = 200;
+  const auto held_stack = zip->Read("stack.xml", stack.size() + kNoted);
+  if (!held_stack ||
+      WithoutDpi({reinterpret_cast<const char*>(held_stack->data()), held_stack->size()}) != stack) {
+    return false;
+  }
   const auto same = [&](const std::string& entry, const Picture& drawn) {
     const auto held = ReadPng(*zip, entry, path.string());
     return held && held->width == drawn.width && held->height == drawn.height && In8Bits(*held) == In8Bits(drawn);

@@ -30,10 +30,17 @@ Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> l
                                                   const std::string& name);
 
 // What a file of layers shows, by the merged picture that its program put beside them: an .ora, or a .kra of Krita.
-// Reads up to 1 GiB of PNG. Thread-safe.
+// Reads up to 1 GiB of PNG, and no more of it than a picture of its size can take. Thread-safe.
 Expected<Picture> ReadMergedLayers(const std::filesystem::path& path);
 
-// Whether a file shows the same pictures, layer by layer, as one that EncodeOpenRaster makes of these, at whatever dpi.
+// The size of that picture and its bits a channel, without its pixels. Thread-safe.
+struct MergedHeader {
+  int width = 0, height = 0, bits = 8;
+};
+Expected<MergedHeader> InspectMergedLayers(const std::filesystem::path& path);
+
+// Whether a file shows the same pictures, layer by layer, under the same names and settings, as one that EncodeOpenRaster
+// makes of these, at whatever dpi.
 // A file that cannot be read does not. Thread-safe.
 bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> layers, const Picture& merged);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <iterator>
+#include <utility>
 
 #include "image/color.h"
 #include "io/atomic_file.h"
@@ -101,7 +102,7 @@ Status ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDe
 }
 
 // A camera notes how it was held (Exif's Orientation, 1 to 8); the picture is turned so that up is up.
-Picture Upright(const Picture& stored, int orientation) {
+Picture Upright(Picture stored, int orientation) {
   if (orientation < 2 || orientation > 8) return stored;
   const bool transposed = orientation >= 5;
   Picture upright(transposed ? stored.height : stored.width, transposed ? stored.width : stored.height);
@@ -243,11 +244,15 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, path.string()));
   }
-  SCUMBLE_ASSIGN(const Picture stored, ReadFrom(*input, path.string()));
-  return Upright(stored, input->spec().get_int_attribute("Orientation", 1));
+  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string()));
+  return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
 }
 
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
+  if (IsZip(path)) {
+    SCUMBLE_ASSIGN(const MergedHeader merged, InspectMergedLayers(path));
+    return PictureHeader{merged.width, merged.height, merged.bits, 0};
+  }
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   const OIIO::ImageSpec& spec = input->spec();
   const double per_unit = spec.get_float_attribute("XResolution", 0.0f);

@@ -21,7 +21,7 @@ namespace scumble {
 // an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read. Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
-// What a file's header says, without its pixels. Thread-safe.
+// What a file's header says, without its pixels; of a file of layers, that of their merged picture. Thread-safe.
 struct PictureHeader {
   int width = 0;  // as stored, before a photograph is turned upright
   int height = 0;

@@ -35,6 +35,18 @@ std::uint32_t Number(std::span<const std::byte> bytes) {
 
 }  // namespace
 
+std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes) {
+  // Length, type, width, height, bits; the rest is the reader's.
+  constexpr std::size_t kType = 12, kWidth = 16, kHeight = 20, kBits = 24;
+  constexpr std::array<unsigned char, 4> kFirst = {'I', 'H', 'D', 'R'};
+  if (!IsPng(bytes) || bytes.size() < kPngHeaderBytes ||
+      !std::equal(kFirst.begin(), kFirst.end(), bytes.begin() + kType,
+                  [](unsigned char a, std::byte b) { return a == std::to_integer<unsigned char>(b); })) {
+    return std::nullopt;
+  }
+  return PngHeader{Number(bytes.subspan(kWidth)), Number(bytes.subspan(kHeight)), std::to_integer<int>(bytes[kBits])};
+}
+
 bool IsPng(std::span<const std::byte> bytes) {
   return bytes.size() >= kSignature.size() &&
          std::equal(kSignature.begin(), kSignature.end(), bytes.begin(),

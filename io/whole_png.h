@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -11,6 +13,15 @@ namespace scumble::internal {
 
 // Whether the bytes begin as every PNG file does.
 bool IsPng(std::span<const std::byte> bytes);
+
+// What a PNG file's first bytes say of its picture: kPngHeaderBytes of them are enough.
+inline constexpr std::size_t kPngHeaderBytes = 33;
+struct PngHeader {
+  std::uint32_t width = 0, height = 0;
+  int bits = 0;  // per channel
+};
+// Nothing where they are no PNG's. Thread-safe.
+std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes);
 
 // Follows the chunks (PNG specification, third edition, section 5) up to the one that ends the picture, and checks the
 // sums of those that a reader needs. `name` is for the message. Thread-safe.

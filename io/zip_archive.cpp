@@ -113,7 +113,15 @@ bool ZipReader::Has(const std::string& name) const {
   return std::find(names_.begin(), names_.end(), name) != names_.end();
 }
 
+Expected<std::vector<std::byte>> ZipReader::ReadStart(const std::string& name, std::size_t count) const {
+  return ReadAtMost(name, count, false);
+}
+
 Expected<std::vector<std::byte>> ZipReader::Read(const std::string& name, std::size_t limit) const {
+  return ReadAtMost(name, limit, true);
+}
+
+Expected<std::vector<std::byte>> ZipReader::ReadAtMost(const std::string& name, std::size_t limit, bool whole) const {
   const std::string what = "cannot read " + name + " in " + file_ + ": ";
   zip_t* archive = archive_->handle.get();
   const std::unique_ptr<zip_file_t, CloseEntry> entry(zip_fopen(archive, name.c_str(), 0));
@@ -126,6 +134,10 @@ Expected<std::vector<std::byte>> ZipReader::Read(const std::string& name, std::s
     if (read < 0)
       return InputError(what + zip_error_strerror(zip_file_get_error(entry.get())) + "; copy or save it again");
     filled += static_cast<std::size_t>(read);
+    if (filled > limit && !whole) {
+      bytes.resize(limit);
+      return bytes;
+    }
     if (filled > limit) {
       return InputError(what + "it unpacks to more than " + std::to_string(limit) + " bytes, the most that is read");
     }

@@ -100,6 +100,12 @@ bool FiducialIsBlack(int id, int column, int row) {
   return (bits.at(std::size_t(id)) >> (15 - 4 * (row - 1) - (column - 1)) & 1) == 0;
 }
 
+std::string FiducialPlaces(const std::vector<int>& ids) {
+  std::string text;
+  for (const int id : ids) text += (text.empty() ? "" : ", ") + std::string(FiducialPlace(id));
+  return text;
+}
+
 bool FiducialsFit(int size) { return size * kFiducialModule >= 2.0; }
 
 void DrawFiducials(Picture& picture, int size, int margin) {

@@ -10,6 +10,8 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "image/picture.h"
 
@@ -39,6 +41,8 @@ const std::array<Fiducial, kFiducialCount>& Fiducials();
 
 // Where a marker lies, in words: "upper left corner", "right side, lower".
 const char* FiducialPlace(int id);
+// The same of several, with commas between.
+std::string FiducialPlaces(const std::vector<int>& ids);
 
 // Whether a module is black; `id` in 0 … kFiducialCount - 1, column and row in 0 … kFiducialModules - 1, the border
 // included.

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "style/rectify.h"
 #include "style/sphere_template.h"
 
 namespace scumble {
@@ -70,6 +71,13 @@ Expected<PrintPage> Fitting(int size, int dpi) {
 }
 
 }  // namespace
+
+int ScanDpi(int size, int dpi) {
+  constexpr double kSpare = 1.25;
+  constexpr int kUsual = 300, kStep = 50;
+  const double least = kSpare * kMinScanSphere * dpi / size;
+  return std::max({kUsual, dpi, static_cast<int>(std::ceil(least / kStep)) * kStep});
+}
 
 Expected<PrintPage> PlacePage(PaperSize wanted, int size, int dpi) {
   const double side = MillimetresOf(TemplateSide(size), dpi);

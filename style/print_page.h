@@ -30,6 +30,10 @@ inline constexpr double kWordsMm = 62.0;
 
 inline double MillimetresOf(double pixels, int dpi) { return pixels * 25.4 / dpi; }
 
+// Dots an inch at which a printed sphere should be scanned: as fine as it was printed, at least 300, and as many as
+// RectifyScan needs across a small one, with a quarter to spare; in steps of 50.
+int ScanDpi(int size, int dpi);
+
 // Places the template of a sphere `size` pixels across, printed at `dpi` pixels an inch. A template that the paper
 // cannot hold is kUsage, and the message says the largest sphere that it can; so is one that no PDF can hold.
 Expected<PrintPage> PlacePage(PaperSize paper, int size, int dpi);

@@ -36,12 +36,6 @@ void LayOnWhite(Picture& picture) {
   }
 }
 
-std::string Places(const std::vector<int>& ids) {
-  std::string text;
-  for (const int id : ids) text += (text.empty() ? "" : ", ") + std::string(FiducialPlace(id));
-  return text;
-}
-
 void SplitIds(const std::vector<FoundMark>& marks, std::vector<int>& found, std::vector<int>& missing) {
   for (int id = 0; id < kFiducialCount; ++id) {
     const bool there = std::any_of(marks.begin(), marks.end(), [&](const FoundMark& mark) { return mark.id == id; });
@@ -77,14 +71,14 @@ Error NoTemplate(const Picture& scan, const std::string& name, const std::vector
                       "scanner program");
   }
   if (found.size() >= 4) {
-    return InputError(size + " shows " + std::to_string(found.size()) + " of the template's marks (" + Places(found) +
+    return InputError(size + " shows " + std::to_string(found.size()) + " of the template's marks (" + FiducialPlaces(found) +
                       "), but not where they lie on one sheet: expected one flat template; is it folded, or cut "
                       "and pasted?");
   }
   if (!found.empty()) {
     return InputError(size + " shows " + std::to_string(found.size()) + " of the template's " +
-                      std::to_string(kFiducialCount) + " marks (" + Places(found) +
-                      "); at least 4 are needed, and these are missing: " + Places(missing) +
+                      std::to_string(kFiducialCount) + " marks (" + FiducialPlaces(found) +
+                      "); at least 4 are needed, and these are missing: " + FiducialPlaces(missing) +
                       ". Take the whole sheet into the picture, sharp and without shadows on the marks");
   }
   if (std::min(scan.width, scan.height) < kMinScanSphere) {
@@ -96,6 +90,11 @@ Error NoTemplate(const Picture& scan, const std::string& name, const std::vector
       " printed marks: expected a scan or photograph of a whole sheet from `scumble sphere`, sharp, evenly lit, "
       "the marks not covered. Marks of other programs will not do; templates whose corners have plain crosses are "
       "older, or too small to have marks");
+}
+
+Error SeveralTemplates(const std::string& name, std::size_t marks) {
+  return InputError(name + " shows several templates, " + std::to_string(marks) + " marks of them: expected the " +
+                    std::to_string(kFiducialCount) + " of one; cut the picture to one of them");
 }
 
 // Marks of a whole second sheet, or nothing.
@@ -169,8 +168,14 @@ void MeasurePaint(const LinearPicture& pixels, const PaperLight& light,
   report.painted_rim = rim > 0 ? painted_rim / rim : 0;
 }
 
-void Warn(const RectifyOptions& options, RectifyReport& report) {
+void Warn(const RectifyOptions& options, const TemplateFit& fit, RectifyReport& report) {
   std::vector<std::string>& say = report.warnings;
+  if (report.error > kGoodRegistrationError) {
+    say.push_back("the painting may be shifted on the sphere by " + Percent(report.error) +
+                  " of its diameter, which shows at silhouettes; the mark farthest from its place is at the " +
+                  FiducialPlace(fit.worst_id) + " (" + Percent(fit.worst) +
+                  "): lay the sheet flatter, under glass, or scan it");
+  }
   if (report.sphere_pixels < 0.75 * options.size) {
     say.push_back("the sphere is " + Number("%.0f", report.sphere_pixels) + " pixels across and was enlarged to " +
                   std::to_string(options.size) + ": " + FinerScan(options.size / report.sphere_pixels, options.dpi) +
@@ -240,7 +245,7 @@ Status CheckFit(const TemplateFit& fit, const std::string& name, const RectifyOp
   if (!(fit.on_sphere <= kMaxRegistrationError)) {
     std::vector<int> found, missing;
     SplitIds(fit.marks, found, missing);
-    return InputError("the marks that " + name + " shows (" + Places(found) + ") leave open where the sphere is, by " +
+    return InputError("the marks that " + name + " shows (" + FiducialPlaces(found) + ") leave open where the sphere is, by " +
                       Percent(fit.on_sphere) + " of its diameter; at most " + Percent(kMaxRegistrationError) +
                       " is let through: expected marks on all sides of it");
   }
@@ -287,6 +292,7 @@ Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const Rec
   SCUMBLE_RETURN_IF_ERROR(CheckScanSize(scan.width, scan.height, options.dpi, name));
   LayOnWhite(scan);
   const std::vector<FoundMark> marks = FindMarks(scan);
+  if (marks.size() > kMostMarks) return SeveralTemplates(name, marks.size());
   const auto fit = FitTemplate(marks, scan.width, scan.height);
   if (!fit) return NoTemplate(scan, name, marks, options);
   if (HasSecondTemplate(marks, *fit, scan.width, scan.height)) {
@@ -311,7 +317,7 @@ Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const Rec
   const LinearPicture pixels = ResampleScan(scan, side, side, Shrink(fit->map, options.size),
                                             [&](glm::dvec2 p) { return fit->map.ToPicture(on_template(p)); });
   MeasurePaint(pixels, light, on_template, report);
-  Warn(options, report);
+  Warn(options, *fit, report);
   result.picture = Finish(pixels, light, on_template, options.white_balance);
   return result;
 }

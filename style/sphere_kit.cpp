@@ -1,6 +1,7 @@
 #include "style/sphere_kit.h"
 
 #include <algorithm>
+#include <cctype>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "io/guide_file.h"
 #include "io/open_raster.h"
 #include "io/picture_file.h"
+#include "style/fiducials.h"
 #include "style/guide_layers.h"
 #include "style/template_pdf.h"
 
@@ -31,6 +33,15 @@ std::string TemplateName(const KitLight& light, std::size_t index, const std::st
 }
 std::string GuidesName(const KitLight& light, std::size_t index) {
   return light.name.empty() ? Numbered("guides", ".exr", index) : light.name + "-guides.exr";
+}
+
+// What Numbered has put behind `stem`: "" or "-2" and so on; nothing where `text` is not made by it.
+std::optional<std::string> NumberBehind(const std::string& stem, const std::string& text) {
+  if (text.rfind(stem, 0) != 0) return std::nullopt;
+  const std::string rest = text.substr(stem.size());
+  const bool number = rest.size() > 1 && rest[0] == '-' &&
+                      std::all_of(rest.begin() + 1, rest.end(), [](unsigned char c) { return std::isdigit(c); });
+  return rest.empty() || number ? std::optional(rest) : std::nullopt;
 }
 
 // Names under which a painting may stand in style.toml.
@@ -98,6 +109,10 @@ $TEMPLATE.pdf is for paint on paper
   2. Scan the whole page at $DPI dpi or more, all marks in sight, or photograph it in even light.
   3. In this folder:   scumble sphere --rectify scan.jpg -o $PAINTING
 )";
+constexpr const char* kHowtoSmallPdf = R"(
+$TEMPLATE.pdf is for looking at: a sphere of fewer than 128 pixels has no room for the marks that --rectify reads. To
+paint on paper make a kit of --size 512 or more.
+)";
 constexpr const char* kHowtoEnd = R"(
 Then
   scumble styles check THIS_FOLDER
@@ -120,7 +135,7 @@ std::string Howto(const std::vector<KitLight>& lights, const KitOptions& options
   const auto words = [&](std::size_t i) {
     return Words{{"$PLACE", PlaceInWords(lights[i])},
                  {"$ANGLES", AnglesInWords(lights[i])},
-                 {"$DPI", std::to_string(std::max(300, options.dpi))},
+                 {"$DPI", std::to_string(ScanDpi(lights[i].guides.width(), options.dpi))},
                  {"$SIZE", std::to_string(lights[i].guides.width())},
                  {"$TEMPLATE", TemplateName(lights[i], i, "")},
                  {"$PAINTING", PaintingName(lights[i], i)}};
@@ -128,7 +143,7 @@ std::string Howto(const std::vector<KitLight>& lights, const KitOptions& options
   std::string text = kHowtoHead;
   if (options.png) text += kHowtoPng;
   if (options.ora) text += kHowtoOra;
-  if (options.pdf) text += kHowtoPdf;
+  if (options.pdf) text += FiducialsFit(lights[0].guides.width()) ? kHowtoPdf : kHowtoSmallPdf;
   text = Filled(text + kHowtoEnd, words(0));
   for (std::size_t i = 1; i < lights.size(); ++i) text += Filled(kHowtoOtherLight, words(i));
   return text + Filled(kHowtoLater, words(0));
@@ -306,6 +321,26 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
     written.push_back(howto);
   }
   return written;
+}
+
+std::optional<fs::path> GuidesOfPainting(const fs::path& painting) {
+  const std::string stem = painting.stem().string();
+  std::vector<std::string> names{stem + "-guides.exr"};
+  if (const auto number = NumberBehind("lit", stem)) names.push_back("guides" + *number + ".exr");
+  for (const std::string& name : names) {
+    std::error_code failed;
+    const fs::path guides = painting.parent_path() / name;
+    if (fs::is_regular_file(guides, failed)) return guides;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> PaintingOfTemplate(const std::string& stem) {
+  if (const auto number = NumberBehind("template", stem)) return "lit" + *number;
+  constexpr std::string_view kEnd = "-template";
+  if (stem.size() <= kEnd.size() || stem.compare(stem.size() - kEnd.size(), kEnd.size(), kEnd) != 0)
+    return std::nullopt;
+  return stem.substr(0, stem.size() - kEnd.size());
 }
 
 }  // namespace scumble

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "image/status.h"
@@ -29,5 +31,13 @@ struct KitOptions {
 Expected<std::vector<std::filesystem::path>> WriteSphereKit(const std::filesystem::path& folder,
                                                             std::vector<KitLight> lights,
                                                             const KitOptions& options = {});
+
+// The guides that a kit has put beside a painting of that name: STEM-guides.exr of a light with a name; else, for lit.png
+// and lit-2.png, guides.exr and guides-2.exr. Nothing where there is no such file.
+std::optional<std::filesystem::path> GuidesOfPainting(const std::filesystem::path& painting);
+
+// The painting that belongs on a template, by their stems: "lit" for "template", "lit-2" for "template-2", "shade" for
+// "shade-template". Nothing for stems that are no template's.
+std::optional<std::string> PaintingOfTemplate(const std::string& stem);
 
 }  // namespace scumble

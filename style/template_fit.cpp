@@ -268,6 +268,7 @@ glm::dvec2 PrintedCorner(int id, int corner) {
 }
 
 std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height) {
+  if (marks.size() > kMostMarks) return std::nullopt;
   // Every pair of marks proposes a map; all of them are asked, so that chance has no part in it.
   std::vector<FoundMark> best;
   TemplateMap start, best_map;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "style/fiducials.h"
 #include "style/marker_detection.h"
 
 namespace scumble {
@@ -37,8 +38,12 @@ struct TemplateFit {
   double worst = 0;
 };
 
+// Most marks that a map is looked for among, some sheets' worth of them: the work grows with the cube of their number.
+inline constexpr std::size_t kMostMarks = 5 * kFiducialCount;
+
 // The map on which most marks agree. Marks that are elsewhere (other squares read as marks, a second sheet) are left
-// out. Nothing if no four marks agree on one, or on a mirrored one only.
+// out. Nothing if no four marks agree on one, or on a mirrored one only, or
+// there are more than kMostMarks.
 std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height);
 
 // A corner of a marker in template coordinates; `corner` as in FoundMark.

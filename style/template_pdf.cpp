@@ -120,15 +120,21 @@ std::vector<std::string> Words(const KitLight& light, int dpi, const std::string
   const double across = MillimetresOf(light.guides.width(), dpi);
   std::snprintf(size_text, sizeof size_text, "The sphere is %.1f mm (%.2f in) across: %d pixels at %d dpi.", across,
                 across / 25.4, light.guides.width(), dpi);
+  const int size = light.guides.width();
+  const std::string scan = FiducialsFit(size)
+                               ? "4. scumble sphere --rectify scan.jpg -o " + painting +
+                                     "   makes the painting for style.toml out of the scan."
+                               : "4. The sphere is too small for the marks that lay a scan straight: cut " + painting +
+                                     " out of the scan by hand.";
   return {
       "The light comes from " + PlaceInWords(light) + ": " + AnglesInWords(light) + ".",
       std::string(size_text),
       "1. Print at 100% (\"actual size\", not fitted to the page). The line below is 50 mm long: measure it.",
       "2. Paint over the sphere, past its edge all round. Keep the black marks and the white around them free of "
       "paint.",
-      "3. When it is dry, scan the whole page, all marks in sight, at " + std::to_string(std::max(300, dpi)) +
+      "3. When it is dry, scan the whole page, all marks in sight, at " + std::to_string(ScanDpi(size, dpi)) +
           " dpi or more. Or photograph it in even light.",
-      "4. scumble sphere --rectify scan.jpg -o " + painting + "   makes the painting for style.toml out of the scan."};
+      scan};
 }
 
 void DrawScaleBar(const Sheet& sheet, double left, double top, double pixels_per_mm) {

@@ -1,4 +1,6 @@
 // `scumble sphere --rectify` as an artist runs it: from a photograph in the kit's folder to a style.
+#include "io/atomic_file.h"
+#include "io/open_raster.h"
 #include "tests/cli_harness.h"
 #include "tests/scan_fixtures.h"
 
@@ -87,6 +89,41 @@ TEST_F(RectifyCliTest, ScansOfAnyKind) {
   EXPECT_EQ(json["marks"]["found"].size(), 12u);
 }
 
+TEST_F(RectifyCliTest, TheSizeIsThatOfTheLightsOwnGuides) {
+  WriteScan("scan.png");
+  RunOk({"sphere", "--size", "128", "--only", "png", "-q", "-o", "kit"});
+  for (const auto& [name, size] : {std::pair{"lit", 160}, {"lit-evening", 192}}) {
+    const std::string picture = std::string("kit/") + name + ".png";
+    EXPECT_EQ(RunOk({"sphere", "--rectify", "scan.png", "-o", picture, "--json"}).Json()["size"],
+              std::string(name) == "lit" ? 128 : 1024);
+    std::filesystem::remove(At(picture));
+    RunOk({"sphere", "--size", std::to_string(size), "--only", "png", "--name", name, "-q", "-o", "kit"});
+    EXPECT_EQ(RunOk({"sphere", "--rectify", "scan.png", "-o", picture, "--json"}).Json()["size"], size);
+    std::filesystem::remove(At(picture));
+  }
+}
+
+TEST_F(RectifyCliTest, ScansInAFileOfLayers) {
+  const Picture scan = TakeScan(CharcoalSheet(), {});
+  const auto layers = EncodeOpenRaster({}, scan, 0, "scan.ora");
+  ASSERT_TRUE(layers && WriteFileAtomically(At("scan.ora"), *layers));
+  WriteScan("scan.png");
+  RunOk({"sphere", "--rectify", "scan.ora", "--size", "64", "-q", "-o", "layers.png"});
+  RunOk({"sphere", "--rectify", "scan.png", "--size", "64", "-q", "-o", "flat.png"});
+  EXPECT_TRUE(Pixels("layers.png") == Pixels("flat.png"));
+}
+
+TEST_F(RectifyCliTest, WarnsOfPaperThatIsNotFlat) {
+  Scan scan;
+  scan.curl = 0.03;
+  WriteScan("curled.png", scan);
+  const CommandResult result = RunOk({"sphere", "--rectify", "curled.png", "--size", "64", "-o", "lit.png"});
+  EXPECT_TRUE(Contains(result.Warning(), "flatter")) << result.out << result.err;
+  EXPECT_TRUE(Contains(result.Warning(), "from its place is at the ")) << result.err;
+  WriteScan("flat.png");
+  EXPECT_EQ(RunOk({"sphere", "--rectify", "flat.png", "--size", "64", "-o", "lit.png"}).Warning(), "");
+}
+
 TEST_F(RectifyCliTest, MistakesAreNamedAndNothingIsWritten) {
   WriteScan("scan.jpg");
   WritePainted("blank.png", 300, 300);
@@ -101,6 +138,12 @@ TEST_F(RectifyCliTest, MistakesAreNamedAndNothingIsWritten) {
   ExpectError({"sphere", "--rectify", "nowhere.jpg", "-o", "lit.png"}, 3, {"nowhere.jpg"});
   EXPECT_EQ(Bytes("lit.png"), "an older painting");
   ExpectError({"sphere", "--rectify", "scan.jpg", "-o", "scan.jpg"}, 2, {"would overwrite the scan"});
+  RunOk({"sphere", "--size", "32", "-q", "-o", "kit"});
+  const std::string unpainted = Bytes("kit/template.png");
+  ExpectError({"sphere", "--rectify", "scan.jpg", "-o", "kit/template.png"}, 2, {"save it as kit/lit.png"});
+  ExpectError({"sphere", "--rectify", "scan.jpg", "-o", "shade-template.png"}, 2, {"save it as shade.png"});
+  ExpectError({"sphere", "--rectify", "scan.jpg", "-o", "kit"}, 2, {"-o is the picture: kit/lit.png"});
+  EXPECT_EQ(Bytes("kit/template.png"), unpainted);
   ExpectError({"sphere", "--rectify", "scan.jpg", "-o", "lit.gif"}, 2, {"lit.gif", ".png"});
   ExpectError({"sphere", "--rectify", "scan.jpg", "-o", "nowhere/lit.png"}, 4, {"nowhere"});
   ExpectError({"sphere", "--rectify", "scan.jpg"}, 2, {"--output is required"});

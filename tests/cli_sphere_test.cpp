@@ -23,11 +23,11 @@ TEST_F(CliSphere, SaysWhatEachFileIsFor) {
   EXPECT_EQ(kit.out,
             "kit/template.png\nkit/template.ora\nkit/template.pdf\nkit/guides.exr\nkit/style.toml\nkit/HOWTO.txt\n");
   for (const char* part : {"template.ora (layers: Krita, GIMP, MyPaint) or template.png", "save it as lit.png",
-                           "template.pdf at 100%", "a sphere of 10.8 mm on A4"}) {
+                           "template.pdf at 100%", "a sphere of 10.8 mm on A4", "10.8 mm across, small for a brush", "at 600 dpi or more"}) {
     EXPECT_NE(kit.err.find(part), std::string::npos) << part << "\n" << kit.err;
   }
   const std::string howto = Bytes("kit/HOWTO.txt");
-  for (const char* part : {"any painting program", "Krita, GIMP and MyPaint", "300 dpi or more", "--rectify",
+  for (const char* part : {"any painting program", "Krita, GIMP and MyPaint", "600 dpi or more", "--rectify",
                            "the upper left", "--size 128"}) {
     EXPECT_NE(howto.find(part), std::string::npos) << part << "\n" << howto;
   }
@@ -78,6 +78,19 @@ TEST_F(CliSphere, OnlySomeFiles) {
   EXPECT_EQ(layers.err.find("print"), std::string::npos) << layers.err;
   // What does not fit the paper is no obstacle where there is no paper.
   RunOk({"sphere", "--size", "32", "-o", "other", "--only", "png", "--page", "a4", "--dpi", "72", "-q"});
+}
+
+TEST_F(CliSphere, PaperThatIsOfLittleUse) {
+  ExpectError({"sphere", "--size", "127", "--only", "pdf", "-o", "kit"}, 2, {"127 pixels", "--rectify", "--size 128"});
+  EXPECT_FALSE(Exists("kit"));
+  EXPECT_NE(RunOk({"sphere", "--size", "128", "--only", "pdf", "-o", "kit"}).Warning().find("10.8 mm"),
+            std::string::npos);
+  EXPECT_EQ(RunOk({"sphere", "--size", "237", "--only", "pdf", "-o", "large"}).Warning(), "") << "20.07 mm";
+  EXPECT_NE(RunOk({"sphere", "--size", "32", "--only", "png", "--page", "a3", "-o", "png"}).Warning().find("--page is"),
+            std::string::npos);
+  EXPECT_EQ(RunOk({"sphere", "--size", "32", "--only", "png", "-o", "png"}).Warning(), "");
+  RunOk({"sphere", "--size", "64", "-o", "small", "-q"});
+  EXPECT_EQ(Bytes("small/HOWTO.txt").find("scumble sphere --rectify"), std::string::npos);
 }
 
 TEST_F(CliSphere, ThePaintingMayStayInItsLayers) {

@@ -86,6 +86,11 @@ TEST_F(OpenRaster, TheMergedPictureIsRead) {
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->width, 40);
   EXPECT_EQ(read->rgba, merged.rgba);
+  const auto header = InspectPicture(path);
+  ASSERT_TRUE(header) << header.error().message;
+  EXPECT_EQ(header->width, 40);
+  EXPECT_EQ(header->height, 30);
+  EXPECT_EQ(header->bits, 8);
   // Krita's own files are built the same way; so is the name no matter.
   const auto krita =
       WriteZip("b.kra", {{"mimetype", Bytes("application/x-krita")}, {"mergedimage.png", *EncodePng(merged), true}});
@@ -112,6 +117,16 @@ TEST_F(OpenRaster, SameLayersAreFoundSame) {
   EXPECT_TRUE(SameLayers(path, layers, merged));
   EXPECT_FALSE(SameLayers(path, layers, Noise(40, 30, 4))) << "another merged picture";
   EXPECT_FALSE(SameLayers(path, std::span(layers).first(1), merged)) << "a layer more";
+  const auto changed = [&](auto change) {
+    std::vector<RasterLayer> others = TwoLayers();
+    change(others);
+    return !SameLayers(path, others, merged);
+  };
+  EXPECT_TRUE(changed([](auto& others) { others[0].visible = true; }));
+  EXPECT_TRUE(changed([](auto& others) { others[0].opacity = 0.6; }));
+  EXPECT_TRUE(changed([](auto& others) { others[1].name = "mine"; }));
+  EXPECT_TRUE(changed([](auto& others) { others[1].locked = true; }));
+  EXPECT_FALSE(changed([](auto&) {}));
   layers[1].png = *EncodePng(Noise(40, 30, 5));
   EXPECT_FALSE(SameLayers(path, layers, merged)) << "another layer";
   EXPECT_FALSE(SameLayers(folder_ / "none.ora", layers, merged));
@@ -154,6 +169,23 @@ TEST_F(OpenRaster, AnEntryThatUnpacksToTooMuchIsRefused) {
   ASSERT_TRUE(all) << "as much as the limit is allowed";
   EXPECT_EQ(all->size(), large);
   ExpectRefusal(zip->Read("b", large), {"b in ", "bomb.zip"});
+}
+
+TEST_F(OpenRaster, APngUnpacksToItsOwnSizeAtMost) {
+  std::vector<std::byte> png = *EncodePng(Noise(40, 30, 3));
+  png.resize(std::size_t(64) << 20);
+  ExpectRefusal(ReadPicture(WriteZip("long.ora", {{"mergedimage.png", png, true}})),
+                {"mergedimage.png in ", "long.ora", "unpacks to more than"});
+  // The same bytes, cut, of a picture that says it is huge.
+  png.resize(200);
+  for (int i = 16; i < 20; ++i) png[std::size_t(i)] = std::byte(0xff);
+  ExpectRefusal(ReadPicture(WriteZip("huge.ora", {{"mergedimage.png", png}})),
+                {"huge.ora: mergedimage.png", "4294967295×30"});
+  const auto zip = ZipReader::Open(WriteZip("two.zip", {{"a", Bytes("abcdef"), true}}));
+  ASSERT_TRUE(zip);
+  EXPECT_EQ(Text(*zip->ReadStart("a", 4)), "abcd");
+  EXPECT_EQ(Text(*zip->ReadStart("a", 6)), "abcdef");
+  EXPECT_EQ(Text(*zip->ReadStart("a", 40)), "abcdef");
 }
 
 TEST_F(OpenRaster, NoFolderAndNoPipeIsTakenForAnArchive) {

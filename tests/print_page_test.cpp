@@ -57,6 +57,15 @@ TEST(PrintPage, TheLargestSphereThatIsNamedFitsAndOneMorePixelDoesNot) {
   }
 }
 
+TEST(PrintPage, SmallSpheresAreScannedFiner) {
+  EXPECT_EQ(ScanDpi(1024, 300), 300);
+  EXPECT_EQ(ScanDpi(1024, 150), 300);
+  EXPECT_EQ(ScanDpi(2048, 600), 600);
+  EXPECT_EQ(ScanDpi(250, 300), 300);
+  EXPECT_EQ(ScanDpi(249, 300), 350);
+  EXPECT_EQ(ScanDpi(128, 300), 600) << "586 dots an inch make 250 pixels of 128";
+}
+
 TEST(PrintPage, AutoTakesTheFirstThatHoldsIt) {
   EXPECT_EQ(PlacePage(PaperSize::kAuto, 1024, 300)->name, "A4");
   EXPECT_EQ(PlacePage(PaperSize::kAuto, 2000, 300)->name, "A3");

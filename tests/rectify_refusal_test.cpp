@@ -74,6 +74,30 @@ TEST(RectifyRefusal, TwoTemplatesInOnePicture) {
   ExpectRefused(both, {"two templates", "cut"});
 }
 
+TEST(RectifyRefusal, AMosaicOfTemplatesIsRefusedBeforeItIsFitted) {
+  std::vector<FoundMark> marks;
+  for (std::size_t i = 0; i <= kMostMarks; ++i) {
+    FoundMark mark;
+    mark.id = int(i) % kFiducialCount;
+    const double sheet = 200.0 * double(i / kFiducialCount);
+    for (int c = 0; c < 4; ++c) mark.corners[std::size_t(c)] = 100.0 * PrintedCorner(mark.id, c) + sheet + 50.0;
+    marks.push_back(mark);
+  }
+  EXPECT_FALSE(FitTemplate(marks, 1400, 1400)) << "one too many";
+  marks.pop_back();
+  EXPECT_TRUE(FitTemplate(marks, 1400, 1400)) << "five sheets";
+
+  // Six sheets of 256 pixels; a sheet's marks are found as well as any.
+  constexpr int kSize = 256;
+  const int margin = TemplateMargin(kSize), side = kSize + 2 * margin;
+  Picture sheet = Filled(side, side, 65535), mosaic = Filled(3 * side, 2 * side, 65535);
+  DrawFiducials(sheet, kSize, margin);
+  for (int y = 0; y < mosaic.height; ++y) {
+    for (int k = 0; k < 3; ++k) std::copy_n(sheet.At(0, y % side), 4 * std::size_t(side), mosaic.At(k * side, y));
+  }
+  ExpectRefused(mosaic, {"several templates", "72 marks", "cut"});
+}
+
 // Squares of another dictionary: black borders with bits that are no mark's.
 TEST(RectifyRefusal, MarksOfOtherPrograms) {
   Picture page = Filled(900, 700, 65535);

@@ -208,6 +208,31 @@ TEST(SphereKit, PaintedLayersAreNotOverwritten) {
                 {"guides.exr is of 32²", "template.ora", "--size 32"});
 }
 
+TEST(SphereKit, GuidesAndPaintingsByTheirNames) {
+  const TemporaryFolder folder;
+  const auto guides = [&](const std::string& painting) {
+    const auto found = GuidesOfPainting(folder / painting);
+    return found ? found->filename().string() : "none";
+  };
+  EXPECT_EQ(guides("lit.png"), "none");
+  const KitLight first{0, 0, SphereGuides(16)}, second{60, 10, SphereGuides(16)};
+  ASSERT_TRUE(WriteSphereKit(folder.path(), {first, second}));
+  EXPECT_EQ(guides("lit.png"), "guides.exr");
+  EXPECT_EQ(guides("lit-2.png"), "guides-2.exr");
+  EXPECT_EQ(guides("lit-evening.png"), "none");
+  EXPECT_EQ(guides("literal.png"), "none");
+  for (const char* name : {"lit", "lit-evening", "shade"}) {
+    ASSERT_TRUE(WriteSphereKit(folder.path(), {KitLight{0, 0, SphereGuides(16), name}}));
+    EXPECT_EQ(guides(std::string(name) + ".png"), std::string(name) + "-guides.exr");
+  }
+  EXPECT_EQ(PaintingOfTemplate("template"), "lit");
+  EXPECT_EQ(PaintingOfTemplate("template-2"), "lit-2");
+  EXPECT_EQ(PaintingOfTemplate("shade-template"), "shade");
+  for (const char* name : {"lit", "my-templates", "templates", "template-a", "contemplate", ""}) {
+    EXPECT_FALSE(PaintingOfTemplate(name)) << name;
+  }
+}
+
 TEST(SphereKit, AHiddenLayerThatWasPaintedCountsToo) {
   const TemporaryFolder folder;
   const KitLight light{0, 0, SphereGuides(32)};
@@ -215,19 +240,20 @@ TEST(SphereKit, AHiddenLayerThatWasPaintedCountsToo) {
   // The layers as they are in the file, one of them changed, and the merged picture the same.
   const auto zip = ZipReader::Open(folder / "template.ora");
   ASSERT_TRUE(zip);
-  std::vector<RasterLayer> layers;
-  for (const std::string& name : zip->names()) {
-    if (name.rfind("data/", 0) == 0) layers.push_back({name, *zip->Read(name, 1 << 20)});
-  }
+  std::vector<ZipEntry> entries;
+  for (const std::string& name : zip->names()) entries.push_back({name, *zip->Read(name, 1 << 20)});
   const auto rewrite = [&] {
-    const auto saved = EncodeOpenRaster(layers, DrawTemplate(light), 72, "template.ora");
+    const auto saved = EncodeZip(entries, "template.ora");
     return WriteFileAtomically(folder / "template.ora", *saved);
   };
   ASSERT_TRUE(rewrite());
   EXPECT_TRUE(WriteSphereKit(folder.path(), {light})) << "nothing was painted";
   Picture paint(40, 40);
   paint.At(3, 3)[3] = 65535;
-  layers[1].png = *EncodePng(paint);
+  const auto layer = std::find_if(entries.begin(), entries.end(),
+                                  [](const ZipEntry& entry) { return entry.name == "data/layer01.png"; });
+  ASSERT_NE(layer, entries.end());
+  layer->bytes = *EncodePng(paint);
   ASSERT_TRUE(rewrite());
   ExpectRefusal(WriteSphereKit(folder.path(), {light}), ErrorKind::kOutput, {"template.ora", "painting"});
 }
