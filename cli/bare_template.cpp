@@ -51,16 +51,24 @@ Expected<std::optional<KitLight>> LightFor(const Exemplar& exemplar, int threads
 
 }  // namespace
 
-Expected<std::optional<Picture>> BareTemplate(const Exemplar& exemplar, int threads) {
+Expected<std::optional<BareTemplates>> FindBareTemplates(const Exemplar& exemplar, int threads) {
   constexpr int kSmallest = 16;
   const int size = exemplar.picture.width;
-  if (!exemplar.is_sphere || size < kSmallest) return std::optional<Picture>();
+  if (!exemplar.is_sphere || size < kSmallest) return std::optional<BareTemplates>();
   SCUMBLE_ASSIGN(const std::optional<KitLight> light, LightFor(exemplar, threads));
-  if (!light || light->guides.width() != size) return std::optional<Picture>();
+  if (!light || light->guides.width() != size) return std::optional<BareTemplates>();
   const Picture drawn = DrawTemplate(*light);
   const int margin = (drawn.width - size) / 2;
-  Picture bare(size, size);
-  for (int y = 0; y < size; ++y) std::copy_n(drawn.At(margin, y + margin), 4 * std::size_t(size), bare.At(0, y));
+  const Picture lit = DrawLitSphere(*light);
+  BareTemplates bare{Picture(size, size), Picture(size, size)};
+  for (int y = 0; y < size; ++y) {
+    std::copy_n(drawn.At(margin, y + margin), 4 * std::size_t(size), bare.drawn.At(0, y));
+    for (int x = 0; x < size; ++x) {
+      std::uint16_t* texel = bare.printed.At(x, y);
+      std::fill_n(texel, 3, static_cast<std::uint16_t>(65535.0 * PaleGrey(lit.At(x + margin, y + margin)) + 0.5));
+      texel[3] = 65535;
+    }
+  }
   return std::optional(std::move(bare));
 }
 

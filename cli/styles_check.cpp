@@ -157,8 +157,9 @@ Expected<CheckedStyle> Check(const std::string& path, const Globals& globals) {
   SCUMBLE_ASSIGN(checked.prepared, Prepare(checked.style, 1080, options));
   const PreparedStyle& prepared = checked.prepared;
   for (const Exemplar& exemplar : checked.style.exemplars) {
-    SCUMBLE_ASSIGN(const std::optional<Picture> bare, BareTemplate(exemplar, globals.threads));
-    checked.traits.push_back(MeasurePaint(exemplar, checked.style.transfer.rim, bare ? &*bare : nullptr));
+    SCUMBLE_ASSIGN(const std::optional<BareTemplates> bare, FindBareTemplates(exemplar, globals.threads));
+    checked.traits.push_back(MeasurePaint(exemplar, checked.style.transfer.rim, bare ? &bare->drawn : nullptr,
+                                          bare ? &bare->printed : nullptr));
   }
   checked.directions = MeasureAmbiguity(*prepared.exemplar);
   if (prepared.space) {

@@ -8,7 +8,7 @@
 namespace scumble {
 namespace {
 
-constexpr std::uint16_t kOpaque = 65535, kClear = 655;
+constexpr std::uint16_t kOpaque = 65535;
 constexpr int kEdge = 2;  // pixels that the soft edge of a hole takes
 
 // The nearest opaque texel along the eight main directions, or null.
@@ -55,7 +55,7 @@ AlphaReport MeasureAlpha(const PaintSheet& sheet) {
       const std::uint16_t alpha = picture.At(x, y)[3];
       if (!sheet.Usable(x, y) || alpha == kOpaque) continue;
       ++not_opaque;
-      (alpha <= kClear ? clear : veiled)[sheet.Index(x, y)] = 1;
+      (sheet.Shows(x, y) ? veiled : clear)[sheet.Index(x, y)] = 1;
     }
   }
   AlphaReport report;

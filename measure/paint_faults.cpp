@@ -27,6 +27,12 @@ constexpr double kOtherLight = 45.0;       // degrees
 // another direction each. Hatching by hand, ink and woodcut included, stays below 0.35, 0.7 of its peak, and 0.5.
 constexpr double kRegular = 0.45, kWeakly = 0.15, kEchoes = 0.85, kRegularLocally = 0.6;
 
+// Of a percentage that is not 0.
+std::string Percent(double percent) {
+  if (percent < 0.05) return "less than 0.1%";
+  return percent < 9.95 ? fmt::format("{:.1f}%", percent) : fmt::format("{:.0f}%", percent);
+}
+
 class Faults {
  public:
   Faults(const PaintTraits& traits, const PaintFaultContext& context) : traits_(traits), context_(context) {}
@@ -124,13 +130,13 @@ void Faults::LookAtHoles() {
   if (holes.pixels > 0) {
     const double share = traits_.alpha.transparent_percent - traits_.alpha.translucent_percent;
     AddAt("holes", holes.x, holes.y,
-          fmt::format("{:.2g}% of the {} is transparent and will be so in pictures, in {} hole{}, the largest", share, Thing(),
-                      holes.count, holes.count == 1 ? "" : "s"),
+          fmt::format("{} of the {} is transparent and will be so in pictures, in {} hole{}, the largest", Percent(share),
+                      Thing(), holes.count, holes.count == 1 ? "" : "s"),
           "fill the holes if that is not wanted");
   }
   if (traits_.template_percent >= kLeastTemplate) {
     AddAt("bare-template", bare.x, bare.y,
-          fmt::format("{:.2g}% of the sphere is still the template's own grey, most of it", traits_.template_percent),
+          fmt::format("{} of the sphere is still the template's own grey, most of it", Percent(traits_.template_percent)),
           "paint over it, or switch the template's layer off before you export");
   }
   const bool misplaced = Has("margin") || Has("off-centre") || Has("small-sphere");
@@ -154,8 +160,8 @@ void Faults::LookAtAlpha() {
         "export with straight (unassociated) alpha, or flatten the picture on its paper");
   } else if (alpha.translucent_percent >= kLeastTranslucent) {
     AddAt("see-through", alpha.translucent.x, alpha.translucent.y,
-          fmt::format("{:.2g}% of the {} is half see-through; what is behind objects will shine through, most of it",
-                      alpha.translucent_percent, Thing()),
+          fmt::format("{} of the {} is half see-through; what is behind objects will shine through, most of it",
+                      Percent(alpha.translucent_percent), Thing()),
           "flatten the picture on its paper before you export it");
   }
   if (alpha.clear_corners && context_.has_paper && alpha.holes.pixels == 0 && alpha.translucent.pixels == 0) {

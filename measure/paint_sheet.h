@@ -30,8 +30,13 @@ class PaintSheet {
   // The unit normal at a usable pixel's centre.
   glm::vec3 Normal(int x, int y) const;
 
-  // CIE L* (0 black … 100 white) of every pixel's colour, whatever its alpha.
+  // Whether there is paint at all: alpha above a hundredth.
+  bool Shows(int x, int y) const { return picture().At(x, y)[3] > kClearAlpha; }
+
+  // CIE L* (0 black … 100 white) of every pixel: translucent paint as it looks on white paper, transparent as its colour says.
   const std::vector<float>& lightness() const { return lightness_; }
+
+  static constexpr std::uint16_t kClearAlpha = 655;
 
  private:
   const Exemplar& exemplar_;

@@ -10,7 +10,6 @@ namespace scumble {
 namespace {
 
 constexpr int kCells = 48;  // along the longer side
-constexpr std::uint16_t kOpaque = 65535;
 
 struct Cell {
   glm::vec3 normal{0.0f};
@@ -24,7 +23,7 @@ std::vector<Cell> CellsOf(const PaintSheet& sheet) {
   std::vector<Cell> cells(std::size_t(columns) * ((sheet.height() + side - 1) / side));
   for (int y = 0; y < sheet.height(); ++y) {
     for (int x = 0; x < sheet.width(); ++x) {
-      if (!sheet.Usable(x, y) || sheet.picture().At(x, y)[3] < kOpaque) continue;
+      if (!sheet.Usable(x, y) || !sheet.Shows(x, y)) continue;
       Cell& cell = cells[std::size_t(y / side) * columns + x / side];
       cell.normal += sheet.Normal(x, y);
       cell.lightness += sheet.lightness()[sheet.Index(x, y)];
@@ -56,7 +55,7 @@ ToneReport MeasureTone(const PaintSheet& sheet) {
   double sum = 0.0;
   for (int y = 0; y < sheet.height(); ++y) {
     for (int x = 0; x < sheet.width(); ++x) {
-      if (!sheet.Usable(x, y) || sheet.picture().At(x, y)[3] < kOpaque) continue;
+      if (!sheet.Usable(x, y) || !sheet.Shows(x, y)) continue;
       tones.push_back(sheet.lightness()[sheet.Index(x, y)]);
       sum += tones.back();
     }

@@ -7,7 +7,7 @@
 
 namespace scumble {
 
-// CIE L* over usable, opaque pixels; all 0 where there is none. Percentiles, so that one speck is no range.
+// CIE L* over usable pixels that are not transparent; all 0 where there is none. Percentiles, so that one speck is no range.
 struct ToneReport {
   double darkest = 0.0;   // 1st percentile
   double brightest = 0.0; // 99th percentile

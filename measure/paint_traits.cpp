@@ -10,21 +10,33 @@
 namespace scumble {
 namespace {
 
-Patches FindBareTemplate(const PaintSheet& sheet, const Picture& bare) {
+constexpr int kAlike = 2 * 257 + 128;    // with the rounding to 8 bits
+constexpr int kAlikeInScans = 6 * 257;   // with paper's and scanner's noise
+constexpr int kAnyGrey = 65536;
+constexpr int kClearlyGrey = 245 * 257;  // of the printed one, whose lights are paper
+
+// `lightest`: where the template is lighter than that, it counts as paper.
+Patches FindBareTemplate(const PaintSheet& sheet, const Picture& bare, int tolerance, int lightest) {
   SCUMBLE_CHECK(bare.width == sheet.width() && bare.height == sheet.height());
-  constexpr int kAlike = 2 * 257 + 128;  // with the rounding to 8 bits
   std::vector<std::uint8_t> alike(sheet.lightness().size(), 0);
   for (int y = 0; y < bare.height; ++y) {
     for (int x = 0; x < bare.width; ++x) {
       if (!sheet.Usable(x, y)) continue;
       const std::uint16_t *paint = sheet.picture().At(x, y), *drawn = bare.At(x, y);
-      bool same = paint[3] == 65535;
-      for (int c = 0; c < 3; ++c) same = same && std::abs(int(paint[c]) - drawn[c]) <= kAlike;
+      bool same = paint[3] == 65535 && drawn[0] < lightest;
+      for (int c = 0; c < 3; ++c) same = same && std::abs(int(paint[c]) - drawn[c]) <= tolerance;
       alike[sheet.Index(x, y)] = same;
     }
   }
   const auto least = static_cast<std::size_t>(0.0005 * static_cast<double>(sheet.usable_pixels()));
   return FindPatches(MostlySet(alike, bare.width, bare.height, 4, 0.9), bare.width, bare.height, std::max<std::size_t>(4, least));
+}
+
+// The printed sphere stands on white paper; grey paper may well have its tone.
+bool IsOnWhite(const PaintSheet& sheet) {
+  constexpr float kWhite = 0.85f;  // linear; 237 of 255
+  const BarePaper ground = FindBarePaper(sheet.picture());
+  return ground.kind != BarePaper::Kind::kPaper || std::min({ground.color.x, ground.color.y, ground.color.z}) >= kWhite;
 }
 
 double Percent(std::size_t part, std::size_t whole) {
@@ -43,7 +55,8 @@ void MeasureSphere(const PaintSheet& sheet, PaintTraits& traits) {
   std::size_t covered = 0;
   for (int y = 0; y < sheet.height(); ++y) {
     for (int x = 0; x < sheet.width(); ++x) {
-      covered += sheet.Usable(x, y) && paint.IsPaint(x, y) && sheet.picture().At(x, y)[3] == 65535;
+      const bool on_paper = paint.ground().kind == BarePaper::Kind::kPaper;
+      covered += sheet.Usable(x, y) && sheet.Shows(x, y) && (!on_paper || paint.IsPaint(x, y));
     }
   }
   traits.covered_percent = Percent(covered, sheet.usable_pixels());
@@ -51,7 +64,8 @@ void MeasureSphere(const PaintSheet& sheet, PaintTraits& traits) {
 
 }  // namespace
 
-PaintTraits MeasurePaint(const Exemplar& exemplar, double rim, const Picture* bare_template) {
+PaintTraits MeasurePaint(const Exemplar& exemplar, double rim, const Picture* bare_template,
+                         const Picture* printed_template) {
   const PaintSheet sheet(exemplar, rim);
   PaintTraits traits;
   traits.width = sheet.width(), traits.height = sheet.height(), traits.is_sphere = sheet.is_sphere();
@@ -59,11 +73,15 @@ PaintTraits MeasurePaint(const Exemplar& exemplar, double rim, const Picture* ba
   traits.light = FindPaintedLight(sheet);
   traits.texture = MeasureTexture(sheet);
   traits.alpha = MeasureAlpha(sheet);
-  traits.covered_percent = 100.0 - traits.alpha.transparent_percent;
+  traits.covered_percent = 100.0 - traits.alpha.transparent_percent + traits.alpha.translucent_percent;
   if (!sheet.is_sphere()) return traits;
   MeasureSphere(sheet, traits);
   if (bare_template) {
-    traits.bare_template = FindBareTemplate(sheet, *bare_template);
+    traits.bare_template = FindBareTemplate(sheet, *bare_template, kAlike, kAnyGrey);
+    if (printed_template && IsOnWhite(sheet)) {
+      const Patches printed = FindBareTemplate(sheet, *printed_template, kAlikeInScans, kClearlyGrey);
+      if (printed.pixels > traits.bare_template.pixels) traits.bare_template = printed;
+    }
     traits.template_percent = Percent(traits.bare_template.pixels, sheet.usable_pixels());
     const Exemplar drawn{"template", *bare_template, std::nullopt};
     traits.template_light = FindPaintedLight(PaintSheet(drawn, rim));

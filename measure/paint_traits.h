@@ -13,7 +13,7 @@ namespace scumble {
 struct PaintTraits {
   int width = 0, height = 0;  // of the picture without its template's margin, pixels
   bool is_sphere = true;
-  double covered_percent = 0.0;  // of what is usable: opaque, and not the paper that the corners show
+  double covered_percent = 0.0;  // of what is usable: painted, and not the paper that the corners show
   ToneReport tone;
   PaintedLight light;
   TextureReport texture;
@@ -30,7 +30,9 @@ struct PaintTraits {
 
 // `rim` is the style's, in pixels. `bare_template` is the unpainted sphere, the size of the exemplar's picture, or null. A
 // pixel is bare where the picture is the template's within 2 of 255 on 90% of the 9×9 pixels round it: paint that meets the
-// same grey by chance is not. The exemplar's picture must not be empty. Deterministic; some 0.3 s at 1024².
-PaintTraits MeasurePaint(const Exemplar& exemplar, double rim, const Picture* bare_template);
+// same grey by chance is not. `printed_template` is the pale sphere of the page, likewise or null; a scan of it is bare within
+// 6 of 255 where it is grey, and on white paper alone. The exemplar's picture must not be empty. Deterministic; some 0.3 s at 1024².
+PaintTraits MeasurePaint(const Exemplar& exemplar, double rim, const Picture* bare_template,
+                         const Picture* printed_template = nullptr);
 
 }  // namespace scumble

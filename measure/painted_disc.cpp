@@ -108,7 +108,11 @@ bool HasFringe(const PaintOnGround& paint, const Ray& ray) {
   const double middle = 0.5 * sheet.width(), usable = middle - std::max(1.0, sheet.rim());
   const double least = std::max(1.0, 0.004 * middle), widest = 0.1 * middle, beside = std::max(2.0, 0.03 * middle);
   constexpr float kOtherColour = 0.15f;  // in Oklab
-  const auto pixel_at = [&](double depth) { return glm::ivec2(ray.At(middle, usable - depth)); };
+  // A rim that leaves next to nothing of the sphere has no room for a fringe.
+  if (!(usable > widest + beside + 2.0)) return false;
+  const auto pixel_at = [&](double depth) {
+    return glm::clamp(glm::ivec2(ray.At(middle, usable - depth)), 0, sheet.width() - 1);
+  };
   double width = 0.0;
   while (width <= widest && !paint.IsPaint(pixel_at(width).x, pixel_at(width).y)) width += 0.5;
   if (width < least || width > widest) return false;

@@ -124,10 +124,8 @@ void DrawFiducials(Picture& picture, int size, int margin) {
   }
 }
 
-int FiducialsInPlace(const Picture& picture, int size, int margin) {
-  const int side = size + 2 * margin;
-  if (!FiducialsFit(size) || margin < kFiducialMargin * size || picture.width != side || picture.height != side)
-    return 0;
+// `size` and `margin` need not be whole; all marks lie within the picture.
+static int CountFiducials(const Picture& picture, double size, double margin) {
   constexpr int kDark = 20000, kLight = 45000;  // of 65535: JPEG's noise stays on the right side
   int found = 0;
   for (const Fiducial& mark : kFiducials) {
@@ -146,6 +144,19 @@ int FiducialsInPlace(const Picture& picture, int size, int margin) {
     found += right;
   }
   return found;
+}
+
+int FiducialsInPlace(const Picture& picture, int size, int margin) {
+  const int side = size + 2 * margin;
+  if (!FiducialsFit(size) || margin < kFiducialMargin * size || picture.width != side || picture.height != side)
+    return 0;
+  return CountFiducials(picture, size, margin);
+}
+
+int FiducialsInProportion(const Picture& picture) {
+  const double size = 0.8 * picture.width;
+  if (picture.width != picture.height || !FiducialsFit(int(size))) return 0;
+  return CountFiducials(picture, size, 0.5 * (picture.width - size));
 }
 
 }  // namespace scumble

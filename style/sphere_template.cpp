@@ -104,6 +104,11 @@ std::string PlaceInWords(const KitLight& light) {
   return place.empty() ? "the viewer" : place;
 }
 
+double PaleGrey(const std::uint16_t* lit) {
+  constexpr double kDarkest = 0.18;
+  return lit[3] == 0 ? 1.0 : 1.0 - kDarkest * (1.0 - lit[0] / 65535.0);
+}
+
 int TemplateMargin(int size) { return (size + 7) / 8; }
 
 std::optional<int> SphereMargin(const GuideSet& guides) {
@@ -176,9 +181,10 @@ Picture DrawTemplateWithCrosses(const KitLight& light) {
 
 bool LooksLikeTemplate(const Picture& picture) {
   if (picture.width != picture.height) return false;
+  constexpr int kEnough = kFiducialCount / 2;  // paint may run over some; chance draws none
+  if (FiducialsInProportion(picture) >= kEnough) return true;
   const std::optional<int> size = SizeOfTemplate(picture.width);
   if (!size) return false;
-  constexpr int kEnough = kFiducialCount / 2;  // paint may run over some; chance draws none
   return FiducialsInPlace(picture, *size, TemplateMargin(*size)) >= kEnough || ShowsCrosses(picture, *size);
 }
 

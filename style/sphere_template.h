@@ -46,10 +46,14 @@ std::vector<TemplateMark> PlainMarks(int size);
 Picture DrawLitSphere(const KitLight& light);
 Picture DrawMarks(int size);
 
+// How a pixel of DrawLitSphere is printed to be painted over on paper: encoded grey, 0.82 … 1, 1 the paper.
+double PaleGrey(const std::uint16_t* lit);
+
 // The picture to paint over: white paper, the lit sphere filling the inner square, and the marks in the margin.
 Picture DrawTemplate(const KitLight& light);
 
-// Whether a picture still shows the template's marks, margin included: most of its fiducials, or the four crosses of
+// Whether a picture still shows the template's marks, margin included: most of its fiducials, also of a template that was
+// scaled as a whole, or the four crosses of
 // small templates and of those that were drawn before there were fiducials. Templates of spheres smaller than 63 pixels
 // are not recognised.
 bool LooksLikeTemplate(const Picture& picture);

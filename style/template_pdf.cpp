@@ -51,16 +51,13 @@ class Sheet {
 
 // The sphere, 0 to 18% grey with a thin line around it: paint covers it, and a pencil line shows on it.
 void DrawPaleSphere(HPDF_Doc document, const Sheet& sheet, const KitLight& light) {
-  constexpr double kDarkest = 0.18;
   const Picture lit = DrawLitSphere(light);
   const int size = light.guides.width(), margin = TemplateMargin(size);
   std::vector<HPDF_BYTE> grey;
   grey.reserve(std::size_t(size) * size);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      const std::uint16_t* pixel = lit.At(margin + x, margin + y);
-      const double dark = pixel[3] == 0 ? 0.0 : 1.0 - pixel[0] / 65535.0;
-      grey.push_back(static_cast<HPDF_BYTE>(255.0 * (1.0 - kDarkest * dark) + 0.5));
+      grey.push_back(static_cast<HPDF_BYTE>(255.0 * PaleGrey(lit.At(margin + x, margin + y)) + 0.5));
     }
   }
   const HPDF_Image image = HPDF_LoadRawImageFromMem(document, grey.data(), static_cast<HPDF_UINT>(size),

@@ -113,7 +113,7 @@ TEST(PaintFaults, SmallSphere) {
 TEST(PaintFaults, Holes) {
   Picture picture = PaintSphere({});
   ForDisc(picture, 300, 200, 20, [&](int x, int y) { picture.At(x, y)[3] = 0; });
-  const PaintFault hole = ExpectOne(Faults(picture), "holes", {"0.62% of the sphere is transparent", "1 hole", "around x=", "fill the holes"});
+  const PaintFault hole = ExpectOne(Faults(picture), "holes", {"0.6% of the sphere is transparent", "1 hole", "around x=", "fill the holes"});
   EXPECT_NEAR(hole.place->first, 300, 1);
   EXPECT_NEAR(hole.place->second, 200, 1);
   // Places are those of the file.
@@ -133,6 +133,14 @@ TEST(PaintFaults, SeeThroughPaint) {
   Picture picture = PaintSphere({});
   ForDisc(picture, 300, 200, 30, [&](int x, int y) { picture.At(x, y)[3] = 45000; });
   ExpectOne(Faults(picture), "see-through", {"half see-through", "around x=", "flatten"});
+  // All of it: said once, and the tones are those that white paper behind it gives.
+  Picture all = PaintSphere({});
+  for (int i = 0; i < 512 * 512; ++i) all.At(i % 512, i / 512)[3] = 180 * 257;
+  ExpectOne(Faults(all), "see-through", {"100% of the sphere is half see-through"});
+  const PaintTraits traits = MeasurePaint(ExemplarOf(all), 2.0, nullptr), opaque = MeasurePaint(ExemplarOf(PaintSphere({})), 2.0, nullptr);
+  EXPECT_GT(traits.covered_percent, 99.0);
+  EXPECT_GT(traits.tone.darkest, opaque.tone.darkest + 10.0);
+  EXPECT_GT(traits.tone.range(), 25.0);
   Picture speck = PaintSphere({});
   for (int x = 200; x < 210; ++x) speck.At(x, 200)[3] = 45000;
   EXPECT_EQ(Codes(Faults(speck)), "") << "ten pixels are nothing";
@@ -156,6 +164,43 @@ TEST(PaintFaults, PremultipliedColours) {
   }
   EXPECT_EQ(Codes(Faults(clear)), "") << "a style without paper may stand on nothing";
   EXPECT_EQ(ExpectOne(Faults(clear, paper), "clear-corners", {"flatten"}).weight, PaintFault::Weight::kRemark);
+}
+
+TEST(PaintFaults, PercentagesAreNumbers) {
+  for (const auto& [radius, words] : {std::pair{600.0, "100% of the sphere"}, {40.0, "2.5% of the sphere"}, {4.0, "less than 0.1% of the sphere"}}) {
+    Picture picture = PaintSphere({});
+    ForDisc(picture, 256, 256, radius, [&](int x, int y) { picture.At(x, y)[3] = 0; });
+    EXPECT_NE(Said(Faults(picture)).find(words), std::string::npos) << Said(Faults(picture));
+  }
+}
+
+// The page's sphere, scanned with some noise: whole, and between paint; its lights are paper and cannot be told from it.
+TEST(PaintFaults, BarePrintedTemplate) {
+  PaintedSphere pale = Clean();
+  pale.dark = 0.85, pale.light = 1.0, pale.paper = 1.0, pale.grain = 0.0;
+  Picture printed = PaintSphere(pale);
+  for (int i = 0; i < 512 * 512; ++i) SetGrey(printed, i % 512, i / 512, printed.At(i % 512, i / 512)[0] / 65535.0);
+  Picture scan = printed;
+  for (int i = 0; i < 512 * 512; ++i) {
+    SetGrey(scan, i % 512, i / 512, (printed.At(i % 512, i / 512)[0] / 257 + double(Hash(i) % 7) - 3.0) / 255.0);
+  }
+  PaintedSphere smooth = Clean();
+  smooth.grain = 0.0;
+  const Picture drawn = PaintSphere(smooth);
+  const auto percent = [&](const Picture& picture) {
+    return MeasurePaint(ExemplarOf(picture), 2.0, &drawn, &printed).template_percent;
+  };
+  EXPECT_GT(percent(scan), 50.0);
+  Picture partly = PaintSphere({});
+  EXPECT_EQ(percent(partly), 0.0);
+  ForDisc(partly, 330, 330, 40, [&](int x, int y) { std::copy_n(scan.At(x, y), 4, partly.At(x, y)); });
+  EXPECT_EQ(percent(partly), 0.0) << "on grey paper";
+  PaintedSphere white;
+  white.paper = 1.0;
+  partly = PaintSphere(white);
+  EXPECT_EQ(percent(partly), 0.0);
+  ForDisc(partly, 330, 330, 40, [&](int x, int y) { std::copy_n(scan.At(x, y), 4, partly.At(x, y)); });
+  EXPECT_NEAR(percent(partly), 100.0 * 40 * 40 / 254 / 254, 0.8);
 }
 
 TEST(PaintFaults, BareTemplate) {

@@ -41,6 +41,21 @@ TEST(PaintTone, TheLightThatAPaintingHas) {
   EXPECT_EQ(FindPaintedLight(PaintSheet(exemplar, 2.0)).correlation, 0.0);
 }
 
+// A rim that leaves little of the sphere, or nothing, and pictures without room for one.
+TEST(PaintedDisc, NoFringeWhereTheRimTakesAll) {
+  for (const int size : {1, 2, 16, 64}) {
+    PaintedSphere sphere;
+    sphere.size = size, sphere.reach = 0.95;
+    const Exemplar exemplar = ExemplarOf(PaintSphere(sphere));
+    for (const double rim : {0.0, 0.44 * size, 0.5 * size, 0.6 * size, 16000.0}) {
+      const PaintTraits traits = MeasurePaint(exemplar, rim, nullptr);
+      if (rim > 0.0 || size == 1) {
+        EXPECT_EQ(traits.fringe_percent, 0.0) << size << ", " << rim;
+      }
+    }
+  }
+}
+
 TEST(PaintedDisc, CentreAndRadius) {
   for (const auto& [x, y, radius] : {std::tuple{0.5, 0.5, 0.5}, {0.52, 0.5, 0.5}, {0.47, 0.51, 0.49}, {0.5, 0.5, 0.4}}) {
     PaintedSphere sphere;

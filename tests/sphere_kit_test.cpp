@@ -140,6 +140,27 @@ TEST(SphereKit, ATemplateIsRecognisedAtEverySizeAndOtherPicturesAreNot) {
     EXPECT_FALSE(LooksLikeTemplate(InnerSquare(drawn, TemplateMargin(size)))) << size;
     EXPECT_FALSE(LooksLikeTemplate(RandomPicture(drawn.width, drawn.width))) << size;
   }
+  // Exported at the sphere's size: scaled as a whole, margin included.
+  const Picture whole = DrawTemplate({-40, 40, SphereGuides(1024)});
+  for (const int side : {1280, 1024, 641, 512, 300}) {
+    Picture scaled(side, side);
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        // The mean of what the pixel covers, of whole pixels.
+        const int x0 = x * 1280 / side, x1 = std::max(x0 + 1, (x + 1) * 1280 / side);
+        const int y0 = y * 1280 / side, y1 = std::max(y0 + 1, (y + 1) * 1280 / side);
+        std::uint32_t sum = 0;
+        for (int j = y0; j < y1; ++j) {
+          for (int i = x0; i < x1; ++i) sum += whole.At(i, j)[1];
+        }
+        std::fill_n(scaled.At(x, y), 3, static_cast<std::uint16_t>(sum / std::uint32_t((x1 - x0) * (y1 - y0))));
+        scaled.At(x, y)[3] = 65535;
+      }
+    }
+    EXPECT_EQ(FiducialsInProportion(scaled), kFiducialCount) << side;
+    EXPECT_TRUE(LooksLikeTemplate(scaled)) << side;
+    EXPECT_EQ(FiducialsInProportion(InnerSquare(scaled, side / 10)), 0) << side;
+  }
   // Paint that runs over some marks leaves the others.
   Picture painted = DrawTemplate({-40, 40, SphereGuides(256)});
   std::fill_n(painted.At(0, 0), 4 * painted.width * (TemplateMargin(256) + 60), std::uint16_t{30000});

@@ -128,6 +128,17 @@ TEST_F(StylesCheck, WhatIsLeftOfTheKitsTemplate) {
   EXPECT_EQ(CodesIn("bare").count("margin"), 1u);
 }
 
+// A rim larger than the sphere is the style's business; looking at it does no harm.
+TEST_F(StylesCheck, ARimThatTakesTheWholeSphere) {
+  Write("rim/lit.png", PaintSphere({}));
+  for (const char* rim : {"0", "250", "600", "16000"}) {
+    WriteText("rim/style.toml", std::string("[transfer]\nrim = ") + rim + "\n[[exemplar]]\nimage = \"lit.png\"\n");
+    const CommandResult check = Run({"styles", "check", "rim", "--json"});
+    ASSERT_EQ(check.code, 0) << rim << check.err;
+    EXPECT_LE(check.Json()["exemplars"][0]["fringe_percent"], 0.0) << rim;
+  }
+}
+
 TEST_F(StylesCheck, LightsOfOneStyle) {
   PaintedSphere lit, shade;
   shade.dark = 0.05, shade.light = 0.3, shade.azimuth = 0.0, shade.elevation = 80.0, shade.size = 256;
