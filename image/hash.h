@@ -23,6 +23,12 @@ constexpr std::uint64_t Hash(Integers... values) {
   return state;
 }
 
+// Goes on where another hash ended: HashOn(Hash(a, b), c) is Hash(a, b, c).
+template <class Integer>
+constexpr std::uint64_t HashOn(std::uint64_t state, Integer value) {
+  return Mix64(state ^ static_cast<std::uint64_t>(value));
+}
+
 // The upper 24 bits as a float in [0, 1): exact, and never rounded up to 1.
 constexpr float UnitFloat(std::uint64_t hash) { return static_cast<float>(hash >> 40) * 0x1.0p-24f; }
 

@@ -57,6 +57,11 @@ class GuideTest {
     return sum;
   }
 
+  float threshold() const { return threshold_; }
+  ThresholdMetric metric() const { return metric_; }
+  // What a sum of squares (kL2) or of absolute differences is compared with where nothing is added.
+  float bound() const { return bound_; }
+
   // About what the threshold is between unit normals, by the Euclidean metric.
   float EuclideanThreshold() const { return metric_ == ThresholdMetric::kL2 ? threshold_ : threshold_ * (2.0f / 3.0f); }
 

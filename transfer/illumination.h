@@ -20,6 +20,8 @@ class Illumination {
   // With one exemplar light does not matter.
   bool active() const { return luminances_.size() > 1; }
   std::span<const float> luminances() const { return luminances_; }
+  float weight() const { return weight_; }
+  LuminanceError form() const { return form_; }
 
   // The exemplar whose luminance is nearest; ties to the first. NaN counts as darkness.
   int Choose(float luminance) const;

@@ -1,4 +1,4 @@
-// Three ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that are
+// Ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that are
 // wanted, and leave the others as they are. False: the progress callback asked to stop.
 #pragma once
 
@@ -96,8 +96,13 @@ bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& pr
 
 // Parallel StyleBlit: from coarse to fine, the nearest seed q offers its u*; pixel p takes u* + (p - q) where that is
 // usable and its guide is like p's, light included. A seed outside the picture or on a pixel that is not active fails
-// its level. If no level accepts, p takes its own u*.
-bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress);
+// its level. If no level accepts, p takes its own u*. The plain form is written for reading and does everything; the other
+// looks at sixteen pixels at once, cannot match in a GuideSpace, and gives the same bytes.
+bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgress& progress);
+bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgress& progress);
+inline bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress) {
+  return input.space ? MatchStyleBlitPlain(input, field, progress) : MatchStyleBlitTiles(input, field, progress);
+}
 
 // The same with seeds that live on the surface (transfer/surface_seeds.h): guides need pref, depth and object ids. Seeds
 // depend on all active pixels of the picture, whatever the region.

@@ -85,8 +85,18 @@ PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, dou
     limit_ = std::min(limit_, UsableLimit(size, fraction(*picture)));
   }
   usable_radius_ = static_cast<float>(std::sqrt(static_cast<double>(limit_)) / size);
-  coordinate_.resize(size);
-  for (int i = 0; i < size; ++i) coordinate_[i] = static_cast<float>(2 * i + 1 - size) / static_cast<float>(size);
+  coordinate_.resize(std::size_t(size) + 2 * ExemplarRows::kPad);
+  for (int i = 0; i < size; ++i) {
+    coordinate_[std::size_t(i) + ExemplarRows::kPad] = static_cast<float>(2 * i + 1 - size) / static_cast<float>(size);
+  }
+  for (int y = 0; y < size; ++y) {
+    const std::int64_t dy = 2 * std::int64_t(y) + 1 - size, left = limit_ - dy * dy;
+    // Every usable row has its middle pixels, or none; the root of an integer below 2^53 rounds down to the right one.
+    const int reach = left < 0 ? -1 : static_cast<int>(std::sqrt(static_cast<double>(left)));
+    const int first = left < 0 ? 1 : (size - std::min(reach, size)) / 2, last = left < 0 ? 0 : size - 1 - first;
+    first_usable_.push_back(static_cast<std::int16_t>(first));
+    last_usable_.push_back(static_cast<std::int16_t>(last));
+  }
   for (const Picture* picture : pictures) {
     pictures_.push_back(Resample(ExtendPaint(*picture, UsableLimit(picture->width, fraction(*picture))), size, size));
   }
@@ -106,15 +116,16 @@ Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* co
   }
   auto scene = std::make_shared<Scene>();
   scene->width = width, scene->height = height;
-  scene->normal.resize(std::size_t(width) * height);
-  scene->usable.resize(scene->normal.size());
+  const std::size_t padded = std::size_t(width) * height + 2 * ExemplarRows::kPad;
+  for (std::vector<float>& plane : scene->normal) plane.resize(padded);
+  scene->usable.resize(padded);
   for (int y = 0; y < height; ++y) {
     const int v = static_cast<int>((2 * std::int64_t(y) + 1) * guides.height() / (2 * std::int64_t(height)));
     for (int x = 0; x < width; ++x) {
       const int u = static_cast<int>((2 * std::int64_t(x) + 1) * guides.width() / (2 * std::int64_t(width)));
-      const std::size_t from = guides.Index(u, v), to = std::size_t(y) * width + x;
+      const std::size_t from = guides.Index(u, v), to = scene->Index(x, y);
       scene->usable[to] = mask[from];
-      if (mask[from]) scene->normal[to] = guides.Vec3(Layer::kNormal, from);
+      for (int c = 0; c < 3 && mask[from]; ++c) scene->normal[c][to] = guides.Plane(Layer::kNormal, c)[from];
     }
   }
   if (std::find(scene->usable.begin(), scene->usable.end(), 1) == scene->usable.end()) {
@@ -135,6 +146,20 @@ Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* co
 const Alternatives& PreparedExemplar::alternatives() const {
   std::call_once(alternatives_->made, [this] { alternatives_->value.emplace(*this); });
   return *alternatives_->value;
+}
+
+ExemplarRows PreparedExemplar::Rows() const {
+  ExemplarRows rows;
+  rows.width = width(), rows.height = height();
+  rows.is_sphere = is_sphere();
+  if (is_sphere()) {
+    rows.coordinate = coordinate_.data() + ExemplarRows::kPad;
+    rows.first = first_usable_.data(), rows.last = last_usable_.data();
+    return rows;
+  }
+  for (int c = 0; c < 3; ++c) rows.normal[c] = scene_->normal[c].data() + ExemplarRows::kPad;
+  rows.usable = scene_->usable.data() + ExemplarRows::kPad;
+  return rows;
 }
 
 std::vector<Source> PreparedExemplar::UsablePixels() const {
@@ -242,7 +267,7 @@ Source PreparedExemplar::NearestUsable(float nx, float ny, int x, int y) const {
     for (int v = y - reach; v <= y + reach; ++v) {
       for (int u = x - reach; u <= x + reach; ++u) {
         if (!Usable(u, v)) continue;
-        const float dx = nx - coordinate_[u], dy = ny + coordinate_[v];
+        const float dx = nx - Coordinate(u), dy = ny + Coordinate(v);
         const float distance = dx * dx + dy * dy;
         if (distance < best_distance) best = {u, v}, best_distance = distance;
       }

@@ -22,6 +22,22 @@ namespace scumble {
 class Alternatives;
 class ExemplarSearch;
 
+// An exemplar's guides by rows, for code that looks at sixteen pixels at once: kPad values before the first and after the
+// last of each array may be read too, and mean nothing. Valid as long as the exemplar.
+struct ExemplarRows {
+  static constexpr int kPad = 16;
+  int width = 0, height = 0;
+  bool is_sphere = false;
+  // Spheres: pixel index → [-1, 1], as x of the normal and as -y; and a row's first and last usable pixel (first > last:
+  // there is none).
+  const float* coordinate = nullptr;
+  const std::int16_t* first = nullptr;
+  const std::int16_t* last = nullptr;
+  // Scenes: planes of width × height.
+  const float* normal[3] = {};
+  const std::uint8_t* usable = nullptr;
+};
+
 // Either the sphere that fills the N × N picture (centre N/2, radius N/2), whose positions inside radius 1 - rim are
 // usable; or any scene with guides of its own, in a picture of any shape, where the guides' coverage less the rim is.
 // All other positions are never shown. Immutable once made; concurrent reads are safe.
@@ -62,8 +78,8 @@ class PreparedExemplar {
 
   // The view-space normal at the centre of a usable pixel.
   glm::vec3 Normal(int x, int y) const {
-    if (scene_) return scene_->normal[std::size_t(y) * scene_->width + x];
-    const float nx = coordinate_[x], ny = -coordinate_[y];
+    if (scene_) return scene_->Normal(x, y);
+    const float nx = Coordinate(x), ny = -Coordinate(y);
     return {nx, ny, std::sqrt(std::fmax(0.0f, 1.0f - nx * nx - ny * ny))};
   }
 
@@ -83,24 +99,33 @@ class PreparedExemplar {
   // Where else there is paint for a normal; made at the first call, by whichever thread is first.
   const Alternatives& alternatives() const;
 
+  ExemplarRows Rows() const;
+
   // The usable pixels in row order.
   std::vector<Source> UsablePixels() const;
 
  private:
   struct Scene {
     int width = 0, height = 0;
-    std::vector<glm::vec3> normal;
+    // Planes with ExemplarRows::kPad values on either side.
+    std::vector<float> normal[3];
     std::vector<std::uint8_t> usable;
+    std::size_t Index(int x, int y) const { return std::size_t(y) * width + x + ExemplarRows::kPad; }
     bool Usable(int x, int y) const {
       if (static_cast<unsigned>(x) >= static_cast<unsigned>(width)) return false;
       if (static_cast<unsigned>(y) >= static_cast<unsigned>(height)) return false;
-      return usable[std::size_t(y) * width + x] != 0;
+      return usable[Index(x, y)] != 0;
+    }
+    glm::vec3 Normal(int x, int y) const {
+      const std::size_t i = Index(x, y);
+      return {normal[0][i], normal[1][i], normal[2][i]};
     }
   };
 
   struct LateAlternatives;
 
   PreparedExemplar();
+  float Coordinate(int index) const { return coordinate_[std::size_t(index) + ExemplarRows::kPad]; }
   Source Analytic(glm::vec3 normal) const;
   Source Searched(glm::vec3 normal) const;
   // The usable pixel nearest to (nx, ny) of the unit disc, near pixel (x, y).
@@ -110,7 +135,8 @@ class PreparedExemplar {
   int size_ = 0;
   std::int64_t limit_ = 0;         // squared usable radius in half pixels
   float usable_radius_ = 0;        // the same as a fraction of the sphere's
-  std::vector<float> coordinate_;  // pixel index → [-1, 1]
+  std::vector<float> coordinate_;  // pixel index → [-1, 1], padded
+  std::vector<std::int16_t> first_usable_, last_usable_;  // by row, of a sphere
   std::vector<Picture> pictures_;
   std::shared_ptr<const Scene> scene_;            // null: the sphere
   std::shared_ptr<const ExemplarSearch> search_;  // null: analytic

@@ -1,6 +1,5 @@
 #include "transfer/seeds.h"
 
-#include <cmath>
 #include <limits>
 
 #include "image/hash.h"
@@ -8,12 +7,8 @@
 namespace scumble {
 
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y) {
-  const std::uint64_t hash = Hash(rules.seed, rules.time_step, level + rules.level_offset, cell_x, cell_y);
-  const float h = static_cast<float>(1 << level);
-  const float jitter_x = UnitFloat(hash) * rules.jitter;
-  const float jitter_y = UnitFloat(Mix64(hash)) * rules.jitter;
-  return {cell_x * (1 << level) + static_cast<int>(std::floor(h * jitter_x)),
-          cell_y * (1 << level) + static_cast<int>(std::floor(h * jitter_y))};
+  const PixelPosition in_cell = SeedInCell(rules, level, SeedColumn(rules, level, cell_x), cell_y);
+  return {cell_x * (1 << level) + in_cell.x, cell_y * (1 << level) + in_cell.y};
 }
 
 SeedGrid::SeedGrid(const SeedRules& rules, int level, const Region& region)

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "image/hash.h"
 #include "transfer/region.h"
 
 namespace scumble {
@@ -24,6 +25,19 @@ struct PixelPosition {
 // The seed of cell (cell_x, cell_y) on the grid of 2^level pixels: floor(h · (cell + j)), j in [0, 1)² hashed from
 // (seed, time step, level, cell) and scaled by the jitter. Cells outside the picture have seeds too.
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y);
+
+// The same in two steps, for those who walk down columns of cells: what (seed, time step, level, column) hash to, and how
+// far a seed stands from its cell's corner, in [0, 2^level) each way.
+inline std::uint64_t SeedColumn(const SeedRules& rules, int level, int cell_x) {
+  return Hash(rules.seed, rules.time_step, level + rules.level_offset, cell_x);
+}
+inline PixelPosition SeedInCell(const SeedRules& rules, int level, std::uint64_t column, int cell_y) {
+  const std::uint64_t hash = HashOn(column, cell_y);
+  const float h = static_cast<float>(1 << level);
+  const float jitter_x = UnitFloat(hash) * rules.jitter;
+  const float jitter_y = UnitFloat(Mix64(hash)) * rules.jitter;
+  return {static_cast<int>(h * jitter_x), static_cast<int>(h * jitter_y)};  // rounded down, as neither is negative
+}
 
 // All seeds that pixels of a region can be near to, on one level.
 class SeedGrid {

@@ -129,7 +129,7 @@ std::optional<Offer> Accept(const MatchInput& input, Level& level, int x, int y,
 
 }  // namespace
 
-bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress) {
+bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgress& progress) {
   // Level 0 has a seed on every pixel, so its offer is the pixel's own nearest neighbour, accepted or not.
   std::vector<Level> levels;
   for (int level = input.levels - 1; level >= input.least_level; --level) levels.emplace_back(input, level);
