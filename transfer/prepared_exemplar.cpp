@@ -32,6 +32,12 @@ class ExemplarSearch {
 
 namespace {
 
+// The least integer not below a value of 0 or more. std::ceil is a call where the processor's oldest instructions must do.
+int RoundedUp(float value) {
+  const int down = static_cast<int>(value);
+  return down + (static_cast<float>(down) < value);
+}
+
 // (N · usable fraction)² in half pixels, but never without the pixels at the centre.
 std::int64_t UsableLimit(int size, double fraction) {
   const double radius = size * std::max(0.0, fraction);
@@ -255,8 +261,8 @@ Source PreparedExemplar::Analytic(glm::vec3 normal) const {
   const float nx = place.x, ny = place.y;
   // A position on the border of two pixels is equally near to both: the lower index wins, hence ceil - 1.
   const float half = 0.5f * static_cast<float>(size_);
-  const int x = std::clamp(static_cast<int>(std::ceil(nx * half + half)) - 1, 0, size_ - 1);
-  const int y = std::clamp(static_cast<int>(std::ceil(half - ny * half)) - 1, 0, size_ - 1);
+  const int x = std::clamp(RoundedUp(nx * half + half) - 1, 0, size_ - 1);
+  const int y = std::clamp(RoundedUp(half - ny * half) - 1, 0, size_ - 1);
   return Usable(x, y) ? Source{x, y} : NearestUsable(nx, ny, x, y);
 }
 

@@ -35,13 +35,15 @@ static_assert(kTileWidth % kBlock == 0);
 const hn::CappedTag<float, kBlock> kFloats;
 const hn::CappedTag<std::int16_t, kBlock> kShorts;
 const hn::CappedTag<std::uint16_t, kBlock> kWords;
+const hn::CappedTag<std::uint16_t, 2 * kBlock> kPairWords;
 const hn::CappedTag<std::uint8_t, kBlock> kBytes;
 
 // first, first + 1, … by lane. (Highway's Iota writes them to memory one by one.)
-alignas(32) constexpr std::uint16_t kCount[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+alignas(64) constexpr std::uint16_t kCount[2 * kBlock] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
+                                                         16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> CountFrom(Tag tag, int first) {
-  const auto count = hn::BitCast(tag, hn::Load(kWords, kCount));
+  const auto count = hn::BitCast(tag, hn::Load(hn::Rebind<std::uint16_t, Tag>(), kCount));
   return hn::Add(hn::Set(tag, static_cast<hn::TFromD<Tag>>(first)), count);
 }
 
@@ -63,6 +65,13 @@ HWY_INLINE hn::Mask<Tag> MaskFrom(Tag tag, std::uint32_t bits) {
   return hn::LoadMaskBits(tag, bytes);
 }
 
+// Writes the lanes of the mask. (Highway's BlendedStore of 16 bits goes lane by lane before AVX-512; here the others may
+// be written too, with what they hold.)
+template <class Tag>
+HWY_INLINE void StoreSome(Tag tag, hn::Mask<Tag> mask, hn::Vec<Tag> value, hn::TFromD<Tag>* to) {
+  hn::StoreU(hn::IfThenElse(mask, value, hn::LoadU(tag, to)), tag, to);
+}
+
 // Lanes from `first` to `last`, which may lie outside of the block.
 HWY_INLINE std::uint32_t LanesBetween(int first, int last) {
   if (last < 0 || first >= kBlock || first > last) return 0;
@@ -80,6 +89,7 @@ struct Row {
   std::uint16_t unsettled[kBlocks];
   std::int16_t source_x[kTileWidth], source_y[kTileWidth];
   std::uint16_t how[kTileWidth];  // level, and the exemplar times 256
+  std::uint16_t nearest[kTileWidth + 1];  // seeds of the level at work
   glm::vec3 moved[kTileWidth];    // only where the field asks for it
   float copy[4][kTileWidth];      // of a row whose last block is not whole: nothing is read beyond the picture
 };
@@ -173,47 +183,57 @@ class TileMatcher {
     return Nonzero(copy);
   }
 
-  // By squared distance among the nine cells around each pixel's own; ties to the first in row order. On the levels that
-  // are spread, squares stay below 2^15.
-  HWY_INLINE void FindNearest(const TileSeeds& seeds, int x, int y, std::uint16_t* nearest) const {
-    const int level = seeds.level(), h = 1 << level, row = y >> level;
+  // The nearest seeds of as many pixels as the vectors have lanes: by squared distance among the nine cells around each
+  // pixel's own; ties to the first in row order. On the levels that are spread, squares stay below 2^15.
+  template <class Tag>
+  HWY_INLINE void FindNearest(Tag tag, const TileSeeds& seeds, int x, std::uint16_t* nearest) const {
+    const int level = seeds.level(), h = 1 << level, row = row_.y >> level;
     const int from = x - seeds.left();
-    for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
-      const auto here = CountFrom(kWords, from + i);
-      const auto column = hn::ShiftRightSame(here, level);
-      auto best = hn::Set(kWords, std::uint16_t{0xffff});
-      auto best_seed = hn::Zero(kWords);
-      for (int dr = -1; dr <= 1; ++dr) {
-        const std::uint16_t* const spread_x = seeds.SpreadX(row + dr) + from + i;
-        const std::uint16_t* const spread_y = seeds.SpreadY(row + dr) + from + i;
-        const auto down = hn::Set(kWords, static_cast<std::uint16_t>((row + dr) * h - y));
-        for (int dc = -1; dc <= 1; ++dc) {
-          const auto dx = hn::Sub(hn::LoadU(kWords, spread_x + dc * h), here);
-          const auto dy = hn::Add(hn::LoadU(kWords, spread_y + dc * h), down);
-          const auto distance = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
-          const auto least = hn::Min(best, distance);
-          const auto seed = hn::Add(column, hn::Set(kWords, static_cast<std::uint16_t>(seeds.FirstOf(row + dr) + dc)));
-          best_seed = hn::IfThenElse(hn::Ne(least, best), seed, best_seed);
-          best = least;
-        }
+    const auto here = CountFrom(tag, from);
+    const auto column = hn::ShiftRightSame(here, level);
+    auto best = hn::Set(tag, std::uint16_t{0xffff});
+    auto best_seed = hn::Zero(tag);
+    for (int dr = -1; dr <= 1; ++dr) {
+      const std::uint16_t* const spread_x = seeds.SpreadX(row + dr) + from;
+      const std::uint16_t* const spread_y = seeds.SpreadY(row + dr) + from;
+      const auto down = hn::Set(tag, static_cast<std::uint16_t>((row + dr) * h - row_.y));
+      for (int dc = -1; dc <= 1; ++dc) {
+        const auto dx = hn::Sub(hn::LoadU(tag, spread_x + dc * h), here);
+        const auto dy = hn::Add(hn::LoadU(tag, spread_y + dc * h), down);
+        const auto least = hn::Min(best, hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
+        const auto seed = hn::Add(column, hn::Set(tag, static_cast<std::uint16_t>(seeds.FirstOf(row + dr) + dc)));
+        best_seed = hn::IfThenElse(hn::Ne(least, best), seed, best_seed);
+        best = least;
       }
-      hn::StoreU(best_seed, kWords, nearest + i);
     }
+    hn::StoreU(best_seed, tag, nearest);
   }
 
   void GroupBySpread(TileSeeds& seeds, int open) {
+    constexpr bool kPairs = hn::MaxLanes(kPairWords) == 2 * kBlock;
     for (int k = 0; k < open; ++k) {
-      const int block = open_[k], x = row_.x + block * kBlock;
+      const int from = open_[k] * kBlock, x = row_.x + from;
+      if (kPairs && k + 1 < open && open_[k + 1] == open_[k] + 1) {
+        seeds.Need(row_.y >> seeds.level(), x, 2 * kBlock);
+        FindNearest(kPairWords, seeds, x, row_.nearest + from);
+        ++k;
+        continue;
+      }
       seeds.Need(row_.y >> seeds.level(), x, kBlock);
-      HWY_ALIGN std::uint16_t nearest[kBlock];
-      FindNearest(seeds, x, row_.y, nearest);
-      for (std::uint32_t left = row_.unsettled[block]; left != 0;) {
-        const std::uint16_t seed = nearest[std::countr_zero(left)];
-        std::uint32_t same = 0;
-        for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
-          same |= BitsOf(kWords, hn::Eq(hn::LoadU(kWords, nearest + i), hn::Set(kWords, seed))) << i;
-        }
-        AddGroup(block, left & same, seed);
+      for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
+        FindNearest(kWords, seeds, x + i, row_.nearest + from + i);
+      }
+    }
+    for (int k = 0; k < open; ++k) {
+      const std::uint16_t* const nearest = row_.nearest + open_[k] * kBlock;
+      std::uint32_t ends = 1u << (kBlock - 1);  // bit i: lane i + 1 has another seed, or there is none
+      for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
+        ends |= BitsOf(kWords, hn::Ne(hn::LoadU(kWords, nearest + i), hn::LoadU(kWords, nearest + i + 1))) << i;
+      }
+      for (std::uint32_t left = row_.unsettled[open_[k]]; left != 0;) {
+        const int first = std::countr_zero(left);
+        const std::uint32_t end = ends & (~0u << first), same = end ^ (end - 1);  // up to the first end
+        AddGroup(open_[k], left & same, nearest[first]);
         left &= ~same;
       }
     }
@@ -256,9 +276,9 @@ class TileMatcher {
     const auto how = hn::Set(kWords, static_cast<std::uint16_t>(level | offer.exemplar << 8));
     for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kShorts))) {
       const auto mask = MaskFrom(kShorts, lanes >> i);
-      hn::BlendedStore(CountFrom(kShorts, x + i), mask, kShorts, row_.source_x + from + i);
-      hn::BlendedStore(y, mask, kShorts, row_.source_y + from + i);
-      hn::BlendedStore(how, MaskFrom(kWords, lanes >> i), kWords, row_.how + from + i);
+      StoreSome(kShorts, mask, CountFrom(kShorts, x + i), row_.source_x + from + i);
+      StoreSome(kShorts, mask, y, row_.source_y + from + i);
+      StoreSome(kWords, MaskFrom(kWords, lanes >> i), how, row_.how + from + i);
     }
   }
 
