@@ -11,6 +11,7 @@
 #include "transfer/illumination.h"
 #include "transfer/parallel.h"
 #include "transfer/prepared_exemplar.h"
+#include "transfer/seed_map.h"
 #include "transfer/seeds.h"
 #include "transfer/source_field.h"
 
@@ -40,6 +41,7 @@ struct MatchInput {
   int least_level = 1;  // finer grids of seeds are left out
   const GuideSpace* space = nullptr;  // null: normals alone are matched by, each counting 1
   float brightness = 1.0f;            // of the scene's radiance in that space
+  SeedMap* seed_map = nullptr;        // of these seeds and the picture's size; null: nothing is kept
 
   bool Wants(std::size_t i) const { return wanted.empty() ? active[i] != 0 : wanted[i] != 0; }
   float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }

@@ -7,7 +7,7 @@
 namespace scumble {
 
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y) {
-  const PixelPosition in_cell = SeedInCell(rules, level, SeedColumn(rules, level, cell_x), cell_y);
+  const PixelPosition in_cell = SeedInCell(rules, level, HashOn(SeedLevel(rules, level), cell_x), cell_y);
   return {cell_x * (1 << level) + in_cell.x, cell_y * (1 << level) + in_cell.y};
 }
 

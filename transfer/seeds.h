@@ -15,6 +15,8 @@ struct SeedRules {
   float jitter = 1.0f;
   int level_offset = 0;  // added to the level that is hashed: a preview of half the size, which has one level less,
                          // then strews its seeds where the final picture does
+
+  bool operator==(const SeedRules&) const = default;
 };
 
 struct PixelPosition {
@@ -26,10 +28,11 @@ struct PixelPosition {
 // (seed, time step, level, cell) and scaled by the jitter. Cells outside the picture have seeds too.
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y);
 
-// The same in two steps, for those who walk down columns of cells: what (seed, time step, level, column) hash to, and how
-// far a seed stands from its cell's corner, in [0, 2^level) each way.
-inline std::uint64_t SeedColumn(const SeedRules& rules, int level, int cell_x) {
-  return Hash(rules.seed, rules.time_step, level + rules.level_offset, cell_x);
+// The same in steps, for those who walk along rows or columns of cells. What (seed, time step, level) hash to; HashOn with
+// the cell's column makes `column` of it, and with that comes how far a seed stands from its cell's corner, in
+// [0, 2^level) each way.
+inline std::uint64_t SeedLevel(const SeedRules& rules, int level) {
+  return Hash(rules.seed, rules.time_step, level + rules.level_offset);
 }
 inline PixelPosition SeedInCell(const SeedRules& rules, int level, std::uint64_t column, int cell_y) {
   const std::uint64_t hash = HashOn(column, cell_y);

@@ -10,7 +10,7 @@
 //   - What nothing accepts takes its own nearest neighbour.
 #include "transfer/styleblit_tiles.h"
 
-#include <tbb/blocked_range2d.h>
+#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
@@ -30,8 +30,6 @@ namespace scumble::internal {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int kBlock = 16;
-static_assert(kTileWidth % kBlock == 0);
 const hn::CappedTag<float, kBlock> kFloats;
 const hn::CappedTag<std::int16_t, kBlock> kShorts;
 const hn::CappedTag<std::uint16_t, kBlock> kWords;
@@ -97,15 +95,20 @@ struct Row {
 class TileMatcher {
  public:
   explicit TileMatcher(const TileJob& job)
-      : input_(job.input), rows_(job.exemplar), tile_(job.tile), levels_(job.scratch.levels), field_(job.field) {
+      : input_(job.input),
+        rows_(job.exemplar),
+        tile_x_(job.tile_x),
+        tile_y_(job.tile_y),
+        levels_(job.scratch.levels),
+        field_(job.field) {
+    const int x0 = tile_x_ * kTileWidth, y0 = tile_y_ * kTileHeight;
+    tile_ = {x0, y0, std::min(field_.width, x0 + kTileWidth), std::min(field_.height, y0 + kTileHeight)};
     blocks_ = (tile_.x1 - tile_.x0 + kBlock - 1) / kBlock;
-    levels_.resize(static_cast<std::size_t>(std::max(0, input_.levels - input_.least_level)));
-    int level = input_.levels;
-    for (TileSeeds& seeds : levels_) seeds.Reset(input_, --level, tile_.x0, blocks_ * kBlock);
   }
 
   void Match() {
-    for (int y = tile_.y0; y < tile_.y1; ++y) MatchRow(y);
+    const int end = std::min(tile_.y1, input_.region.y1);
+    for (int y = std::max(tile_.y0, input_.region.y0); y < end; ++y) MatchRow(y);
   }
 
  private:
@@ -120,10 +123,11 @@ class TileMatcher {
     const std::size_t i = field_.Index(tile_.x0, y);
     int open = ReadRow(y, i);
     if (open == 0) return;
+    if (!begun_) Begin();
     for (TileSeeds& seeds : levels_) {
       if (open == 0) break;
       groups_ = 0;
-      if (seeds.level() <= TileSeeds::kMaxSpreadLevel) GroupBySpread(seeds, open);
+      if (seeds.level() <= kMaxSpreadLevel) GroupBySpread(seeds, open);
       else GroupByRuns(seeds, open);
       for (int g = 0; g < groups_; ++g) OfferTo(seeds, group_[g]);
       const int before = open;
@@ -141,6 +145,14 @@ class TileMatcher {
     for (int block = 0; block < blocks_; ++block) Store(block, i + std::size_t(block) * kBlock);
   }
 
+  // In a tile where nothing is wanted there is nothing to make ready.
+  void Begin() {
+    begun_ = true;
+    levels_.resize(static_cast<std::size_t>(std::max(0, input_.levels - input_.least_level)));
+    int level = input_.levels;
+    for (TileSeeds& seeds : levels_) seeds.Reset(input_, --level, tile_.x0);
+  }
+
   // How many blocks have pixels that are wanted; open_ lists them.
   int ReadRow(int y, std::size_t i) {
     Row& row = row_;
@@ -151,7 +163,9 @@ class TileMatcher {
     for (int block = 0; block < blocks_; ++block) {
       const int lanes = std::min(kBlock, width - block * kBlock);
       const std::uint8_t* const bytes = wanted + block * kBlock;
-      const std::uint32_t bits = lanes == kBlock ? Nonzero(bytes) : NonzeroOf(bytes, lanes);
+      const int x = row.x + block * kBlock;
+      const std::uint32_t bits = (lanes == kBlock ? Nonzero(bytes) : NonzeroOf(bytes, lanes)) &
+                                 LanesBetween(input_.region.x0 - x, input_.region.x1 - 1 - x);
       row.wanted[block] = row.unsettled[block] = static_cast<std::uint16_t>(bits);
       open_[open] = block;
       open += bits != 0;
@@ -210,6 +224,10 @@ class TileMatcher {
   }
 
   void GroupBySpread(TileSeeds& seeds, int open) {
+    if (input_.seed_map) {
+      GroupByMap(seeds, input_.seed_map->Of(tile_x_, tile_y_, seeds.level()), open);
+      return;
+    }
     constexpr bool kPairs = hn::MaxLanes(kPairWords) == 2 * kBlock;
     for (int k = 0; k < open; ++k) {
       const int from = open_[k] * kBlock, x = row_.x + from;
@@ -217,25 +235,72 @@ class TileMatcher {
         seeds.Need(row_.y >> seeds.level(), x, 2 * kBlock);
         FindNearest(kPairWords, seeds, x, row_.nearest + from);
         ++k;
-        continue;
-      }
-      seeds.Need(row_.y >> seeds.level(), x, kBlock);
-      for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
-        FindNearest(kWords, seeds, x + i, row_.nearest + from + i);
+      } else {
+        seeds.Need(row_.y >> seeds.level(), x, kBlock);
+        FindNearestOfBlock(seeds, open_[k]);
       }
     }
     for (int k = 0; k < open; ++k) {
       const std::uint16_t* const nearest = row_.nearest + open_[k] * kBlock;
-      std::uint32_t ends = 1u << (kBlock - 1);  // bit i: lane i + 1 has another seed, or there is none
-      for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
-        ends |= BitsOf(kWords, hn::Ne(hn::LoadU(kWords, nearest + i), hn::LoadU(kWords, nearest + i + 1))) << i;
+      GroupBlock(open_[k], EndsOf(open_[k]), [&](int lane) { return int(nearest[lane]); });
+    }
+  }
+
+  HWY_INLINE void FindNearestOfBlock(const TileSeeds& seeds, int block) {
+    for (int i = block * kBlock; i < (block + 1) * kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
+      FindNearest(kWords, seeds, row_.x + i, row_.nearest + i);
+    }
+  }
+
+  // TileMap::Block's `ends`.
+  HWY_INLINE std::uint32_t EndsOf(int block) const {
+    const std::uint16_t* const nearest = row_.nearest + block * kBlock;
+    std::uint32_t ends = 0;
+    for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kWords))) {
+      ends |= BitsOf(kWords, hn::Ne(hn::LoadU(kWords, nearest + i), hn::LoadU(kWords, nearest + i + 1))) << i;
+    }
+    return ends | 1u << (kBlock - 1);
+  }
+
+  template <class SeedOf>
+  HWY_INLINE void GroupBlock(int block, std::uint32_t ends, const SeedOf& seed_of) {
+    for (std::uint32_t left = row_.unsettled[block]; left != 0;) {
+      const int first = std::countr_zero(left);
+      const std::uint32_t end = ends & (~0u << first), same = end ^ (end - 1);  // up to the first end
+      AddGroup(block, left & same, seed_of(first));
+      left &= ~same;
+    }
+  }
+
+  void GroupByMap(TileSeeds& seeds, TileMap& map, int open) {
+    const int level = seeds.level(), cell_row = row_.y >> level, y = row_.y - tile_.y0;
+    const int above[] = {seeds.FirstOf(cell_row - 1), seeds.FirstOf(cell_row), seeds.FirstOf(cell_row + 1)};
+    int seed_of_cell[9];
+    for (int cell = 0; cell < 9; ++cell) seed_of_cell[cell] = above[cell / 3] + cell % 3 - 1;
+    for (int k = 0; k < open; ++k) {
+      const int block = open_[k], from = row_.x + block * kBlock - seeds.left();
+      seeds.NeedOffers(cell_row, row_.x + block * kBlock, kBlock);
+      TileMap::Block& found = map.blocks[static_cast<std::size_t>(y)][static_cast<std::size_t>(block)];
+      if (!(map.known[static_cast<std::size_t>(y)] >> block & 1)) {
+        Learn(seeds, block, found);
+        map.known[static_cast<std::size_t>(y)] |= 1u << block;
       }
-      for (std::uint32_t left = row_.unsettled[open_[k]]; left != 0;) {
-        const int first = std::countr_zero(left);
-        const std::uint32_t end = ends & (~0u << first), same = end ^ (end - 1);  // up to the first end
-        AddGroup(open_[k], left & same, nearest[first]);
-        left &= ~same;
-      }
+      GroupBlock(block, found.ends, [&](int lane) {
+        return seed_of_cell[found.cell[static_cast<std::size_t>(lane)]] + ((from + lane) >> level);
+      });
+    }
+  }
+
+  HWY_NOINLINE void Learn(TileSeeds& seeds, int block, TileMap::Block& found) {
+    const int level = seeds.level(), cell_row = row_.y >> level, from = row_.x + block * kBlock - seeds.left();
+    seeds.Need(cell_row, row_.x + block * kBlock, kBlock);
+    FindNearestOfBlock(seeds, block);
+    found.ends = static_cast<std::uint16_t>(EndsOf(block));
+    for (int lane = 0; lane < kBlock; ++lane) {
+      const int seed = row_.nearest[block * kBlock + lane], column = (from + lane) >> level;
+      int cell = 0;
+      while (seed != seeds.FirstOf(cell_row + cell / 3 - 1) + column + cell % 3 - 1) ++cell;
+      found.cell[static_cast<std::size_t>(lane)] = static_cast<std::uint8_t>(cell);
     }
   }
 
@@ -426,7 +491,9 @@ class TileMatcher {
 
   const MatchInput& input_;
   const ExemplarRows rows_;
-  const Region tile_;
+  const int tile_x_, tile_y_;
+  Region tile_;
+  bool begun_ = false;
   std::vector<TileSeeds>& levels_;
   SourceField& field_;
   int blocks_ = 0;
@@ -464,16 +531,16 @@ void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice&
 bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgress& progress) {
   const Region& region = input.region;
   if (region.empty()) return !progress.cancelled();
-  const int columns = (region.x1 - region.x0 + kTileWidth - 1) / kTileWidth;
-  const int rows = (region.y1 - region.y0 + kTileHeight - 1) / kTileHeight;
+  const int first_column = region.x0 / kTileWidth, columns = (region.x1 - 1) / kTileWidth + 1 - first_column;
+  const int first_row = region.y0 / kTileHeight, rows = (region.y1 - 1) / kTileHeight + 1 - first_row;
   tbb::enumerable_thread_specific<TileScratch> scratches;
   const ExemplarRows exemplar = input.exemplar.Rows();
   tbb::parallel_for(tbb::blocked_range<int>(0, rows * columns, 1), [&](const auto& range) {
     for (int t = range.begin(); t != range.end() && !progress.cancelled(); ++t) {
-      const int x0 = region.x0 + t % columns * kTileWidth, y0 = region.y0 + t / columns * kTileHeight;
-      const Region tile{x0, y0, std::min(region.x1, x0 + kTileWidth), std::min(region.y1, y0 + kTileHeight)};
-      HWY_DYNAMIC_DISPATCH(MatchTile)({input, exemplar, tile, scratches.local(), field});
-      if (t % columns == 0) progress.Finished(tile.y1 - tile.y0);
+      const int row = first_row + t / columns;
+      HWY_DYNAMIC_DISPATCH(MatchTile)({input, exemplar, first_column + t % columns, row, scratches.local(), field});
+      if (t % columns != 0) continue;
+      progress.Finished(std::min(region.y1, (row + 1) * kTileHeight) - std::max(region.y0, row * kTileHeight));
     }
   });
   return !progress.cancelled();

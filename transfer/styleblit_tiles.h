@@ -8,9 +8,6 @@
 
 namespace scumble::internal {
 
-// Wide enough that seeds of coarse levels are shared by many pixels, small enough that threads have enough to share.
-inline constexpr int kTileWidth = 512, kTileHeight = 128;
-
 // Memory of one thread, kept from tile to tile.
 struct TileScratch {
   std::vector<TileSeeds> levels;  // from coarse to fine
@@ -19,7 +16,7 @@ struct TileScratch {
 struct TileJob {
   const MatchInput& input;
   ExemplarRows exemplar;
-  Region tile;
+  int tile_x, tile_y;  // which tile: its corner stands at (tile_x · kTileWidth, tile_y · kTileHeight)
   TileScratch& scratch;
   SourceField& field;
 };

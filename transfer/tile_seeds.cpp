@@ -12,7 +12,7 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kNoRow = std::numeric_limits<int>::min() / 2;
+constexpr int kNoRow = std::numeric_limits<int>::min();
 
 // Writes `value` to the 2^level places from `out` on, level 1 or more.
 void Spread(std::uint16_t* out, int level, std::uint16_t value) {
@@ -32,18 +32,19 @@ std::int64_t FloorDivide(std::int64_t a, std::int64_t b) {
 
 }  // namespace
 
-void TileSeeds::Reset(const MatchInput& input, int level, int x0, int width) {
+void TileSeeds::Reset(const MatchInput& input, int level, int x0) {
   input_ = &input;
   for (int c = 0; c < 3; ++c) normal_[c] = input.guides.Plane(Layer::kNormal, c).data();
   level_ = level;
   first_column_ = (x0 >> level) - 1;
   left_ = first_column_ * (1 << level);
-  columns_ = ((x0 + width - 1) >> level) + 1 - first_column_ + 1;
+  columns_ = ((x0 + kTileWidth - 1) >> level) + 1 - first_column_ + 1;
   part_ = std::max(0, 6 - level);
-  SCUMBLE_DCHECK(width <= kMaxWidth && columns_ >> part_ < 64);
-  std::fill(std::begin(row_of_slot_), std::end(row_of_slot_), kNoRow);
+  SCUMBLE_DCHECK(columns_ >> part_ < 64);
+  for (Made* made : {&offered_, &placed_}) std::fill(std::begin(made->row), std::end(made->row), kNoRow);
   column_hashes_.resize(std::size_t(columns_));
-  for (int c = 0; c < columns_; ++c) column_hashes_[std::size_t(c)] = SeedColumn(input.seeds, level, first_column_ + c);
+  const std::uint64_t level_hash = SeedLevel(input.seeds, level);
+  for (int c = 0; c < columns_; ++c) column_hashes_[std::size_t(c)] = HashOn(level_hash, first_column_ + c);
   const std::size_t seeds = std::size_t(kSlots) * columns_;
   in_cell_.resize(seeds);
   offers_.resize(seeds);
@@ -53,23 +54,29 @@ void TileSeeds::Reset(const MatchInput& input, int level, int x0, int width) {
   spread_y_.resize(kSlots * spread_);
 }
 
-void TileSeeds::Make(int cell_row, std::uint64_t parts) {
-  const int slot = Slot(cell_row);
-  if (row_of_slot_[slot] != cell_row) row_of_slot_[slot] = cell_row, made_[slot] = 0;
-  const std::size_t first = std::size_t(slot) * columns_;
-  std::uint16_t *x = spread_x_.data() + slot * spread_, *y = spread_y_.data() + slot * spread_;
-  for (std::uint64_t missing = parts & ~made_[slot]; missing != 0; missing &= missing - 1) {
-    const int begin = std::countr_zero(missing) << part_, end = std::min(columns_, begin + (1 << part_));
-    for (int c = begin; c < end; ++c) {
-      const PixelPosition seed = SeedInCell(input_->seeds, level_, column_hashes_[std::size_t(c)], cell_row);
-      in_cell_[first + c] = seed;
-      offers_[first + c].state = TileOffer::kUnknown;
-      if (spread_ == 0) continue;
-      Spread(x + (std::size_t(c) << level_), level_, static_cast<std::uint16_t>((c << level_) + seed.x));
-      Spread(y + (std::size_t(c) << level_), level_, static_cast<std::uint16_t>(seed.y));
-    }
+template <class Visit>
+void TileSeeds::ForEachColumn(std::uint64_t parts, const Visit& visit) const {
+  for (; parts != 0; parts &= parts - 1) {
+    const int begin = std::countr_zero(parts) << part_, end = std::min(columns_, begin + (1 << part_));
+    for (int c = begin; c < end; ++c) visit(c);
   }
-  made_[slot] |= parts;
+}
+
+void TileSeeds::MakeOffers(int cell_row, std::uint64_t parts) {
+  TileOffer* const offers = offers_.data() + std::size_t(Slot(cell_row)) * columns_;
+  ForEachColumn(parts, [&](int c) { offers[c].state = TileOffer::kUnknown; });
+}
+
+void TileSeeds::MakePlaces(int cell_row, std::uint64_t parts) {
+  const int slot = Slot(cell_row);
+  PixelPosition* const in_cell = in_cell_.data() + std::size_t(slot) * columns_;
+  std::uint16_t *const x = spread_x_.data() + slot * spread_, *const y = spread_y_.data() + slot * spread_;
+  ForEachColumn(parts, [&](int c) {
+    in_cell[c] = SeedInCell(input_->seeds, level_, column_hashes_[std::size_t(c)], cell_row);
+    if (spread_ == 0) return;
+    Spread(x + (std::size_t(c) << level_), level_, static_cast<std::uint16_t>((c << level_) + in_cell[c].x));
+    Spread(y + (std::size_t(c) << level_), level_, static_cast<std::uint16_t>(in_cell[c].y));
+  });
 }
 
 void TileSeeds::Fill(int index, TileOffer& offer) {
@@ -87,7 +94,7 @@ void TileSeeds::Fill(int index, TileOffer& offer) {
     const int column = index % columns_;
     const std::uint64_t hash =
         Hash(input_->seeds.seed, input_->seeds.time_step, level_ + input_->seeds.level_offset, first_column_ + column,
-             row_of_slot_[index / columns_], 0x7a);
+             offered_.row[index / columns_], 0x7a);
     SeedOffer made = SeedOf(*input_, guide, own);
     if (Vary(*input_, level_, q, hash, made)) {
       offer.is_free = true;

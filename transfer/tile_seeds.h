@@ -8,6 +8,7 @@
 
 #include "transfer/alternatives.h"
 #include "transfer/match.h"
+#include "transfer/seed_map.h"
 #include "transfer/seed_offer.h"
 
 namespace scumble::internal {
@@ -28,30 +29,25 @@ struct SeedFreedom {
 };
 
 // One level's seeds of one tile. A seed has an index, below kSlots · columns, that holds as long as its row of cells.
-// For one thread; rows must be asked for from the top down. Tiles are at most kMaxWidth pixels wide.
+// For one thread; rows must be asked for from the top down. On levels up to kMaxSpreadLevel their places are also laid out
+// pixel by pixel, for vector code.
 class TileSeeds {
  public:
   // Rows of cells that are kept at once: the three around a pixel, to a power of two.
   static constexpr int kSlots = 4;
-  // Up to here, where a row has many seeds, their places are also laid out pixel by pixel for vector code.
-  static constexpr int kMaxSpreadLevel = 6;
-  static constexpr int kMaxWidth = 1024;
-
-  // For the pixels [x0, x0 + width) of the rows of a tile. Keeps `input`.
-  void Reset(const MatchInput& input, int level, int x0, int width);
+  // For the pixels [x0, x0 + kTileWidth) of the rows of a tile. Keeps `input`.
+  void Reset(const MatchInput& input, int level, int x0);
 
   int level() const { return level_; }
   int columns() const { return columns_; }
   int left() const { return left_; }  // x of the first column's cells
 
-  // Makes the cells in the row `cell_row` and those above and below, as far as pixels [x, x + width) can be near to them.
+  // Makes the cells in the row `cell_row` and those above and below, as far as pixels [x, x + width) can be near to them:
+  // so that they can be asked for offers, and with Need for their places too.
+  void NeedOffers(int cell_row, int x, int width) { NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeOffers); }
   void Need(int cell_row, int x, int width) {
-    const int first = ((x - left_) >> level_) - 1, last = ((x + width - 1 - left_) >> level_) + 1;
-    const std::uint64_t parts = (~0ull << (first >> part_)) & (~0ull >> (63 - (last >> part_)));
-    for (int row = cell_row - 1; row <= cell_row + 1; ++row) {
-      const int slot = Slot(row);
-      if (row_of_slot_[slot] != row || (made_[slot] & parts) != parts) Make(row, parts);
-    }
+    NeedOffers(cell_row, x, width);
+    NeedIn(placed_, cell_row, x, width, &TileSeeds::MakePlaces);
   }
   static int Slot(int cell_row) { return cell_row & (kSlots - 1); }
   int FirstOf(int cell_row) const { return Slot(cell_row) * columns_; }
@@ -63,9 +59,9 @@ class TileSeeds {
 
   // Where a seed stands in the picture.
   PixelPosition Position(int index) const {
-    const int slot = index / columns_, column = index - slot * columns_;
-    const std::size_t i = static_cast<std::size_t>(index);
-    return {left_ + (column << level_) + in_cell_[i].x, (row_of_slot_[slot] << level_) + in_cell_[i].y};
+    const int slot = index / columns_, column = index - slot * columns_, row = offered_.row[slot];
+    const PixelPosition in_cell = SeedInCell(input_->seeds, level_, column_hashes_[std::size_t(column)], row);
+    return {left_ + (column << level_) + in_cell.x, (row << level_) + in_cell.y};
   }
 
   // What a seed offers; made now if nobody asked before.
@@ -91,16 +87,36 @@ class TileSeeds {
   Run RunFrom(int x, int y) const;
 
  private:
-  void Make(int cell_row, std::uint64_t parts);
+  // Which parts of which rows of cells are there, by slot. A part is 2^part_ columns: some 64 pixels.
+  struct Made {
+    int row[kSlots];
+    std::uint64_t parts[kSlots];
+  };
+  using Maker = void (TileSeeds::*)(int cell_row, std::uint64_t parts);
+  void NeedIn(Made& made, int cell_row, int x, int width, Maker make) {
+    const int first = ((x - left_) >> level_) - 1, last = ((x + width - 1 - left_) >> level_) + 1;
+    const std::uint64_t parts = (~0ull << (first >> part_)) & (~0ull >> (63 - (last >> part_)));
+    for (int row = cell_row - 1; row <= cell_row + 1; ++row) {
+      const int slot = Slot(row);
+      if (made.row[slot] != row) made.row[slot] = row, made.parts[slot] = 0;
+      const std::uint64_t missing = parts & ~made.parts[slot];
+      if (missing == 0) continue;
+      (this->*make)(row, missing);
+      made.parts[slot] |= missing;
+    }
+  }
+  template <class Visit>
+  void ForEachColumn(std::uint64_t parts, const Visit& visit) const;
+  void MakeOffers(int cell_row, std::uint64_t parts);
+  void MakePlaces(int cell_row, std::uint64_t parts);
   void Fill(int index, TileOffer& offer);
 
   const MatchInput* input_ = nullptr;
   const float* normal_[3] = {};
   int level_ = 0, left_ = 0, columns_ = 0, first_column_ = 0;
-  int part_ = 0;  // 2^part columns are made at once: some 64 pixels
+  int part_ = 0;
   std::size_t spread_ = 0;
-  int row_of_slot_[kSlots] = {};
-  std::uint64_t made_[kSlots] = {};  // which parts of the row are there
+  Made offered_, placed_;
   std::vector<std::uint64_t> column_hashes_;
   std::vector<PixelPosition> in_cell_;
   std::vector<TileOffer> offers_;

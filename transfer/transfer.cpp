@@ -204,6 +204,7 @@ class Run {
         matched};
     input.space = style.space.get();
     input.brightness = static_cast<float>(Exp2(options_.exposure));
+    input.seed_map = scratch_.seed_maps.For(input.seeds, guides_.width(), guides_.height());
     Stopwatch watch;
     const auto part = [&](double share) { return from + (to - from) * share; };
     const int step = std::max(settings.match_step, options_.match_step);

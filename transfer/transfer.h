@@ -21,6 +21,7 @@
 #include "transfer/prepared_exemplar.h"
 #include "transfer/region.h"
 #include "transfer/rim_paint.h"
+#include "transfer/seed_map.h"
 #include "transfer/shadow_paint.h"
 #include "transfer/source_field.h"
 #include "transfer/style_map.h"
@@ -92,6 +93,7 @@ struct TransferScratch {
   SourceField field;
   std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints
   StageTimes times;
+  internal::SeedMaps seed_maps;  // frozen jitter's
 };
 
 // Stylises one frame into `out` (resized to the guides; straight alpha = coverage × paint). The guides must hold
