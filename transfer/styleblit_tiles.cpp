@@ -516,6 +516,7 @@ HWY_EXPORT(MatchTile);
 
 void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Offer& taken) {
   const PixelPosition p = choice.p;
+  seeds.Need(p.y >> seeds.level(), p.x, 1);  // where a map told the nearest, places were not
   const auto [s, t, excess] = seeds.NearestTwo(p.x, p.y);
   if (!InBorderBand(seeds.level(), excess)) return;
   const TileOffer& second = seeds.Offer(t);
