@@ -15,6 +15,9 @@ float Srgb16ToLinear(std::uint16_t encoded);
 // Srgb16FromLinear(Srgb16ToLinear(v)) == v for every v.
 std::uint16_t Srgb16FromLinear(float linear);
 
+// The same, quicker where `guess` is right or one off.
+std::uint16_t Srgb16FromLinear(float linear, std::uint16_t guess);
+
 // Luminance of linear Rec.709 RGB.
 constexpr float Luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
 

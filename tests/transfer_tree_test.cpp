@@ -1,7 +1,9 @@
 // Trees over points against brute force, and which pixels of a painted scene may be used.
 #include <cstring>
 #include <limits>
+#include <span>
 
+#include "tests/every_instruction_set.h"
 #include "tests/scene_exemplar_fixtures.h"
 #include "transfer/guide_tree.h"
 #include "transfer/usable_mask.h"
@@ -32,11 +34,20 @@ std::uint32_t BruteForce(const std::vector<float>& points, const float* query, i
 
 void ExpectExact(const std::vector<float>& points, int dimensions, const std::vector<float>& queries) {
   const PointTree tree(dimensions, points);
+  std::vector<std::uint32_t> expected;
   for (std::size_t q = 0; q + dimensions <= queries.size(); q += dimensions) {
-    ASSERT_EQ(tree.Nearest({queries.data() + q, std::size_t(dimensions)}),
-              BruteForce(points, queries.data() + q, dimensions))
-        << dimensions << " dimensions, query " << q / dimensions;
+    expected.push_back(BruteForce(points, queries.data() + q, dimensions));
   }
+  OnEveryInstructionSet([&] {
+    std::uint32_t last = 0, anywhere = 0;
+    for (std::size_t q = 0; q < expected.size(); ++q) {
+      const std::span<const float> query{queries.data() + q * dimensions, std::size_t(dimensions)};
+      anywhere = static_cast<std::uint32_t>(Hash(q, anywhere) % (2 * points.size()));
+      ASSERT_EQ(tree.Nearest(query), expected[q]) << dimensions << " dimensions, query " << q;
+      ASSERT_EQ(tree.Nearest(query, last), expected[q]) << "from the last, query " << q;
+      ASSERT_EQ(tree.Nearest(query, anywhere), expected[q]) << "from anywhere, query " << q;
+    }
+  });
 }
 
 // Values on a lattice of `steps` (so that ties and repeats abound), or anywhere in [-1, 1] for 0.
@@ -50,8 +61,8 @@ std::vector<float> Scatter(std::size_t count, int steps, std::uint64_t seed) {
 }
 
 TEST(PointTree, EqualsBruteForceOnRandomPoints) {
-  for (const int dimensions : {1, 2, 3, 4, 7, 16}) {
-    for (const int count : {1, 2, 13, 200, 1500}) {
+  for (const int dimensions : {1, 2, 3, 4, 7, 15, 23, 40}) {
+    for (const int count : {1, 2, 13, 16, 17, 200, 256, 257, 1500, 5000}) {
       const auto points = Scatter(std::size_t(count) * dimensions, 0, 11 + dimensions);
       ExpectExact(points, dimensions, Scatter(std::size_t(200) * dimensions, 0, 5));
       ExpectExact(points, dimensions, points);
@@ -82,6 +93,29 @@ TEST(PointTree, DegenerateSets) {
   ExpectExact(line, 3, line);
   ExpectExact(line, 3, {0, 0, 0, 0.7f, 1e-3f, 0, -1, 0, 0, 0.75f, 0, 0, 1e30f, -1e30f, 1e30f});
   ExpectExact({1e30f, 1e30f, 1e30f, -1e30f, 0, 0, 1e-40f, 0, 0, 0, 0, 0}, 3, {0, 0, 0, 1e30f, 0, 0, 1e-41f, 0, 0});
+}
+
+// What guides are like: a surface in many dimensions; queries on it, a little off it, and far off.
+TEST(PointTree, SurfacesInManyDimensions) {
+  constexpr int kDimensions = 15, kSide = 120;
+  const auto surface = [](float u, float v, float noise, std::uint64_t seed) {
+    std::vector<float> point;
+    for (int d = 0; d < kDimensions; ++d) {
+      point.push_back(std::sin(float(d % 4) * u + d) * std::cos(float(d % 3) * v) + noise * UnitFloat(Hash(seed, d)));
+    }
+    return point;
+  };
+  std::vector<float> points, queries;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto point = surface(float(i % kSide) / kSide, float(i / kSide) / kSide, 0.0f, 0);
+    points.insert(points.end(), point.begin(), point.end());
+  }
+  for (int q = 0; q < 300; ++q) {
+    const float noise = q % 3 == 0 ? 0.0f : q % 3 == 1 ? 0.05f : 2.0f;
+    const auto query = surface(UnitFloat(Hash(q, 1)), UnitFloat(Hash(q, 2)), noise, std::uint64_t(q));
+    queries.insert(queries.end(), query.begin(), query.end());
+  }
+  ExpectExact(points, kDimensions, queries);
 }
 
 // ---- masks ---------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 
 #include "image/color.h"
 #include "image/oklab.h"
+#include "transfer/multiply_tint.h"
 
 namespace scumble::internal {
 namespace {
@@ -80,13 +81,33 @@ void Tint::Apply(glm::vec3 albedo, std::uint16_t* texel) const {
   for (int c = 0; c < 3; ++c) texel[c] = Srgb16FromLinear(tinted[c]);
 }
 
+namespace {
+
+// Calls run(begin, end) for each longest stretch of a row's pixels that are active, counted from `active`.
+template <class Run>
+void ForEachRun(std::span<const std::uint8_t> active, const Run& run) {
+  const std::uint8_t *begin = active.data(), *end = begin + active.size();
+  while ((begin = std::find(begin, end, 1)) != end) {
+    const std::uint8_t* stop = std::find(begin, end, 0);
+    run(static_cast<std::size_t>(begin - active.data()), static_cast<std::size_t>(stop - active.data()));
+    begin = stop;
+  }
+}
+
+}  // namespace
+
 bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress) {
-  return ForEachRow(input.region, progress, [&](int y) {
-    for (int x = input.region.x0; x < input.region.x1; ++x) {
-      const std::size_t i = input.guides.Index(x, y);
-      if (!input.active[i]) continue;
-      input.tint.Apply(input.guides.Vec3(Layer::kAlbedo, i), picture.At(x, y));
-    }
+  const Region& region = input.region;
+  const float* albedo[3];
+  for (int c = 0; c < 3; ++c) albedo[c] = input.guides.Plane(Layer::kAlbedo, c).data();
+  return ForEachRow(region, progress, [&](int y) {
+    const std::size_t row = input.guides.Index(region.x0, y);
+    ForEachRun(input.active.subspan(row, std::size_t(std::max(0, region.x1 - region.x0))), [&](std::size_t from, std::size_t to) {
+      const float* const here[3] = {albedo[0] + row + from, albedo[1] + row + from, albedo[2] + row + from};
+      std::uint16_t* texels = picture.At(region.x0, y) + 4 * from;
+      if (input.tint.mode == ColorizeMode::kMultiply) return MultiplyTint(here, to - from, input.tint.weight, texels);
+      for (std::size_t i = 0; i < to - from; ++i) input.tint.Apply({here[0][i], here[1][i], here[2][i]}, texels + 4 * i);
+    });
   });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -16,12 +17,12 @@ namespace {
 constexpr Layer kExposedBy[] = {Layer::kLuminance, Layer::kLpeLDE,  Layer::kLpeLD12E,
                                 Layer::kLpeFull,   Layer::kLpeLDDE, Layer::kLpeLSE};
 
-// `factor` is that of radiance.
-float Coordinate(Layer layer, float value, float factor) {
-  if (!(value > 0.0f)) return 0.0f;  // NaN too
-  if (!GuideWeights::IsRadiance(layer)) return std::min(value, 1.0f);
+// `factor` is that of radiance. NaN counts as 0.
+float Coordinate(bool radiance, float value, float factor) {
+  if (!(value > 0.0f)) return 0.0f;
+  if (!radiance) return std::min(value, 1.0f);
   const float light = value * factor;
-  return std::isfinite(light) ? light / (1.0f + light) : 1.0f;
+  return light <= std::numeric_limits<float>::max() ? light / (1.0f + light) : 1.0f;
 }
 
 // The pixel of a sphere's guides that a pixel of the resized exemplar shows; on the rim, where the sphere covers no
@@ -56,7 +57,9 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
     if (!(weights[info.layer] > 0.0f) || info.layer == Layer::kNormal) continue;
     SCUMBLE_CHECK(GuideWeights::CanWeigh(info.layer));
     space.layers_.push_back(info.layer), space.weights_.push_back(weights[info.layer]);
-    space.rest_ += ChannelCount(info.layer);
+    for (int c = 0; c < ChannelCount(info.layer); ++c, ++space.rest_) {
+      space.parts_.push_back({info.layer, c, GuideWeights::IsRadiance(info.layer), weights[info.layer]});
+    }
     for (const Exemplar& exemplar : exemplars) {
       if (exemplar.guides && exemplar.guides->Has(info.layer)) continue;
       return InputError(exemplar.name + " has no guides with layer " + info.name +
@@ -81,10 +84,8 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
 }
 
 void GuideSpace::ReadAll(const GuideSet& guides, std::size_t pixel, float factor, float* rest) const {
-  for (std::size_t l = 0; l < layers_.size(); ++l) {
-    for (int c = 0; c < ChannelCount(layers_[l]); ++c) {
-      *rest++ = weights_[l] * Coordinate(layers_[l], guides.Plane(layers_[l], c)[pixel], factor);
-    }
+  for (const Part& part : parts_) {
+    *rest++ = part.weight * Coordinate(part.radiance, guides.Plane(part.layer, part.component)[pixel], factor);
   }
 }
 
@@ -122,7 +123,9 @@ Source GuideSpace::Nearest(int k, glm::vec3 normal, const float* rest) const {
   }
   std::copy(rest, rest + rest_, query.begin() + static_cast<std::ptrdiff_t>(n));
   const Tree& tree = trees_[std::size_t(k)];
-  return tree.sources[tree.points.Nearest({query.data(), n + static_cast<std::size_t>(rest_)})];
+  // Pixels come in rows, and neighbours resemble each other. Where a search begins does not change what it finds.
+  thread_local std::uint32_t place = 0;
+  return tree.sources[tree.points.Nearest({query.data(), n + static_cast<std::size_t>(rest_)}, place)];
 }
 
 void GuideSpace::Blend(int k, float share, float* rest) const {

@@ -107,6 +107,14 @@ class GuideSpace {
     std::vector<Source> sources;
   };
 
+  // One of the coordinates beside the normal's.
+  struct Part {
+    Layer layer;
+    int component;
+    bool radiance;
+    float weight;
+  };
+
   std::size_t Offset(Source at) const {
     return (std::size_t(at.y) * exemplar_->width() + at.x) * static_cast<std::size_t>(rest_);
   }
@@ -118,6 +126,7 @@ class GuideSpace {
   float normal_weight_ = 1.0f;
   std::vector<Layer> layers_;
   std::vector<float> weights_;
+  std::vector<Part> parts_;
   int rest_ = 0;
   bool has_radiance_ = false;
   Layer radiance_ = Layer::kLuminance;

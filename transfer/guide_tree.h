@@ -1,5 +1,6 @@
-// Exact nearest neighbours among guides of any number of dimensions (transfer/guide_space.h makes them): kd-trees (Friedman, Bentley, Finkel, "An Algorithm
-// for Finding Best Matches in Logarithmic Expected Time", ACM TOMS 1977; nanoflann's).
+// Exact nearest neighbours among guides of any number of dimensions (transfer/guide_space.h makes them), in the spirit of
+// Friedman, Bentley, Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected Time", ACM TOMS 1977. The tree
+// is our own, transfer/box_tree.h says why.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +11,13 @@
 
 namespace scumble {
 
+namespace internal {
+class BoxTree;
+}
+
 // Points of `dimensions` finite floats each. Equal points count once, as the first of them, so that a flat face of ten
-// thousand pixels costs what one pixel does. Building is O(n log n) on one thread; about 30 bytes a distinct point
-// beside the floats. Immutable; any number of threads may ask at once.
+// thousand pixels costs what one pixel does. Building is O(n log n), on all threads of the caller's oneTBB arena; about 5
+// bytes a coordinate and 8 a distinct point. Immutable; any number of threads may ask at once.
 class PointTree {
  public:
   // `coordinates` holds the points one after the other; at least one.
@@ -22,21 +27,20 @@ class PointTree {
   PointTree& operator=(PointTree&&) noexcept;
 
   int dimensions() const { return dimensions_; }
-  std::size_t distinct() const { return distinct_; }
+  std::size_t distinct() const { return first_.size(); }
 
   // The index, in the order given, of the point with the least Euclidean distance to `query`, squares summed in double
   // in the order of the dimensions; ties to the lowest index. `query` has as many finite values as there are
   // dimensions.
   std::uint32_t Nearest(std::span<const float> query) const;
 
- private:
-  struct Search;
-  template <int kDimensions>
-  struct SearchOf;
+  // The same, quicker where the query resembles the one that left `place` as it is; any number will do to begin with.
+  std::uint32_t Nearest(std::span<const float> query, std::uint32_t& place) const;
 
+ private:
   int dimensions_;
-  std::size_t distinct_ = 0;
-  std::unique_ptr<Search> search_;
+  std::vector<std::uint32_t> first_;  // of each distinct point, among all that were given
+  std::unique_ptr<internal::BoxTree> tree_;
 };
 
 }  // namespace scumble

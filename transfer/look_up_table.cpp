@@ -38,10 +38,11 @@ LookUpTable::LookUpTable(const PointTree& normals, std::span<const Source> sourc
     : LookUpTable(resolution) {
   SCUMBLE_CHECK_LE(1, resolution);
   tbb::parallel_for(0, resolution, [&](int j) {
+    std::uint32_t place = 0;
     for (int i = 0; i < resolution; ++i) {
       const glm::vec3 direction = DirectionAt((2.0 * i + 1.0) / resolution - 1.0, 1.0 - (2.0 * j + 1.0) / resolution);
       const float query[3] = {direction.x, direction.y, direction.z};
-      cells_[std::size_t(j) * resolution + i] = sources[normals.Nearest(query)];
+      cells_[std::size_t(j) * resolution + i] = sources[normals.Nearest(query, place)];
     }
   });
 }

@@ -1,0 +1,13 @@
+// The search of transfer/box_tree.h.
+#pragma once
+
+#include <cstdint>
+
+#include "transfer/box_tree.h"
+
+namespace scumble::internal {
+
+// The place of the point that BoxTree::Nearest asks for; `first` is a place to begin with.
+std::uint32_t SearchBoxes(const BoxTree& tree, const float* query, std::uint32_t first);
+
+}  // namespace scumble::internal
