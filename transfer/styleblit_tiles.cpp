@@ -100,7 +100,9 @@ class TileMatcher {
         tile_x_(job.tile_x),
         tile_y_(job.tile_y),
         levels_(job.scratch.levels),
-        field_(job.field) {
+        field_(job.field),
+        squares_(input_.test.metric() == ThresholdMetric::kL2),
+        light_counts_(!input_.luminance.empty() && input_.illumination.weight() > 0.0f) {
     const int x0 = tile_x_ * kTileWidth, y0 = tile_y_ * kTileHeight;
     tile_ = {x0, y0, std::min(field_.width, x0 + kTileWidth), std::min(field_.height, y0 + kTileHeight)};
     blocks_ = (tile_.x1 - tile_.x0 + kBlock - 1) / kBlock;
@@ -353,8 +355,11 @@ class TileMatcher {
     const int x = row_.x + from + offer.offset_x, y = row_.y + offer.offset_y;
     if (static_cast<unsigned>(y) >= static_cast<unsigned>(rows_.height)) return 0;
     if (rows_.is_sphere) {
-      lanes &= LanesBetween(rows_.first[y] - x, rows_.last[y] - x);
-      if (lanes == 0) return 0;
+      const int first = rows_.first[y], last = rows_.last[y];
+      if (x < first || x + kBlock - 1 > last) {
+        lanes &= LanesBetween(first - x, last - x);
+        if (lanes == 0) return 0;
+      }
       const auto down = hn::Set(kFloats, -rows_.coordinate[y]);
       const auto down_squared = hn::Mul(down, down);
       return lanes & Compare(from, offer.exemplar, moved, [&](int i, auto& a, auto& b, auto& c) HWY_ATTR {
@@ -379,8 +384,6 @@ class TileMatcher {
   // `read` gives the exemplar's normals from lane i on. `moved`: null for nothing.
   template <class Read>
   HWY_INLINE std::uint32_t Compare(int from, int exemplar, const glm::vec3* moved, const Read& read) const {
-    const bool squares = input_.test.metric() == ThresholdMetric::kL2;
-    const bool light_counts = row_.light != nullptr && input_.illumination.weight() > 0.0f;
     const auto bound = hn::Set(kFloats, input_.test.bound());
     std::uint32_t bits = 0;
     for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(kFloats))) {
@@ -395,13 +398,13 @@ class TileMatcher {
         z = hn::Add(z, hn::Set(kFloats, moved->z));
       }
       const auto dx = hn::Sub(x, a), dy = hn::Sub(y, b), dz = hn::Sub(z, c);
-      const auto distance = squares ? hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz))
+      const auto distance = squares_ ? hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz))
                                     : hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz));
       auto alike = hn::Lt(distance, bound);
-      if (light_counts) {
+      if (light_counts_) {
         const auto extra = LightError(row_.light + from + i, exemplar);
         const auto left = hn::Sub(hn::Set(kFloats, input_.test.threshold()), extra);
-        const auto less = hn::Lt(distance, squares ? hn::Mul(left, left) : left);
+        const auto less = hn::Lt(distance, squares_ ? hn::Mul(left, left) : left);
         const auto zero = hn::Zero(kFloats);
         const auto lit = hn::And(hn::Gt(left, zero), less);
         const auto counts = hn::Gt(extra, zero);
@@ -496,6 +499,7 @@ class TileMatcher {
   bool begun_ = false;
   std::vector<TileSeeds>& levels_;
   SourceField& field_;
+  const bool squares_, light_counts_;
   int blocks_ = 0;
   Row row_;
   int open_[Row::kBlocks + 1];  // blocks with pixels that are not settled

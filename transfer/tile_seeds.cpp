@@ -41,7 +41,10 @@ void TileSeeds::Reset(const MatchInput& input, int level, int x0) {
   columns_ = ((x0 + kTileWidth - 1) >> level) + 1 - first_column_ + 1;
   part_ = std::max(0, 6 - level);
   SCUMBLE_DCHECK(columns_ >> part_ < 64);
-  for (Made* made : {&offered_, &placed_}) std::fill(std::begin(made->row), std::end(made->row), kNoRow);
+  for (Made* made : {&offered_, &placed_}) {
+    std::fill(std::begin(made->row), std::end(made->row), kNoRow);
+    made->last_row = kNoRow;
+  }
   column_hashes_.resize(std::size_t(columns_));
   const std::uint64_t level_hash = SeedLevel(input.seeds, level);
   for (int c = 0; c < columns_; ++c) column_hashes_[std::size_t(c)] = HashOn(level_hash, first_column_ + c);

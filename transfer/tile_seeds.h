@@ -91,11 +91,17 @@ class TileSeeds {
   struct Made {
     int row[kSlots];
     std::uint64_t parts[kSlots];
+    // What was asked for last is there, for a row and those beside it: nearly always the next question too.
+    int last_row;
+    std::uint64_t last_parts;
   };
   using Maker = void (TileSeeds::*)(int cell_row, std::uint64_t parts);
   void NeedIn(Made& made, int cell_row, int x, int width, Maker make) {
     const int first = ((x - left_) >> level_) - 1, last = ((x + width - 1 - left_) >> level_) + 1;
     const std::uint64_t parts = (~0ull << (first >> part_)) & (~0ull >> (63 - (last >> part_)));
+    if (made.last_row == cell_row && (parts & ~made.last_parts) == 0) return;
+    made.last_parts = made.last_row == cell_row ? made.last_parts | parts : parts;
+    made.last_row = cell_row;
     for (int row = cell_row - 1; row <= cell_row + 1; ++row) {
       const int slot = Slot(row);
       if (made.row[slot] != row) made.row[slot] = row, made.parts[slot] = 0;
