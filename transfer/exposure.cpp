@@ -1,8 +1,10 @@
 #include "transfer/transfer.h"
 
+#include <tbb/task_arena.h>
+
 namespace scumble {
 
-std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides) {
+std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides, int threads) {
   std::vector<float> brightest;
   std::optional<Layer> layer;
   // Luminance before all others: it does not depend on what things are made of.
@@ -20,7 +22,8 @@ std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, con
     }
   }
   if (!layer) return std::nullopt;
-  return MeasureExposure(guides, brightest, *layer);
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return MeasureExposure(guides, brightest, *layer); });
 }
 
 }  // namespace scumble

@@ -1,6 +1,12 @@
 #include "transfer/illumination.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "image/color.h"
@@ -54,25 +60,73 @@ double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> m
   return weight > 0.0 ? sum / weight : 0.0;
 }
 
-double BrightPercentile(const GuideSet& guides, Layer layer) {
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  const bool is_color = ChannelCount(layer) == 3;
-  std::vector<float> lit;
-  for (std::size_t i = 0; i < coverage.size(); ++i) {
-    if (!(coverage[i] > 0.0f)) continue;
-    float light = guides.Plane(layer)[i];
-    if (is_color) {
-      const glm::vec3 rgb = guides.Vec3(layer, i);
-      light = static_cast<float>(Luminance(rgb.r, rgb.g, rgb.b));
-    }
-    lit.push_back(light > 0.0f ? light : 0.0f);
+namespace {
+
+// The light of covered pixels as the bits of floats of 0 or more, which order as the values do.
+class CoveredLight {
+ public:
+  CoveredLight(const GuideSet& guides, Layer layer) : coverage_(guides.Plane(Layer::kCoverage)) {
+    for (int c = 0; c < 3; ++c) channels_[c] = guides.Plane(layer, ChannelCount(layer) == 3 ? c : 0);
+    is_color_ = ChannelCount(layer) == 3;
   }
-  if (lit.empty()) return 0.0;
+
+  // Calls what visit() returns with the bits of every covered pixel; from several threads, each of which asks for its own.
+  template <class Visit>
+  void ForEach(const Visit& visit) const {
+    constexpr std::size_t kPixels = 1 << 15;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, coverage_.size(), kPixels), [&](const auto& range) {
+      const auto own = visit();
+      for (std::size_t i = range.begin(); i != range.end(); ++i) {
+        if (coverage_[i] > 0.0f) own(BitsAt(i));
+      }
+    });
+  }
+
+ private:
+  std::uint32_t BitsAt(std::size_t i) const {
+    const float light = is_color_ ? Luminance(channels_[0][i], channels_[1][i], channels_[2][i]) : channels_[0][i];
+    return light > 0.0f ? std::bit_cast<std::uint32_t>(light) : 0;
+  }
+
+  std::span<const float> coverage_;
+  std::span<const float> channels_[3];
+  bool is_color_ = false;
+};
+
+}  // namespace
+
+// First how many lights have which upper bits, then those alone that share them with the one that is looked for.
+double BrightPercentile(const GuideSet& guides, Layer layer) {
+  constexpr int kLowerBits = 20;
+  const CoveredLight light(guides, layer);
+  struct Counts {
+    std::array<std::size_t, (1u << (32 - kLowerBits))> of{};
+  };
+  tbb::enumerable_thread_specific<Counts> counted;
+  light.ForEach([&] {
+    return [&counts = counted.local().of](std::uint32_t bits) { ++counts[bits >> kLowerBits]; };
+  });
+  Counts counts;
+  std::size_t total = 0;
+  for (const Counts& some : counted) {
+    for (std::size_t i = 0; i < counts.of.size(); ++i) counts.of[i] += some.of[i], total += some.of[i];
+  }
+  if (total == 0) return 0.0;
   // Nearest rank: the smallest value that 90% of the pixels do not exceed.
-  const std::size_t rank = (lit.size() * 9 + 9) / 10 - 1;
-  const auto place = lit.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(lit.begin(), place, lit.end());
-  return *place;
+  std::size_t rank = (total * 9 + 9) / 10 - 1;
+  std::uint32_t upper = 0;
+  while (rank >= counts.of[upper]) rank -= counts.of[upper++];
+  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> gathered;
+  light.ForEach([&] {
+    return [&values = gathered.local(), upper](std::uint32_t bits) {
+      if (bits >> kLowerBits == upper) values.push_back(bits);
+    };
+  });
+  std::vector<std::uint32_t> candidates;
+  for (const auto& some : gathered) candidates.insert(candidates.end(), some.begin(), some.end());
+  const auto place = candidates.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(candidates.begin(), place, candidates.end());
+  return std::bit_cast<float>(*place);
 }
 
 double MeasureExposure(const GuideSet& guides, std::span<const float> luminances, Layer layer) {

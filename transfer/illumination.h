@@ -42,7 +42,8 @@ double MeasuredLuminance(const Picture& picture, double rim);
 double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> mask);
 
 // The 90th percentile of a layer of light over the covered pixels, by the luminance of its colours; what is not above 0
-// counts as 0. 0 where nothing is covered.
+// counts as 0. 0 where nothing is covered. Runs on all threads of the caller's oneTBB arena; the result does not depend on
+// them.
 double BrightPercentile(const GuideSet& guides, Layer layer);
 
 // The exposure, in stops to the hundredth, that maps the 90th percentile of the luminance of covered pixels to the

@@ -2,16 +2,11 @@
 
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "image/check.h"
 
 namespace scumble {
-glm::vec2 ProjectDirection(glm::vec3 facing) {
-  const float scale = 1.0f / std::sqrt(1.0f + facing.z);
-  return {scale * facing.x, scale * facing.y};
-}
 
 glm::vec3 DirectionAt(double px, double py) {
   double squared = px * px + py * py;
@@ -23,17 +18,6 @@ glm::vec3 DirectionAt(double px, double py) {
   return {static_cast<float>(px * scale), static_cast<float>(py * scale), static_cast<float>(1.0 - squared)};
 }
 
-glm::vec3 FacingDirection(glm::vec3 normal) {
-  float length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
-  if (!(length > 0.0f && length <= 3.0e38f)) return {0.0f, 0.0f, 1.0f};
-  if (normal.z < 0.0f) {
-    length = std::sqrt(normal.x * normal.x + normal.y * normal.y);
-    if (!(length > 0.0f)) return {0.0f, 1.0f, 0.0f};
-    return {normal.x / length, normal.y / length, 0.0f};
-  }
-  return {normal.x / length, normal.y / length, normal.z / length};
-}
-
 LookUpTable::LookUpTable(const PointTree& normals, std::span<const Source> sources, int resolution)
     : LookUpTable(resolution) {
   SCUMBLE_CHECK_LE(1, resolution);
@@ -42,17 +26,10 @@ LookUpTable::LookUpTable(const PointTree& normals, std::span<const Source> sourc
     for (int i = 0; i < resolution; ++i) {
       const glm::vec3 direction = DirectionAt((2.0 * i + 1.0) / resolution - 1.0, 1.0 - (2.0 * j + 1.0) / resolution);
       const float query[3] = {direction.x, direction.y, direction.z};
-      cells_[std::size_t(j) * resolution + i] = sources[normals.Nearest(query, place)];
+      const Source& source = sources[normals.Nearest(query, place)];
+      cells_[std::size_t(j) * resolution + i] = {static_cast<std::uint16_t>(source.x), static_cast<std::uint16_t>(source.y)};
     }
   });
-}
-
-std::size_t LookUpTable::CellOf(glm::vec3 direction) const {
-  const glm::vec2 p = ProjectDirection(direction);
-  const float half = 0.5f * static_cast<float>(resolution_);
-  const int i = std::clamp(static_cast<int>(half + half * p.x), 0, resolution_ - 1);
-  const int j = std::clamp(static_cast<int>(half - half * p.y), 0, resolution_ - 1);
-  return std::size_t(j) * resolution_ + i;
 }
 
 double LookUpTable::Quantisation(int resolution) { return 4.0 * std::sqrt(2.0) / resolution; }
@@ -60,7 +37,7 @@ double LookUpTable::Quantisation(int resolution) { return 4.0 * std::sqrt(2.0) /
 std::vector<std::byte> LookUpTable::ToBytes() const {
   std::vector<std::byte> bytes;
   bytes.reserve(4 * cells_.size());
-  for (const Source& cell : cells_) {
+  for (const Cell& cell : cells_) {
     for (const int value : {cell.x, cell.y}) {
       bytes.push_back(static_cast<std::byte>(value & 0xff));
       bytes.push_back(static_cast<std::byte>(value >> 8));
@@ -75,7 +52,9 @@ std::optional<LookUpTable> LookUpTable::FromBytes(std::span<const std::byte> byt
   const auto value = [&](std::size_t at) {
     return std::to_integer<int>(bytes[at]) | std::to_integer<int>(bytes[at + 1]) << 8;
   };
-  for (std::size_t i = 0; i < table.cells_.size(); ++i) table.cells_[i] = {value(4 * i), value(4 * i + 2)};
+  for (std::size_t i = 0; i < table.cells_.size(); ++i) {
+    table.cells_[i] = {static_cast<std::uint16_t>(value(4 * i)), static_cast<std::uint16_t>(value(4 * i + 2))};
+  }
   return table;
 }
 

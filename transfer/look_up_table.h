@@ -1,6 +1,8 @@
 // Nearest neighbours of directions by a table: what one lookup costs does not depend on the exemplar.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -15,11 +17,23 @@ namespace scumble {
 
 // The direction that a normal is looked up by, always of length 1 and facing the viewer: one that faces away looks at
 // the rim along its (x, y), (0, 0, -1) at the rim at +Y; NaN, infinity and the zero vector look straight at the viewer.
-glm::vec3 FacingDirection(glm::vec3 normal);
+inline glm::vec3 FacingDirection(glm::vec3 normal) {
+  float length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+  if (!(length > 0.0f && length <= 3.0e38f)) return {0.0f, 0.0f, 1.0f};
+  if (normal.z < 0.0f) {
+    length = std::sqrt(normal.x * normal.x + normal.y * normal.y);
+    if (!(length > 0.0f)) return {0.0f, 1.0f, 0.0f};
+    return {normal.x / length, normal.y / length, 0.0f};
+  }
+  return {normal.x / length, normal.y / length, normal.z / length};
+}
 
 // Lambert's azimuthal equal-area projection of the hemisphere that faces the viewer onto the unit disc,
 // (x, y) / √(1 + z).
-glm::vec2 ProjectDirection(glm::vec3 facing);
+inline glm::vec2 ProjectDirection(glm::vec3 facing) {
+  const float scale = 1.0f / std::sqrt(1.0f + facing.z);
+  return {scale * facing.x, scale * facing.y};
+}
 // Its inverse; a point outside the disc is taken to its edge.
 glm::vec3 DirectionAt(double px, double py);
 
@@ -47,14 +61,26 @@ class LookUpTable {
   // belongs to the resolution; whether its sources are usable is for the caller to see.
   std::vector<std::byte> ToBytes() const;
   static std::optional<LookUpTable> FromBytes(std::span<const std::byte> bytes, int resolution);
-  std::span<const Source> cells() const { return cells_; }
+
+  // Half a Source, so that a table of the usual size stays in a core's cache.
+  struct Cell {
+    std::uint16_t x = 0, y = 0;
+    operator Source() const { return {x, y}; }
+  };
+  std::span<const Cell> cells() const { return cells_; }
 
  private:
   explicit LookUpTable(int resolution) : resolution_(resolution), cells_(std::size_t(resolution) * resolution) {}
-  std::size_t CellOf(glm::vec3 direction) const;
+  std::size_t CellOf(glm::vec3 direction) const {
+    const glm::vec2 p = ProjectDirection(direction);
+    const float half = 0.5f * static_cast<float>(resolution_);
+    const int i = std::clamp(static_cast<int>(half + half * p.x), 0, resolution_ - 1);
+    const int j = std::clamp(static_cast<int>(half - half * p.y), 0, resolution_ - 1);
+    return std::size_t(j) * static_cast<std::size_t>(resolution_) + static_cast<std::size_t>(i);
+  }
 
   int resolution_;
-  std::vector<Source> cells_;  // rows from +Y down
+  std::vector<Cell> cells_;  // rows from +Y down
 };
 
 }  // namespace scumble

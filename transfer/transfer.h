@@ -64,8 +64,9 @@ double LuminanceOf(const Exemplar& exemplar, double rim);
 
 // The exposure that suits all of these styles, as MeasureExposure of illumination.h has it: for those that weigh light, the
 // 90th percentile of their exemplars' guides counts; for other styles of several exemplars, their luminances. Nothing
-// where no style looks at light. The guides must hold what the styles require.
-std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides);
+// where no style looks at light. The guides must hold what the styles require. `threads` 0: all; they do not matter to the
+// result.
+std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides, int threads = 0);
 
 struct TransferOptions {
   std::uint64_t seed = 0;
