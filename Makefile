@@ -18,7 +18,7 @@ demo: build ## stylise the bundled scenes with the bundled styles into out/demo/
 
 test: ## install what is missing (Blender too), build everything, run all tests
 	@.ci/install test
-	@cmake --preset release -DSCUMBLE_TESTS=ON
+	@cmake --preset release -DSCUMBLE_TESTS=ON -DSCUMBLE_BENCH=ON
 	@cmake --build build -j $(JOBS)
 	@ctest --test-dir build --output-on-failure -j $(JOBS)
 
@@ -28,11 +28,12 @@ test-asan: ## unit tests under AddressSanitizer and UndefinedBehaviorSanitizer, 
 	@cmake --build build-asan -j $(JOBS)
 	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -L unit
 
-bench: ## measure speed, with spread; gates nothing
+bench: ## measure speed against its targets, one table (docs/performance.md); BENCH=flicker runs another bench
 	@.ci/install test
-	@cmake --preset release -DSCUMBLE_BENCH=ON
-	@cmake --build build -j $(JOBS)
-	@for program in build/bench/*_bench; do $$program --benchmark_repetitions=7 --benchmark_report_aggregates_only=true; done
+	@cmake --preset release -DSCUMBLE_BENCH=ON > build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }
+	@rm -f build.log
+	@cmake --build build --target scumble benches -j $(JOBS)
+	@$(if $(BENCH),build/bench/$(BENCH)_bench,/usr/bin/python3 bench/performance.py) $(BENCH_ARGS)
 
 bench-cycles: build ## our speed beside Cycles' on the same scene, into out/bench-cycles/
 	@.ci/install test

@@ -15,17 +15,14 @@ import datetime
 import json
 import math
 import os
-import platform
 import re
-import resource
-import statistics
-import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+
+from runs import Times, processor, run, say
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -34,17 +31,6 @@ DATA_LAYERS = "position,albedo"  # on top of those that are always written
 # Cycles' error at this many samples is what both are asked for.
 TARGET_SAMPLES = 16
 GOALS = {"data": 20.0, "process": 3.0, "LDE": 5.0, "full": 1.0}
-
-
-def run(command):
-    """Seconds from start to end, seconds of processor time, and what the program said."""
-    begin, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
-    processor_time = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    if done.returncode != 0:
-        sys.exit("%s\nexit code %d\n%s%s" % (" ".join(map(str, command)), done.returncode, done.stdout, done.stderr))
-    return seconds, processor_time, done.stdout
 
 
 class Scumble:
@@ -113,25 +99,6 @@ def read_channels(path):
 def relative_error(picture, truth, covered):
     """NRMSE: the root of the mean squared difference over the truth's mean."""
     return float(np.sqrt(np.mean((picture - truth)[covered] ** 2)) / np.mean(truth[covered]))
-
-
-class Times:
-    """Repeated times of one thing: their median and quartiles."""
-
-    def __init__(self, values):
-        self.median = statistics.median(values)
-        quartiles = statistics.quantiles(values, n=4, method="inclusive") if len(values) > 1 else [values[0]] * 3
-        self.low, self.high = quartiles[0], quartiles[2]
-
-    def text(self):
-        return "%.3g s (%.3g–%.3g)" % (self.median, self.low, self.high)
-
-    def json(self):
-        return {"median": self.median, "quartiles": [self.low, self.high]}
-
-
-def say(text):
-    print(text, file=sys.stderr, flush=True)
 
 
 def measure_data(options, renderers, scene):
@@ -204,13 +171,6 @@ def at_equal_error(measured):
 
 
 # ---- what is written ------------------------------------------------------------------------------------------------
-
-
-def processor():
-    for line in open("/proc/cpuinfo", encoding="utf-8"):
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
 
 
 def verdict(kind, ratio):

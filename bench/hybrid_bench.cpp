@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/or_stop.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "measure/repetition.h"
@@ -15,13 +16,6 @@
 
 namespace scumble {
 namespace {
-
-template <class T>
-T OrStop(Expected<T> result) {
-  if (result) return std::move(*result);
-  std::fprintf(stderr, "%s\n", result.error().message.c_str());
-  std::exit(1);
-}
 
 struct Painted {
   Picture picture;

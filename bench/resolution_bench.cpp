@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/or_stop.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "image/stopwatch.h"
@@ -18,13 +19,6 @@ namespace scumble {
 namespace {
 
 constexpr int kWidth = 1920, kHeight = 1080, kRuns = 7;
-
-template <class T>
-T OrStop(Expected<T> result) {
-  if (result) return std::move(*result);
-  std::fprintf(stderr, "%s\n", result.error().message.c_str());
-  std::exit(1);
-}
 
 double Median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());

@@ -1,0 +1,19 @@
+// A bench cannot go on without what it measures.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include "image/status.h"
+
+namespace scumble {
+
+template <class T>
+T OrStop(Expected<T> result) {
+  if (result) return std::move(*result);
+  std::fprintf(stderr, "%s\n", result.error().message.c_str());
+  std::exit(1);
+}
+
+}  // namespace scumble

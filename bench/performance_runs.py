@@ -1,0 +1,117 @@
+"""The parts of `make bench` that are programs of their own: guides beside bare Embree, and the command line as a whole."""
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from runs import Times
+
+ROOT = Path(__file__).resolve().parent.parent
+STYLE = "exemplars/oil"
+
+
+def figure(item, what, frame, unit, values, target=None, at_least=False, note="", more=None):
+    """As the C++ part writes them (bench/figures.h)."""
+    times = Times(values)
+    made = {"item": item, "what": what, "frame": frame, "unit": unit, "median": times.median, "low": times.low,
+            "high": times.high, "least": min(values), "rounds": len(values)}
+    if target is not None:
+        made.update(target=target, at_least=at_least)
+    if note:
+        made["note"] = note
+    if more:
+        made["more"] = more
+    return made
+
+
+def timed(command):
+    """Seconds on the wall, bytes of memory at the peak, and what the program printed."""
+    begin = time.perf_counter()
+    process = subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, cwd=ROOT)
+    text = process.stdout.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    seconds = time.perf_counter() - begin
+    if process.returncode != 0:
+        sys.exit("%s\nexit code %d" % (" ".join(map(str, command)), process.returncode))
+    return seconds, usage.ru_maxrss * 1024, text.decode("utf-8")
+
+
+def size_of(options):
+    return "160x90" if options.smoke else "1920x1080"
+
+
+def stylize(options, scene, arguments, output):
+    """Runs of the command line; the first one warms the disk's cache and does not count."""
+    command = [options.build / "scumble", "stylize", "scenes/%s.glb" % scene, "--style", STYLE, "--size", size_of(options),
+               "--png-level", 1, "--threads", 2, "--quiet", "--json", "-o", options.scratch / output] + arguments
+    repeats = 1 if options.smoke else options.repeats
+    runs = [timed(command) for _ in range(repeats + 1)][1:]
+    return [seconds for seconds, _, _ in runs], [peak for _, peak, _ in runs], [json.loads(text) for _, _, text in runs]
+
+
+def stages(reports):
+    """Median milliseconds of each stage that the program reports itself."""
+    return {name: statistics.median(report["ms"][name]["median"] for report in reports) for name in reports[0].get("ms", {})}
+
+
+def measure_process(options):
+    seconds, peaks, reports = stylize(options, "suzanne", [], "picture.png")
+    pixels = reports[0]["width"] * reports[0]["height"]
+    frame = "suzanne %d×%d, style oil" % (reports[0]["width"], reports[0]["height"])
+    where = stages(reports)
+    where["the rest"] = 1000.0 * statistics.median(seconds) - sum(where.values())
+    return {"figures": [
+        figure("7", "scumble stylize, two threads, PNG level 1", frame, "s", seconds, 0.7, more=where),
+        figure("7", "its peak memory, everything included", frame, "bytes/px", [peak / pixels for peak in peaks]),
+    ], "stages": where}
+
+
+def measure_sequence(options):
+    count = 2 if options.smoke else 24
+    seconds, _, _ = stylize(options, "toys", ["--frames", "1-%d" % count], "frame.####.png")
+    frame = "toys %s, style oil, %d frames" % (size_of(options).replace("x", "×"), count)
+    return {"figures": [figure("8", "scumble stylize --frames, a frame", frame, "s", [s / count for s in seconds], 0.2)]}
+
+
+def benchmark(options, program, arguments):
+    """Google Benchmark's records by the name of what ran: of single runs, or of the aggregates where it writes no others."""
+    done = subprocess.run([options.build / "bench" / program, "--benchmark_format=json",
+                           "--benchmark_enable_random_interleaving=true"] + arguments, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit("%s: exit code %d\n%s" % (program, done.returncode, done.stderr))
+    runs = {}
+    for record in json.loads(done.stdout)["benchmarks"]:
+        if record.get("run_type") == "iteration" or record.get("aggregate_name") in ("median", "stddev"):
+            runs.setdefault(record["run_name"].split("/repeats")[0].split("/process_time")[0], []).append(record)
+    return runs
+
+
+def values_of(records, key):
+    """A counter's values; of aggregates the median, and as far around it as the standard deviation says."""
+    single = [record[key] for record in records if record.get("run_type") == "iteration"]
+    if single:
+        return single
+    by_name = {record["aggregate_name"]: record[key] for record in records}
+    return [by_name["median"] - by_name["stddev"], by_name["median"], by_name["median"] + by_name["stddev"]]
+
+
+def measure_guides(options):
+    """guidegen beside a bare Embree loop over the same triangles and rays."""
+    runs = benchmark(options, "guidegen_bench", ["--benchmark_filter=BareEmbree|GuidesAlwaysWritten"])
+    figures = []
+    for threads in (1, 2):
+        bare = values_of(runs["BM_BareEmbree/%d" % threads], "real_time")
+        guides = values_of(runs["BM_GuidesAlwaysWritten/%d/1" % threads], "render_ms")
+        frame = "100,000 triangles 1920×1080, threads %d" % threads
+        middle = statistics.median(bare)
+        figures.append(figure("6", "normals, depth and ids against bare Embree", frame, "×", [g / middle for g in guides], 1.3,
+                              more={"bare_ms": middle, "guides_ms": statistics.median(guides)}))
+    whole = values_of(runs["BM_GuidesAlwaysWritten/2/1"], "real_time")
+    figures.append(figure("6", "guides a second, hierarchy built for each", "100,000 triangles 1920×1080, threads 2", "frames/s",
+                          [1000.0 / ms for ms in whole], 15.0, True))
+    return {"figures": figures}
