@@ -1,4 +1,4 @@
-#!/ usr / bin / env python3
+#!/usr/bin/env python3
 """Speed against its targets, as one table: `make bench`.
 
     /usr/bin/python3 bench/performance.py --build build [--only yardstick,process] [--seconds 12] [--write-docs]
@@ -27,7 +27,7 @@ TRANSFER_PARTS = ["yardstick", "rates", "radius", "extensions", "light-paths", "
 OTHER_PARTS = {"guides": measure_guides, "process": measure_process, "sequence": measure_sequence}
 TITLES = {"1": "The engine against the yardstick", "2": "Nanoseconds a pixel, frames a second", "3": "Large radius",
           "4": "What extensions cost", "5": "Large pictures", "6": "Guides", "7": "A whole process", "8": "A sequence"}
-#What-- write - docs replaces in the page stands between two such lines.
+# What --write-docs replaces in the page stands between two such lines.
 BEGIN, END = "<!-- %s: begin, written by make bench -->", "<!-- %s: end -->"
 
 
@@ -44,7 +44,7 @@ def verdict(figure):
     if "target" not in figure:
         return ""
     value, target = figure["median"], figure["target"]
-#What rounding of the last digit shown would change is not a miss.
+    # What rounding of the last digit shown would change is not a miss.
     reached = value >= target * 0.9995 if figure["at_least"] else value <= target * 1.0005
     return "reached" if reached else "missed"
 
@@ -191,14 +191,14 @@ def main():
         if not file.exists():
             sys.exit("%s is not there: run without --show and --update first" % file)
         kept = json.loads(file.read_text(encoding="utf-8"))
-        report = kept if options.show else {
-  **report, "parts" : kept["parts"]
-}
-if
-not options.show : measure(options, report)(options.output / "results.md")
-                       .write_text(markdown(report) + "\n" + stages_table(report),
-                                   encoding = "utf-8")(options.output / "performance.svg")
-                       .write_text(chart(report), encoding = "utf-8") if options.write_docs
-    : write_docs(report) print(plain_table(report), end = "")
+        report = kept if options.show else {**report, "parts": kept["parts"]}
+    if not options.show:
+        measure(options, report)
+    (options.output / "results.md").write_text(markdown(report) + "\n" + stages_table(report), encoding="utf-8")
+    (options.output / "performance.svg").write_text(chart(report), encoding="utf-8")
+    if options.write_docs:
+        write_docs(report)
+    print(plain_table(report), end="")
 
-          main()
+
+main()
