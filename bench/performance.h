@@ -36,6 +36,7 @@ class Engine {
   const PreparedStyle& prepared() const { return styles_.front(); }
   const Picture& picture() const { return picture_; }
   const SourceField& field() const { return scratch_.field; }
+  const StageTimes& stages() const { return scratch_.times; }  // of the last frame
 
  private:
   std::vector<PreparedStyle> styles_;

@@ -120,15 +120,29 @@ def markdown(report):
     return "\n".join(lines) + "\n"
 
 
-def stages_table(report):
+def transfer_stages(report):
+    """Where the engine's nanoseconds a pixel go, by frame."""
+    figures = [f for f in report["parts"].get("yardstick", {"figures": []})["figures"] if "match" in f.get("more", {})]
+    if not figures:
+        return []
+    names = list(figures[0]["more"])
+    lines = ["The engine on one thread, nanoseconds a covered pixel by the clock on the wall:", ""]
+    lines += ["| frame | %s |" % " | ".join(names), "|---" * (len(names) + 1) + "|"]
+    return lines + ["| %s | %s |" % (f["frame"], " | ".join("%.1f" % f["more"][name] for name in names)) for f in figures] + [""]
+
+
+def process_stages(report):
     """Where the time of a whole process goes, as it reports it itself."""
     stages = report["parts"].get("process", {}).get("stages", {})
     if not stages:
-        return ""
+        return []
     whole = sum(stages.values())
     lines = ["One run of `scumble stylize` on the Suzanne scene, as above:", "", "| stage | ms | share |", "|---|---|---|"]
-    lines += ["| %s | %.1f | %.0f%% |" % (name, ms, 100.0 * ms / whole) for name, ms in stages.items()]
-    return "\n".join(lines) + "\n"
+    return lines + ["| %s | %.1f | %.0f%% |" % (name, ms, 100.0 * ms / whole) for name, ms in stages.items()] + [""]
+
+
+def stages_text(report):
+    return "\n".join(transfer_stages(report) + process_stages(report))
 
 
 def replaced(page, text, block, content):
@@ -142,7 +156,7 @@ def replaced(page, text, block, content):
 def write_docs(report):
     page = ROOT / "docs/performance.md"
     text = replaced(page, page.read_text(encoding="utf-8"), "figures", markdown(report))
-    page.write_text(replaced(page, text, "stages", stages_table(report)), encoding="utf-8")
+    page.write_text(replaced(page, text, "stages", stages_text(report)), encoding="utf-8")
     (ROOT / "docs/gallery/performance.svg").write_text(chart(report), encoding="utf-8")
 
 
@@ -194,7 +208,7 @@ def main():
         report = kept if options.show else {**report, "parts": kept["parts"]}
     if not options.show:
         measure(options, report)
-    (options.output / "results.md").write_text(markdown(report) + "\n" + stages_table(report), encoding="utf-8")
+    (options.output / "results.md").write_text(markdown(report) + "\n" + stages_text(report), encoding="utf-8")
     (options.output / "performance.svg").write_text(chart(report), encoding="utf-8")
     if options.write_docs:
         write_docs(report)

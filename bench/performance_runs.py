@@ -54,13 +54,22 @@ def stylize(options, scene, arguments, output, most_repeats=100):
     return [seconds for seconds, _, _ in runs], [peak for _, peak, _ in runs], [json.loads(text) for _, _, text in runs]
 
 
+def knows_timing(options):
+    """Whether this program can tell its start and its libraries from the rest: stylize --timing."""
+    return "--timing" in timed([options.build / "scumble", "stylize", "--help"])[2]
+
+
 def stages(reports):
-    """Median milliseconds of each stage that the program reports itself."""
-    return {name: statistics.median(report["ms"][name]["median"] for report in reports) for name in reports[0].get("ms", {})}
+    """Median milliseconds, on the wall, of each stage that the program reports itself."""
+    def of(report):
+        if "timing" in report:
+            return {stage["stage"]: stage["wall_ms"] for stage in report["timing"] if stage["stage"] != "total"}
+        return {name: spread["median"] for name, spread in report.get("ms", {}).items()}
+    return {name: statistics.median(of(report)[name] for report in reports) for name in of(reports[0])}
 
 
 def measure_process(options):
-    seconds, peaks, reports = stylize(options, "suzanne", [], "picture.png")
+    seconds, peaks, reports = stylize(options, "suzanne", ["--timing"] if knows_timing(options) else [], "picture.png")
     pixels = reports[0]["width"] * reports[0]["height"]
     frame = "suzanne %d×%d, style oil" % (reports[0]["width"], reports[0]["height"])
     where = stages(reports)
