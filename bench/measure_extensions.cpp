@@ -1,4 +1,4 @@
-#include <map>
+#include <memory>
 #include <set>
 
 #include "bench/performance.h"
@@ -21,7 +21,7 @@ Extension Extended(const std::string& item, const std::string& what, const Style
   return {item, what, std::make_unique<Engine>(style, frame.guides.height()), target, against};
 }
 
-// The first is the plain style; those without a unit of comparison of their own are timed but not reported.
+// The first is the plain style, which is timed for the others' sake.
 void MeasureCosts(const Frame& frame, const std::vector<Extension>& extensions, const PerformanceOptions& options,
                   Report& report) {
   std::vector<std::function<void()>> contestants;

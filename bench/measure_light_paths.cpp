@@ -1,3 +1,5 @@
+#include <array>
+#include <cmath>
 #include <nanoflann.hpp>
 
 #include "bench/or_stop.h"
@@ -24,16 +26,14 @@ Style LightPathStyle() {
 
 // As nanoflann wants points: its own Euclidean metric in floats, dimensions known when compiling.
 struct Points {
-  std::vector<float> coordinates;
+  std::vector<std::array<float, kDimensions>> all;
 
-  std::size_t kdtree_get_point_count() const { return coordinates.size() / kDimensions; }
-  float kdtree_get_pt(std::uint32_t index, std::size_t dimension) const {
-    return coordinates[index * kDimensions + dimension];
-  }
   template <class Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
   }
+  float kdtree_get_pt(std::uint32_t index, std::size_t dimension) const { return all[index][dimension]; }
+  std::size_t kdtree_get_point_count() const { return all.size(); }
 };
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points, float, std::uint32_t>,
                                                  Points, kDimensions, std::uint32_t>;
@@ -41,7 +41,8 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<fl
 Points ExemplarPoints(const PreparedStyle& style) {
   Points points;
   for (const Source at : style.exemplar->UsablePixels()) {
-    style.space->ForEachCoordinate(0, at, [&](float value) { points.coordinates.push_back(value); });
+    float* to = points.all.emplace_back().data();
+    style.space->ForEachCoordinate(0, at, [&](float value) { *to++ = value; });
   }
   return points;
 }

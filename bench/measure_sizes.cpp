@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "bench/or_stop.h"
