@@ -213,17 +213,12 @@ class Run {
     if (!done) return done;
     scratch_.times.match_ms += watch.Lap();
 
-    std::optional<internal::EdgeTest> edges;
-    std::optional<internal::JoinedWindow> joined;
-    if (settings.edge_aware && style.blend_radius > 0) {
-      if (!slopes_) slopes_.emplace(guides_);
-      edges.emplace(guides_, *slopes_, settings.crease, settings.depth_tolerance);
-      joined.emplace(*edges, guides_, style.blend_radius, painted);
-    }
+    const internal::EdgeRules edges{guides_, slopes_, settings.crease, settings.depth_tolerance};
+    const bool edge_aware = settings.edge_aware && style.blend_radius > 0;
     const int rows = painted.y1 - painted.y0;
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
     const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
-                                     joined ? &*joined : nullptr, painted};
+                                     edge_aware ? &edges : nullptr, painted};
     if (style.tones.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
@@ -284,7 +279,7 @@ class Run {
   Region region_;
   std::vector<float> luminance_;
   std::vector<std::uint8_t> wanted_;
-  std::optional<internal::DepthSlopes> slopes_;
+  internal::LateSlopes slopes_{guides_};
 };
 
 Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
