@@ -1,5 +1,6 @@
 #include "transfer/small_vote.h"
 
+#include <array>
 #include <bit>
 
 #include "transfer/ballot.h"
@@ -10,8 +11,9 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kTileRows = 32;   // so that what a tile's neighbours make once more is little
-constexpr int kTileWords = 32;  // so that all marks of a tile stay in the caches
+constexpr int kTileRows = 32;    // so that what a tile's neighbours make once more is little
+constexpr int kStripWords = 16;  // of a tile are voted on together, so that their texels stay in the nearer caches
+constexpr int kTileWords = 32;   // so that all marks of a tile stay in the caches
 
 // One part of the picture: marks of its chunks, then of its edges, then its votes row by row.
 class VoteTile {
@@ -32,13 +34,25 @@ class VoteTile {
     if (!Split()) return;
     const bool edges = input_.edges && mixed_any_;
     if (edges) MarkEdges(*input_.edges, input_.radius, tile_, mixed_, same_);
-    std::vector<std::uint64_t> copied(words_), linked(words_), whole(words_);
-    joined_.assign(std::size_t(ways_.count()) * words_, BitRows::kAll);
+    for (int word = first_word_; word < first_word_ + words_; word += kStripWords) {
+      VoteStrip(word, std::min(kStripWords, first_word_ + words_ - word), edges, out);
+    }
+  }
+
+ private:
+  void VoteStrip(int first_word, int words, bool edges, Picture& out) {
+    std::array<std::uint64_t, kStripWords> copied{}, linked{}, whole{};
+    joined_.assign(std::size_t(ways_.count()) * words, BitRows::kAll);
+    const int radius = input_.radius, first = std::max(0, 64 * first_word - radius);
+    const int end = std::min(input_.field.width, 64 * (first_word + words) + radius);
+    SourceRows sources(radius, first, end);
+    for (int y = region_.y0 - radius; y < region_.y0 + radius; ++y) sources.Add(input_.field, texels_, y);
     for (int y = region_.y0; y < region_.y1; ++y) {
-      const VoteRow row{texels_, input_.field, y, out.At(0, y), first_word_, words_};
+      sources.Add(input_.field, texels_, y + radius);
+      const VoteRow row{texels_, input_.field, y, out.At(0, y), first_word, words};
       std::uint64_t any_whole = 0, any_mixed = 0;
-      for (int w = 0; w < words_; ++w) {
-        const int word = first_word_ + w;
+      for (int w = 0; w < words; ++w) {
+        const int word = first_word + w;
         const std::uint64_t mixed = mixed_.At(y, word);
         copied[w] = marks_.active.At(y, word) & Inside(word) & ~mixed;
         linked[w] = marks_.right.At(y, word);
@@ -52,13 +66,12 @@ class VoteTile {
       }
       CopyMarked(row, copied, linked);
       if (!any_mixed) continue;
-      for (int w = 0; w < words_; ++w) copied[w] = mixed_.At(y, first_word_ + w) & ~whole[w];  // one by one
-      if (any_whole) MeanOfMarked(row, input_.radius, whole);
-      for (int w = 0; w < words_; ++w) VoteOneByOne(y, w, copied[w] | whole[w], out);
+      for (int w = 0; w < words; ++w) copied[w] = mixed_.At(y, first_word + w) & ~whole[w];  // one by one
+      if (any_whole) MeanOfMarked(row, sources, whole);
+      for (int w = 0; w < words; ++w) VoteOneByOne(y, first_word + w, JoinedAt(w), copied[w] | whole[w], out);
     }
   }
 
- private:
   std::uint64_t Inside(int word) const { return BitRange(region_.x0 - 64 * word, region_.x1 - 64 * word); }
   std::span<std::uint64_t> JoinedAt(int w) {
     return {joined_.data() + std::size_t(w) * ways_.count(), std::size_t(ways_.count())};
@@ -101,11 +114,10 @@ class VoteTile {
     return whole;
   }
 
-  void VoteOneByOne(int y, int w, std::uint64_t pixels, Picture& out) {
+  void VoteOneByOne(int y, int word, std::span<const std::uint64_t> joined, std::uint64_t pixels, Picture& out) {
     const SourceField& field = input_.field;
-    const std::span<const std::uint64_t> joined = JoinedAt(w);
     for (; pixels; pixels &= pixels - 1) {
-      const int i = std::countr_zero(pixels), x = 64 * (first_word_ + w) + i;
+      const int i = std::countr_zero(pixels), x = 64 * word + i;
       Ballot ballot;
       const auto add = [&](int u, int v) {
         const std::size_t q = field.Index(u, v);
