@@ -154,12 +154,9 @@ namespace scumble::internal {
 HWY_EXPORT(ActiveRow);
 HWY_EXPORT(LinkRow);
 
-void MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
+bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
                 int radius, const MarkedTile& tile, ChunkMarks& marks) {
   marks.active.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
-  marks.right.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, BitRows::kAll);
-  marks.below.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, BitRows::kAll);
-  marks.deep.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
   const auto row_at = [&](int y) {
     const std::size_t begin = field.Index(0, y);
     return ChunkRow{field.x.data() + begin,
@@ -177,6 +174,16 @@ void MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
   for (int y = first; y <= last; ++y) {
     HWY_DYNAMIC_DISPATCH(ActiveRow)(row_at(y), tile.first_word, tile.words, marks.active.Row(y));
   }
+  const auto any = [&](int y) {
+    const std::uint64_t* row = marks.active.Row(y);
+    return std::any_of(row, row + tile.words, [](std::uint64_t bits) { return bits != 0; });
+  };
+  bool some = false;
+  for (int y = first; y <= last && !some; ++y) some = any(y);
+  if (!some) return false;
+  marks.right.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, BitRows::kAll);
+  marks.below.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, BitRows::kAll);
+  marks.deep.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
   for (int y = first; y <= last; ++y) {
     ChunkRow row = row_at(y);
     const std::uint64_t* below = nullptr;
@@ -189,6 +196,7 @@ void MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
     (row, tile.first_word, tile.words, marks.active.Row(y), below, marks.right.Row(y), marks.below.Row(y),
      marks.deep.Row(y));
   }
+  return true;
 }
 
 }  // namespace scumble::internal

@@ -25,8 +25,8 @@ struct ChunkMarks {
   BitRows deep;  // active, and every texel within `radius` (in x and y) of its source is usable; in scenes none is told
 };
 
-// Fills the marks of a tile. O(pixels of the tile). Touches the field only where pixels are active.
-void MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
+// Fills the marks of a tile. False: nothing is active there, and no marks are made. O(pixels of the tile). Touches the field only where pixels are active.
+bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
                 int radius, const MarkedTile& tile, ChunkMarks& marks);
 
 }  // namespace scumble::internal

@@ -30,8 +30,7 @@ class VoteTile {
   }
 
   void Run(Picture& out) {
-    MarkChunks(input_.field, input_.active, input_.exemplar, input_.radius, tile_, marks_);
-    if (!Split()) return;
+    if (!MarkChunks(input_.field, input_.active, input_.exemplar, input_.radius, tile_, marks_) || !Split()) return;
     const bool edges = input_.edges && mixed_any_;
     if (edges) MarkEdges(*input_.edges, input_.radius, tile_, mixed_, same_);
     for (int word = first_word_; word < first_word_ + words_; word += kStripWords) {
