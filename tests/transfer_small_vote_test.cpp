@@ -30,37 +30,28 @@ struct Case {
 enum class Paint { kOpaque, kExtreme, kMixed, kTransparent };
 enum class Cover { kAll, kNone, kOne, kHoles, kStripes };
 
+std::uint16_t AlphaOf(Paint paint, std::uint64_t hash) {
+  const bool any = paint == Paint::kTransparent || (paint == Paint::kMixed && hash % 8 == 0);
+  if (!any) return 65535;
+  return hash / 8 % 3 == 0 ? 0 : static_cast<std::uint16_t>(hash);
+}
+
 Picture PaintOf(int size, Paint paint, std::uint64_t seed) {
   Picture picture(size, size);
   for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
     const std::uint64_t hash = Hash(seed, i);
     constexpr std::uint16_t kEnds[] = {0, 1, 32767, 32768, 65534, 65535};
     picture.rgba[i] = paint == Paint::kExtreme ? kEnds[hash % 6] : static_cast<std::uint16_t>(hash);
-    if (i % 4 != 3) continue;
-    const bool opaque =
-        paint == Paint::kOpaque || paint == Paint::kExtreme || (paint == Paint::kMixed && hash % 8 != 0);
-    if (opaque)
-      picture.rgba[i] = 65535;
-    else if (hash / 8 % 3 == 0)
-      picture.rgba[i] = 0;
+    if (i % 4 == 3) picture.rgba[i] = AlphaOf(paint, hash);
   }
   return picture;
 }
 
 bool CoveredAt(Cover cover, int x, int y, int width, int height, std::uint64_t seed) {
-  switch (cover) {
-    case Cover::kAll:
-      return true;
-    case Cover::kNone:
-      return false;
-    case Cover::kOne:
-      return x == width / 2 && y == height / 2;
-    case Cover::kHoles:
-      return Hash(seed, x / 5, y / 3) % 7 != 0;
-    case Cover::kStripes:
-      return (x + 2 * y) / 40 % 2 == 0;
-  }
-  return false;
+  if (cover == Cover::kOne) return x == width / 2 && y == height / 2;
+  if (cover == Cover::kHoles) return Hash(seed, x / 5, y / 3) % 7 != 0;
+  if (cover == Cover::kStripes) return (x + 2 * y) / 40 % 2 == 0;
+  return cover == Cover::kAll;
 }
 
 Case MakeCase(int width, int height, int size, Paint paint, Cover cover, int exemplars, std::uint64_t seed) {
