@@ -26,20 +26,9 @@ struct Case {
 // The definition.
 Picture PlainVotes(const internal::VoteInput& input) {
   Picture out(input.field.width, input.field.height);
-  for (int y = input.region.y0; y < input.region.y1; ++y) {
-    for (int x = input.region.x0; x < input.region.x1; ++x) {
-      if (!input.active[input.field.Index(x, y)]) continue;
-      std::uint64_t sum[4] = {}, votes = 0;
-      ForEachVote(input, x, y, [&](int exemplar, Source source) {
-        const std::uint16_t* texel = input.exemplar.picture(exemplar).At(source.x, source.y);
-        for (int c = 0; c < 3; ++c) sum[c] += std::uint64_t{texel[3]} * texel[c];
-        sum[3] += texel[3], ++votes;
-      });
-      std::uint16_t* pixel = out.At(x, y);
-      for (int c = 0; c < 3; ++c) pixel[c] = sum[3] ? static_cast<std::uint16_t>((sum[c] + sum[3] / 2) / sum[3]) : 0;
-      pixel[3] = static_cast<std::uint16_t>((sum[3] + votes / 2) / votes);
-    }
-  }
+  const Progress unheard;
+  internal::RowProgress progress(unheard, 0.0, 1.0, 1);
+  EXPECT_TRUE(internal::VotePlainly(input, out, progress));
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "transfer/ballot.h"
 #include "transfer/chunk_interiors.h"
 #include "transfer/small_vote.h"
+#include "transfer/wide_vote.h"
 
 namespace scumble::internal {
 
@@ -30,6 +31,7 @@ bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress) {
 }
 
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress) {
+  if (input.radius >= kWideRadius && input.radius <= kWidestRadius && !input.edges) return WideVote(input, out, progress);
   return input.radius <= kSmallRadius ? VoteSmall(input, out, progress) : VotePlainly(input, out, progress);
 }
 

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "transfer/ballot.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/wide_sums.cpp"
 #include <hwy/cache_control.h>
@@ -276,9 +278,7 @@ void WideSums::WriteWeighted(std::uint64_t active, std::size_t first, std::uint1
   for (; active; active &= active - 1) {
     const std::size_t x = std::size_t(std::countr_zero(active));
     const std::uint64_t* sum = weighted_.data() + 4 * (first + x);
-    const std::uint64_t alpha = sum[3], votes = votes_[first + x];
-    for (int c = 0; c < 3; ++c) out[4 * x + c] = alpha ? static_cast<std::uint16_t>((sum[c] + alpha / 2) / alpha) : 0;
-    out[4 * x + 3] = static_cast<std::uint16_t>((alpha + votes / 2) / votes);
+    Ballot{{sum[0], sum[1], sum[2]}, sum[3], votes_[first + x]}.Count(out + 4 * x);
   }
 }
 

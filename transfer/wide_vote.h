@@ -8,7 +8,7 @@
 namespace scumble::internal {
 
 // From this radius on it is quicker than visiting every pixel of the window; up to kWidestRadius the sums fit.
-inline constexpr int kWideRadius = 3, kWidestRadius = 127;
+inline constexpr int kWideRadius = 4, kWidestRadius = 127;
 
 // The same picture as Vote's to the bit, for radii of kWideRadius … kWidestRadius.
 bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress);
