@@ -2,7 +2,8 @@
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
-#include <optional>
+#include <cmath>
+#include <limits>
 
 #include "tests/transfer_fixtures.h"
 #include "transfer/wide_vote.h"
@@ -202,6 +203,97 @@ TEST(WideVote, SameOnEveryInstructionSet) {
   for (std::uint32_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
     hwy::SetSupportedTargetsForTest(rest & (0u - rest));
     EXPECT_EQ(WideVotes(input).rgba, expected.rgba) << hwy::TargetName(rest & (0u - rest));
+  }
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+// Hills with creases, blocks at hashed depths, objects, and holes; or with values that no scene should have.
+void FillGuides(Case& all, bool extreme) {
+  GuideSet& guides = all.guides;
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject}) guides.Add(layer);
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kFar = std::numeric_limits<float>::infinity();
+  for (int y = 0; y < guides.height(); ++y) {
+    for (int x = 0; x < guides.width(); ++x) {
+      const std::size_t i = guides.Index(x, y);
+      // Inactive pixels may be covered, by another style; active ones always are.
+      guides.Plane(Layer::kCoverage)[i] = all.active[i] || Hash(x / 11, y / 8, 7) % 3 == 0 ? 1.0f : 0.0f;
+      const std::uint64_t block = Hash(x / 26, y / 19, 8);
+      const glm::vec3 n = glm::normalize(glm::vec3(std::sin(x * 0.05f), block % 5 == 0 ? 2.0f : std::cos(y * 0.04f), 0.8f));
+      for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = n[c];
+      const float u = static_cast<float>(x), v = static_cast<float>(y);
+      guides.Plane(Layer::kDepth)[i] = 5.0f + 0.01f * u - 0.007f * v + 2e-5f * u * v + 0.04f * static_cast<float>(block / 8 % 3 / 2);
+      guides.Plane(Layer::kObject)[i] = x + y > guides.width() ? 1.0f : 2.0f;
+      if (!extreme || Hash(x / 13, y / 15, 9) % 4 != 0) continue;
+      const float odd[] = {0.0f, 1e30f, 1e-38f, kFar, -kFar, kNaN, -3.0f, 5.0f};
+      guides.Plane(Layer::kDepth)[i] = odd[Hash(x, y) % 8];
+      guides.Plane(Layer::kNormal, int(Hash(x, y, 1) % 3))[i] = odd[Hash(x, y, 2) % 8];
+      if (Hash(x, y, 3) % 9 == 0) guides.Plane(Layer::kObject)[i] = kNaN;
+    }
+  }
+}
+
+std::size_t Different(const Picture& a, const Picture& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) count += a.rgba[i] != b.rgba[i];
+  return count;
+}
+
+TEST(WideVote, EdgesAreTheDefinitions) {
+  for (const bool extreme : {false, true}) {
+    for (const Pieces pieces : {Pieces::kLarge, Pieces::kMixed}) {
+      for (const bool opaque : {true, false}) {
+        Case all = MakeCase(150, 90, pieces, 110, 2, opaque, 3);
+        FillGuides(all, extreme);
+        internal::LateSlopes slopes(all.guides);
+        for (const int radius : {1, 3, 5, 8, 16, 17}) {
+          for (const auto& [crease, tolerance] : {std::pair{60.0, 0.002}, {180.0, 0.0}, {25.0, 0.02}, {180.0, 1.0}}) {
+            const internal::EdgeRules rules{all.guides, slopes, crease, tolerance};
+            internal::VoteInput input = all.Input(radius, Whole(all));
+            input.edges = &rules;
+            const Picture found = WideVotes(input);
+            ASSERT_EQ(Different(found, PlainVotes(input)), 0u)
+                << extreme << int(pieces) << opaque << ", radius " << radius << ", crease " << crease << ", tolerance " << tolerance;
+            if (!extreme && tolerance < 1.0 && radius > 1) {
+              input.edges = nullptr;
+              EXPECT_GT(Different(found, WideVotes(input)), 500u) << "edges should matter here";
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(WideVote, EdgesInPicturesOfAnyShapeRegionsAndThreads) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 90}, {200, 1}, {65, 63}, {63, 130}}) {
+    Case all = MakeCase(width, height, Pieces::kMixed, 120, 2, true, 6);
+    FillGuides(all, false);
+    internal::LateSlopes slopes(all.guides);
+    const internal::EdgeRules rules{all.guides, slopes, 60.0, 0.002};
+    for (const int radius : {4, 9, 64}) {
+      for (const Region& region : {Whole(all), Region{width / 3, height / 4, width, (height + 1) / 2}}) {
+        internal::VoteInput input = all.Input(radius, region);
+        input.edges = &rules;
+        const Picture expected = PlainVotes(input);
+        for (const int threads : {1, 2, 3}) {
+          EXPECT_EQ(Different(WideVotes(input, threads), expected), 0u) << width << " × " << height << ", " << radius;
+        }
+      }
+    }
+  }
+}
+
+TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
+  Case all = MakeCase(150, 100, Pieces::kMixed, 90, 2, true, 8);
+  FillGuides(all, true);
+  internal::LateSlopes slopes(all.guides);
+  const internal::EdgeRules rules{all.guides, slopes, 60.0, 0.002};
+  internal::VoteInput input = all.Input(7, Whole(all));
+  input.edges = &rules;
+  const Picture expected = PlainVotes(input);
+  for (std::uint32_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
+    hwy::SetSupportedTargetsForTest(rest & (0u - rest));
+    EXPECT_EQ(Different(WideVotes(input), expected), 0u) << hwy::TargetName(rest & (0u - rest));
   }
   hwy::SetSupportedTargetsForTest(0);
 }

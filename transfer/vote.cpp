@@ -31,7 +31,7 @@ bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress) {
 }
 
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress) {
-  if (input.radius >= kWideRadius && input.radius <= kWidestRadius && !input.edges) return WideVote(input, out, progress);
+  if (input.radius >= kWideRadius && input.radius <= kWidestRadius) return WideVote(input, out, progress);
   return input.radius <= kSmallRadius ? VoteSmall(input, out, progress) : VotePlainly(input, out, progress);
 }
 

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "transfer/usable_rows.h"
+#include "transfer/wide_joined.h"
 #include "transfer/wide_sums.h"
+#include "transfer/wide_surface.h"
 #include "transfer/wide_tile.h"
 
 namespace scumble::internal {
@@ -16,6 +19,8 @@ namespace {
 struct Scratch {
   WideTile tile;
   WideSums sums;
+  WideSurface surface;
+  WideJoined joined;
 };
 
 }  // namespace
@@ -24,6 +29,12 @@ bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress) {
   const Region& region = input.region;
   if (region.empty()) return !progress.cancelled();
   const UsableRows usable(input.exemplar);
+  std::optional<WideWays> ways;
+  EdgeLimits limits{};
+  if (input.edges) {
+    ways.emplace(input.radius);
+    limits = {input.edges->CreaseCosine(), input.edges->DepthTolerance()};
+  }
   const int columns = (region.x1 - region.x0 + kTileSide - 1) / kTileSide;
   const int rows = (region.y1 - region.y0 + kTileSide - 1) / kTileSide;
   tbb::enumerable_thread_specific<Scratch> scratch;
@@ -36,6 +47,10 @@ bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress) {
     Scratch& mine = scratch.local();
     if (mine.tile.Read(input, area)) {
       mine.sums.Sum(mine.tile, input.exemplar, usable);
+      if (input.edges) {
+        mine.surface.Read(input.edges->guides, area, input.radius);
+        mine.joined.Withdraw(input, *ways, mine.tile, mine.surface, limits, mine.sums);
+      }
       mine.sums.Write(mine.tile, out);
     }
     if (--left[std::size_t(row)] == 0) progress.Finished(area.y1 - area.y0);

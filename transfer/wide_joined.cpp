@@ -1,0 +1,286 @@
+#include "transfer/wide_joined.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "transfer/wide_joined.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace scumble::internal::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DF = HWY_CAPPED(float, 16);
+
+// EdgeTest::SameSurface between 64 pixels of a row from column x on and those (dx, dy) further, where `wanted` has bits:
+// the bits of those that pass. What is not covered does not.
+HWY_ATTR std::uint64_t PassWord(const WideSurface& surface, const EdgeLimits& limits, int x, int y, int dx, int dy,
+                                std::uint64_t wanted) {
+  const DF d;
+  constexpr int kPlanes = WideSurface::kObject + 1;
+  const float *p[kPlanes], *q[kPlanes];
+  for (int k = 0; k < kPlanes; ++k) {
+    p[k] = surface.Row(WideSurface::Plane(k), y) + x;
+    q[k] = surface.Row(WideSurface::Plane(k), y + dy) + x + dx;
+  }
+  const auto right = hn::Set(d, static_cast<float>(dx)), down = hn::Set(d, static_cast<float>(dy));
+  const auto wide = hn::Abs(right), high = hn::Abs(down);
+  std::uint64_t pass = 0;
+  for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
+    if (!(wanted >> i & ((std::uint64_t{2} << (hn::Lanes(d) - 1)) - 1))) continue;
+    const auto of_p = [&](int k) HWY_ATTR { return hn::LoadU(d, p[k] + i); };
+    const auto of_q = [&](int k) HWY_ATTR { return hn::LoadU(d, q[k] + i); };
+    const auto px = of_p(WideSurface::kSlopeX), qx = of_q(WideSurface::kSlopeX);
+    const auto py = of_p(WideSurface::kSlopeY), qy = of_q(WideSurface::kSlopeY);
+    const auto near = of_p(WideSurface::kDepth), far = of_q(WideSurface::kDepth);
+    const auto expected = hn::Mul(hn::Set(d, 0.5f), hn::Add(hn::Mul(hn::Add(px, qx), right), hn::Mul(hn::Add(py, qy), down)));
+    const auto leeway = hn::Add(hn::Mul(hn::Min(hn::Abs(px), hn::Abs(qx)), wide), hn::Mul(hn::Min(hn::Abs(py), hn::Abs(qy)), high));
+    const auto tolerance = hn::Add(leeway, hn::Mul(hn::Set(d, limits.depth_tolerance), hn::Min(near, far)));
+    auto same = hn::Le(hn::Abs(hn::Sub(hn::Sub(far, near), expected)), tolerance);
+    const auto across = hn::Mul(of_p(WideSurface::kNormalX), of_q(WideSurface::kNormalX));
+    const auto along = hn::Mul(of_p(WideSurface::kNormalY), of_q(WideSurface::kNormalY));
+    const auto out = hn::Mul(of_p(WideSurface::kNormalZ), of_q(WideSurface::kNormalZ));
+    same = hn::And(same, hn::Gt(hn::Add(hn::Add(across, along), out), hn::Set(d, limits.crease_cosine)));
+    same = hn::And(same, hn::Eq(of_p(WideSurface::kObject), of_q(WideSurface::kObject)));
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, same, bytes);
+    pass |= std::uint64_t(bytes[0] | bytes[1] << 8) << i;
+  }
+  return pass;
+}
+
+// For eight rows from `row` on: reached[8 · pixel of the window] becomes the bits of the pixels to which every step on the
+// way from that pixel passes.
+HWY_ATTR void ReachWindow(const WideWays& ways, const BitPlane* steps, int row, std::uint64_t* reached) {
+  const std::uint32_t middle = 2u * ways.radius() * (ways.radius() + 1);
+  std::fill_n(reached + 8 * std::size_t(middle), 8, ~std::uint64_t{0});
+  for (const WideWays::Way& way : ways.ways()) {
+    std::uint64_t step[8];
+    steps[way.step].Read8(row + way.holder_dy, way.holder_dx, step);
+    const std::uint64_t* before = reached + 8 * std::size_t(way.before);
+    std::uint64_t* here = reached + 8 * std::size_t(way.self);
+    for (int k = 0; k < 8; ++k) here[k] = before[k] & step[k];
+  }
+}
+
+}  // namespace scumble::internal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scumble::internal {
+
+HWY_EXPORT(PassWord);
+HWY_EXPORT(ReachWindow);
+
+namespace {
+
+constexpr int kStepX[] = {1, -1, 0, 1}, kStepY[] = {0, 1, 1, 1};
+constexpr int kCell = WideSurface::kCell, kCells = WideSurface::kCells;
+
+// The side of a way after n - 1 of its n steps: the row or column nearest to the line, halves away from the middle.
+int OneBefore(int side, int n) {
+  const int length = (2 * std::abs(side) * (n - 1) + n) / (2 * n);
+  return side < 0 ? -length : length;
+}
+
+int StepOf(int dx, int dy) {
+  int k = 0;
+  while (kStepX[k] != dx || kStepY[k] != dy) ++k;
+  return k;
+}
+
+// Of 64 bits, those from `begin` to before `end`, which may lie outside.
+std::uint64_t BitsBetween(int begin, int end) {
+  begin = std::clamp(begin, 0, 64), end = std::clamp(end, 0, 64);
+  if (begin >= end) return 0;
+  return ~std::uint64_t{0} >> (64 - (end - begin)) << begin;
+}
+
+}  // namespace
+
+WideWays::WideWays(int radius) : radius_(radius) {
+  const int side = 2 * radius + 1;
+  const auto place = [&](int dx, int dy) { return static_cast<std::uint32_t>((dy + radius) * side + dx + radius); };
+  for (int n = 1; n <= radius; ++n) {
+    for (int dy = -n; dy <= n; ++dy) {
+      const int stride = std::abs(dy) == n ? 1 : 2 * n;
+      for (int dx = -n; dx <= n; dx += stride) {
+        const int x = OneBefore(dx, n), y = OneBefore(dy, n);
+        // A step back is kept where it ends.
+        const bool back = dy < y || (dy == y && dx < x);
+        const int step = back ? StepOf(x - dx, y - dy) : StepOf(dx - x, dy - y);
+        ways_.push_back({static_cast<std::int16_t>(dx), static_cast<std::int16_t>(dy), place(dx, dy), place(x, y),
+                         static_cast<std::int16_t>(back ? dx : x), static_cast<std::int16_t>(back ? dy : y),
+                         static_cast<std::uint8_t>(step)});
+      }
+    }
+  }
+}
+
+void WideJoined::MarkDoubts(const WideSurface& surface, const EdgeLimits& limits) {
+  const int reach = surface.reach(), cells = kCells + 2 * reach;
+  doubts_.assign(std::size_t(cells) * cells, 0);
+  for (int row = 0; row < cells; ++row) {
+    for (int column = 0; column < cells; ++column) {
+      unsigned bits = surface.Doubtful(limits, column - reach, row - reach, 0, 0);
+      for (int k = 0; k < 4; ++k) {
+        const int x = column + kStepX[k], y = row + kStepY[k];
+        if (x < 0 || x >= cells || y >= cells) continue;
+        bits |= unsigned(surface.Doubtful(limits, column - reach, row - reach, kStepX[k], kStepY[k])) << (k + 1);
+      }
+      doubts_[std::size_t(row) * cells + column] = static_cast<std::uint8_t>(bits);
+    }
+  }
+}
+
+// As the surface says it; for neighbours it is known.
+bool WideJoined::Doubtful(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx, int dy) const {
+  if (std::abs(dx) > 1 || std::abs(dy) > 1) return surface.Doubtful(limits, column, row, dx, dy);
+  const int reach = surface.reach(), cells = kCells + 2 * reach;
+  const bool back = dy < 0 || (dy == 0 && dx < 0);
+  const int x = back ? column + dx : column, y = back ? row + dy : row;
+  const int bit = dx == 0 && dy == 0 ? 0 : 1 + (back ? StepOf(-dx, -dy) : StepOf(dx, dy));
+  return doubts_[std::size_t(y + reach) * cells + (x + reach)] >> bit & 1;
+}
+
+// Forward steps of every pixel of the tile and around it; columns and rows beyond the radius do not matter.
+void WideJoined::MarkSteps(const WideSurface& surface, const EdgeLimits& limits) {
+  const int margin = surface.margin(), radius = surface.radius(), cells = kCells + 2 * surface.reach();
+  for (BitPlane& plane : steps_) plane.Reset(margin);
+  blocked_.assign(std::size_t(kTileSide + 2 * margin), 0);
+  for (int y = -radius; y < kTileSide + radius; ++y) {
+    const std::uint8_t* doubts = doubts_.data() + std::size_t((y + margin) / kCell) * cells;
+    for (int x = -margin; x < kTileSide + margin; x += 64) {
+      std::uint64_t doubtful = 0;
+      for (int k = 0; k < kCells && (x + margin) / kCell + k < cells; ++k) {
+        if (doubts[(x + margin) / kCell + k]) doubtful |= std::uint64_t{0xff} << (kCell * k);
+      }
+      const std::uint64_t here = surface.covered().Read(y, x);
+      for (int k = 0; k < 4; ++k) {
+        // Steps out of the surroundings are refused, but nobody takes them.
+        const int begin = std::max(-radius, -radius - kStepX[k]), end = kTileSide + radius - std::max(0, kStepX[k]);
+        const std::uint64_t inner = BitsBetween(begin - x, end - x);
+        if (inner == 0 || y + kStepY[k] >= kTileSide + radius) continue;
+        std::uint64_t bits = here & surface.covered().Read(y + kStepY[k], x + kStepX[k]) & inner;
+        if (const std::uint64_t wanted = bits & doubtful) {
+          bits &= ~wanted | HWY_DYNAMIC_DISPATCH(PassWord)(surface, limits, x, y, kStepX[k], kStepY[k], wanted);
+        }
+        if (bits != inner) blocked_[std::size_t(y + margin)] = 1;
+        steps_[k].Put(y, x, bits);
+      }
+    }
+  }
+}
+
+void WideJoined::MarkPixels(const WideTile& tile, int margin) {
+  votes_.Reset(margin), changes_.Reset(margin);
+  const Region &area = tile.area(), &surround = tile.surround();
+  const int left = surround.x0 - area.x0, width = surround.x1 - surround.x0;
+  for (int y = surround.y0; y < surround.y1; ++y) {
+    for (int word = 0; 64 * word < width; ++word) {
+      votes_.Put(y - area.y0, left + 64 * word, tile.Votes(y - surround.y0)[word]);
+      changes_.Put(y - area.y0, left + 64 * word, tile.Changes(y - surround.y0)[word]);
+    }
+  }
+}
+
+void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
+                          const EdgeLimits& limits, WideSums& sums) {
+  MarkDoubts(surface, limits);
+  MarkSteps(surface, limits);
+  MarkPixels(tile, surface.margin());
+  for (int row = 0; row < tile.area().y1 - tile.area().y0; row += kCell) {
+    WithdrawRows(input, ways, tile, surface, limits, row, sums);
+  }
+}
+
+namespace {
+
+// Votes of one row of pixels that are taken back together: those of one chunk, side by side, for the same pixel.
+struct Missing {
+  std::uint64_t bits = 0;         // of pixels that lack the vote that was looked at last
+  std::int16_t since[kTileSide];  // the first of them, by pixel
+};
+
+}  // namespace
+
+void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile,
+                              const WideSurface& surface, const EdgeLimits& limits, int first_row, WideSums& sums) {
+  const int radius = surface.radius(), reach = surface.reach(), margin = surface.margin();
+  const int side = 2 * radius + 1, cells = 2 * reach + 1;
+  const int rows = std::min(kCell, tile.area().y1 - tile.area().y0 - first_row);
+  std::uint64_t active[8] = {}, any_active = 0;
+  for (int k = 0; k < rows; ++k) any_active |= active[k] = tile.ActiveWord(first_row + k);
+  if (!any_active) return;
+  const auto* blocked = blocked_.data() + (first_row + margin);
+  const bool open = std::none_of(blocked - radius, blocked + kCell + radius, [](std::uint8_t row) { return row != 0; });
+  unsure_.assign(std::size_t(cells) * cells, 0);
+  bool sure = true;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      std::uint64_t bits = 0;
+      for (int column = 0; column < kCells; ++column) {
+        if (!(any_active >> (kCell * column) & 0xff)) continue;
+        if (Doubtful(surface, limits, column, first_row / kCell, dx, dy)) bits |= std::uint64_t{0xff} << (kCell * column);
+      }
+      unsure_[std::size_t(dy + reach) * cells + (dx + reach)] = bits;
+      sure &= bits == 0;
+    }
+  }
+  if (open && sure) return;
+  reached_.resize(8 * std::size_t(side) * side);
+  if (!open) HWY_DYNAMIC_DISPATCH(ReachWindow)(ways, steps_, first_row, reached_.data());
+
+  const SourceField& field = input.field;
+  Missing missing[8];
+  const auto take_back = [&](int k, std::uint64_t bits, int dx, int dy) {
+    for (; bits; bits &= bits - 1) {
+      const int x = std::countr_zero(bits), y = first_row + k;
+      const std::size_t q = field.Index(tile.area().x0 + x + dx - 1, tile.area().y0 + y + dy);
+      const Source source{field.x[q] - (dx - 1), field.y[q] - dy};
+      if (!input.exemplar.Usable(source.x, source.y)) continue;
+      sums.Withdraw(x, y, input.exemplar.picture(field.exemplar[q]).At(source.x, source.y),
+                    static_cast<std::uint32_t>(dx - missing[k].since[x]));
+    }
+  };
+  constexpr std::uint64_t kColumns = 0x0101010101010101u;
+  for (int dy = -radius; dy <= radius; ++dy) {
+    for (int dx = -radius; dx <= radius + 1; ++dx) {
+      std::uint64_t lack[8] = {};
+      if (dx <= radius && (dx != 0 || dy != 0)) {
+        std::uint64_t votes[8];
+        votes_.Read8(first_row + dy, dx, votes);
+        const std::uint64_t* reached = reached_.data() + 8 * std::size_t((dy + radius) * side + dx + radius);
+        // The pixels that see the cell of a whole number of cells on, and those that see the next.
+        const int cell = dx >> 3;
+        const std::uint64_t near = kColumns * (0xffu >> (dx & 7));
+        for (int k = 0; k < rows; ++k) {
+          const std::uint64_t both = votes[k] & active[k], seen = open ? both : both & reached[k];
+          lack[k] = both & ~seen;
+          if (sure || !seen) continue;
+          const std::uint64_t* unsure = unsure_.data() + std::size_t(((k + dy) >> 3) + reach) * cells + (cell + reach);
+          const std::uint64_t wanted = seen & ((unsure[0] & near) | (cell < reach ? unsure[1] & ~near : 0));
+          if (wanted) lack[k] |= wanted & ~HWY_DYNAMIC_DISPATCH(PassWord)(surface, limits, 0, first_row + k, dx, dy, wanted);
+        }
+      }
+      for (int k = 0; k < rows; ++k) {
+        const std::uint64_t before = missing[k].bits;
+        if (!(before | lack[k])) continue;
+        const std::uint64_t on = before & lack[k] & ~changes_.Read(first_row + k + dy, dx);
+        take_back(k, before & ~on, dx, dy);
+        for (std::uint64_t bits = lack[k] & ~on; bits; bits &= bits - 1) {
+          missing[k].since[std::countr_zero(bits)] = static_cast<std::int16_t>(dx);
+        }
+        missing[k].bits = lack[k];
+      }
+    }
+  }
+}
+
+}  // namespace scumble::internal
+#endif

@@ -1,0 +1,56 @@
+// Which votes do not count because an edge stands between: found for 64 × 8 pixels at a time, and taken back.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "transfer/vote.h"
+#include "transfer/wide_sums.h"
+#include "transfer/wide_surface.h"
+#include "transfer/wide_tile.h"
+
+namespace scumble::internal {
+
+// The ways of JoinedWindow for one radius, nearest pixels first.
+class WideWays {
+ public:
+  explicit WideWays(int radius);
+
+  struct Way {
+    std::int16_t dx, dy;
+    std::uint32_t self, before;            // in a window's rows: the pixel, and the one before it on the way
+    std::int16_t holder_dx, holder_dy;     // whose forward step the last one is
+    std::uint8_t step;                     // right, down left, down, down right
+  };
+  int radius() const { return radius_; }
+  const std::vector<Way>& ways() const { return ways_; }
+
+ private:
+  int radius_;
+  std::vector<Way> ways_;
+};
+
+// Kept from tile to tile by a thread.
+class WideJoined {
+ public:
+  // Takes the votes of all pixels that are not joined to the one they vote for back from `sums`, which holds all votes of
+  // the tile. The definition is JoinedWindow's, to the bit.
+  void Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
+                const EdgeLimits& limits, WideSums& sums);
+
+ private:
+  void MarkDoubts(const WideSurface& surface, const EdgeLimits& limits);
+  bool Doubtful(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx, int dy) const;
+  void MarkSteps(const WideSurface& surface, const EdgeLimits& limits);
+  void MarkPixels(const WideTile& tile, int margin);
+  void WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
+                    const EdgeLimits& limits, int first_row, WideSums& sums);
+
+  std::vector<std::uint8_t> doubts_;    // by cell: bits for itself and the four forward neighbours
+  BitPlane steps_[4], votes_, changes_;  // changes: pixels that are not of the chunk of the one before
+  std::vector<std::uint8_t> blocked_;   // by row from -margin: a step from it is refused
+  std::vector<std::uint64_t> reached_;  // by pixel of the window and row of eight
+  std::vector<std::uint64_t> unsure_;   // by cell of the window: bits of a row of the tile
+};
+
+}  // namespace scumble::internal

@@ -1,0 +1,263 @@
+#include "transfer/wide_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "transfer/wide_surface.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace scumble::internal::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using DF = HWY_CAPPED(float, 16);
+
+// Depth becomes NaN where nothing is covered, so that nothing that is made of it passes a comparison. `n` may be passed by a vector.
+HWY_ATTR void MaskDepth(const float* coverage, float* depth, int n) {
+  const DF d;
+  const auto none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  for (int i = 0; i < n; i += static_cast<int>(hn::Lanes(d))) {
+    const auto covered = hn::Gt(hn::LoadU(d, coverage + i), hn::Zero(d));
+    hn::StoreU(hn::IfThenElse(covered, hn::LoadU(d, depth + i), none), d, depth + i);
+  }
+}
+
+// DepthSlopes' rule for one direction: values before, at and behind each pixel.
+HWY_ATTR void SlopeRow(const float* before, const float* here, const float* after, int n, float* slope) {
+  const DF d;
+  for (int i = 0; i < n; i += static_cast<int>(hn::Lanes(d))) {
+    const auto depth = hn::LoadU(d, here + i);
+    const auto back = hn::Sub(depth, hn::LoadU(d, before + i)), front = hn::Sub(hn::LoadU(d, after + i), depth);
+    const auto gentler = hn::IfThenElse(hn::Lt(hn::Abs(back), hn::Abs(front)), back, front);
+    hn::StoreU(hn::IfThenElseZero(hn::Gt(hn::Mul(back, front), hn::Zero(d)), gentler), d, slope + i);
+  }
+}
+
+// The smallest and largest covered value of each column of a cell's rows, folded to one of each.
+struct Range {
+  float least, most;
+};
+
+// Ranges of eight columns at `rows`, `stride` floats apart, where `coverage` is above 0; and whether any of them is NaN.
+// On eight lanes or fewer; a cell is eight wide.
+using DC = HWY_CAPPED(float, 8);
+
+struct CellRanges {
+  Range value[WideSurface::kPlanes];
+  Range length2, steep_x, steep_y;
+  bool any, nan;
+};
+
+HWY_ATTR void CellRangesOf(const float* const* planes, std::size_t stride, CellRanges& out) {
+  const DC d;
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  constexpr int kValues = 7;
+  bool any = false, nan = false;
+  float least[10], most[10];
+  std::fill_n(least, 10, kFar), std::fill_n(most, 10, -kFar);
+  for (int x = 0; x < WideSurface::kCell; x += lanes) {
+    auto low0 = hn::Set(d, kFar), low1 = low0, low2 = low0, low3 = low0, low4 = low0, low5 = low0, low6 = low0, low7 = low0, low8 = low0, low9 = low0;
+    auto high0 = hn::Set(d, -kFar), high1 = high0, high2 = high0, high3 = high0, high4 = high0, high5 = high0, high6 = high0;
+    auto seen = hn::Zero(d), strange = hn::Zero(d);
+    const auto one = hn::Set(d, 1.0f), far = hn::Set(d, kFar), back = hn::Set(d, -kFar);
+    for (int y = 0; y < WideSurface::kCell; ++y) {
+      const std::size_t at = std::size_t(y) * stride + std::size_t(x);
+      const auto covered = hn::Gt(hn::LoadU(d, planes[WideSurface::kCoverage] + at), hn::Zero(d));
+      seen = hn::Or(seen, hn::IfThenElseZero(covered, one));
+      const auto fold = [&](auto value, auto& low, auto& high) HWY_ATTR {
+        low = hn::Min(low, hn::IfThenElse(covered, value, far));
+        high = hn::Max(high, hn::IfThenElse(covered, value, back));
+        strange = hn::Or(strange, hn::IfThenElseZero(hn::And(covered, hn::Ne(value, value)), one));
+      };
+      const auto depth = hn::LoadU(d, planes[0] + at), sx = hn::LoadU(d, planes[1] + at), sy = hn::LoadU(d, planes[2] + at);
+      const auto nx = hn::LoadU(d, planes[3] + at), ny = hn::LoadU(d, planes[4] + at), nz = hn::LoadU(d, planes[5] + at);
+      fold(depth, low0, high0), fold(sx, low1, high1), fold(sy, low2, high2);
+      fold(nx, low3, high3), fold(ny, low4, high4), fold(nz, low5, high5);
+      fold(hn::LoadU(d, planes[6] + at), low6, high6);
+      const auto length2 = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
+      low7 = hn::Min(low7, hn::IfThenElse(covered, length2, far));
+      low8 = hn::Min(low8, hn::IfThenElse(covered, hn::Abs(sx), far));
+      low9 = hn::Min(low9, hn::IfThenElse(covered, hn::Abs(sy), far));
+    }
+    const auto lowest = [&](auto value, int k) HWY_ATTR { least[k] = std::min(least[k], hn::GetLane(hn::MinOfLanes(d, value))); };
+    const auto highest = [&](auto value, int k) HWY_ATTR { most[k] = std::max(most[k], hn::GetLane(hn::MaxOfLanes(d, value))); };
+    any |= hn::GetLane(hn::MaxOfLanes(d, seen)) > 0.0f, nan |= hn::GetLane(hn::MaxOfLanes(d, strange)) > 0.0f;
+    lowest(low0, 0), lowest(low1, 1), lowest(low2, 2), lowest(low3, 3), lowest(low4, 4), lowest(low5, 5), lowest(low6, 6);
+    lowest(low7, 7), lowest(low8, 8), lowest(low9, 9);
+    highest(high0, 0), highest(high1, 1), highest(high2, 2), highest(high3, 3), highest(high4, 4), highest(high5, 5), highest(high6, 6);
+  }
+  for (int k = 0; k < kValues; ++k) out.value[k] = {least[k], most[k]};
+  out.length2.least = least[7], out.steep_x.least = least[8], out.steep_y.least = least[9];
+  out.any = any, out.nan = nan;
+}
+
+// How far depth leaves the plane of these slopes through the cell's centre.
+HWY_ATTR void BendOf(const float* depth, const float* coverage, std::size_t stride, float slope_x, float slope_y, Range& out) {
+  const DC d;
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  constexpr float kCentre = 0.5f * (WideSurface::kCell - 1);
+  out = {kFar, -kFar};
+  for (int x = 0; x < WideSurface::kCell; x += static_cast<int>(hn::Lanes(d))) {
+    const auto rise = hn::Mul(hn::Set(d, slope_x), hn::Iota(d, static_cast<float>(x) - kCentre));
+    auto low = hn::Set(d, kFar), high = hn::Set(d, -kFar);
+    for (int y = 0; y < WideSurface::kCell; ++y) {
+      const std::size_t at = std::size_t(y) * stride + std::size_t(x);
+      const auto covered = hn::Gt(hn::LoadU(d, coverage + at), hn::Zero(d));
+      const auto plane = hn::Add(rise, hn::Set(d, slope_y * (static_cast<float>(y) - kCentre)));
+      const auto rest = hn::Sub(hn::LoadU(d, depth + at), plane);
+      low = hn::Min(low, hn::IfThenElse(covered, rest, hn::Set(d, kFar)));
+      high = hn::Max(high, hn::IfThenElse(covered, rest, hn::Set(d, -kFar)));
+    }
+    out.least = std::min(out.least, hn::GetLane(hn::MinOfLanes(d, low)));
+    out.most = std::max(out.most, hn::GetLane(hn::MaxOfLanes(d, high)));
+  }
+}
+
+HWY_ATTR void BoundCellOf(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
+  CellRanges ranges;
+  CellRangesOf(planes, stride, ranges);
+  cell.empty = !ranges.any;
+  if (cell.empty) return;
+  const Range* value = ranges.value;
+  const Range &depth = value[0], &x = value[1], &y = value[2];
+  cell.odd = ranges.nan || value[6].least != value[6].most;
+  cell.object = value[6].least;
+  cell.least_depth = depth.least, cell.most_depth = depth.most;
+  cell.slope_x = 0.5f * (x.least + x.most), cell.turn_x = 0.5f * (x.most - x.least);
+  cell.slope_y = 0.5f * (y.least + y.most), cell.turn_y = 0.5f * (y.most - y.least);
+  cell.least_slope_x = ranges.steep_x.least, cell.least_slope_y = ranges.steep_y.least;
+  for (int c = 0; c < 3; ++c) cell.least_normal[c] = value[3 + c].least, cell.most_normal[c] = value[3 + c].most;
+  cell.least_length2 = ranges.length2.least;
+  Range rest;
+  BendOf(planes[0], planes[WideSurface::kCoverage], stride, cell.slope_x, cell.slope_y, rest);
+  cell.depth = 0.5f * (rest.least + rest.most), cell.bend = 0.5f * (rest.most - rest.least);
+}
+
+HWY_ATTR std::uint64_t CoveredBits(const float* coverage) {
+  const DF d;
+  std::uint64_t word = 0;
+  for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hn::Gt(hn::LoadU(d, coverage + i), hn::Zero(d)), bytes);
+    word |= std::uint64_t(bytes[0] | bytes[1] << 8) << i;
+  }
+  return word;
+}
+
+}  // namespace scumble::internal::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scumble::internal {
+
+HWY_EXPORT(MaskDepth);
+HWY_EXPORT(SlopeRow);
+HWY_EXPORT(BoundCellOf);
+HWY_EXPORT(CoveredBits);
+
+void BitPlane::Reset(int margin) {
+  margin_ = margin + 1, rows_ = kTileSide + 2 * margin_ + 8;
+  words_.assign(std::size_t(rows_) * std::size_t((kTileSide + 2 * margin_ + 63) / 64 + 2), 0);
+}
+
+void BitPlane::Put(int row, int column, std::uint64_t bits) {
+  const int at = column + margin_;
+  if (at <= -64 || at >= kTileSide + 2 * margin_) return;
+  if (at < 0) {
+    words_[std::size_t(row + margin_)] |= bits >> -at;
+    return;
+  }
+  const int shift = at & 63;
+  std::uint64_t* low = words_.data() + std::size_t(at >> 6) * rows_ + std::size_t(row + margin_);
+  low[0] |= bits << shift;
+  low[rows_] |= bits >> 1 >> (63 - shift);
+}
+
+void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
+  radius_ = radius, reach_ = (radius + kCell - 1) / kCell;
+  const int across = kTileSide + 2 * margin();
+  stride_ = std::size_t(across + 2 * kPad + 64);
+  for (std::vector<float>& plane : planes_) plane.resize(stride_ * std::size_t(across + 2));
+  covered_.Reset(margin());
+  for (int row = -margin() - 1; row < kTileSide + margin() + 1; ++row) ReadRow(guides, area, row);
+  for (int row = -margin(); row < kTileSide + margin(); ++row) {
+    const int left = -margin();
+    const float* depth = Row(kDepth, row) + left;
+    HWY_DYNAMIC_DISPATCH(SlopeRow)(depth - 1, depth, depth + 1, across, Row(kSlopeX, row) + left);
+    HWY_DYNAMIC_DISPATCH(SlopeRow)(Row(kDepth, row - 1) + left, depth, Row(kDepth, row + 1) + left, across, Row(kSlopeY, row) + left);
+    for (int x = left; x < kTileSide + margin(); x += 64) {
+      covered_.Put(row, x, HWY_DYNAMIC_DISPATCH(CoveredBits)(Row(kCoverage, row) + x));
+    }
+  }
+  const int cells = kCells + 2 * reach_;
+  cells_.assign(std::size_t(cells) * cells, Cell{});
+  for (int row = -reach_; row < kCells + reach_; ++row) {
+    for (int column = -reach_; column < kCells + reach_; ++column) BoundCell(column, row);
+  }
+}
+
+// Columns from the one before the margin to the one behind it; what is not in the picture is not covered.
+void WideSurface::ReadRow(const GuideSet& guides, const Region& area, int row) {
+  static constexpr struct {
+    Plane plane;
+    Layer layer;
+    int component;
+  } kSources[] = {{kDepth, Layer::kDepth, 0},   {kNormalX, Layer::kNormal, 0}, {kNormalY, Layer::kNormal, 1},
+                  {kNormalZ, Layer::kNormal, 2}, {kObject, Layer::kObject, 0},  {kCoverage, Layer::kCoverage, 0}};
+  const int first = -margin() - 1, count = kTileSide + 2 * margin() + 2, y = area.y0 + row;
+  // Beyond that, a vector more: SIMD reads on.
+  std::fill_n(Row(kCoverage, row) - margin() - kPad, stride_, 0.0f);
+  if (y >= 0 && y < guides.height()) {
+    const int begin = std::max(0, area.x0 + first), end = std::min(guides.width(), area.x0 + first + count);
+    for (const auto& source : kSources) {
+      std::memcpy(Row(source.plane, row) + (begin - area.x0), guides.Plane(source.layer, source.component).data() + guides.Index(begin, y),
+                  sizeof(float) * std::size_t(end - begin));
+    }
+  }
+  HWY_DYNAMIC_DISPATCH(MaskDepth)(Row(kCoverage, row) + first, Row(kDepth, row) + first, count);
+}
+
+void WideSurface::BoundCell(int column, int row) {
+  const float* planes[kPlanes];
+  for (int k = 0; k < kPlanes; ++k) planes[k] = Row(Plane(k), kCell * row) + kCell * column;
+  HWY_DYNAMIC_DISPATCH(BoundCellOf)(planes, stride_, cells_[std::size_t(row + reach_) * (kCells + 2 * reach_) + std::size_t(column + reach_)]);
+}
+
+// EdgeTest::SameSurface for all pairs at once. With p = P + u and q = Q + v from the cells' centres, planes differ from
+// each other by depth(Q) - depth(P) - ½ (g_P + g_Q) · (Q - P) + ½ (g_Q - g_P) · (u + v) more than the slopes explain.
+bool WideSurface::Sure(const EdgeLimits& limits, const Cell& p, const Cell& q, int dx, int dy) const {
+  if (p.odd || q.odd || p.object != q.object) return false;
+  float spread = 0.0f, size = 0.0f;
+  for (int c = 0; c < 3; ++c) {
+    const float most = std::max(p.most_normal[c], q.most_normal[c]), least = std::min(p.least_normal[c], q.least_normal[c]);
+    spread += (most - least) * (most - least);
+    size += std::max(most * most, least * least);
+  }
+  // a · b = ½ (|a|² + |b|² - |a - b|²).
+  if (!(std::min(p.least_length2, q.least_length2) - 0.5f * spread > limits.crease_cosine + 1e-5f * (1.0f + size))) return false;
+  const auto least = [](int cells) { return static_cast<float>(std::max(0, kCell * (std::abs(cells) - 1) + 1)); };
+  const auto most = [&](int cells) { return static_cast<float>(std::min(radius_, kCell * std::abs(cells) + kCell - 1)); };
+  const auto drift = [&](float turn, float leeway, int cells) {
+    const float more = turn - leeway;
+    return more * (more > 0.0f ? most(cells) : least(cells));
+  };
+  const float expected = 0.5f * kCell * ((p.slope_x + q.slope_x) * static_cast<float>(dx) + (p.slope_y + q.slope_y) * static_cast<float>(dy));
+  const float step = std::fabs(q.depth - p.depth - expected);
+  const float twist = 0.5f * (kCell - 1) * (std::fabs(q.slope_x - p.slope_x) + std::fabs(q.slope_y - p.slope_y));
+  const float off = step + twist + p.bend + q.bend +
+                    drift(0.5f * (p.turn_x + q.turn_x), std::min(p.least_slope_x, q.least_slope_x), dx) +
+                    drift(0.5f * (p.turn_y + q.turn_y), std::min(p.least_slope_y, q.least_slope_y), dy);
+  // Neither these sums nor the test's own are exact.
+  const float depths = std::max(std::fabs(p.least_depth), std::fabs(p.most_depth)) + std::max(std::fabs(q.least_depth), std::fabs(q.most_depth));
+  const float slopes = std::fabs(p.slope_x) + std::fabs(q.slope_x) + std::fabs(p.slope_y) + std::fabs(q.slope_y) + p.turn_x + q.turn_x + p.turn_y + q.turn_y;
+  const float slack = 4e-6f * (depths + slopes * static_cast<float>(radius_ + kCell));
+  return off + slack <= limits.depth_tolerance * std::min(p.least_depth, q.least_depth);
+}
+
+}  // namespace scumble::internal
+#endif
