@@ -18,13 +18,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DF = HWY_CAPPED(float, 16);
 
 // EdgeTest::SameSurface between 64 pixels of a row from column x on and those (dx, dy) further, where `wanted` has bits:
-// the bits of those that pass. What is not covered does not.
-HWY_ATTR std::uint64_t PassWord(const WideSurface& surface, const EdgeLimits& limits, int x, int y, int dx, int dy,
-                                std::uint64_t wanted) {
+// the bits of those that pass; without kFacing only by depth. What is not covered does not pass.
+template <bool kFacing>
+HWY_ATTR HWY_INLINE std::uint64_t PassBits(const WideSurface& surface, const EdgeLimits& limits, int x, int y, int dx,
+                                           int dy, std::uint64_t wanted) {
   const DF d;
   constexpr int kPlanes = WideSurface::kObject + 1;
   const float *p[kPlanes], *q[kPlanes];
-  for (int k = 0; k < kPlanes; ++k) {
+  for (int k = 0; k < (kFacing ? kPlanes : 3); ++k) {
     p[k] = surface.Row(WideSurface::Plane(k), y) + x;
     q[k] = surface.Row(WideSurface::Plane(k), y + dy) + x + dx;
   }
@@ -38,20 +39,60 @@ HWY_ATTR std::uint64_t PassWord(const WideSurface& surface, const EdgeLimits& li
     const auto px = of_p(WideSurface::kSlopeX), qx = of_q(WideSurface::kSlopeX);
     const auto py = of_p(WideSurface::kSlopeY), qy = of_q(WideSurface::kSlopeY);
     const auto near = of_p(WideSurface::kDepth), far = of_q(WideSurface::kDepth);
-    const auto expected = hn::Mul(hn::Set(d, 0.5f), hn::Add(hn::Mul(hn::Add(px, qx), right), hn::Mul(hn::Add(py, qy), down)));
-    const auto leeway = hn::Add(hn::Mul(hn::Min(hn::Abs(px), hn::Abs(qx)), wide), hn::Mul(hn::Min(hn::Abs(py), hn::Abs(qy)), high));
+    const auto along = hn::Add(hn::Mul(hn::Add(px, qx), right), hn::Mul(hn::Add(py, qy), down));
+    const auto expected = hn::Mul(hn::Set(d, 0.5f), along);
+    const auto leeway = hn::Add(hn::Mul(hn::Min(hn::Abs(px), hn::Abs(qx)), wide),
+                                hn::Mul(hn::Min(hn::Abs(py), hn::Abs(qy)), high));
     const auto tolerance = hn::Add(leeway, hn::Mul(hn::Set(d, limits.depth_tolerance), hn::Min(near, far)));
     auto same = hn::Le(hn::Abs(hn::Sub(hn::Sub(far, near), expected)), tolerance);
-    const auto across = hn::Mul(of_p(WideSurface::kNormalX), of_q(WideSurface::kNormalX));
-    const auto along = hn::Mul(of_p(WideSurface::kNormalY), of_q(WideSurface::kNormalY));
-    const auto out = hn::Mul(of_p(WideSurface::kNormalZ), of_q(WideSurface::kNormalZ));
-    same = hn::And(same, hn::Gt(hn::Add(hn::Add(across, along), out), hn::Set(d, limits.crease_cosine)));
-    same = hn::And(same, hn::Eq(of_p(WideSurface::kObject), of_q(WideSurface::kObject)));
+    if constexpr (kFacing) {
+      auto cosine = hn::Mul(of_p(WideSurface::kNormalX), of_q(WideSurface::kNormalX));
+      cosine = hn::Add(cosine, hn::Mul(of_p(WideSurface::kNormalY), of_q(WideSurface::kNormalY)));
+      cosine = hn::Add(cosine, hn::Mul(of_p(WideSurface::kNormalZ), of_q(WideSurface::kNormalZ)));
+      same = hn::And(same, hn::Gt(cosine, hn::Set(d, limits.crease_cosine)));
+      same = hn::And(same, hn::Eq(of_p(WideSurface::kObject), of_q(WideSurface::kObject)));
+    }
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, same, bytes);
     pass |= std::uint64_t(bytes[0] | bytes[1] << 8) << i;
   }
   return pass;
+}
+
+HWY_ATTR std::uint64_t PassWord(const WideSurface& surface, const EdgeLimits& limits, int x, int y, int dx, int dy,
+                                std::uint64_t wanted) {
+  return PassBits<true>(surface, limits, x, y, dx, dy, wanted);
+}
+
+// Which active pixels of eight rows lack the vote of the active pixel (dx, dy) further. Returns whether any does.
+HWY_ATTR bool FindLacking(const JoinedRows& rows, int dx, int dy, std::uint64_t* lacking) {
+  std::uint64_t votes[8], seen[8], any = 0;
+  rows.votes.Read8(rows.first + dy, dx, votes);
+  for (int k = 0; k < 8; ++k) seen[k] = votes[k] &= rows.active[k];
+  if (rows.reached) {
+    const int radius = rows.surface.radius();
+    const std::uint64_t* reached = rows.reached + 8 * std::size_t((dy + radius) * (2 * radius + 1) + dx + radius);
+    for (int k = 0; k < 8; ++k) seen[k] &= reached[k];
+  }
+  for (int k = 0; k < 8; ++k) any |= lacking[k] = votes[k] & ~seen[k];
+  if (!rows.unsure) return any != 0;
+  // Pixels of a quarter see the quarter that is a whole number of quarters further, or the next.
+  constexpr int kQuarter = WideSurface::kQuarter;
+  const int side = 2 * rows.quarters + 1, column = (dx >> 2) + rows.quarters;
+  const std::uint64_t near = 0x1111111111111111u * (0xfu >> (dx & 3));
+  for (int k = 0; k < 8; ++k) {
+    const int below = ((k + dy) >> 2) - (k >> 2) + rows.quarters;
+    const std::uint64_t* unsure = rows.unsure + 2 * (std::size_t((k / kQuarter * side) + below) * side + column);
+    const std::uint64_t depth = seen[k] & ((unsure[0] & near) | (unsure[2] & ~near));
+    const std::uint64_t facing = seen[k] & ((unsure[1] & near) | (unsure[3] & ~near));
+    const std::uint64_t wanted = depth | facing;
+    if (!wanted) continue;
+    const int y = rows.first + k;
+    const std::uint64_t pass = facing ? PassBits<true>(rows.surface, rows.limits, 0, y, dx, dy, wanted)
+                                      : PassBits<false>(rows.surface, rows.limits, 0, y, dx, dy, wanted);
+    any |= lacking[k] |= wanted & ~pass;
+  }
+  return any != 0;
 }
 
 // For eight rows from `row` on: reached[8 · pixel of the window] becomes the bits of the pixels to which every step on the
@@ -75,6 +116,7 @@ HWY_AFTER_NAMESPACE();
 namespace scumble::internal {
 
 HWY_EXPORT(PassWord);
+HWY_EXPORT(FindLacking);
 HWY_EXPORT(ReachWindow);
 
 namespace {
@@ -127,25 +169,50 @@ void WideJoined::MarkDoubts(const WideSurface& surface, const EdgeLimits& limits
   doubts_.assign(std::size_t(cells) * cells, 0);
   for (int row = 0; row < cells; ++row) {
     for (int column = 0; column < cells; ++column) {
-      unsigned bits = surface.Doubtful(limits, column - reach, row - reach, 0, 0);
+      unsigned bits = surface.Doubts(limits, column - reach, row - reach, 0, 0);
       for (int k = 0; k < 4; ++k) {
         const int x = column + kStepX[k], y = row + kStepY[k];
         if (x < 0 || x >= cells || y >= cells) continue;
-        bits |= unsigned(surface.Doubtful(limits, column - reach, row - reach, kStepX[k], kStepY[k])) << (k + 1);
+        bits |= surface.Doubts(limits, column - reach, row - reach, kStepX[k], kStepY[k]) << 2 * (k + 1);
       }
-      doubts_[std::size_t(row) * cells + column] = static_cast<std::uint8_t>(bits);
+      doubts_[std::size_t(row) * cells + column] = static_cast<std::uint16_t>(bits);
     }
   }
 }
 
 // As the surface says it; for neighbours it is known.
-bool WideJoined::Doubtful(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx, int dy) const {
-  if (std::abs(dx) > 1 || std::abs(dy) > 1) return surface.Doubtful(limits, column, row, dx, dy);
+unsigned WideJoined::Doubts(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx, int dy) const {
+  if (std::abs(dx) > 1 || std::abs(dy) > 1) return surface.Doubts(limits, column, row, dx, dy);
   const int reach = surface.reach(), cells = kCells + 2 * reach;
   const bool back = dy < 0 || (dy == 0 && dx < 0);
   const int x = back ? column + dx : column, y = back ? row + dy : row;
-  const int bit = dx == 0 && dy == 0 ? 0 : 1 + (back ? StepOf(-dx, -dy) : StepOf(dx, dy));
-  return doubts_[std::size_t(y + reach) * cells + (x + reach)] >> bit & 1;
+  const int which = dx == 0 && dy == 0 ? 0 : 1 + (back ? StepOf(-dx, -dy) : StepOf(dx, dy));
+  return doubts_[std::size_t(y + reach) * cells + (x + reach)] >> 2 * which & 3;
+}
+
+// For a row of cells: whether any pixel of the window may fail. Where a cell leaves doubts its quarters are asked.
+bool WideJoined::MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int cell_row, std::uint64_t active) {
+  const int reach = surface.reach(), quarters = 2 * reach + 1, side = 2 * quarters + 1;
+  unsure_.assign(std::size_t(4) * side * side + 2, 0);
+  bool any = false;
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      for (int column = 0; column < kCells; ++column) {
+        if (!(active >> (kCell * column) & 0xff) || !Doubts(surface, limits, column, cell_row, dx, dy)) continue;
+        for (int k = 0; k < 16; ++k) {
+          const int px = k & 1, py = k >> 1 & 1, x = 2 * dx + (k >> 2 & 1) - px, y = 2 * dy + (k >> 3) - py;
+          const unsigned doubts = surface.QuarterDoubts(limits, 2 * column + px, 2 * cell_row + py, x, y);
+          if (!doubts) continue;
+          any = true;
+          const std::uint64_t bits = std::uint64_t{0xf} << (kCell * column + WideSurface::kQuarter * px);
+          std::uint64_t* unsure = unsure_.data() + 2 * (std::size_t(py * side + y + quarters) * side + std::size_t(x + quarters));
+          if (doubts & WideSurface::kDepthDoubt) unsure[0] |= bits;
+          if (doubts & WideSurface::kFacingDoubt) unsure[1] |= bits;
+        }
+      }
+    }
+  }
+  return any;
 }
 
 // Forward steps of every pixel of the tile and around it; columns and rows beyond the radius do not matter.
@@ -154,7 +221,7 @@ void WideJoined::MarkSteps(const WideSurface& surface, const EdgeLimits& limits)
   for (BitPlane& plane : steps_) plane.Reset(margin);
   blocked_.assign(std::size_t(kTileSide + 2 * margin), 0);
   for (int y = -radius; y < kTileSide + radius; ++y) {
-    const std::uint8_t* doubts = doubts_.data() + std::size_t((y + margin) / kCell) * cells;
+    const std::uint16_t* doubts = doubts_.data() + std::size_t((y + margin) / kCell) * cells;
     for (int x = -margin; x < kTileSide + margin; x += 64) {
       std::uint64_t doubtful = 0;
       for (int k = 0; k < kCells && (x + margin) / kCell + k < cells; ++k) {
@@ -189,7 +256,7 @@ void WideJoined::MarkPixels(const WideTile& tile, int margin) {
   }
 }
 
-void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
+void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
                           const EdgeLimits& limits, WideSums& sums) {
   MarkDoubts(surface, limits);
   MarkSteps(surface, limits);
@@ -209,32 +276,24 @@ struct Missing {
 
 }  // namespace
 
-void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile,
-                              const WideSurface& surface, const EdgeLimits& limits, int first_row, WideSums& sums) {
-  const int radius = surface.radius(), reach = surface.reach(), margin = surface.margin();
-  const int side = 2 * radius + 1, cells = 2 * reach + 1;
-  const int rows = std::min(kCell, tile.area().y1 - tile.area().y0 - first_row);
-  std::uint64_t active[8] = {}, any_active = 0;
-  for (int k = 0; k < rows; ++k) any_active |= active[k] = tile.ActiveWord(first_row + k);
-  if (!any_active) return;
+void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
+                              const EdgeLimits& limits, int first_row, WideSums& sums) {
+  const int radius = surface.radius(), margin = surface.margin(), side = 2 * radius + 1;
+  JoinedRows rows{surface, limits, votes_, first_row, {}, nullptr, nullptr, 2 * surface.reach() + 1};
+  std::uint64_t any = 0;
+  for (int k = 0; k < std::min(kCell, tile.area().y1 - tile.area().y0 - first_row); ++k) {
+    any |= rows.active[k] = tile.ActiveWord(first_row + k);
+  }
+  if (!any) return;
   const auto* blocked = blocked_.data() + (first_row + margin);
   const bool open = std::none_of(blocked - radius, blocked + kCell + radius, [](std::uint8_t row) { return row != 0; });
-  unsure_.assign(std::size_t(cells) * cells, 0);
-  bool sure = true;
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
-      std::uint64_t bits = 0;
-      for (int column = 0; column < kCells; ++column) {
-        if (!(any_active >> (kCell * column) & 0xff)) continue;
-        if (Doubtful(surface, limits, column, first_row / kCell, dx, dy)) bits |= std::uint64_t{0xff} << (kCell * column);
-      }
-      unsure_[std::size_t(dy + reach) * cells + (dx + reach)] = bits;
-      sure &= bits == 0;
-    }
+  if (MarkUnsure(surface, limits, first_row / kCell, any)) rows.unsure = unsure_.data();
+  if (open && !rows.unsure) return;
+  if (!open) {
+    reached_.resize(8 * std::size_t(side) * side);
+    HWY_DYNAMIC_DISPATCH(ReachWindow)(ways, steps_, first_row, reached_.data());
+    rows.reached = reached_.data();
   }
-  if (open && sure) return;
-  reached_.resize(8 * std::size_t(side) * side);
-  if (!open) HWY_DYNAMIC_DISPATCH(ReachWindow)(ways, steps_, first_row, reached_.data());
 
   const SourceField& field = input.field;
   Missing missing[8];
@@ -248,35 +307,23 @@ void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, cons
                     static_cast<std::uint32_t>(dx - missing[k].since[x]));
     }
   };
-  constexpr std::uint64_t kColumns = 0x0101010101010101u;
+  const auto find = HWY_DYNAMIC_DISPATCH(FindLacking);
   for (int dy = -radius; dy <= radius; ++dy) {
+    bool lacked = false;
     for (int dx = -radius; dx <= radius + 1; ++dx) {
-      std::uint64_t lack[8] = {};
-      if (dx <= radius && (dx != 0 || dy != 0)) {
-        std::uint64_t votes[8];
-        votes_.Read8(first_row + dy, dx, votes);
-        const std::uint64_t* reached = reached_.data() + 8 * std::size_t((dy + radius) * side + dx + radius);
-        // The pixels that see the cell of a whole number of cells on, and those that see the next.
-        const int cell = dx >> 3;
-        const std::uint64_t near = kColumns * (0xffu >> (dx & 7));
-        for (int k = 0; k < rows; ++k) {
-          const std::uint64_t both = votes[k] & active[k], seen = open ? both : both & reached[k];
-          lack[k] = both & ~seen;
-          if (sure || !seen) continue;
-          const std::uint64_t* unsure = unsure_.data() + std::size_t(((k + dy) >> 3) + reach) * cells + (cell + reach);
-          const std::uint64_t wanted = seen & ((unsure[0] & near) | (cell < reach ? unsure[1] & ~near : 0));
-          if (wanted) lack[k] |= wanted & ~HWY_DYNAMIC_DISPATCH(PassWord)(surface, limits, 0, first_row + k, dx, dy, wanted);
-        }
-      }
-      for (int k = 0; k < rows; ++k) {
+      std::uint64_t lacking[8] = {};
+      const bool lacks = dx <= radius && (dx != 0 || dy != 0) && find(rows, dx, dy, lacking);
+      if (!lacks && !lacked) continue;
+      lacked = lacks;
+      for (int k = 0; k < 8; ++k) {
         const std::uint64_t before = missing[k].bits;
-        if (!(before | lack[k])) continue;
-        const std::uint64_t on = before & lack[k] & ~changes_.Read(first_row + k + dy, dx);
+        if (!(before | lacking[k])) continue;
+        const std::uint64_t on = before & lacking[k] & ~changes_.Read(first_row + k + dy, dx);
         take_back(k, before & ~on, dx, dy);
-        for (std::uint64_t bits = lack[k] & ~on; bits; bits &= bits - 1) {
+        for (std::uint64_t bits = lacking[k] & ~on; bits; bits &= bits - 1) {
           missing[k].since[std::countr_zero(bits)] = static_cast<std::int16_t>(dx);
         }
-        missing[k].bits = lack[k];
+        missing[k].bits = lacking[k];
       }
     }
   }

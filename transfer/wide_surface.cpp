@@ -42,9 +42,6 @@ struct Range {
   float least, most;
 };
 
-// Ranges of eight columns at `rows`, `stride` floats apart, where `coverage` is above 0; and whether any of them is NaN.
-// On eight lanes or fewer; a cell is eight wide.
-using DC = HWY_CAPPED(float, 8);
 
 struct CellRanges {
   Range value[WideSurface::kPlanes];
@@ -52,20 +49,21 @@ struct CellRanges {
   bool any, nan;
 };
 
+template <int kSize>
 HWY_ATTR void CellRangesOf(const float* const* planes, std::size_t stride, CellRanges& out) {
-  const DC d;
+  const HWY_CAPPED(float, kSize) d;
   constexpr float kFar = std::numeric_limits<float>::infinity();
   const int lanes = static_cast<int>(hn::Lanes(d));
   constexpr int kValues = 7;
   bool any = false, nan = false;
   float least[10], most[10];
   std::fill_n(least, 10, kFar), std::fill_n(most, 10, -kFar);
-  for (int x = 0; x < WideSurface::kCell; x += lanes) {
+  for (int x = 0; x < kSize; x += lanes) {
     auto low0 = hn::Set(d, kFar), low1 = low0, low2 = low0, low3 = low0, low4 = low0, low5 = low0, low6 = low0, low7 = low0, low8 = low0, low9 = low0;
     auto high0 = hn::Set(d, -kFar), high1 = high0, high2 = high0, high3 = high0, high4 = high0, high5 = high0, high6 = high0;
     auto seen = hn::Zero(d), strange = hn::Zero(d);
     const auto one = hn::Set(d, 1.0f), far = hn::Set(d, kFar), back = hn::Set(d, -kFar);
-    for (int y = 0; y < WideSurface::kCell; ++y) {
+    for (int y = 0; y < kSize; ++y) {
       const std::size_t at = std::size_t(y) * stride + std::size_t(x);
       const auto covered = hn::Gt(hn::LoadU(d, planes[WideSurface::kCoverage] + at), hn::Zero(d));
       seen = hn::Or(seen, hn::IfThenElseZero(covered, one));
@@ -97,15 +95,16 @@ HWY_ATTR void CellRangesOf(const float* const* planes, std::size_t stride, CellR
 }
 
 // How far depth leaves the plane of these slopes through the cell's centre.
+template <int kSize>
 HWY_ATTR void BendOf(const float* depth, const float* coverage, std::size_t stride, float slope_x, float slope_y, Range& out) {
-  const DC d;
+  const HWY_CAPPED(float, kSize) d;
   constexpr float kFar = std::numeric_limits<float>::infinity();
-  constexpr float kCentre = 0.5f * (WideSurface::kCell - 1);
+  constexpr float kCentre = 0.5f * (kSize - 1);
   out = {kFar, -kFar};
-  for (int x = 0; x < WideSurface::kCell; x += static_cast<int>(hn::Lanes(d))) {
+  for (int x = 0; x < kSize; x += static_cast<int>(hn::Lanes(d))) {
     const auto rise = hn::Mul(hn::Set(d, slope_x), hn::Iota(d, static_cast<float>(x) - kCentre));
     auto low = hn::Set(d, kFar), high = hn::Set(d, -kFar);
-    for (int y = 0; y < WideSurface::kCell; ++y) {
+    for (int y = 0; y < kSize; ++y) {
       const std::size_t at = std::size_t(y) * stride + std::size_t(x);
       const auto covered = hn::Gt(hn::LoadU(d, coverage + at), hn::Zero(d));
       const auto plane = hn::Add(rise, hn::Set(d, slope_y * (static_cast<float>(y) - kCentre)));
@@ -118,9 +117,10 @@ HWY_ATTR void BendOf(const float* depth, const float* coverage, std::size_t stri
   }
 }
 
-HWY_ATTR void BoundCellOf(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
+template <int kSize>
+HWY_ATTR void BoundOf(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
   CellRanges ranges;
-  CellRangesOf(planes, stride, ranges);
+  CellRangesOf<kSize>(planes, stride, ranges);
   cell.empty = !ranges.any;
   if (cell.empty) return;
   const Range* value = ranges.value;
@@ -134,8 +134,15 @@ HWY_ATTR void BoundCellOf(const float* const* planes, std::size_t stride, WideSu
   for (int c = 0; c < 3; ++c) cell.least_normal[c] = value[3 + c].least, cell.most_normal[c] = value[3 + c].most;
   cell.least_length2 = ranges.length2.least;
   Range rest;
-  BendOf(planes[0], planes[WideSurface::kCoverage], stride, cell.slope_x, cell.slope_y, rest);
+  BendOf<kSize>(planes[0], planes[WideSurface::kCoverage], stride, cell.slope_x, cell.slope_y, rest);
   cell.depth = 0.5f * (rest.least + rest.most), cell.bend = 0.5f * (rest.most - rest.least);
+}
+
+HWY_ATTR void BoundCell(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
+  BoundOf<WideSurface::kCell>(planes, stride, cell);
+}
+HWY_ATTR void BoundQuarter(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
+  BoundOf<WideSurface::kQuarter>(planes, stride, cell);
 }
 
 HWY_ATTR std::uint64_t CoveredBits(const float* coverage) {
@@ -157,7 +164,8 @@ namespace scumble::internal {
 
 HWY_EXPORT(MaskDepth);
 HWY_EXPORT(SlopeRow);
-HWY_EXPORT(BoundCellOf);
+HWY_EXPORT(BoundCell);
+HWY_EXPORT(BoundQuarter);
 HWY_EXPORT(CoveredBits);
 
 void BitPlane::Reset(int margin) {
@@ -196,8 +204,14 @@ void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
   }
   const int cells = kCells + 2 * reach_;
   cells_.assign(std::size_t(cells) * cells, Cell{});
-  for (int row = -reach_; row < kCells + reach_; ++row) {
-    for (int column = -reach_; column < kCells + reach_; ++column) BoundCell(column, row);
+  quartered_.assign(cells_.size(), 0);
+  quarters_.resize(4 * cells_.size());
+  for (int row = 0; row < cells; ++row) {
+    for (int column = 0; column < cells; ++column) {
+      const float* planes[kPlanes];
+      for (int k = 0; k < kPlanes; ++k) planes[k] = Row(Plane(k), kCell * (row - reach_)) + kCell * (column - reach_);
+      HWY_DYNAMIC_DISPATCH(BoundCell)(planes, stride_, cells_[std::size_t(row) * cells + column]);
+    }
   }
 }
 
@@ -222,41 +236,65 @@ void WideSurface::ReadRow(const GuideSet& guides, const Region& area, int row) {
   HWY_DYNAMIC_DISPATCH(MaskDepth)(Row(kCoverage, row) + first, Row(kDepth, row) + first, count);
 }
 
-void WideSurface::BoundCell(int column, int row) {
-  const float* planes[kPlanes];
-  for (int k = 0; k < kPlanes; ++k) planes[k] = Row(Plane(k), kCell * row) + kCell * column;
-  HWY_DYNAMIC_DISPATCH(BoundCellOf)(planes, stride_, cells_[std::size_t(row + reach_) * (kCells + 2 * reach_) + std::size_t(column + reach_)]);
+const WideSurface::Cell& WideSurface::QuarterAt(int column, int row) {
+  const int x = column + 2 * reach_, y = row + 2 * reach_;
+  const std::size_t cell = std::size_t(y / 2) * (kCells + 2 * reach_) + std::size_t(x / 2);
+  if (!quartered_[cell]) {
+    quartered_[cell] = 1;
+    for (int k = 0; k < 4; ++k) {
+      const float* planes[kPlanes];
+      for (int plane = 0; plane < kPlanes; ++plane) {
+        planes[plane] = Row(Plane(plane), kQuarter * ((row & ~1) + k / 2)) + kQuarter * ((column & ~1) + k % 2);
+      }
+      Cell& quarter = quarters_[4 * cell + std::size_t(k)];
+      quarter = {};
+      HWY_DYNAMIC_DISPATCH(BoundQuarter)(planes, stride_, quarter);
+    }
+  }
+  return quarters_[4 * cell + std::size_t(2 * (y & 1) + (x & 1))];
+}
+
+unsigned WideSurface::QuarterDoubts(const EdgeLimits& limits, int column, int row, int dx, int dy) {
+  const Cell& p = QuarterAt(column, row);
+  return Doubts(limits, p, QuarterAt(column + dx, row + dy), kQuarter, dx, dy);
 }
 
 // EdgeTest::SameSurface for all pairs at once. With p = P + u and q = Q + v from the cells' centres, planes differ from
 // each other by depth(Q) - depth(P) - ½ (g_P + g_Q) · (Q - P) + ½ (g_Q - g_P) · (u + v) more than the slopes explain.
-bool WideSurface::Sure(const EdgeLimits& limits, const Cell& p, const Cell& q, int dx, int dy) const {
-  if (p.odd || q.odd || p.object != q.object) return false;
-  float spread = 0.0f, size = 0.0f;
+unsigned WideSurface::Doubts(const EdgeLimits& limits, const Cell& p, const Cell& q, int size, int dx, int dy) const {
+  if (p.empty || q.empty) return 0;
+  if (p.odd || q.odd) return kDepthDoubt | kFacingDoubt;
+  unsigned doubts = 0;
+  if (p.object != q.object) doubts |= kFacingDoubt;
+  float spread = 0.0f, length2 = 0.0f;
   for (int c = 0; c < 3; ++c) {
     const float most = std::max(p.most_normal[c], q.most_normal[c]), least = std::min(p.least_normal[c], q.least_normal[c]);
     spread += (most - least) * (most - least);
-    size += std::max(most * most, least * least);
+    length2 += std::max(most * most, least * least);
   }
   // a · b = ½ (|a|² + |b|² - |a - b|²).
-  if (!(std::min(p.least_length2, q.least_length2) - 0.5f * spread > limits.crease_cosine + 1e-5f * (1.0f + size))) return false;
-  const auto least = [](int cells) { return static_cast<float>(std::max(0, kCell * (std::abs(cells) - 1) + 1)); };
-  const auto most = [&](int cells) { return static_cast<float>(std::min(radius_, kCell * std::abs(cells) + kCell - 1)); };
+  const float cosine = std::min(p.least_length2, q.least_length2) - 0.5f * spread;
+  if (!(cosine > limits.crease_cosine + 1e-5f * (1.0f + length2))) doubts |= kFacingDoubt;
   const auto drift = [&](float turn, float leeway, int cells) {
     const float more = turn - leeway;
-    return more * (more > 0.0f ? most(cells) : least(cells));
+    const int apart = more > 0.0f ? std::min(radius_, size * std::abs(cells) + size - 1)
+                                  : std::max(0, size * (std::abs(cells) - 1) + 1);
+    return more * static_cast<float>(apart);
   };
-  const float expected = 0.5f * kCell * ((p.slope_x + q.slope_x) * static_cast<float>(dx) + (p.slope_y + q.slope_y) * static_cast<float>(dy));
-  const float step = std::fabs(q.depth - p.depth - expected);
-  const float twist = 0.5f * (kCell - 1) * (std::fabs(q.slope_x - p.slope_x) + std::fabs(q.slope_y - p.slope_y));
+  const float x = static_cast<float>(size * dx), y = static_cast<float>(size * dy);
+  const float step = std::fabs(q.depth - p.depth - 0.5f * ((p.slope_x + q.slope_x) * x + (p.slope_y + q.slope_y) * y));
+  const float twist = 0.5f * static_cast<float>(size - 1) * (std::fabs(q.slope_x - p.slope_x) + std::fabs(q.slope_y - p.slope_y));
   const float off = step + twist + p.bend + q.bend +
                     drift(0.5f * (p.turn_x + q.turn_x), std::min(p.least_slope_x, q.least_slope_x), dx) +
                     drift(0.5f * (p.turn_y + q.turn_y), std::min(p.least_slope_y, q.least_slope_y), dy);
   // Neither these sums nor the test's own are exact.
-  const float depths = std::max(std::fabs(p.least_depth), std::fabs(p.most_depth)) + std::max(std::fabs(q.least_depth), std::fabs(q.most_depth));
-  const float slopes = std::fabs(p.slope_x) + std::fabs(q.slope_x) + std::fabs(p.slope_y) + std::fabs(q.slope_y) + p.turn_x + q.turn_x + p.turn_y + q.turn_y;
+  const float depths = std::max(std::fabs(p.least_depth), std::fabs(p.most_depth)) +
+                       std::max(std::fabs(q.least_depth), std::fabs(q.most_depth));
+  const float slopes = std::fabs(p.slope_x) + std::fabs(q.slope_x) + std::fabs(p.slope_y) + std::fabs(q.slope_y) +
+                       p.turn_x + q.turn_x + p.turn_y + q.turn_y;
   const float slack = 4e-6f * (depths + slopes * static_cast<float>(radius_ + kCell));
-  return off + slack <= limits.depth_tolerance * std::min(p.least_depth, q.least_depth);
+  if (!(off + slack <= limits.depth_tolerance * std::min(p.least_depth, q.least_depth))) doubts |= kDepthDoubt;
+  return doubts;
 }
 
 }  // namespace scumble::internal

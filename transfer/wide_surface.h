@@ -47,6 +47,7 @@ struct EdgeLimits {
 class WideSurface {
  public:
   static constexpr int kCell = 8;                     // pixels on each side
+  static constexpr int kQuarter = kCell / 2;
   static constexpr int kCells = kTileSide / kCell;    // of a tile, on each side
   enum Plane { kDepth, kSlopeX, kSlopeY, kNormalX, kNormalY, kNormalZ, kObject, kCoverage, kPlanes };
 
@@ -61,12 +62,15 @@ class WideSurface {
   const float* Row(Plane plane, int row) const { return planes_[plane].data() + At(row); }
   const BitPlane& covered() const { return covered_; }
 
-  // Whether some covered pixel of that cell may fail the edge test with a covered one of the cell (dx, dy) cells further;
-  // if not, all surely pass. Columns and rows of cells, from -reach() to kCells + reach().
-  bool Doubtful(const EdgeLimits& limits, int column, int row, int dx, int dy) const {
-    const Cell &p = CellAt(column, row), &q = CellAt(column + dx, row + dy);
-    return !p.empty && !q.empty && !Sure(limits, p, q, dx, dy);
+  // What may make some covered pixel of that cell fail the edge test with a covered one of the cell (dx, dy) cells
+  // further; without the bit of a cause, surely none fails by it. Columns and rows of cells, from -reach() to kCells +
+  // reach().
+  enum Doubt : unsigned { kDepthDoubt = 1, kFacingDoubt = 2 };  // facing: normals, and objects
+  unsigned Doubts(const EdgeLimits& limits, int column, int row, int dx, int dy) const {
+    return Doubts(limits, CellAt(column, row), CellAt(column + dx, row + dy), kCell, dx, dy);
   }
+  // The same of a quarter of a cell and another. Columns and rows of quarters; both cells are then looked at more closely.
+  unsigned QuarterDoubts(const EdgeLimits& limits, int column, int row, int dx, int dy);
 
   // Bounds over the covered pixels of a cell. Depth is a plane through the centre, give or take `bend`; slopes are the
   // plane's, give or take `turn_x` and `turn_y`.
@@ -83,17 +87,18 @@ class WideSurface {
   std::size_t At(int row) const { return std::size_t(row + margin() + 1) * stride_ + std::size_t(margin() + kPad); }
   float* Row(Plane plane, int row) { return planes_[plane].data() + At(row); }
   void ReadRow(const GuideSet& guides, const Region& area, int row);
-  void BoundCell(int column, int row);
   const Cell& CellAt(int column, int row) const {
     return cells_[std::size_t(row + reach_) * (kCells + 2 * reach_) + std::size_t(column + reach_)];
   }
-  bool Sure(const EdgeLimits& limits, const Cell& p, const Cell& q, int dx, int dy) const;
+  unsigned Doubts(const EdgeLimits& limits, const Cell& p, const Cell& q, int size, int dx, int dy) const;
+  const Cell& QuarterAt(int column, int row);
 
   int radius_ = 0, reach_ = 0;
   std::size_t stride_ = 0;
   std::vector<float> planes_[kPlanes];
   BitPlane covered_;
-  std::vector<Cell> cells_;
+  std::vector<Cell> cells_, quarters_;
+  std::vector<std::uint8_t> quartered_;  // by cell: its quarters are known
 };
 
 }  // namespace scumble::internal
