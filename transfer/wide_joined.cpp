@@ -8,6 +8,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/wide_joined.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -76,6 +77,8 @@ HWY_ATTR bool FindLacking(const JoinedRows& rows, int dx, int dy, std::uint64_t*
   }
   for (int k = 0; k < 8; ++k) any |= lacking[k] = votes[k] & ~seen[k];
   if (!rows.unsure) return any != 0;
+  const std::uint8_t* doubtful = rows.doubtful + ((dy >> 2) + rows.quarters) * (2 * rows.quarters + 1) + (dx >> 2) + rows.quarters;
+  if (!(doubtful[0] | doubtful[1] | doubtful[2 * rows.quarters + 1] | doubtful[2 * rows.quarters + 2])) return any != 0;
   // Pixels of a quarter see the quarter that is a whole number of quarters further, or the next.
   constexpr int kQuarter = WideSurface::kQuarter;
   const int side = 2 * rows.quarters + 1, column = (dx >> 2) + rows.quarters;
@@ -136,13 +139,6 @@ int StepOf(int dx, int dy) {
   return k;
 }
 
-// Of 64 bits, those from `begin` to before `end`, which may lie outside.
-std::uint64_t BitsBetween(int begin, int end) {
-  begin = std::clamp(begin, 0, 64), end = std::clamp(end, 0, 64);
-  if (begin >= end) return 0;
-  return ~std::uint64_t{0} >> (64 - (end - begin)) << begin;
-}
-
 }  // namespace
 
 WideWays::WideWays(int radius) : radius_(radius) {
@@ -164,7 +160,8 @@ WideWays::WideWays(int radius) : radius_(radius) {
   }
 }
 
-void WideJoined::MarkDoubts(const WideSurface& surface, const EdgeLimits& limits) {
+bool WideJoined::MarkDoubts(const WideSurface& surface, const EdgeLimits& limits) {
+  unsigned all = 0;
   const int reach = surface.reach(), cells = kCells + 2 * reach;
   doubts_.assign(std::size_t(cells) * cells, 0);
   for (int row = 0; row < cells; ++row) {
@@ -176,8 +173,10 @@ void WideJoined::MarkDoubts(const WideSurface& surface, const EdgeLimits& limits
         bits |= surface.Doubts(limits, column - reach, row - reach, kStepX[k], kStepY[k]) << 2 * (k + 1);
       }
       doubts_[std::size_t(row) * cells + column] = static_cast<std::uint16_t>(bits);
+      all |= bits;
     }
   }
+  return all != 0;
 }
 
 // As the surface says it; for neighbours it is known.
@@ -194,6 +193,7 @@ unsigned WideJoined::Doubts(const WideSurface& surface, const EdgeLimits& limits
 bool WideJoined::MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int cell_row, std::uint64_t active) {
   const int reach = surface.reach(), quarters = 2 * reach + 1, side = 2 * quarters + 1;
   unsure_.assign(std::size_t(4) * side * side + 2, 0);
+  doubtful_.assign(std::size_t(side) * (side + 1) + 1, 0);
   bool any = false;
   for (int dy = -reach; dy <= reach; ++dy) {
     for (int dx = -reach; dx <= reach; ++dx) {
@@ -204,6 +204,7 @@ bool WideJoined::MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int 
           const unsigned doubts = surface.QuarterDoubts(limits, 2 * column + px, 2 * cell_row + py, x, y);
           if (!doubts) continue;
           any = true;
+          doubtful_[std::size_t((y + quarters) * side + x + quarters)] = 1;
           const std::uint64_t bits = std::uint64_t{0xf} << (kCell * column + WideSurface::kQuarter * px);
           std::uint64_t* unsure = unsure_.data() + 2 * (std::size_t(py * side + y + quarters) * side + std::size_t(x + quarters));
           if (doubts & WideSurface::kDepthDoubt) unsure[0] |= bits;
@@ -258,8 +259,13 @@ void WideJoined::MarkPixels(const WideTile& tile, int margin) {
 
 void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
                           const EdgeLimits& limits, WideSums& sums) {
-  MarkDoubts(surface, limits);
-  MarkSteps(surface, limits);
+  const bool sure = !MarkDoubts(surface, limits);
+  if (sure && surface.all_covered()) {
+    if (surface.reach() == 1) return;
+    blocked_.assign(std::size_t(kTileSide + 2 * surface.margin()), 0);
+  } else {
+    MarkSteps(surface, limits);
+  }
   MarkPixels(tile, surface.margin());
   for (int row = 0; row < tile.area().y1 - tile.area().y0; row += kCell) {
     WithdrawRows(input, ways, tile, surface, limits, row, sums);
@@ -270,8 +276,9 @@ namespace {
 
 // Votes of one row of pixels that are taken back together: those of one chunk, side by side, for the same pixel.
 struct Missing {
-  std::uint64_t bits = 0;         // of pixels that lack the vote that was looked at last
-  std::int16_t since[kTileSide];  // the first of them, by pixel
+  std::uint64_t bits = 0;                  // of pixels that lack the vote that was looked at last
+  std::int16_t since[kTileSide];           // by pixel, the first of those that are taken back with it
+  const std::uint16_t* texel[kTileSide];  // what they are for; null where it is not usable
 };
 
 }  // namespace
@@ -279,7 +286,7 @@ struct Missing {
 void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
                               const EdgeLimits& limits, int first_row, WideSums& sums) {
   const int radius = surface.radius(), margin = surface.margin(), side = 2 * radius + 1;
-  JoinedRows rows{surface, limits, votes_, first_row, {}, nullptr, nullptr, 2 * surface.reach() + 1};
+  JoinedRows rows{surface, limits, votes_, first_row, {}, nullptr, nullptr, nullptr, 2 * surface.reach() + 1};
   std::uint64_t any = 0;
   for (int k = 0; k < std::min(kCell, tile.area().y1 - tile.area().y0 - first_row); ++k) {
     any |= rows.active[k] = tile.ActiveWord(first_row + k);
@@ -287,7 +294,9 @@ void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, cons
   if (!any) return;
   const auto* blocked = blocked_.data() + (first_row + margin);
   const bool open = std::none_of(blocked - radius, blocked + kCell + radius, [](std::uint8_t row) { return row != 0; });
-  if (MarkUnsure(surface, limits, first_row / kCell, any)) rows.unsure = unsure_.data();
+  if (MarkUnsure(surface, limits, first_row / kCell, any)) {
+    rows.unsure = unsure_.data(), rows.doubtful = doubtful_.data();
+  }
   if (open && !rows.unsure) return;
   if (!open) {
     reached_.resize(8 * std::size_t(side) * side);
@@ -297,14 +306,23 @@ void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, cons
 
   const SourceField& field = input.field;
   Missing missing[8];
-  const auto take_back = [&](int k, std::uint64_t bits, int dx, int dy) {
+  // All votes of a chunk for a pixel are for one texel.
+  const auto begin = [&](int k, std::uint64_t bits, int dx, int dy) {
     for (; bits; bits &= bits - 1) {
-      const int x = std::countr_zero(bits), y = first_row + k;
-      const std::size_t q = field.Index(tile.area().x0 + x + dx - 1, tile.area().y0 + y + dy);
-      const Source source{field.x[q] - (dx - 1), field.y[q] - dy};
+      const int x = std::countr_zero(bits);
+      const std::size_t q = field.Index(tile.area().x0 + x + dx, tile.area().y0 + first_row + k + dy);
+      const Source source{field.x[q] - dx, field.y[q] - dy};
+      missing[k].since[x] = static_cast<std::int16_t>(dx), missing[k].texel[x] = nullptr;
       if (!input.exemplar.Usable(source.x, source.y)) continue;
-      sums.Withdraw(x, y, input.exemplar.picture(field.exemplar[q]).At(source.x, source.y),
-                    static_cast<std::uint32_t>(dx - missing[k].since[x]));
+      missing[k].texel[x] = input.exemplar.picture(field.exemplar[q]).At(source.x, source.y);
+      hwy::Prefetch(missing[k].texel[x]);
+    }
+  };
+  const auto take_back = [&](int k, std::uint64_t bits, int dx) {
+    for (; bits; bits &= bits - 1) {
+      const int x = std::countr_zero(bits);
+      const std::uint16_t* texel = missing[k].texel[x];
+      if (texel) sums.Withdraw(x, first_row + k, texel, static_cast<std::uint32_t>(dx - missing[k].since[x]));
     }
   };
   const auto find = HWY_DYNAMIC_DISPATCH(FindLacking);
@@ -319,10 +337,8 @@ void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, cons
         const std::uint64_t before = missing[k].bits;
         if (!(before | lacking[k])) continue;
         const std::uint64_t on = before & lacking[k] & ~changes_.Read(first_row + k + dy, dx);
-        take_back(k, before & ~on, dx, dy);
-        for (std::uint64_t bits = lacking[k] & ~on; bits; bits &= bits - 1) {
-          missing[k].since[std::countr_zero(bits)] = static_cast<std::int16_t>(dx);
-        }
+        take_back(k, before & ~on, dx);
+        begin(k, lacking[k] & ~on, dx, dy);
         missing[k].bits = lacking[k];
       }
     }

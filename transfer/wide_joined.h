@@ -42,6 +42,7 @@ struct JoinedRows {
   // By the upper or lower quarters of the row of cells, and by row and column of the quarters that are looked at, counted
   // from the own: the pixels that may fail, by depth and by facing. From -quarters to quarters; null: none.
   const std::uint64_t* unsure;
+  const std::uint8_t* doubtful;  // by row and column of quarters: whether any pixel may
   int quarters;
 };
 
@@ -54,7 +55,7 @@ class WideJoined {
                 const EdgeLimits& limits, WideSums& sums);
 
  private:
-  void MarkDoubts(const WideSurface& surface, const EdgeLimits& limits);
+  bool MarkDoubts(const WideSurface& surface, const EdgeLimits& limits);
   unsigned Doubts(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx, int dy) const;
   void MarkSteps(const WideSurface& surface, const EdgeLimits& limits);
   void MarkPixels(const WideTile& tile, int margin);
@@ -68,6 +69,7 @@ class WideJoined {
   std::vector<std::uint8_t> blocked_;    // by row from -margin: a step from it is refused
   std::vector<std::uint64_t> reached_;   // by pixel of the window and row of eight
   std::vector<std::uint64_t> unsure_;    // see JoinedRows
+  std::vector<std::uint8_t> doubtful_;
 };
 
 }  // namespace scumble::internal

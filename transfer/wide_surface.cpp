@@ -16,13 +16,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using DF = HWY_CAPPED(float, 16);
 
-// Depth becomes NaN where nothing is covered, so that nothing that is made of it passes a comparison. `n` may be passed by a vector.
-HWY_ATTR void MaskDepth(const float* coverage, float* depth, int n) {
+// Depth, NaN where nothing is covered, so that nothing that is made of it passes a comparison. All arrays hold a vector
+// more than `n`.
+HWY_ATTR void MaskDepth(const float* coverage, const float* depth, int n, float* masked) {
   const DF d;
   const auto none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
   for (int i = 0; i < n; i += static_cast<int>(hn::Lanes(d))) {
     const auto covered = hn::Gt(hn::LoadU(d, coverage + i), hn::Zero(d));
-    hn::StoreU(hn::IfThenElse(covered, hn::LoadU(d, depth + i), none), d, depth + i);
+    hn::StoreU(hn::IfThenElse(covered, hn::LoadU(d, depth + i), none), d, masked + i);
   }
 }
 
@@ -50,7 +51,7 @@ struct CellRanges {
 };
 
 template <int kSize>
-HWY_ATTR void CellRangesOf(const float* const* planes, std::size_t stride, CellRanges& out) {
+HWY_ATTR void CellRangesOf(const float* const* planes, const std::ptrdiff_t* strides, CellRanges& out) {
   const HWY_CAPPED(float, kSize) d;
   constexpr float kFar = std::numeric_limits<float>::infinity();
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -64,8 +65,8 @@ HWY_ATTR void CellRangesOf(const float* const* planes, std::size_t stride, CellR
     auto seen = hn::Zero(d), strange = hn::Zero(d);
     const auto one = hn::Set(d, 1.0f), far = hn::Set(d, kFar), back = hn::Set(d, -kFar);
     for (int y = 0; y < kSize; ++y) {
-      const std::size_t at = std::size_t(y) * stride + std::size_t(x);
-      const auto covered = hn::Gt(hn::LoadU(d, planes[WideSurface::kCoverage] + at), hn::Zero(d));
+      const std::ptrdiff_t at = y * strides[WideSurface::kDepth] + x, from = y * strides[WideSurface::kCoverage] + x;
+      const auto covered = hn::Gt(hn::LoadU(d, planes[WideSurface::kCoverage] + from), hn::Zero(d));
       seen = hn::Or(seen, hn::IfThenElseZero(covered, one));
       const auto fold = [&](auto value, auto& low, auto& high) HWY_ATTR {
         low = hn::Min(low, hn::IfThenElse(covered, value, far));
@@ -73,10 +74,10 @@ HWY_ATTR void CellRangesOf(const float* const* planes, std::size_t stride, CellR
         strange = hn::Or(strange, hn::IfThenElseZero(hn::And(covered, hn::Ne(value, value)), one));
       };
       const auto depth = hn::LoadU(d, planes[0] + at), sx = hn::LoadU(d, planes[1] + at), sy = hn::LoadU(d, planes[2] + at);
-      const auto nx = hn::LoadU(d, planes[3] + at), ny = hn::LoadU(d, planes[4] + at), nz = hn::LoadU(d, planes[5] + at);
+      const auto nx = hn::LoadU(d, planes[3] + from), ny = hn::LoadU(d, planes[4] + from), nz = hn::LoadU(d, planes[5] + from);
       fold(depth, low0, high0), fold(sx, low1, high1), fold(sy, low2, high2);
       fold(nx, low3, high3), fold(ny, low4, high4), fold(nz, low5, high5);
-      fold(hn::LoadU(d, planes[6] + at), low6, high6);
+      fold(hn::LoadU(d, planes[6] + from), low6, high6);
       const auto length2 = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
       low7 = hn::Min(low7, hn::IfThenElse(covered, length2, far));
       low8 = hn::Min(low8, hn::IfThenElse(covered, hn::Abs(sx), far));
@@ -96,7 +97,7 @@ HWY_ATTR void CellRangesOf(const float* const* planes, std::size_t stride, CellR
 
 // How far depth leaves the plane of these slopes through the cell's centre.
 template <int kSize>
-HWY_ATTR void BendOf(const float* depth, const float* coverage, std::size_t stride, float slope_x, float slope_y, Range& out) {
+HWY_ATTR void BendOf(const float* depth, std::ptrdiff_t stride, const float* coverage, std::ptrdiff_t coverage_stride, float slope_x, float slope_y, Range& out) {
   const HWY_CAPPED(float, kSize) d;
   constexpr float kFar = std::numeric_limits<float>::infinity();
   constexpr float kCentre = 0.5f * (kSize - 1);
@@ -105,10 +106,9 @@ HWY_ATTR void BendOf(const float* depth, const float* coverage, std::size_t stri
     const auto rise = hn::Mul(hn::Set(d, slope_x), hn::Iota(d, static_cast<float>(x) - kCentre));
     auto low = hn::Set(d, kFar), high = hn::Set(d, -kFar);
     for (int y = 0; y < kSize; ++y) {
-      const std::size_t at = std::size_t(y) * stride + std::size_t(x);
-      const auto covered = hn::Gt(hn::LoadU(d, coverage + at), hn::Zero(d));
+      const auto covered = hn::Gt(hn::LoadU(d, coverage + y * coverage_stride + x), hn::Zero(d));
       const auto plane = hn::Add(rise, hn::Set(d, slope_y * (static_cast<float>(y) - kCentre)));
-      const auto rest = hn::Sub(hn::LoadU(d, depth + at), plane);
+      const auto rest = hn::Sub(hn::LoadU(d, depth + y * stride + x), plane);
       low = hn::Min(low, hn::IfThenElse(covered, rest, hn::Set(d, kFar)));
       high = hn::Max(high, hn::IfThenElse(covered, rest, hn::Set(d, -kFar)));
     }
@@ -118,9 +118,9 @@ HWY_ATTR void BendOf(const float* depth, const float* coverage, std::size_t stri
 }
 
 template <int kSize>
-HWY_ATTR void BoundOf(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
+HWY_ATTR void BoundOf(const float* const* planes, const std::ptrdiff_t* strides, WideSurface::Cell& cell) {
   CellRanges ranges;
-  CellRangesOf<kSize>(planes, stride, ranges);
+  CellRangesOf<kSize>(planes, strides, ranges);
   cell.empty = !ranges.any;
   if (cell.empty) return;
   const Range* value = ranges.value;
@@ -134,15 +134,15 @@ HWY_ATTR void BoundOf(const float* const* planes, std::size_t stride, WideSurfac
   for (int c = 0; c < 3; ++c) cell.least_normal[c] = value[3 + c].least, cell.most_normal[c] = value[3 + c].most;
   cell.least_length2 = ranges.length2.least;
   Range rest;
-  BendOf<kSize>(planes[0], planes[WideSurface::kCoverage], stride, cell.slope_x, cell.slope_y, rest);
+  BendOf<kSize>(planes[0], strides[0], planes[WideSurface::kCoverage], strides[WideSurface::kCoverage], cell.slope_x, cell.slope_y, rest);
   cell.depth = 0.5f * (rest.least + rest.most), cell.bend = 0.5f * (rest.most - rest.least);
 }
 
-HWY_ATTR void BoundCell(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
-  BoundOf<WideSurface::kCell>(planes, stride, cell);
+HWY_ATTR void BoundCell(const float* const* planes, const std::ptrdiff_t* strides, WideSurface::Cell& cell) {
+  BoundOf<WideSurface::kCell>(planes, strides, cell);
 }
-HWY_ATTR void BoundQuarter(const float* const* planes, std::size_t stride, WideSurface::Cell& cell) {
-  BoundOf<WideSurface::kQuarter>(planes, stride, cell);
+HWY_ATTR void BoundQuarter(const float* const* planes, const std::ptrdiff_t* strides, WideSurface::Cell& cell) {
+  BoundOf<WideSurface::kQuarter>(planes, strides, cell);
 }
 
 HWY_ATTR std::uint64_t CoveredBits(const float* coverage) {
@@ -168,6 +168,18 @@ HWY_EXPORT(BoundCell);
 HWY_EXPORT(BoundQuarter);
 HWY_EXPORT(CoveredBits);
 
+namespace {
+
+constexpr struct GuideSource {
+  WideSurface::Plane plane;
+  Layer layer;
+  int component;
+} kSources[] = {{WideSurface::kDepth, Layer::kDepth, 0},     {WideSurface::kNormalX, Layer::kNormal, 0},
+                {WideSurface::kNormalY, Layer::kNormal, 1}, {WideSurface::kNormalZ, Layer::kNormal, 2},
+                {WideSurface::kObject, Layer::kObject, 0},  {WideSurface::kCoverage, Layer::kCoverage, 0}};
+
+}  // namespace
+
 void BitPlane::Reset(int margin) {
   margin_ = margin + 1, rows_ = kTileSide + 2 * margin_ + 8;
   words_.assign(std::size_t(rows_) * std::size_t((kTileSide + 2 * margin_ + 63) / 64 + 2), 0);
@@ -188,18 +200,41 @@ void BitPlane::Put(int row, int column, std::uint64_t bits) {
 
 void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
   radius_ = radius, reach_ = (radius + kCell - 1) / kCell;
-  const int across = kTileSide + 2 * margin();
+  const int across = kTileSide + 2 * margin(), most = margin() + 1;
   stride_ = std::size_t(across + 2 * kPad + 64);
-  for (std::vector<float>& plane : planes_) plane.resize(stride_ * std::size_t(across + 2));
+  for (const Plane plane : {kDepth, kSlopeX, kSlopeY}) planes_[plane].resize(stride_ * std::size_t(across + 2));
+  // In the middle of the picture most guides are read where they are.
+  const Region needed{area.x0 - most, area.y0 - most, area.x0 + kTileSide + most + 64, area.y0 + kTileSide + most + 1};
+  const float* depth = nullptr;
+  if (needed.x0 >= 0 && needed.y0 >= 0 && needed.x1 <= guides.width() && needed.y1 <= guides.height()) {
+    const std::size_t corner = guides.Index(area.x0, area.y0);
+    for (const GuideSource& source : kSources) {
+      const float* base = guides.Plane(source.layer, source.component).data() + corner;
+      if (source.plane == kDepth) depth = base;
+      else bases_[source.plane] = base, strides_[source.plane] = guides.width();
+    }
+  } else {
+    Copy(guides, area);
+    depth = Own(kDepth, 0);
+  }
+  for (const Plane plane : {kDepth, kSlopeX, kSlopeY}) bases_[plane] = Own(plane, 0), strides_[plane] = std::ptrdiff_t(stride_);
+  const std::ptrdiff_t depth_stride = depth == Own(kDepth, 0) ? std::ptrdiff_t(stride_) : guides.width();
+  for (int row = -most; row < kTileSide + most; ++row) {
+    HWY_DYNAMIC_DISPATCH(MaskDepth)(Row(kCoverage, row) - most, depth + row * depth_stride - most, across + 2, Own(kDepth, row) - most);
+  }
   covered_.Reset(margin());
-  for (int row = -margin() - 1; row < kTileSide + margin() + 1; ++row) ReadRow(guides, area, row);
-  for (int row = -margin(); row < kTileSide + margin(); ++row) {
-    const int left = -margin();
-    const float* depth = Row(kDepth, row) + left;
-    HWY_DYNAMIC_DISPATCH(SlopeRow)(depth - 1, depth, depth + 1, across, Row(kSlopeX, row) + left);
-    HWY_DYNAMIC_DISPATCH(SlopeRow)(Row(kDepth, row - 1) + left, depth, Row(kDepth, row + 1) + left, across, Row(kSlopeY, row) + left);
-    for (int x = left; x < kTileSide + margin(); x += 64) {
-      covered_.Put(row, x, HWY_DYNAMIC_DISPATCH(CoveredBits)(Row(kCoverage, row) + x));
+  all_covered_ = true;
+  const int left = -margin(), right = kTileSide + margin();
+  for (int row = left; row < right; ++row) {
+    const float* here = Row(kDepth, row) + left;
+    HWY_DYNAMIC_DISPATCH(SlopeRow)(here - 1, here, here + 1, across, Own(kSlopeX, row) + left);
+    HWY_DYNAMIC_DISPATCH(SlopeRow)(Row(kDepth, row - 1) + left, here, Row(kDepth, row + 1) + left, across, Own(kSlopeY, row) + left);
+    for (int x = left; x < right; x += 64) {
+      std::uint64_t covered = HWY_DYNAMIC_DISPATCH(CoveredBits)(Row(kCoverage, row) + x);
+      if (right - x < 64) covered &= (std::uint64_t{1} << (right - x)) - 1;
+      covered_.Put(row, x, covered);
+      const std::uint64_t inner = BitsBetween(-radius - x, kTileSide + radius - x);
+      if (row >= -radius && row < kTileSide + radius && (inner & ~covered)) all_covered_ = false;
     }
   }
   const int cells = kCells + 2 * reach_;
@@ -209,31 +244,26 @@ void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
   for (int row = 0; row < cells; ++row) {
     for (int column = 0; column < cells; ++column) {
       const float* planes[kPlanes];
-      for (int k = 0; k < kPlanes; ++k) planes[k] = Row(Plane(k), kCell * (row - reach_)) + kCell * (column - reach_);
-      HWY_DYNAMIC_DISPATCH(BoundCell)(planes, stride_, cells_[std::size_t(row) * cells + column]);
+      PlanesAt(kCell * (column - reach_), kCell * (row - reach_), planes);
+      HWY_DYNAMIC_DISPATCH(BoundCell)(planes, strides_, cells_[std::size_t(row) * cells + column]);
     }
   }
 }
 
-// Columns from the one before the margin to the one behind it; what is not in the picture is not covered.
-void WideSurface::ReadRow(const GuideSet& guides, const Region& area, int row) {
-  static constexpr struct {
-    Plane plane;
-    Layer layer;
-    int component;
-  } kSources[] = {{kDepth, Layer::kDepth, 0},   {kNormalX, Layer::kNormal, 0}, {kNormalY, Layer::kNormal, 1},
-                  {kNormalZ, Layer::kNormal, 2}, {kObject, Layer::kObject, 0},  {kCoverage, Layer::kCoverage, 0}};
-  const int first = -margin() - 1, count = kTileSide + 2 * margin() + 2, y = area.y0 + row;
-  // Beyond that, a vector more: SIMD reads on.
-  std::fill_n(Row(kCoverage, row) - margin() - kPad, stride_, 0.0f);
-  if (y >= 0 && y < guides.height()) {
-    const int begin = std::max(0, area.x0 + first), end = std::min(guides.width(), area.x0 + first + count);
-    for (const auto& source : kSources) {
-      std::memcpy(Row(source.plane, row) + (begin - area.x0), guides.Plane(source.layer, source.component).data() + guides.Index(begin, y),
-                  sizeof(float) * std::size_t(end - begin));
+// Into the own planes, from the row and column before the margin to those behind it; what is not in the picture is not
+// covered.
+void WideSurface::Copy(const GuideSet& guides, const Region& area) {
+  const int most = margin() + 1;
+  for (const GuideSource& source : kSources) {
+    std::vector<float>& plane = planes_[source.plane];
+    plane.assign(stride_ * std::size_t(kTileSide + 2 * most), 0.0f);
+    const auto values = guides.Plane(source.layer, source.component);
+    const int begin = std::max(0, area.x0 - most), end = std::min(guides.width(), area.x0 + kTileSide + most);
+    for (int y = std::max(0, area.y0 - most); y < std::min(guides.height(), area.y0 + kTileSide + most); ++y) {
+      std::memcpy(Own(source.plane, y - area.y0) + (begin - area.x0), values.data() + guides.Index(begin, y), sizeof(float) * std::size_t(end - begin));
     }
+    bases_[source.plane] = Own(source.plane, 0), strides_[source.plane] = std::ptrdiff_t(stride_);
   }
-  HWY_DYNAMIC_DISPATCH(MaskDepth)(Row(kCoverage, row) + first, Row(kDepth, row) + first, count);
 }
 
 const WideSurface::Cell& WideSurface::QuarterAt(int column, int row) {
@@ -243,12 +273,10 @@ const WideSurface::Cell& WideSurface::QuarterAt(int column, int row) {
     quartered_[cell] = 1;
     for (int k = 0; k < 4; ++k) {
       const float* planes[kPlanes];
-      for (int plane = 0; plane < kPlanes; ++plane) {
-        planes[plane] = Row(Plane(plane), kQuarter * ((row & ~1) + k / 2)) + kQuarter * ((column & ~1) + k % 2);
-      }
+      PlanesAt(kQuarter * ((column & ~1) + k % 2), kQuarter * ((row & ~1) + k / 2), planes);
       Cell& quarter = quarters_[4 * cell + std::size_t(k)];
       quarter = {};
-      HWY_DYNAMIC_DISPATCH(BoundQuarter)(planes, stride_, quarter);
+      HWY_DYNAMIC_DISPATCH(BoundQuarter)(planes, strides_, quarter);
     }
   }
   return quarters_[4 * cell + std::size_t(2 * (y & 1) + (x & 1))];

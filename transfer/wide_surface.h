@@ -1,6 +1,7 @@
 // The surface in and around a tile, as far as its edges matter: guides, slopes, and bounds of both over small cells.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,6 +11,13 @@
 #include "transfer/wide_tile.h"
 
 namespace scumble::internal {
+
+// Of 64 bits, those from `begin` to before `end`, which may lie outside.
+inline std::uint64_t BitsBetween(int begin, int end) {
+  begin = std::clamp(begin, 0, 64), end = std::clamp(end, 0, 64);
+  if (begin >= end) return 0;
+  return ~std::uint64_t{0} >> (64 - (end - begin)) << begin;
+}
 
 // Rows of bits from `margin` rows and columns before a tile to as many behind it, laid out word by word, so that one word
 // of several rows is read at once.
@@ -59,8 +67,9 @@ class WideSurface {
   int margin() const { return kCell * reach_; }
   // Values from column 0 of a row on; rows and columns from -margin() to kTileSide + margin(), and a vector more of
   // columns, may be read. What is not covered has depth NaN.
-  const float* Row(Plane plane, int row) const { return planes_[plane].data() + At(row); }
+  const float* Row(Plane plane, int row) const { return bases_[plane] + std::ptrdiff_t(row) * strides_[plane]; }
   const BitPlane& covered() const { return covered_; }
+  bool all_covered() const { return all_covered_; }  // as far as the radius reaches
 
   // What may make some covered pixel of that cell fail the edge test with a covered one of the cell (dx, dy) cells
   // further; without the bit of a cause, surely none fails by it. Columns and rows of cells, from -reach() to kCells +
@@ -84,9 +93,13 @@ class WideSurface {
  private:
   static constexpr int kPad = 16;  // columns
 
-  std::size_t At(int row) const { return std::size_t(row + margin() + 1) * stride_ + std::size_t(margin() + kPad); }
-  float* Row(Plane plane, int row) { return planes_[plane].data() + At(row); }
-  void ReadRow(const GuideSet& guides, const Region& area, int row);
+  float* Own(Plane plane, int row) {
+    return planes_[plane].data() + std::size_t(row + margin() + 1) * stride_ + std::size_t(margin() + kPad);
+  }
+  void Copy(const GuideSet& guides, const Region& area);
+  void PlanesAt(int x, int y, const float** planes) const {
+    for (int k = 0; k < kPlanes; ++k) planes[k] = Row(Plane(k), y) + x;
+  }
   const Cell& CellAt(int column, int row) const {
     return cells_[std::size_t(row + reach_) * (kCells + 2 * reach_) + std::size_t(column + reach_)];
   }
@@ -96,6 +109,10 @@ class WideSurface {
   int radius_ = 0, reach_ = 0;
   std::size_t stride_ = 0;
   std::vector<float> planes_[kPlanes];
+  // Where values are read: the own planes or, in the middle of a picture, the guides.
+  const float* bases_[kPlanes] = {};
+  std::ptrdiff_t strides_[kPlanes] = {};
+  bool all_covered_ = false;
   BitPlane covered_;
   std::vector<Cell> cells_, quarters_;
   std::vector<std::uint8_t> quartered_;  // by cell: its quarters are known
