@@ -16,7 +16,9 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using DF = HWY_CAPPED(float, 16);
+// Wanted pixels are few and scattered: short vectors waste less.
+using DF = HWY_CAPPED(float, 8);
+using D64 = HWY_CAPPED(std::uint64_t, 8);
 
 // EdgeTest::SameSurface between 64 pixels of a row from column x on and those (dx, dy) further, where `wanted` has bits:
 // the bits of those that pass; without kFacing only by depth. What is not covered does not pass.
@@ -33,8 +35,10 @@ HWY_ATTR HWY_INLINE std::uint64_t PassBits(const WideSurface& surface, const Edg
   const auto right = hn::Set(d, static_cast<float>(dx)), down = hn::Set(d, static_cast<float>(dy));
   const auto wide = hn::Abs(right), high = hn::Abs(down);
   std::uint64_t pass = 0;
-  for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
-    if (!(wanted >> i & ((std::uint64_t{2} << (hn::Lanes(d) - 1)) - 1))) continue;
+  constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  for (std::uint64_t left = wanted; left;) {
+    const int i = std::countr_zero(left);  // vectors begin where they are wanted
+    left &= kAll << 1 << (std::min(63, i + static_cast<int>(hn::Lanes(d)) - 1));
     const auto of_p = [&](int k) HWY_ATTR { return hn::LoadU(d, p[k] + i); };
     const auto of_q = [&](int k) HWY_ATTR { return hn::LoadU(d, q[k] + i); };
     const auto px = of_p(WideSurface::kSlopeX), qx = of_q(WideSurface::kSlopeX);
@@ -55,7 +59,7 @@ HWY_ATTR HWY_INLINE std::uint64_t PassBits(const WideSurface& surface, const Edg
     }
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, same, bytes);
-    pass |= std::uint64_t(bytes[0] | bytes[1] << 8) << i;
+    pass |= std::uint64_t{bytes[0]} << i;
   }
   return pass;
 }
@@ -67,33 +71,46 @@ HWY_ATTR std::uint64_t PassWord(const WideSurface& surface, const EdgeLimits& li
 
 // Which active pixels of eight rows lack the vote of the active pixel (dx, dy) further. Returns whether any does.
 HWY_ATTR bool FindLacking(const JoinedRows& rows, int dx, int dy, std::uint64_t* lacking) {
-  std::uint64_t votes[8], seen[8], any = 0;
-  rows.votes.Read8(rows.first + dy, dx, votes);
-  for (int k = 0; k < 8; ++k) seen[k] = votes[k] &= rows.active[k];
-  if (rows.reached) {
-    const int radius = rows.surface.radius();
-    const std::uint64_t* reached = rows.reached + 8 * std::size_t((dy + radius) * (2 * radius + 1) + dx + radius);
-    for (int k = 0; k < 8; ++k) seen[k] &= reached[k];
+  const D64 d;
+  HWY_ALIGN std::uint64_t seen[8];
+  const int radius = rows.surface.radius();
+  const std::uint64_t* reached = rows.reached ? rows.reached + 8 * std::size_t((dy + radius) * (2 * radius + 1) + dx + radius) : nullptr;
+  rows.votes.Read8(rows.first + dy, dx, seen);
+  std::uint64_t any = 0, all = 0;
+  if (reached) {
+    auto lost = hn::Zero(d), left = hn::Zero(d);
+    for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
+      const auto votes = hn::And(hn::Load(d, seen + k), hn::LoadU(d, rows.active + k)), way = hn::LoadU(d, reached + k);
+      const auto lack = hn::AndNot(way, votes), see = hn::And(way, votes);
+      hn::StoreU(lack, d, lacking + k), hn::Store(see, d, seen + k);
+      lost = hn::Or(lost, lack), left = hn::Or(left, see);
+    }
+    any = !hn::AllFalse(d, hn::Ne(lost, hn::Zero(d))), all = !hn::AllFalse(d, hn::Ne(left, hn::Zero(d)));
+  } else {
+    for (int k = 0; k < 8; ++k) lacking[k] = 0, all |= seen[k] &= rows.active[k];
   }
-  for (int k = 0; k < 8; ++k) any |= lacking[k] = votes[k] & ~seen[k];
-  if (!rows.unsure) return any != 0;
+  if (!rows.unsure || !all) return any != 0;
   const std::uint8_t* doubtful = rows.doubtful + ((dy >> 2) + rows.quarters) * (2 * rows.quarters + 1) + (dx >> 2) + rows.quarters;
   if (!(doubtful[0] | doubtful[1] | doubtful[2 * rows.quarters + 1] | doubtful[2 * rows.quarters + 2])) return any != 0;
   // Pixels of a quarter see the quarter that is a whole number of quarters further, or the next.
-  constexpr int kQuarter = WideSurface::kQuarter;
-  const int side = 2 * rows.quarters + 1, column = (dx >> 2) + rows.quarters;
+  const std::size_t side = 2 * std::size_t(rows.quarters) + 1;
   const std::uint64_t near = 0x1111111111111111u * (0xfu >> (dx & 3));
-  for (int k = 0; k < 8; ++k) {
-    const int below = ((k + dy) >> 2) - (k >> 2) + rows.quarters;
-    const std::uint64_t* unsure = rows.unsure + 2 * (std::size_t((k / kQuarter * side) + below) * side + column);
-    const std::uint64_t depth = seen[k] & ((unsure[0] & near) | (unsure[2] & ~near));
-    const std::uint64_t facing = seen[k] & ((unsure[1] & near) | (unsure[3] & ~near));
-    const std::uint64_t wanted = depth | facing;
-    if (!wanted) continue;
-    const int y = rows.first + k;
-    const std::uint64_t pass = facing ? PassBits<true>(rows.surface, rows.limits, 0, y, dx, dy, wanted)
-                                      : PassBits<false>(rows.surface, rows.limits, 0, y, dx, dy, wanted);
-    any |= lacking[k] |= wanted & ~pass;
+  const std::uint64_t* unsure = rows.unsure + 2 * ((std::size_t((dy >> 2) + rows.quarters)) * side + std::size_t((dx >> 2) + rows.quarters));
+  for (int half = 0; half < 2; ++half, unsure += 2 * side * side) {
+    // Rows of a quarter see the quarters of two rows.
+    const auto words = [&](const std::uint64_t* of, int cause) { return (of[cause] & near) | (of[2 + cause] & ~near); };
+    const std::uint64_t* lower = unsure + 2 * side;
+    const std::uint64_t depths[] = {words(unsure, 0), words(lower, 0)}, facings[] = {words(unsure, 1), words(lower, 1)};
+    if (!(depths[0] | depths[1] | facings[0] | facings[1])) continue;
+    for (int k = 4 * half; k < 4 * half + 4; ++k) {
+      const int next = ((k & 3) + (dy & 3)) >> 2;
+      const std::uint64_t facing = seen[k] & facings[next], wanted = (seen[k] & depths[next]) | facing;
+      if (!wanted) continue;
+      const int y = rows.first + k;
+      const std::uint64_t pass = facing ? PassBits<true>(rows.surface, rows.limits, 0, y, dx, dy, wanted)
+                                        : PassBits<false>(rows.surface, rows.limits, 0, y, dx, dy, wanted);
+      any |= lacking[k] |= wanted & ~pass;
+    }
   }
   return any != 0;
 }
@@ -192,7 +209,7 @@ unsigned WideJoined::Doubts(const WideSurface& surface, const EdgeLimits& limits
 // For a row of cells: whether any pixel of the window may fail. Where a cell leaves doubts its quarters are asked.
 bool WideJoined::MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int cell_row, std::uint64_t active) {
   const int reach = surface.reach(), quarters = 2 * reach + 1, side = 2 * quarters + 1;
-  unsure_.assign(std::size_t(4) * side * side + 2, 0);
+  unsure_.assign(std::size_t(4) * side * side + 2 * side + 4, 0);
   doubtful_.assign(std::size_t(side) * (side + 1) + 1, 0);
   bool any = false;
   for (int dy = -reach; dy <= reach; ++dy) {

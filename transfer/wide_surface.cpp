@@ -38,7 +38,7 @@ HWY_ATTR void SlopeRow(const float* before, const float* here, const float* afte
   }
 }
 
-// The smallest and largest covered value of each column of a cell's rows, folded to one of each.
+// The smallest and the largest value.
 struct Range {
   float least, most;
 };
@@ -46,53 +46,69 @@ struct Range {
 
 struct CellRanges {
   Range value[WideSurface::kPlanes];
-  Range length2, steep_x, steep_y;
+  float length2;
   bool any, nan;
 };
 
-template <int kSize>
-HWY_ATTR void CellRangesOf(const float* const* planes, const std::ptrdiff_t* strides, CellRanges& out) {
+// Folds one row into them; without kAll only where something is covered. What is odd makes `strange` NaN.
+template <int kSize, bool kAll>
+HWY_ATTR bool CellRangesOf(const float* const* planes, const std::ptrdiff_t* strides, CellRanges& out) {
   const HWY_CAPPED(float, kSize) d;
+  using V = hn::Vec<decltype(d)>;
   constexpr float kFar = std::numeric_limits<float>::infinity();
   const int lanes = static_cast<int>(hn::Lanes(d));
-  constexpr int kValues = 7;
-  bool any = false, nan = false;
-  float least[10], most[10];
-  std::fill_n(least, 10, kFar), std::fill_n(most, 10, -kFar);
+  float least[8], most[7];
+  std::fill_n(least, 8, kFar), std::fill_n(most, 7, -kFar);
+  out.any = false, out.nan = false;
   for (int x = 0; x < kSize; x += lanes) {
-    auto low0 = hn::Set(d, kFar), low1 = low0, low2 = low0, low3 = low0, low4 = low0, low5 = low0, low6 = low0, low7 = low0, low8 = low0, low9 = low0;
-    auto high0 = hn::Set(d, -kFar), high1 = high0, high2 = high0, high3 = high0, high4 = high0, high5 = high0, high6 = high0;
-    auto seen = hn::Zero(d), strange = hn::Zero(d);
-    const auto one = hn::Set(d, 1.0f), far = hn::Set(d, kFar), back = hn::Set(d, -kFar);
+    const V far = hn::Set(d, kFar), back = hn::Set(d, -kFar), zero = hn::Zero(d);
+    V low0 = far, low1 = far, low2 = far, low3 = far, low4 = far, low5 = far, low6 = far, low7 = far;
+    V high0 = back, high1 = back, high2 = back, high3 = back, high4 = back, high5 = back, high6 = back;
+    V strange = zero, seen = zero;
     for (int y = 0; y < kSize; ++y) {
       const std::ptrdiff_t at = y * strides[WideSurface::kDepth] + x, from = y * strides[WideSurface::kCoverage] + x;
-      const auto covered = hn::Gt(hn::LoadU(d, planes[WideSurface::kCoverage] + from), hn::Zero(d));
-      seen = hn::Or(seen, hn::IfThenElseZero(covered, one));
-      const auto fold = [&](auto value, auto& low, auto& high) HWY_ATTR {
-        low = hn::Min(low, hn::IfThenElse(covered, value, far));
-        high = hn::Max(high, hn::IfThenElse(covered, value, back));
-        strange = hn::Or(strange, hn::IfThenElseZero(hn::And(covered, hn::Ne(value, value)), one));
+      const V coverage = hn::LoadU(d, planes[WideSurface::kCoverage] + from);
+      const auto covered = hn::Gt(coverage, zero);
+      if constexpr (kAll) {
+        if (!hn::AllTrue(d, covered)) return false;
+      } else {
+        seen = hn::Or(seen, hn::IfThenElseZero(covered, hn::Set(d, 1.0f)));
+      }
+      const auto fold = [&](V value, V& low, V& high) HWY_ATTR {
+        if constexpr (kAll) {
+          low = hn::Min(low, value), high = hn::Max(high, value);
+          strange = hn::Add(strange, hn::Mul(value, zero));
+        } else {
+          low = hn::Min(low, hn::IfThenElse(covered, value, far));
+          high = hn::Max(high, hn::IfThenElse(covered, value, back));
+          strange = hn::Add(strange, hn::IfThenElseZero(covered, hn::Mul(value, zero)));
+        }
       };
-      const auto depth = hn::LoadU(d, planes[0] + at), sx = hn::LoadU(d, planes[1] + at), sy = hn::LoadU(d, planes[2] + at);
-      const auto nx = hn::LoadU(d, planes[3] + from), ny = hn::LoadU(d, planes[4] + from), nz = hn::LoadU(d, planes[5] + from);
-      fold(depth, low0, high0), fold(sx, low1, high1), fold(sy, low2, high2);
+      const V nx = hn::LoadU(d, planes[3] + from), ny = hn::LoadU(d, planes[4] + from), nz = hn::LoadU(d, planes[5] + from);
+      fold(hn::LoadU(d, planes[0] + at), low0, high0);
+      fold(hn::LoadU(d, planes[1] + at), low1, high1);
+      fold(hn::LoadU(d, planes[2] + at), low2, high2);
       fold(nx, low3, high3), fold(ny, low4, high4), fold(nz, low5, high5);
       fold(hn::LoadU(d, planes[6] + from), low6, high6);
-      const auto length2 = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
-      low7 = hn::Min(low7, hn::IfThenElse(covered, length2, far));
-      low8 = hn::Min(low8, hn::IfThenElse(covered, hn::Abs(sx), far));
-      low9 = hn::Min(low9, hn::IfThenElse(covered, hn::Abs(sy), far));
+      const V length2 = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
+      low7 = hn::Min(low7, kAll ? length2 : hn::IfThenElse(covered, length2, far));
     }
-    const auto lowest = [&](auto value, int k) HWY_ATTR { least[k] = std::min(least[k], hn::GetLane(hn::MinOfLanes(d, value))); };
-    const auto highest = [&](auto value, int k) HWY_ATTR { most[k] = std::max(most[k], hn::GetLane(hn::MaxOfLanes(d, value))); };
-    any |= hn::GetLane(hn::MaxOfLanes(d, seen)) > 0.0f, nan |= hn::GetLane(hn::MaxOfLanes(d, strange)) > 0.0f;
-    lowest(low0, 0), lowest(low1, 1), lowest(low2, 2), lowest(low3, 3), lowest(low4, 4), lowest(low5, 5), lowest(low6, 6);
-    lowest(low7, 7), lowest(low8, 8), lowest(low9, 9);
-    highest(high0, 0), highest(high1, 1), highest(high2, 2), highest(high3, 3), highest(high4, 4), highest(high5, 5), highest(high6, 6);
+    const auto lowest = [&](V value, int k) HWY_ATTR {
+      least[k] = std::min(least[k], hn::GetLane(hn::MinOfLanes(d, value)));
+    };
+    const auto highest = [&](V value, int k) HWY_ATTR {
+      most[k] = std::max(most[k], hn::GetLane(hn::MaxOfLanes(d, value)));
+    };
+    lowest(low0, 0), lowest(low1, 1), lowest(low2, 2), lowest(low3, 3), lowest(low4, 4), lowest(low5, 5);
+    lowest(low6, 6), lowest(low7, 7);
+    highest(high0, 0), highest(high1, 1), highest(high2, 2), highest(high3, 3), highest(high4, 4), highest(high5, 5);
+    highest(high6, 6);
+    out.any |= kAll || hn::GetLane(hn::MaxOfLanes(d, seen)) > 0.0f;
+    out.nan |= !hn::AllTrue(d, hn::Eq(strange, zero));
   }
-  for (int k = 0; k < kValues; ++k) out.value[k] = {least[k], most[k]};
-  out.length2.least = least[7], out.steep_x.least = least[8], out.steep_y.least = least[9];
-  out.any = any, out.nan = nan;
+  for (int k = 0; k < 7; ++k) out.value[k] = {least[k], most[k]};
+  out.length2 = least[7];
+  return true;
 }
 
 // How far depth leaves the plane of these slopes through the cell's centre.
@@ -120,7 +136,7 @@ HWY_ATTR void BendOf(const float* depth, std::ptrdiff_t stride, const float* cov
 template <int kSize>
 HWY_ATTR void BoundOf(const float* const* planes, const std::ptrdiff_t* strides, WideSurface::Cell& cell) {
   CellRanges ranges;
-  CellRangesOf<kSize>(planes, strides, ranges);
+  if (!CellRangesOf<kSize, true>(planes, strides, ranges)) CellRangesOf<kSize, false>(planes, strides, ranges);
   cell.empty = !ranges.any;
   if (cell.empty) return;
   const Range* value = ranges.value;
@@ -130,9 +146,10 @@ HWY_ATTR void BoundOf(const float* const* planes, const std::ptrdiff_t* strides,
   cell.least_depth = depth.least, cell.most_depth = depth.most;
   cell.slope_x = 0.5f * (x.least + x.most), cell.turn_x = 0.5f * (x.most - x.least);
   cell.slope_y = 0.5f * (y.least + y.most), cell.turn_y = 0.5f * (y.most - y.least);
-  cell.least_slope_x = ranges.steep_x.least, cell.least_slope_y = ranges.steep_y.least;
+  const auto steepness = [](const Range& r) { return std::max(0.0f, std::max(r.least, -r.most)); };
+  cell.least_slope_x = steepness(x), cell.least_slope_y = steepness(y);
   for (int c = 0; c < 3; ++c) cell.least_normal[c] = value[3 + c].least, cell.most_normal[c] = value[3 + c].most;
-  cell.least_length2 = ranges.length2.least;
+  cell.least_length2 = ranges.length2;
   Range rest;
   BendOf<kSize>(planes[0], strides[0], planes[WideSurface::kCoverage], strides[WideSurface::kCoverage], cell.slope_x, cell.slope_y, rest);
   cell.depth = 0.5f * (rest.least + rest.most), cell.bend = 0.5f * (rest.most - rest.least);
