@@ -46,7 +46,8 @@ enum class Pieces { kOne, kLarge, kSmall, kNoise, kMixed };
 
 Source PieceAt(Pieces pieces, int x, int y) {
   switch (pieces) {
-    case Pieces::kOne: return {};
+    case Pieces::kOne:
+      return {};
     case Pieces::kLarge: {
       const std::uint64_t hash = Hash((x + y / 3) / 37, (y - x / 5) / 29, 1);
       return {int(hash % 40), int(hash / 64 % 40)};
@@ -55,8 +56,10 @@ Source PieceAt(Pieces pieces, int x, int y) {
       const std::uint64_t hash = Hash(x / 3, y / 4, 2);
       return {int(hash % 7), int(hash / 64 % 7)};
     }
-    case Pieces::kNoise: return {int(Hash(x, y, 3) % 50), int(Hash(x, y, 4) % 50)};
-    case Pieces::kMixed: return PieceAt(Pieces(1 + Hash(x / 50, y / 40) % 3), x, y);
+    case Pieces::kNoise:
+      return {int(Hash(x, y, 3) % 50), int(Hash(x, y, 4) % 50)};
+    case Pieces::kMixed:
+      return PieceAt(Pieces(1 + Hash(x / 50, y / 40) % 3), x, y);
   }
   return {};
 }
@@ -87,7 +90,9 @@ std::vector<Picture> Paints(int size, int count, bool opaque) {
     for (std::size_t i = 0; i < paints[k].rgba.size(); ++i) {
       const bool alpha = i % 4 == 3;
       const std::uint64_t hash = Hash(i, k);
-      paints[k].rgba[i] = static_cast<std::uint16_t>(alpha && (opaque || hash % 5 > 1) ? 65535 : hash % 7 == 0 ? 65535 : hash);
+      paints[k].rgba[i] = static_cast<std::uint16_t>(alpha && (opaque || hash % 5 > 1) ? 65535
+                                                     : hash % 7 == 0                   ? 65535
+                                                                                       : hash);
       if (alpha && !opaque && hash % 5 == 0) paints[k].rgba[i] = 0;
     }
   }
@@ -125,7 +130,8 @@ TEST(WideVote, EqualsTheDefinitionForEveryKindOfField) {
           for (const int radius : {3, 8}) {
             const internal::VoteInput input = all.Input(radius, Whole(all));
             ASSERT_EQ(WideVotes(input).rgba, PlainVotes(input).rgba)
-                << int(pieces) << ", exemplar " << size << " × " << exemplars << ", opaque " << opaque << ", radius " << radius;
+                << int(pieces) << ", exemplar " << size << " × " << exemplars << ", opaque " << opaque << ", radius "
+                << radius;
           }
         }
       }
@@ -157,7 +163,8 @@ TEST(WideVote, PicturesOfAnyShape) {
 
 TEST(WideVote, RegionsThreadsAndAFewActivePixels) {
   Case all = MakeCase(210, 150, Pieces::kMixed, 150, 2, true, 30);
-  for (const Region& region : {Region{0, 0, 210, 150}, Region{13, 21, 57, 44}, Region{100, 0, 209, 149}, Region{5, 5, 5, 9}}) {
+  for (const Region& region :
+       {Region{0, 0, 210, 150}, Region{13, 21, 57, 44}, Region{100, 0, 209, 149}, Region{5, 5, 5, 9}}) {
     const internal::VoteInput input = all.Input(9, region);
     const Picture expected = PlainVotes(input);
     for (const int threads : {1, 2, 3}) EXPECT_EQ(WideVotes(input, threads).rgba, expected.rgba) << threads;
@@ -218,10 +225,12 @@ void FillGuides(Case& all, bool extreme) {
       // Inactive pixels may be covered, by another style; active ones always are.
       guides.Plane(Layer::kCoverage)[i] = all.active[i] || Hash(x / 11, y / 8, 7) % 3 == 0 ? 1.0f : 0.0f;
       const std::uint64_t block = Hash(x / 26, y / 19, 8);
-      const glm::vec3 n = glm::normalize(glm::vec3(std::sin(x * 0.05f), block % 5 == 0 ? 2.0f : std::cos(y * 0.04f), 0.8f));
+      const glm::vec3 n =
+          glm::normalize(glm::vec3(std::sin(x * 0.05f), block % 5 == 0 ? 2.0f : std::cos(y * 0.04f), 0.8f));
       for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = n[c];
       const float u = static_cast<float>(x), v = static_cast<float>(y);
-      guides.Plane(Layer::kDepth)[i] = 5.0f + 0.01f * u - 0.007f * v + 2e-5f * u * v + 0.04f * static_cast<float>(block / 8 % 3 / 2);
+      guides.Plane(Layer::kDepth)[i] =
+          5.0f + 0.01f * u - 0.007f * v + 2e-5f * u * v + 0.04f * static_cast<float>(block / 8 % 3 / 2);
       guides.Plane(Layer::kObject)[i] = x + y > guides.width() ? 1.0f : 2.0f;
       if (!extreme || Hash(x / 13, y / 15, 9) % 4 != 0) continue;
       const float odd[] = {0.0f, 1e30f, 1e-38f, kFar, -kFar, kNaN, -3.0f, 5.0f};
@@ -242,20 +251,21 @@ TEST(WideVote, EdgesAreTheDefinitions) {
   for (const bool extreme : {false, true}) {
     for (const Pieces pieces : {Pieces::kLarge, Pieces::kMixed}) {
       for (const bool opaque : {true, false}) {
-        Case all = MakeCase(150, 90, pieces, 110, 2, opaque, 3);
+        Case all = MakeCase(120, 80, pieces, 110, 2, opaque, 3);
         FillGuides(all, extreme);
         internal::LateSlopes slopes(all.guides);
-        for (const int radius : {1, 3, 5, 8, 16, 17}) {
+        for (const int radius : {1, 4, 8, 11}) {
           for (const auto& [crease, tolerance] : {std::pair{60.0, 0.002}, {180.0, 0.0}, {25.0, 0.02}, {180.0, 1.0}}) {
             const internal::EdgeRules rules{all.guides, slopes, crease, tolerance};
             internal::VoteInput input = all.Input(radius, Whole(all));
             input.edges = &rules;
             const Picture found = WideVotes(input);
             ASSERT_EQ(Different(found, PlainVotes(input)), 0u)
-                << extreme << int(pieces) << opaque << ", radius " << radius << ", crease " << crease << ", tolerance " << tolerance;
+                << extreme << int(pieces) << opaque << ", radius " << radius << ", crease " << crease << ", tolerance "
+                << tolerance;
             if (!extreme && tolerance < 1.0 && radius > 1) {
               input.edges = nullptr;
-              EXPECT_GT(Different(found, WideVotes(input)), 500u) << "edges should matter here";
+              EXPECT_GT(Different(found, WideVotes(input)), 300u) << "edges should matter here";
             }
           }
         }
@@ -270,7 +280,7 @@ TEST(WideVote, EdgesInPicturesOfAnyShapeRegionsAndThreads) {
     FillGuides(all, false);
     internal::LateSlopes slopes(all.guides);
     const internal::EdgeRules rules{all.guides, slopes, 60.0, 0.002};
-    for (const int radius : {4, 9, 64}) {
+    for (const int radius : {4, 17, 64}) {
       for (const Region& region : {Whole(all), Region{width / 3, height / 4, width, (height + 1) / 2}}) {
         internal::VoteInput input = all.Input(radius, region);
         input.edges = &rules;

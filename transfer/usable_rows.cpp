@@ -29,8 +29,10 @@ UsableRows::UsableRows(const PreparedExemplar& exemplar) {
     for (int x = 0; x < exemplar.width();) {
       const int begin = x;
       while (x < exemplar.width() && exemplar.Usable(x, y)) ++x;
-      if (begin < x) spans_.push_back({begin, x});
-      else ++x;
+      if (begin < x)
+        spans_.push_back({begin, x});
+      else
+        ++x;
     }
   }
   first_.push_back(static_cast<std::uint32_t>(spans_.size()));

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdlib>
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/wide_joined.cpp"
@@ -20,8 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DF = HWY_CAPPED(float, 8);
 using D64 = HWY_CAPPED(std::uint64_t, 8);
 
-// EdgeTest::SameSurface between 64 pixels of a row from column x on and those (dx, dy) further, where `wanted` has bits:
-// the bits of those that pass; without kFacing only by depth. What is not covered does not pass.
+// EdgeTest::SameSurface between 64 pixels of a row from column x on and those (dx, dy) further, where `wanted` has
+// bits: the bits of those that pass; without kFacing only by depth. What is not covered does not pass.
 template <bool kFacing>
 HWY_ATTR HWY_INLINE std::uint64_t PassBits(const WideSurface& surface, const EdgeLimits& limits, int x, int y, int dx,
                                            int dy, std::uint64_t wanted) {
@@ -46,8 +44,8 @@ HWY_ATTR HWY_INLINE std::uint64_t PassBits(const WideSurface& surface, const Edg
     const auto near = of_p(WideSurface::kDepth), far = of_q(WideSurface::kDepth);
     const auto along = hn::Add(hn::Mul(hn::Add(px, qx), right), hn::Mul(hn::Add(py, qy), down));
     const auto expected = hn::Mul(hn::Set(d, 0.5f), along);
-    const auto leeway = hn::Add(hn::Mul(hn::Min(hn::Abs(px), hn::Abs(qx)), wide),
-                                hn::Mul(hn::Min(hn::Abs(py), hn::Abs(qy)), high));
+    const auto leeway =
+        hn::Add(hn::Mul(hn::Min(hn::Abs(px), hn::Abs(qx)), wide), hn::Mul(hn::Min(hn::Abs(py), hn::Abs(qy)), high));
     const auto tolerance = hn::Add(leeway, hn::Mul(hn::Set(d, limits.depth_tolerance), hn::Min(near, far)));
     auto same = hn::Le(hn::Abs(hn::Sub(hn::Sub(far, near), expected)), tolerance);
     if constexpr (kFacing) {
@@ -74,7 +72,8 @@ HWY_ATTR bool FindLacking(const JoinedRows& rows, int dx, int dy, std::uint64_t*
   const D64 d;
   HWY_ALIGN std::uint64_t seen[8];
   const int radius = rows.surface.radius();
-  const std::uint64_t* reached = rows.reached ? rows.reached + 8 * std::size_t((dy + radius) * (2 * radius + 1) + dx + radius) : nullptr;
+  const std::uint64_t* reached =
+      rows.reached ? rows.reached + 8 * std::size_t((dy + radius) * (2 * radius + 1) + dx + radius) : nullptr;
   rows.votes.Read8(rows.first + dy, dx, seen);
   std::uint64_t any = 0, all = 0;
   if (reached) {
@@ -90,12 +89,14 @@ HWY_ATTR bool FindLacking(const JoinedRows& rows, int dx, int dy, std::uint64_t*
     for (int k = 0; k < 8; ++k) lacking[k] = 0, all |= seen[k] &= rows.active[k];
   }
   if (!rows.unsure || !all) return any != 0;
-  const std::uint8_t* doubtful = rows.doubtful + ((dy >> 2) + rows.quarters) * (2 * rows.quarters + 1) + (dx >> 2) + rows.quarters;
+  const std::uint8_t* doubtful =
+      rows.doubtful + ((dy >> 2) + rows.quarters) * (2 * rows.quarters + 1) + (dx >> 2) + rows.quarters;
   if (!(doubtful[0] | doubtful[1] | doubtful[2 * rows.quarters + 1] | doubtful[2 * rows.quarters + 2])) return any != 0;
   // Pixels of a quarter see the quarter that is a whole number of quarters further, or the next.
   const std::size_t side = 2 * std::size_t(rows.quarters) + 1;
   const std::uint64_t near = 0x1111111111111111u * (0xfu >> (dx & 3));
-  const std::uint64_t* unsure = rows.unsure + 2 * ((std::size_t((dy >> 2) + rows.quarters)) * side + std::size_t((dx >> 2) + rows.quarters));
+  const std::uint64_t* unsure =
+      rows.unsure + 2 * ((std::size_t((dy >> 2) + rows.quarters)) * side + std::size_t((dx >> 2) + rows.quarters));
   for (int half = 0; half < 2; ++half, unsure += 2 * side * side) {
     // Rows of a quarter see the quarters of two rows.
     const auto words = [&](const std::uint64_t* of, int cause) { return (of[cause] & near) | (of[2 + cause] & ~near); };
@@ -115,8 +116,8 @@ HWY_ATTR bool FindLacking(const JoinedRows& rows, int dx, int dy, std::uint64_t*
   return any != 0;
 }
 
-// For eight rows from `row` on: reached[8 · pixel of the window] becomes the bits of the pixels to which every step on the
-// way from that pixel passes.
+// For eight rows from `row` on: reached[8 · pixel of the window] becomes the bits of the pixels to which every step on
+// the way from that pixel passes.
 HWY_ATTR void ReachWindow(const WideWays& ways, const BitPlane* steps, int row, std::uint64_t* reached) {
   const std::uint32_t middle = 2u * ways.radius() * (ways.radius() + 1);
   std::fill_n(reached + 8 * std::size_t(middle), 8, ~std::uint64_t{0});
@@ -197,7 +198,8 @@ bool WideJoined::MarkDoubts(const WideSurface& surface, const EdgeLimits& limits
 }
 
 // As the surface says it; for neighbours it is known.
-unsigned WideJoined::Doubts(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx, int dy) const {
+unsigned WideJoined::Doubts(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx,
+                            int dy) const {
   if (std::abs(dx) > 1 || std::abs(dy) > 1) return surface.Doubts(limits, column, row, dx, dy);
   const int reach = surface.reach(), cells = kCells + 2 * reach;
   const bool back = dy < 0 || (dy == 0 && dx < 0);
@@ -223,7 +225,8 @@ bool WideJoined::MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int 
           any = true;
           doubtful_[std::size_t((y + quarters) * side + x + quarters)] = 1;
           const std::uint64_t bits = std::uint64_t{0xf} << (kCell * column + WideSurface::kQuarter * px);
-          std::uint64_t* unsure = unsure_.data() + 2 * (std::size_t(py * side + y + quarters) * side + std::size_t(x + quarters));
+          std::uint64_t* unsure =
+              unsure_.data() + 2 * (std::size_t(py * side + y + quarters) * side + std::size_t(x + quarters));
           if (doubts & WideSurface::kDepthDoubt) unsure[0] |= bits;
           if (doubts & WideSurface::kFacingDoubt) unsure[1] |= bits;
         }
@@ -293,8 +296,8 @@ namespace {
 
 // Votes of one row of pixels that are taken back together: those of one chunk, side by side, for the same pixel.
 struct Missing {
-  std::uint64_t bits = 0;                  // of pixels that lack the vote that was looked at last
-  std::int16_t since[kTileSide];           // by pixel, the first of those that are taken back with it
+  std::uint64_t bits = 0;                 // of pixels that lack the vote that was looked at last
+  std::int16_t since[kTileSide];          // by pixel, the first of those that are taken back with it
   const std::uint16_t* texel[kTileSide];  // what they are for; null where it is not usable
 };
 

@@ -18,9 +18,9 @@ class WideWays {
 
   struct Way {
     std::int16_t dx, dy;
-    std::uint32_t self, before;            // in a window's rows: the pixel, and the one before it on the way
-    std::int16_t holder_dx, holder_dy;     // whose forward step the last one is
-    std::uint8_t step;                     // right, down left, down, down right
+    std::uint32_t self, before;         // in a window's rows: the pixel, and the one before it on the way
+    std::int16_t holder_dx, holder_dy;  // whose forward step the last one is
+    std::uint8_t step;                  // right, down left, down, down right
   };
   int radius() const { return radius_; }
   const std::vector<Way>& ways() const { return ways_; }
@@ -39,8 +39,8 @@ struct JoinedRows {
   std::uint64_t active[8];
   // By pixel of the window and row: which pixels are reached by steps; null: all.
   const std::uint64_t* reached;
-  // By the upper or lower quarters of the row of cells, and by row and column of the quarters that are looked at, counted
-  // from the own: the pixels that may fail, by depth and by facing. From -quarters to quarters; null: none.
+  // By the upper or lower quarters of the row of cells, and by row and column of the quarters that are looked at,
+  // counted from the own: the pixels that may fail, by depth and by facing. From -quarters to quarters; null: none.
   const std::uint64_t* unsure;
   const std::uint8_t* doubtful;  // by row and column of quarters: whether any pixel may
   int quarters;
@@ -49,8 +49,8 @@ struct JoinedRows {
 // Kept from tile to tile by a thread.
 class WideJoined {
  public:
-  // Takes the votes of all pixels that are not joined to the one they vote for back from `sums`, which holds all votes of
-  // the tile. The definition is JoinedWindow's, to the bit.
+  // Takes the votes of all pixels that are not joined to the one they vote for back from `sums`, which holds all votes
+  // of the tile. The definition is JoinedWindow's, to the bit.
   void Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
                 const EdgeLimits& limits, WideSums& sums);
 

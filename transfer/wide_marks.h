@@ -14,8 +14,8 @@ struct FieldRow {
   int count;
 };
 
-// Bits by column, (count + 63) / 64 + 1 words of each, which must be 0 before. `votes`: active pixels. `changes`: pixels
-// that are not of the chunk of the one before them, where either is active; the first, if active.
+// Bits by column, (count + 63) / 64 + 1 words of each, which must be 0 before. `votes`: active pixels. `changes`:
+// pixels that are not of the chunk of the one before them, where either is active; the first, if active.
 void MarkRuns(const FieldRow& row, std::uint64_t* votes, std::uint64_t* changes);
 
 }  // namespace scumble::internal

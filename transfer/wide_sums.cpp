@@ -26,8 +26,8 @@ struct Group {
   int x0, x1, y0, y1;  // the part of the tile that they reach
 };
 
-// Adds to counts[0 …] how many pixels of the run are within `radius` columns of x0, x0 + 1, …: rises by one a pixel, stays,
-// and falls. Takes it away for `sign` -1. Counts are kept modulo 65536, sums of all runs fit.
+// Adds to counts[0 …] how many pixels of the run are within `radius` columns of x0, x0 + 1, …: rises by one a pixel,
+// stays, and falls. Takes it away for `sign` -1. Counts are kept modulo 65536, sums of all runs fit.
 HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, int radius, int x0, int x1, bool remove, std::uint16_t* counts) {
   const I16 d;
   const D16 u;
@@ -45,12 +45,12 @@ HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, int radius, int x0, int x
   }
 }
 
-// Adds `n` texels times their counts to sums; up to four more may be read, before `end`, and have no weight. Clears bits of `all`, by 32-bit
-// lane of four pixels, that a texel lacks.
+// Adds `n` texels times their counts to sums; up to four more may be read, before `end`, and have no weight. Clears
+// bits of `all`, by 32-bit lane of four pixels, that a texel lacks.
 #if HWY_TARGET == HWY_SCALAR
 
-void AddTexels(const std::uint16_t* counts, const std::uint16_t* texels, const std::uint16_t*, int n, std::uint32_t* sums,
-               std::uint32_t* all) {
+void AddTexels(const std::uint16_t* counts, const std::uint16_t* texels, const std::uint16_t*, int n,
+               std::uint32_t* sums, std::uint32_t* all) {
   for (int i = 0; i < 4 * n; ++i) {
     sums[i] += std::uint32_t{counts[i / 4]} * texels[i];
     all[i % 4] &= texels[i];
@@ -113,7 +113,8 @@ HWY_ATTR HWY_INLINE void AddTexels(const std::uint16_t* counts, const std::uint1
 constexpr int kAhead = 4;  // rows: texels lie far apart in memory, so they are asked for before they are needed
 
 void AskFor(const Picture& picture, const Chunk& chunk, int x0, int x1, int y) {
-  const int row = y + chunk.shift_y, from = std::max(0, x0 + chunk.shift_x), to = std::min(picture.width, x1 + chunk.shift_x);
+  const int row = y + chunk.shift_y, from = std::max(0, x0 + chunk.shift_x),
+            to = std::min(picture.width, x1 + chunk.shift_x);
   if (row < 0 || row >= picture.height) return;
   for (int x = from; x < to; x += 8) hwy::Prefetch(picture.At(x, row));
 }
@@ -143,7 +144,8 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
     for (; enter != group.last && enter->row <= y + radius; ++enter) {
       CountRun(*enter, radius, group.x0, group.x1, false, counts);
     }
-    for (; leave != enter && leave->row < y - radius; ++leave) CountRun(*leave, radius, group.x0, group.x1, true, counts);
+    for (; leave != enter && leave->row < y - radius; ++leave)
+      CountRun(*leave, radius, group.x0, group.x1, true, counts);
     if (leave == enter) continue;
     if (y + kAhead < group.y1) AskFor(picture, chunk, group.x0, group.x1, y + kAhead);
     for (const UsableRows::Span& span : work.usable.Row(y + chunk.shift_y)) {
@@ -166,7 +168,11 @@ Group GroupOf(const WideTile& tile, const ChunkRun* first, const ChunkRun* last)
   for (const ChunkRun* run = first; run != last; ++run) {
     begin = std::min<int>(begin, run->begin), end = std::max<int>(end, run->end);
   }
-  return {first, last, std::max(0, begin - radius), std::min(width, end + radius), std::max(0, first->row - radius),
+  return {first,
+          last,
+          std::max(0, begin - radius),
+          std::min(width, end + radius),
+          std::max(0, first->row - radius),
           std::min(height, (last - 1)->row + radius + 1)};
 }
 
@@ -187,7 +193,8 @@ HWY_ATTR void SumChunk(const Work& work, const Chunk& chunk, std::uint32_t* all)
   std::int64_t apart = 0;
   const int window = 2 * work.tile.radius() + 1;
   if (std::int64_t(chunk.count) * window * window >= 2 * price) apart = price;
-  for (const ChunkRun* run = first; run != last && apart < price; ++run) apart += Price(GroupOf(work.tile, run, run + 1));
+  for (const ChunkRun* run = first; run != last && apart < price; ++run)
+    apart += Price(GroupOf(work.tile, run, run + 1));
   if (apart >= price) {
     SumGroup<kOpaque>(work, chunk, whole, all);
     return;
@@ -222,8 +229,9 @@ HWY_ATTR bool SumTile(const Work& work) {
 HWY_ATTR bool SumOpaque(const Work& work) { return SumTile<true>(work); }
 HWY_ATTR bool SumWeighted(const Work& work) { return SumTile<false>(work); }
 
-// The mean (2 · sum + votes) / (2 · votes), rounded down, of the pixels whose bit is set; also of alpha, which is 65535 times the votes. With half a unit more
-// the quotient is never an integer, and at least 1 / (4 · votes) from the next: far more than a double's rounding.
+// The mean (2 · sum + votes) / (2 · votes), rounded down, of the pixels whose bit is set; also of alpha, which is 65535
+// times the votes. With half a unit more the quotient is never an integer, and at least 1 / (4 · votes) from the next:
+// far more than a double's rounding.
 HWY_ATTR void WriteRow(std::uint64_t active, const std::uint32_t* sums, const double* inverses, std::uint16_t* out) {
   for (; active; active &= active - 1) {
     const int x = std::countr_zero(active);
@@ -231,7 +239,8 @@ HWY_ATTR void WriteRow(std::uint64_t active, const std::uint32_t* sums, const do
     const std::uint32_t votes = (sum[3] >> 16) + 1;
     const double inverse = inverses[votes], half = votes + 0.5;
     std::uint16_t pixel[4];
-    for (int c = 0; c < 4; ++c) pixel[c] = static_cast<std::uint16_t>(static_cast<std::int32_t>((2.0 * sum[c] + half) * inverse));
+    for (int c = 0; c < 4; ++c)
+      pixel[c] = static_cast<std::uint16_t>(static_cast<std::int32_t>((2.0 * sum[c] + half) * inverse));
     std::memcpy(out + 4 * x, pixel, 8);
   }
 }
@@ -269,8 +278,10 @@ void WideSums::Write(const WideTile& tile, Picture& out) {
   for (int y = area.y0; y < area.y1; ++y) {
     const std::size_t first = std::size_t(y - area.y0) * kStride;
     const std::uint64_t active = tile.ActiveWord(y - area.y0);
-    if (weights_count_) WriteWeighted(active, first, out.At(area.x0, y));
-    else HWY_DYNAMIC_DISPATCH(WriteRow)(active, sums_.data() + 4 * first, inverses_.data(), out.At(area.x0, y));
+    if (weights_count_)
+      WriteWeighted(active, first, out.At(area.x0, y));
+    else
+      HWY_DYNAMIC_DISPATCH(WriteRow)(active, sums_.data() + 4 * first, inverses_.data(), out.At(area.x0, y));
   }
 }
 

@@ -1,4 +1,5 @@
-// Sums of the votes of a tile: of each chunk, how many of its pixels are in a pixel's window, times the chunk's texel there.
+// Sums of the votes of a tile: of each chunk, how many of its pixels are in a pixel's window, times the chunk's texel
+// there.
 #pragma once
 
 #include <cstdint>

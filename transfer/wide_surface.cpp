@@ -1,6 +1,5 @@
 #include "transfer/wide_surface.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -43,14 +42,14 @@ struct Range {
   float least, most;
 };
 
-
 struct CellRanges {
   Range value[WideSurface::kPlanes];
   float length2;
   bool any, nan;
 };
 
-// Folds one row into them; without kAll only where something is covered. What is odd makes `strange` NaN.
+// Of kSize² pixels; false where kAll promises that all are covered and they are not. NaN and infinity are told by a sum
+// of values times 0, which is NaN then.
 template <int kSize, bool kAll>
 HWY_ATTR bool CellRangesOf(const float* const* planes, const std::ptrdiff_t* strides, CellRanges& out) {
   const HWY_CAPPED(float, kSize) d;
@@ -84,7 +83,8 @@ HWY_ATTR bool CellRangesOf(const float* const* planes, const std::ptrdiff_t* str
           strange = hn::Add(strange, hn::IfThenElseZero(covered, hn::Mul(value, zero)));
         }
       };
-      const V nx = hn::LoadU(d, planes[3] + from), ny = hn::LoadU(d, planes[4] + from), nz = hn::LoadU(d, planes[5] + from);
+      const V nx = hn::LoadU(d, planes[3] + from), ny = hn::LoadU(d, planes[4] + from),
+              nz = hn::LoadU(d, planes[5] + from);
       fold(hn::LoadU(d, planes[0] + at), low0, high0);
       fold(hn::LoadU(d, planes[1] + at), low1, high1);
       fold(hn::LoadU(d, planes[2] + at), low2, high2);
@@ -93,12 +93,10 @@ HWY_ATTR bool CellRangesOf(const float* const* planes, const std::ptrdiff_t* str
       const V length2 = hn::Add(hn::Add(hn::Mul(nx, nx), hn::Mul(ny, ny)), hn::Mul(nz, nz));
       low7 = hn::Min(low7, kAll ? length2 : hn::IfThenElse(covered, length2, far));
     }
-    const auto lowest = [&](V value, int k) HWY_ATTR {
-      least[k] = std::min(least[k], hn::GetLane(hn::MinOfLanes(d, value)));
-    };
-    const auto highest = [&](V value, int k) HWY_ATTR {
-      most[k] = std::max(most[k], hn::GetLane(hn::MaxOfLanes(d, value)));
-    };
+    const auto lowest = [&](V value, int k)
+                            HWY_ATTR { least[k] = std::min(least[k], hn::GetLane(hn::MinOfLanes(d, value))); };
+    const auto highest = [&](V value, int k)
+                             HWY_ATTR { most[k] = std::max(most[k], hn::GetLane(hn::MaxOfLanes(d, value))); };
     lowest(low0, 0), lowest(low1, 1), lowest(low2, 2), lowest(low3, 3), lowest(low4, 4), lowest(low5, 5);
     lowest(low6, 6), lowest(low7, 7);
     highest(high0, 0), highest(high1, 1), highest(high2, 2), highest(high3, 3), highest(high4, 4), highest(high5, 5);
@@ -113,7 +111,8 @@ HWY_ATTR bool CellRangesOf(const float* const* planes, const std::ptrdiff_t* str
 
 // How far depth leaves the plane of these slopes through the cell's centre.
 template <int kSize>
-HWY_ATTR void BendOf(const float* depth, std::ptrdiff_t stride, const float* coverage, std::ptrdiff_t coverage_stride, float slope_x, float slope_y, Range& out) {
+HWY_ATTR void BendOf(const float* depth, std::ptrdiff_t stride, const float* coverage, std::ptrdiff_t coverage_stride,
+                     float slope_x, float slope_y, Range& out) {
   const HWY_CAPPED(float, kSize) d;
   constexpr float kFar = std::numeric_limits<float>::infinity();
   constexpr float kCentre = 0.5f * (kSize - 1);
@@ -151,7 +150,8 @@ HWY_ATTR void BoundOf(const float* const* planes, const std::ptrdiff_t* strides,
   for (int c = 0; c < 3; ++c) cell.least_normal[c] = value[3 + c].least, cell.most_normal[c] = value[3 + c].most;
   cell.least_length2 = ranges.length2;
   Range rest;
-  BendOf<kSize>(planes[0], strides[0], planes[WideSurface::kCoverage], strides[WideSurface::kCoverage], cell.slope_x, cell.slope_y, rest);
+  BendOf<kSize>(planes[0], strides[0], planes[WideSurface::kCoverage], strides[WideSurface::kCoverage], cell.slope_x,
+                cell.slope_y, rest);
   cell.depth = 0.5f * (rest.least + rest.most), cell.bend = 0.5f * (rest.most - rest.least);
 }
 
@@ -191,7 +191,7 @@ constexpr struct GuideSource {
   WideSurface::Plane plane;
   Layer layer;
   int component;
-} kSources[] = {{WideSurface::kDepth, Layer::kDepth, 0},     {WideSurface::kNormalX, Layer::kNormal, 0},
+} kSources[] = {{WideSurface::kDepth, Layer::kDepth, 0},    {WideSurface::kNormalX, Layer::kNormal, 0},
                 {WideSurface::kNormalY, Layer::kNormal, 1}, {WideSurface::kNormalZ, Layer::kNormal, 2},
                 {WideSurface::kObject, Layer::kObject, 0},  {WideSurface::kCoverage, Layer::kCoverage, 0}};
 
@@ -227,17 +227,21 @@ void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
     const std::size_t corner = guides.Index(area.x0, area.y0);
     for (const GuideSource& source : kSources) {
       const float* base = guides.Plane(source.layer, source.component).data() + corner;
-      if (source.plane == kDepth) depth = base;
-      else bases_[source.plane] = base, strides_[source.plane] = guides.width();
+      if (source.plane == kDepth)
+        depth = base;
+      else
+        bases_[source.plane] = base, strides_[source.plane] = guides.width();
     }
   } else {
     Copy(guides, area);
     depth = Own(kDepth, 0);
   }
-  for (const Plane plane : {kDepth, kSlopeX, kSlopeY}) bases_[plane] = Own(plane, 0), strides_[plane] = std::ptrdiff_t(stride_);
+  for (const Plane plane : {kDepth, kSlopeX, kSlopeY})
+    bases_[plane] = Own(plane, 0), strides_[plane] = std::ptrdiff_t(stride_);
   const std::ptrdiff_t depth_stride = depth == Own(kDepth, 0) ? std::ptrdiff_t(stride_) : guides.width();
   for (int row = -most; row < kTileSide + most; ++row) {
-    HWY_DYNAMIC_DISPATCH(MaskDepth)(Row(kCoverage, row) - most, depth + row * depth_stride - most, across + 2, Own(kDepth, row) - most);
+    HWY_DYNAMIC_DISPATCH(MaskDepth)
+    (Row(kCoverage, row) - most, depth + row * depth_stride - most, across + 2, Own(kDepth, row) - most);
   }
   covered_.Reset(margin());
   all_covered_ = true;
@@ -245,7 +249,8 @@ void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
   for (int row = left; row < right; ++row) {
     const float* here = Row(kDepth, row) + left;
     HWY_DYNAMIC_DISPATCH(SlopeRow)(here - 1, here, here + 1, across, Own(kSlopeX, row) + left);
-    HWY_DYNAMIC_DISPATCH(SlopeRow)(Row(kDepth, row - 1) + left, here, Row(kDepth, row + 1) + left, across, Own(kSlopeY, row) + left);
+    HWY_DYNAMIC_DISPATCH(SlopeRow)
+    (Row(kDepth, row - 1) + left, here, Row(kDepth, row + 1) + left, across, Own(kSlopeY, row) + left);
     for (int x = left; x < right; x += 64) {
       std::uint64_t covered = HWY_DYNAMIC_DISPATCH(CoveredBits)(Row(kCoverage, row) + x);
       if (right - x < 64) covered &= (std::uint64_t{1} << (right - x)) - 1;
@@ -277,7 +282,8 @@ void WideSurface::Copy(const GuideSet& guides, const Region& area) {
     const auto values = guides.Plane(source.layer, source.component);
     const int begin = std::max(0, area.x0 - most), end = std::min(guides.width(), area.x0 + kTileSide + most);
     for (int y = std::max(0, area.y0 - most); y < std::min(guides.height(), area.y0 + kTileSide + most); ++y) {
-      std::memcpy(Own(source.plane, y - area.y0) + (begin - area.x0), values.data() + guides.Index(begin, y), sizeof(float) * std::size_t(end - begin));
+      std::memcpy(Own(source.plane, y - area.y0) + (begin - area.x0), values.data() + guides.Index(begin, y),
+                  sizeof(float) * std::size_t(end - begin));
     }
     bases_[source.plane] = Own(source.plane, 0), strides_[source.plane] = std::ptrdiff_t(stride_);
   }
@@ -313,7 +319,8 @@ unsigned WideSurface::Doubts(const EdgeLimits& limits, const Cell& p, const Cell
   if (p.object != q.object) doubts |= kFacingDoubt;
   float spread = 0.0f, length2 = 0.0f;
   for (int c = 0; c < 3; ++c) {
-    const float most = std::max(p.most_normal[c], q.most_normal[c]), least = std::min(p.least_normal[c], q.least_normal[c]);
+    const float most = std::max(p.most_normal[c], q.most_normal[c]),
+                least = std::min(p.least_normal[c], q.least_normal[c]);
     spread += (most - least) * (most - least);
     length2 += std::max(most * most, least * least);
   }
@@ -328,7 +335,8 @@ unsigned WideSurface::Doubts(const EdgeLimits& limits, const Cell& p, const Cell
   };
   const float x = static_cast<float>(size * dx), y = static_cast<float>(size * dy);
   const float step = std::fabs(q.depth - p.depth - 0.5f * ((p.slope_x + q.slope_x) * x + (p.slope_y + q.slope_y) * y));
-  const float twist = 0.5f * static_cast<float>(size - 1) * (std::fabs(q.slope_x - p.slope_x) + std::fabs(q.slope_y - p.slope_y));
+  const float twist =
+      0.5f * static_cast<float>(size - 1) * (std::fabs(q.slope_x - p.slope_x) + std::fabs(q.slope_y - p.slope_y));
   const float off = step + twist + p.bend + q.bend +
                     drift(0.5f * (p.turn_x + q.turn_x), std::min(p.least_slope_x, q.least_slope_x), dx) +
                     drift(0.5f * (p.turn_y + q.turn_y), std::min(p.least_slope_y, q.least_slope_y), dy);

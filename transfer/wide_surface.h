@@ -19,8 +19,8 @@ inline std::uint64_t BitsBetween(int begin, int end) {
   return ~std::uint64_t{0} >> (64 - (end - begin)) << begin;
 }
 
-// Rows of bits from `margin` rows and columns before a tile to as many behind it, laid out word by word, so that one word
-// of several rows is read at once.
+// Rows of bits from `margin` rows and columns before a tile to as many behind it, laid out word by word, so that one
+// word of several rows is read at once.
 class BitPlane {
  public:
   void Reset(int margin);  // all 0
@@ -54,9 +54,9 @@ struct EdgeLimits {
 // Kept from tile to tile by a thread.
 class WideSurface {
  public:
-  static constexpr int kCell = 8;                     // pixels on each side
+  static constexpr int kCell = 8;  // pixels on each side
   static constexpr int kQuarter = kCell / 2;
-  static constexpr int kCells = kTileSide / kCell;    // of a tile, on each side
+  static constexpr int kCells = kTileSide / kCell;  // of a tile, on each side
   enum Plane { kDepth, kSlopeX, kSlopeY, kNormalX, kNormalY, kNormalZ, kObject, kCoverage, kPlanes };
 
   // Reads the guides in and around a tile.
@@ -78,7 +78,8 @@ class WideSurface {
   unsigned Doubts(const EdgeLimits& limits, int column, int row, int dx, int dy) const {
     return Doubts(limits, CellAt(column, row), CellAt(column + dx, row + dy), kCell, dx, dy);
   }
-  // The same of a quarter of a cell and another. Columns and rows of quarters; both cells are then looked at more closely.
+  // The same of a quarter of a cell and another. Columns and rows of quarters; both cells are then looked at more
+  // closely.
   unsigned QuarterDoubts(const EdgeLimits& limits, int column, int row, int dx, int dy);
 
   // Bounds over the covered pixels of a cell. Depth is a plane through the centre, give or take `bend`; slopes are the

@@ -29,7 +29,8 @@ bool WideTile::Read(const VoteInput& input, const Region& area) {
   }
   for (int row = 0; row < rows; ++row) {
     const std::size_t i = field.Index(surround_.x0, surround_.y0 + row);
-    const FieldRow source{field.x.data() + i, field.y.data() + i, field.exemplar.data() + i, input.active.data() + i, columns};
+    const FieldRow source{field.x.data() + i, field.y.data() + i, field.exemplar.data() + i, input.active.data() + i,
+                          columns};
     MarkRuns(source, votes_.data() + std::size_t(row) * words_, changes_.data() + std::size_t(row) * words_);
     ReadRow(field, row);
   }
@@ -67,12 +68,16 @@ void WideTile::AddRun(const SourceField& field, int row, int begin, int end) {
   const std::size_t i = field.Index(surround_.x0 + begin, surround_.y0 + row);
   const std::uint32_t chunk = FindChunk(field.x[i] - (left + begin), field.y[i] - y, field.exemplar[i]);
   ++chunks_[chunk].count;
-  found_.push_back({{static_cast<std::int16_t>(y), static_cast<std::int16_t>(left + begin), static_cast<std::int16_t>(left + end)},
-                    chunk});
+  found_.push_back(
+      {{static_cast<std::int16_t>(y), static_cast<std::int16_t>(left + begin), static_cast<std::int16_t>(left + end)},
+       chunk});
 }
 
 std::uint32_t WideTile::FindChunk(int shift_x, int shift_y, int exemplar) {
-  const std::uint64_t key = std::uint64_t(std::uint32_t(shift_x) & 0xfffff) << 28 | std::uint64_t(std::uint32_t(shift_y) & 0xfffff) << 8 | std::uint64_t(exemplar);
+  // Shifts are 17 bits and a sign.
+  const std::uint64_t x = static_cast<std::uint32_t>(shift_x) & 0xfffff,
+                      y = static_cast<std::uint32_t>(shift_y) & 0xfffff;
+  const std::uint64_t key = x << 28 | y << 8 | static_cast<std::uint64_t>(exemplar);
   const std::size_t mask = table_.size() - 1;
   std::size_t slot = Mix64(key) & mask;
   while (table_[slot].stamp == stamp_) {

@@ -28,7 +28,8 @@ struct Chunk {
 // What a thread keeps from tile to tile. O(pixels of the tile grown by the radius) memory.
 class WideTile {
  public:
-  // Finds the chunks in and around `area`, at most kTileSide wide and high and inside the region of `input`. False: no pixel of it is active.
+  // Finds the chunks in and around `area`, at most kTileSide wide and high and inside the region of `input`. False: no
+  // pixel of it is active.
   bool Read(const VoteInput& input, const Region& area);
 
   const Region& area() const { return area_; }
