@@ -274,6 +274,26 @@ TEST(WideVote, EdgesAreTheDefinitions) {
   }
 }
 
+// A step in depth between two columns, at the picture's bottom: ways cross it at every slant.
+TEST(WideVote, EdgesAreTheDefinitionsAtEveryColumn) {
+  for (int edge = 30; edge < 50; ++edge) {
+    Case all = MakeCase(80, 56, Pieces::kSmall, 150, 1, true, 0);
+    FillGuides(all, false);
+    for (int y = 0; y < 56; ++y) {
+      for (int x = 0; x < 80; ++x) {
+        const std::size_t i = all.guides.Index(x, y);
+        all.guides.Plane(Layer::kDepth)[i] = 4.0f + 0.005f * static_cast<float>(x) + (x < edge ? 0.0745f : 0.0f);
+        all.guides.Plane(Layer::kObject)[i] = 1.0f;
+      }
+    }
+    internal::LateSlopes slopes(all.guides);
+    const internal::EdgeRules rules{all.guides, slopes, 180.0, 0.01};
+    internal::VoteInput input = all.Input(8, Whole(all));
+    input.edges = &rules;
+    EXPECT_EQ(Different(WideVotes(input), PlainVotes(input)), 0u) << edge;
+  }
+}
+
 TEST(WideVote, EdgesInPicturesOfAnyShapeRegionsAndThreads) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 90}, {200, 1}, {65, 63}, {63, 130}}) {
     Case all = MakeCase(width, height, Pieces::kMixed, 120, 2, true, 6);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdlib>
 
+// This file is compiled once for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/wide_joined.cpp"
 #include <hwy/cache_control.h>
@@ -246,7 +247,10 @@ void WideJoined::MarkSteps(const WideSurface& surface, const EdgeLimits& limits)
     for (int x = -margin; x < kTileSide + margin; x += 64) {
       std::uint64_t doubtful = 0;
       for (int k = 0; k < kCells && (x + margin) / kCell + k < cells; ++k) {
-        if (doubts[(x + margin) / kCell + k]) doubtful |= std::uint64_t{0xff} << (kCell * k);
+        const int cell = (x + margin) / kCell + k;
+        // A step down left may end in the cell to the left, whose pair with this one is kept there.
+        const bool left = cell > 0 && (doubts[cell - 1] >> 2 & 3) != 0;
+        if (doubts[cell] || left) doubtful |= std::uint64_t{0xff} << (kCell * k);
       }
       const std::uint64_t here = surface.covered().Read(y, x);
       for (int k = 0; k < 4; ++k) {
