@@ -94,14 +94,12 @@ std::vector<std::uint8_t> Covered(const GuideSet& guides) {
 }
 
 Picture EngineVote(const GuideSet& guides, const SourceField& field, const PreparedExemplar& exemplar, int radius,
-                   const internal::EdgeTest* test, const Region& region) {
+                   const internal::EdgeRules* edges, const Region& region) {
   Picture out(guides.width(), guides.height());
   const std::vector<std::uint8_t> active = Covered(guides);
-  std::optional<internal::JoinedWindow> joined;
-  if (test) joined.emplace(*test, guides, radius, region);
   const Progress unheard;
   internal::RowProgress progress(unheard, 0.0, 1.0, guides.height());
-  EXPECT_TRUE(internal::Vote({field, active, exemplar, radius, joined ? &*joined : nullptr, region}, out, progress));
+  EXPECT_TRUE(internal::Vote({field, active, exemplar, radius, edges, region}, out, progress));
   return out;
 }
 
@@ -145,7 +143,7 @@ SourceField RoughField(const GuideSet& guides, int size) {
 TEST(Joined, VotesEqualTheirPlainForm) {
   for (const bool extreme : {false, true}) {
     const GuideSet guides = RoughGuides(76, 52, extreme);
-    const internal::DepthSlopes slopes(guides);
+    internal::LateSlopes slopes(guides);
     Picture first = NoisePicture(300), second = NoisePicture(300);
     for (std::size_t i = 0; i < second.rgba.size(); i += 4) {
       first.rgba[i + 3] = static_cast<std::uint16_t>(i % 28 == 0 ? 0 : Hash(i));
@@ -160,12 +158,12 @@ TEST(Joined, VotesEqualTheirPlainForm) {
                 PlainVote(guides, field, exemplar, radius, nullptr).rgba)
           << radius;
       for (const double tolerance : {0.0, 0.002}) {
-        const internal::EdgeTest test(guides, slopes, 60.0, tolerance);
+        const internal::EdgeRules edges{guides, slopes, 60.0, tolerance};
         const Limits limits{static_cast<float>(0.5 + 1e-16), static_cast<float>(tolerance)};
         const Picture expected = PlainVote(guides, field, exemplar, radius, &limits);
-        EXPECT_EQ(EngineVote(guides, field, exemplar, radius, &test, all).rgba, expected.rgba) << radius << ", " << tolerance;
+        EXPECT_EQ(EngineVote(guides, field, exemplar, radius, &edges, all).rgba, expected.rgba) << radius << ", " << tolerance;
         const Region part{13, 21, 57, 44};
-        const Picture found = EngineVote(guides, field, exemplar, radius, &test, part);
+        const Picture found = EngineVote(guides, field, exemplar, radius, &edges, part);
         for (int y = part.y0; y < part.y1; ++y) {
           ASSERT_TRUE(std::equal(found.At(part.x0, y), found.At(part.x0, y) + 4 * (part.x1 - part.x0), expected.At(part.x0, y)));
         }
@@ -216,9 +214,9 @@ std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& fron
   SourceField field;
   field.Reset(guides.width(), guides.height());
   for (std::size_t i = 0; i < front.size(); ++i) field.Set(i, front[i] ? kSize / 4 : 3 * kSize / 4, kSize / 2, 0, 0);
-  const internal::DepthSlopes slopes(guides);
-  const internal::EdgeTest test(guides, slopes, 180.0, tolerance);
-  const Picture out = EngineVote(guides, field, exemplar, radius, joined ? &test : nullptr,
+  internal::LateSlopes slopes(guides);
+  const internal::EdgeRules edges{guides, slopes, 180.0, tolerance};
+  const Picture out = EngineVote(guides, field, exemplar, radius, joined ? &edges : nullptr,
                                  Region{0, 0, guides.width(), guides.height()});
   std::size_t ghosts = 0;
   for (std::size_t i = 0; i < front.size(); ++i) ghosts += out.rgba[4 * i] != (front[i] ? 0 : 65535);
@@ -268,14 +266,14 @@ TEST(Joined, SlopesAndCurvesAreNoSteps) {
             static_cast<float>(6.0 + 0.01 * x + 0.004 * y + bend * (x * x - 0.5 * y * y + 0.3 * x * y));
       }
     }
-    const internal::DepthSlopes slopes(guides);
-    const internal::EdgeTest test(guides, slopes, 60.0, 0.002);
+    internal::LateSlopes slopes(guides);
+    const internal::EdgeRules edges{guides, slopes, 60.0, 0.002};
     const Picture paint = NoisePicture(300);
     const PreparedExemplar exemplar(paint, 0.0, 300);
     SourceField field = RoughField(guides, 300);
     std::fill(field.exemplar.begin(), field.exemplar.end(), std::uint8_t{0});
     const Region inside{6, 6, 64, 44};  // at the picture's border slopes are not known
-    EXPECT_EQ(EngineVote(guides, field, exemplar, 4, &test, inside).rgba,
+    EXPECT_EQ(EngineVote(guides, field, exemplar, 4, &edges, inside).rgba,
               EngineVote(guides, field, exemplar, 4, nullptr, inside).rgba)
         << bend;
   }

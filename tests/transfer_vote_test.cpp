@@ -200,14 +200,12 @@ class Ghosting {
     }
   }
 
-  std::size_t Count(int radius, const internal::EdgeTest* edges) const {
+  std::size_t Count(int radius, const internal::EdgeRules* edges) const {
     Picture out(guides_.width(), guides_.height());
     const Region all{0, 0, guides_.width(), guides_.height()};
-    std::optional<internal::JoinedWindow> joined;
-    if (edges) joined.emplace(*edges, guides_, radius, all);
     const Progress unheard;
     internal::RowProgress progress(unheard, 0.0, 1.0, guides_.height());
-    const internal::VoteInput input{field_, active_, *exemplar_, radius, joined ? &*joined : nullptr, all};
+    const internal::VoteInput input{field_, active_, *exemplar_, radius, edges, all};
     EXPECT_TRUE(internal::Vote(input, out, progress));
     std::size_t ghosts = 0;
     for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -237,12 +235,12 @@ GuideSet ThinParts() {
 TEST(EdgeAware, NoGhostingAtAnyTolerance) {
   const GuideSet guides = ThinParts();
   const Ghosting ghosting(guides);
-  const internal::DepthSlopes slopes(guides);
+  internal::LateSlopes slopes(guides);
   for (const int radius : {1, 8}) {
     EXPECT_GT(ghosting.Count(radius, nullptr), radius == 8 ? 20000u : 5000u) << "plain voting mixes, as it should";
     for (const double tolerance : {0.0, 1e-4, 3e-4, 1e-3, 2e-3, 1e-2, 3e-2, 1e-1, 1.0}) {
       for (const double crease : {60.0, 180.0}) {
-        const internal::EdgeTest edges(guides, slopes, crease, tolerance);
+        const internal::EdgeRules edges{guides, slopes, crease, tolerance};
         EXPECT_EQ(ghosting.Count(radius, &edges), 0u) << "radius " << radius << ", tolerance " << tolerance;
       }
     }
@@ -256,11 +254,11 @@ TEST(EdgeAware, DepthAndCreasesAloneStopMostGhosts) {
   const Ghosting ghosting(guides);
   GuideSet one_object = guides;
   for (float& id : one_object.Plane(Layer::kObject)) id = id > 0.0f ? 1.0f : 0.0f;
-  const internal::DepthSlopes slopes(one_object);
+  internal::LateSlopes slopes(one_object);
   const std::size_t plain = ghosting.Count(8, nullptr);
   std::size_t last = 0;
   for (const double tolerance : {0.0, 1e-4, 1e-3, 2e-3, 1e-2, 1e-1}) {
-    const internal::EdgeTest edges(one_object, slopes, 60.0, tolerance);
+    const internal::EdgeRules edges{one_object, slopes, 60.0, tolerance};
     const std::size_t ghosts = ghosting.Count(8, &edges);
     // Parts that touch are one surface there, so some always remain.
     if (tolerance == 0.0) {

@@ -35,6 +35,12 @@ bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& p
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
+      if (input.Wants(i)) field.level[i] = SourceField::kNoSource;  // free; what the field held before counts for nothing
+    }
+  }
+  for (int y = input.region.y0; y < input.region.y1; ++y) {
+    for (int x = input.region.x0; x < input.region.x1; ++x) {
+      const std::size_t i = field.Index(x, y);
       if (field.level[i] != SourceField::kNoSource || !input.Wants(i)) continue;
       const Offer own = OwnOffer(input, i);
       field.Set(i, own.source.x, own.source.y, own.exemplar, 0);

@@ -1,7 +1,6 @@
 // Coverage, paper and the picture underneath.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -15,11 +14,12 @@ namespace scumble::internal {
 struct Background {
   const Paper& paper;
   const Picture* over = nullptr;  // instead of the paper; the guides' size
+  bool empty() const { return !over && !paper.picture && !paper.color; }
 };
 
 // Porter and Duff's "over" with straight alpha, colours blended in linear light: `front` becomes it laid over `back`. Where
 // front is opaque, or only one of them is there, colours pass through untouched.
-void BlendOver(std::uint16_t* front, const std::array<std::uint16_t, 4>& back);
+void BlendOver(std::uint16_t* front, const std::uint16_t* back);
 
 // Multiplies `coverage`, 0 … 1 by pixel of the picture, into the alpha of `picture`, then blends it over the background in linear light. Where the
 // result is opaque or nothing is behind, colours pass through untouched. False: asked to stop.

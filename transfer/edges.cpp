@@ -40,7 +40,10 @@ DepthSlopes::DepthSlopes(const GuideSet& guides) : x(guides.pixel_count(), 0.0f)
   });
 }
 
-// At 180 degrees even opposite normals pass, whose cosine rounding may put below -1.
+float EdgeRules::CreaseCosine(double degrees) {
+  return degrees < 180.0 ? static_cast<float>(CosDegrees(degrees)) : -std::numeric_limits<float>::infinity();
+}
+
 EdgeTest::EdgeTest(const GuideSet& guides, const DepthSlopes& slopes, double crease_degrees, double depth_tolerance)
     : object_(guides.Plane(Layer::kObject)),
       depth_(guides.Plane(Layer::kDepth)),
@@ -49,26 +52,20 @@ EdgeTest::EdgeTest(const GuideSet& guides, const DepthSlopes& slopes, double cre
       normal_x_(guides.Plane(Layer::kNormal, 0)),
       normal_y_(guides.Plane(Layer::kNormal, 1)),
       normal_z_(guides.Plane(Layer::kNormal, 2)),
-      crease_cosine_(crease_degrees < 180.0
-                         ? static_cast<float>(CosDegrees(crease_degrees))
-                         : -std::numeric_limits<float>::infinity()),
+      crease_cosine_(EdgeRules::CreaseCosine(crease_degrees)),
       depth_tolerance_(static_cast<float>(depth_tolerance)) {}
 
 namespace {
 
-struct Step {
-  int dx, dy;
-};
-constexpr Step kForward[] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+constexpr PixelStep kForward[] = {{1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 
-// The pixel before (dx, dy) on its way: one less along the longer side, and the row or column nearest to the line.
-Step Before(Step at) {
+}  // namespace
+
+PixelStep StepBefore(PixelStep at) {
   const int wide = std::abs(at.dx), high = std::abs(at.dy), n = std::max(wide, high);
   const auto nearer = [&](int side) { return (2 * std::abs(side) * (n - 1) + n) / (2 * n) * (side < 0 ? -1 : 1); };
   return {nearer(at.dx), nearer(at.dy)};
 }
-
-}  // namespace
 
 JoinedWindow::JoinedWindow(const EdgeTest& test, const GuideSet& guides, int radius, const Region& region)
     : test_(test), width_(guides.width()), radius_(radius) {
@@ -86,12 +83,12 @@ JoinedWindow::JoinedWindow(const EdgeTest& test, const GuideSet& guides, int rad
 
 // The way to (dx, dy) and all that lead over it.
 void JoinedWindow::Grow(int dx, int dy) {
-  const Step before = Before({dx, dy}), step{dx - before.dx, dy - before.dy};
+  const PixelStep before = StepBefore({dx, dy}), step{dx - before.dx, dy - before.dy};
   // A step back is kept where it ends.
   const bool back = step.dy < 0 || (step.dy == 0 && step.dx < 0);
-  const Step holder = back ? Step{dx, dy} : before, forward = back ? Step{-step.dx, -step.dy} : step;
+  const PixelStep holder = back ? PixelStep{dx, dy} : before, forward = back ? PixelStep{-step.dx, -step.dy} : step;
   std::uint8_t bit = 1;
-  for (const Step& one : kForward) {
+  for (const PixelStep& one : kForward) {
     if (one.dx == forward.dx && one.dy == forward.dy) break;
     bit = static_cast<std::uint8_t>(2 * bit);
   }
@@ -101,7 +98,7 @@ void JoinedWindow::Grow(int dx, int dy) {
   for (int y = dy - 1; y <= dy + 1; ++y) {
     for (int x = dx - 1; x <= dx + 1; ++x) {
       if (std::max(std::abs(x), std::abs(y)) > radius_ || (x == dx && y == dy) || (x == 0 && y == 0)) continue;
-      const Step from = Before({x, y});
+      const PixelStep from = StepBefore({x, y});
       if (from.dx == dx && from.dy == dy) Grow(x, y);
     }
   }
@@ -117,7 +114,7 @@ void JoinedWindow::MarkSteps(const GuideSet& guides, const Region& grown) {
       const EdgeTest::Side here = test_.At(p);
       unsigned bits = 0;
       for (int k = 0; k < 4; ++k) {
-        const Step step = kForward[k];
+        const PixelStep step = kForward[k];
         if (x + step.dx < grown.x0 || x + step.dx >= grown.x1 || y + step.dy >= grown.y1) continue;
         const std::size_t q = guides.Index(x + step.dx, y + step.dy);
         if (coverage[q] > 0.0f && test_.SameSurface(here, test_.At(q), step.dx, step.dy)) bits |= 1u << k;

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +23,35 @@ struct DepthSlopes {
   std::vector<float> x, y;
 };
 
+// The same, made when first asked for, by whichever thread is first. Keeps a reference to the guides.
+class LateSlopes {
+ public:
+  explicit LateSlopes(const GuideSet& guides) : guides_(guides) {}
+  const DepthSlopes& Get() {
+    std::call_once(made_, [this] { slopes_.emplace(guides_); });
+    return *slopes_;
+  }
+
+ private:
+  const GuideSet& guides_;
+  std::once_flag made_;
+  std::optional<DepthSlopes> slopes_;
+};
+
+// What one style takes for an edge. The guides must hold depth and object; slopes are theirs.
+struct EdgeRules {
+  // As the test has them; at 180 degrees even opposite normals pass, whose cosine rounding may put below -1.
+  float CreaseCosine() const { return CreaseCosine(crease_degrees); }
+  static float CreaseCosine(double degrees);
+  float DepthTolerance() const { return static_cast<float>(depth_tolerance); }
+
+  const GuideSet& guides;
+  LateSlopes& slopes;  // for who needs those of the whole picture
+  double crease_degrees = 180.0;
+  double depth_tolerance = 0.0;
+  std::span<const std::uint8_t> covered = {};  // by pixel: whether its coverage is above 0; empty: as the guides have it
+};
+
 // Whether two pixels near each other look like the same piece of surface:
 //   - the same object id;
 //   - normals less than `crease` degrees apart; 180 takes any;
@@ -31,6 +62,8 @@ class EdgeTest {
  public:
   // Keeps references to both; `guides` must hold depth and object.
   EdgeTest(const GuideSet& guides, const DepthSlopes& slopes, double crease_degrees, double depth_tolerance);
+  explicit EdgeTest(const EdgeRules& rules)
+      : EdgeTest(rules.guides, rules.slopes.Get(), rules.crease_degrees, rules.depth_tolerance) {}
 
   // What the test needs to know of one pixel.
   struct Side {
@@ -41,7 +74,7 @@ class EdgeTest {
     return {object_[pixel], depth_[pixel], slope_x_[pixel], slope_y_[pixel],
             {normal_x_[pixel], normal_y_[pixel], normal_z_[pixel]}};
   }
-  // q stands (dx, dy) pixels from p.
+  // q stands (dx, dy) pixels from p. To the bit the same from q's side.
   bool SameSurface(const Side& p, const Side& q, int dx, int dy) const {
     if (p.object != q.object) return false;
     const float x = static_cast<float>(dx), y = static_cast<float>(dy);
@@ -58,6 +91,14 @@ class EdgeTest {
   std::span<const float> object_, depth_, slope_x_, slope_y_, normal_x_, normal_y_, normal_z_;
   float crease_cosine_, depth_tolerance_;
 };
+
+struct PixelStep {
+  int dx = 0, dy = 0;
+};
+
+// The pixel before `at` on the way to it from (0, 0), not itself (0, 0): a digital straight line. One less along the longer
+// side, and the row or column nearest to the line.
+PixelStep StepBefore(PixelStep at);
 
 // Which pixels of the window around another are joined to it: they pass the test, and so does every step from pixel to
 // pixel on the way there. Over one pixel the test is sharpest: a step in depth of more than twice the slope per pixel (in
@@ -107,6 +148,15 @@ class JoinedWindow {
   int first_column_, first_row_, stride_;
   std::vector<std::uint8_t> steps_;  // bits: steps right, down left, down, down right; a frame of one pixel has none
   std::vector<Way> ways_;
+};
+
+// Both, for who wants a whole region at once.
+struct EdgeWindows {
+  EdgeTest test;
+  JoinedWindow joined;
+  EdgeWindows(const EdgeRules& rules, int radius, const Region& region)
+      : test(rules), joined(test, rules.guides, radius, region) {}
+  EdgeWindows(const EdgeWindows&) = delete;
 };
 
 }  // namespace scumble::internal

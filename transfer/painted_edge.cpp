@@ -60,7 +60,8 @@ class EdgePainter {
       below *= 1.0f - cut * (1.0f - opacity);
     }
     texel[3] = static_cast<std::uint16_t>(opacity * 65535.0f + 0.5f);
-    BlendOver(texel.data(), {pixel[0], pixel[1], pixel[2], static_cast<std::uint16_t>(below * 65535.0f + 0.5f)});
+    pixel[3] = static_cast<std::uint16_t>(below * 65535.0f + 0.5f);
+    BlendOver(texel.data(), pixel);
     std::copy(texel.begin(), texel.end(), pixel);
     coverage = texel[3] > 0 ? 1.0f : 0.0f;
   }

@@ -65,6 +65,7 @@ class PreparedExemplar {
   int width() const { return scene_ ? scene_->width : size_; }
   int height() const { return scene_ ? scene_->height : size_; }
   int size() const { return size_; }  // the longer side
+  std::int64_t usable_limit() const { return limit_; }  // of a sphere: squared radius of the usable disc, in half pixels
   int count() const { return static_cast<int>(pictures_.size()); }
   const Picture& picture(int index = 0) const { return pictures_[std::size_t(index)]; }
 

@@ -22,6 +22,13 @@ struct SourceField {
   std::vector<std::uint8_t> exemplar;
   std::vector<glm::vec3> moved;  // by what each seed moved its source's guide (variety); empty where nobody asks
 
+  // The size alone: values are what they were or anything, and nothing is moved.
+  void Resize(int new_width, int new_height) {
+    width = new_width, height = new_height;
+    const std::size_t count = std::size_t(width) * height;
+    x.resize(count), y.resize(count), level.resize(count), exemplar.resize(count);
+    moved.clear();
+  }
   void Reset(int new_width, int new_height) {
     width = new_width, height = new_height;
     const std::size_t count = std::size_t(width) * height;

@@ -9,6 +9,7 @@
 #include "image/stopwatch.h"
 #include "transfer/colorize.h"
 #include "transfer/compose.h"
+#include "transfer/frame_start.h"
 #include "transfer/hybrid.h"
 #include "transfer/match.h"
 #include "transfer/painted_edge.h"
@@ -51,23 +52,6 @@ Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap*
   return Ok();
 }
 
-// The rectangle around each style's covered pixels.
-std::vector<Region> Extents(std::size_t styles, const StyleMap* map, const GuideSet& guides) {
-  if (!map) return {Region{0, 0, guides.width(), guides.height()}};
-  std::vector<Region> extents(styles, Region{guides.width(), guides.height(), 0, 0});
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  for (int y = 0; y < guides.height(); ++y) {
-    for (int x = 0; x < guides.width(); ++x) {
-      const std::size_t i = guides.Index(x, y);
-      if (!(coverage[i] > 0.0f) || map->style[i] == StyleMap::kLeave || map->style[i] == StyleMap::kCatch) continue;
-      SCUMBLE_CHECK(map->style[i] < styles);
-      Region& extent = extents[map->style[i]];
-      extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1), std::max(extent.y1, y + 1)};
-    }
-  }
-  return extents;
-}
-
 int FlatReach(const PreparedStyle& style) {
   const int reference = style.settings.reference_height;
   if (reference <= 0) return kFlatReach;
@@ -77,23 +61,24 @@ int FlatReach(const PreparedStyle& style) {
 // Styles are painted one after the other, each as if nothing else were there.
 class Run {
  public:
-  Run(const StyleMap* map, const GuideSet& guides, const TransferOptions& options, TransferScratch& scratch, Picture& out)
-      : map_(map), guides_(guides), options_(options), scratch_(scratch), out_(out) {
-    const Region whole{0, 0, guides.width(), guides.height()};
-    region_ = options.region ? options.region->GrownBy(0, guides.width(), guides.height()) : whole;
-    scratch.field.Reset(guides.width(), guides.height());
-    scratch.active.assign(guides.pixel_count(), 0);
+  Run(const StyleMap* map, std::size_t styles, const GuideSet& guides, const TransferOptions& options,
+      TransferScratch& scratch, Picture& out)
+      : map_(map),
+        guides_(guides),
+        options_(options),
+        scratch_(scratch),
+        out_(out),
+        region_(options.region ? options.region->GrownBy(0, guides.width(), guides.height())
+                               : Region{0, 0, guides.width(), guides.height()}),
+        frame_{guides, map, styles, region_} {
+    Stopwatch watch;
     scratch.times = {};
-    if (out.width != guides.width() || out.height != guides.height() || !options.region) {
-      out = Picture(guides.width(), guides.height());
-    }
-    // Pixels that no style paints must not show what the picture held before.
-    for (int y = region_.y0; y < region_.y1 && region_.x0 < region_.x1; ++y) {
-      std::fill(out.At(region_.x0, y), out.At(region_.x0, y) + 4 * (region_.x1 - region_.x0), std::uint16_t{0});
-    }
+    start_ = internal::StartFrame(frame_, scratch.field, scratch.active, out);
+    scratch.times.compose_ms += watch.Lap();
   }
 
-  Status Paint(const PreparedStyle& style, int index, const Region& extent, double from, double to) {
+  Status Paint(const PreparedStyle& style, int index, double from, double to) {
+    const Region& extent = start_.extents[std::size_t(index)];
     Region painted = Intersection(region_, extent);
     int reach = style.blend_radius;  // the pixels around whose sources decide what is painted
     // A painted edge may stand in the region while its object does not.
@@ -103,15 +88,18 @@ class Run {
     if (painted.empty()) painted = {};
     // Chunks of the brute force depend on every pixel above them, so it always runs over all of them.
     const Region matched = style.settings.method == Method::kBruteForce ? extent : near;
-    Activate(index, extent);
+    if (!map_) return MatchAndVote(style, matched, painted, from, to);
+    const std::vector<Region>& tiles = start_.tiles[std::size_t(index)];
+    internal::Activate(frame_, index, tiles, scratch_.active);
     const Status done = MatchAndVote(style, matched, painted, from, to);
-    Deactivate(extent);
+    internal::Deactivate(frame_, tiles, scratch_.active);
     return done;
   }
 
   Status Finish(std::span<const PreparedStyle* const> styles) {
     Stopwatch watch;
-    if (styles.front()->shadow && map_) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
+    const bool shadows = styles.front()->shadow && map_;
+    if (shadows) SCUMBLE_RETURN_IF_ERROR(PaintShadows(*styles.front()));
     std::span<const float> coverage = guides_.Plane(Layer::kCoverage);
     std::vector<float> edged;
     if (std::any_of(styles.begin(), styles.end(), [](const PreparedStyle* style) { return !style->rims.empty(); })) {
@@ -122,6 +110,11 @@ class Run {
     const double from = 1.0 - (edged.empty() ? kComposeShare : kComposeShare / 2);
     internal::RowProgress progress(options_.progress, from, 1.0, std::max(1, region_.y1 - region_.y0));
     const internal::Background background{styles.front()->paper, options_.over};
+    if (background.empty() && !shadows && edged.empty() && !start_.softly_covered) {
+      // Nothing is behind, nothing half in front, and what no style paints is clear already.
+      progress.Finished(std::max(1, region_.y1 - region_.y0));
+      return progress.cancelled() ? CancelledError() : Ok();
+    }
     if (!internal::Compose(coverage, background, region_, out_, progress)) return CancelledError();
     scratch_.times.compose_ms += watch.Lap();
     return Ok();
@@ -160,28 +153,12 @@ class Run {
     return {style.reference_lightness, static_cast<float>(style.settings.colorize), style.settings.colorize_mode};
   }
 
-  void Activate(int index, const Region& extent) {
-    const auto coverage = guides_.Plane(Layer::kCoverage);
-    for (int y = extent.y0; y < extent.y1; ++y) {
-      for (int x = extent.x0; x < extent.x1; ++x) {
-        const std::size_t i = guides_.Index(x, y);
-        scratch_.active[i] = coverage[i] > 0.0f && (!map_ || map_->style[i] == index);
-      }
-    }
-  }
-
-  void Deactivate(const Region& extent) {
-    if (!map_) return;
-    for (int y = extent.y0; y < extent.y1; ++y) {
-      std::fill_n(scratch_.active.begin() + std::ptrdiff_t(guides_.Index(extent.x0, y)), extent.x1 - extent.x0, 0);
-    }
-  }
-
   // The scene's luminance under the exposure; made when the first style asks for it.
   std::span<const float> ExposedLuminance() {
+    const auto plane = guides_.Plane(Layer::kLuminance);
+    const float factor = static_cast<float>(Exp2(options_.exposure));
+    if (factor == 1.0f) return plane;
     if (luminance_.empty()) {
-      const auto plane = guides_.Plane(Layer::kLuminance);
-      const float factor = static_cast<float>(Exp2(options_.exposure));
       luminance_.assign(plane.begin(), plane.end());
       for (float& value : luminance_) value *= factor;
     }
@@ -213,17 +190,13 @@ class Run {
     if (!done) return done;
     scratch_.times.match_ms += watch.Lap();
 
-    std::optional<internal::EdgeTest> edges;
-    std::optional<internal::JoinedWindow> joined;
-    if (settings.edge_aware && style.blend_radius > 0) {
-      if (!slopes_) slopes_.emplace(guides_);
-      edges.emplace(guides_, *slopes_, settings.crease, settings.depth_tolerance);
-      joined.emplace(*edges, guides_, style.blend_radius, painted);
-    }
+    const internal::EdgeRules edges{guides_, slopes_, settings.crease, settings.depth_tolerance,
+                                    map_ ? std::span<const std::uint8_t>() : scratch_.active};
+    const bool edge_aware = settings.edge_aware && style.blend_radius > 0;
     const int rows = painted.y1 - painted.y0;
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
     const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
-                                     joined ? &*joined : nullptr, painted};
+                                     edge_aware ? &edges : nullptr, painted};
     if (style.tones.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
@@ -282,19 +255,20 @@ class Run {
   TransferScratch& scratch_;
   Picture& out_;
   Region region_;
+  internal::FrameInput frame_;
+  internal::FrameStart start_;
   std::vector<float> luminance_;
   std::vector<std::uint8_t> wanted_;
-  std::optional<internal::DepthSlopes> slopes_;
+  internal::LateSlopes slopes_{guides_};
 };
 
 Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
                        const TransferOptions& options, TransferScratch& scratch, Picture& out) {
-  const std::vector<Region> extents = Extents(styles.size(), map, guides);
-  Run run(map, guides, options, scratch, out);
+  Run run(map, styles.size(), guides, options, scratch, out);
   const double share = (1.0 - kComposeShare) / static_cast<double>(styles.size());
   for (std::size_t s = 0; s < styles.size(); ++s) {
     const double from = share * static_cast<double>(s);
-    SCUMBLE_RETURN_IF_ERROR(run.Paint(*styles[s], static_cast<int>(s), extents[s], from, from + share));
+    SCUMBLE_RETURN_IF_ERROR(run.Paint(*styles[s], static_cast<int>(s), from, from + share));
   }
   return run.Finish(styles);
 }

@@ -19,23 +19,23 @@ struct VoteInput {
   std::span<const std::uint8_t> active;  // 1: a pixel that this style paints; others neither vote nor are painted
   const PreparedExemplar& exemplar;
   int radius = 0;
-  const JoinedWindow* edges = nullptr;  // of that radius and region; null: plain voting
+  const EdgeRules* edges = nullptr;  // null: plain voting
   Region region;
 };
 
 // Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every pixel q of the (2·radius + 1)²
-// window the texel S(q) + (p - q), where it is usable and, with `edges`, where q is joined to p. The pixel's own vote is
-// always among them.
+// window the texel S(q) + (p - q), where it is usable and, with `joined`, which is of that radius and region, where q is joined to p.
+// The pixel's own vote is always among them.
 template <class Visit>
-void ForEachVote(const VoteInput& input, int x, int y, const Visit& visit) {
+void ForEachVote(const VoteInput& input, const JoinedWindow* joined, int x, int y, const Visit& visit) {
   const SourceField& field = input.field;
   const auto offer = [&](std::size_t q, int dx, int dy) {
     if (!input.active[q]) return;
     const Source source{field.x[q] - dx, field.y[q] - dy};
     if (input.exemplar.Usable(source.x, source.y)) visit(int(field.exemplar[q]), source);
   };
-  if (input.edges) {
-    input.edges->ForEach(x, y, offer);
+  if (joined) {
+    joined->ForEach(x, y, offer);
     return;
   }
   const int x0 = std::max(0, x - input.radius), x1 = std::min(field.width - 1, x + input.radius);
@@ -49,5 +49,8 @@ void ForEachVote(const VoteInput& input, int x, int y, const Visit& visit) {
 // chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha. Writes straight alpha
 // into `out` (the picture's size); other pixels are left alone. False: asked to stop.
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress);
+
+// The same, pixel by pixel: what all faster ways are held against.
+bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -1,0 +1,46 @@
+// Rows of marks, one bit a pixel: 64 pixels are looked at in one operation.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace scumble::internal {
+
+// Marks of rows [first_row, first_row + rows) and of `words` words from `first_word` on, which may be -1: bit i of word
+// w is column 64·w + i of the picture. One word more stands on either side, so that every word has neighbours.
+class BitRows {
+ public:
+  static constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+  // Every mark becomes `fill`, 0 or kAll.
+  void Reset(int first_row, int rows, int first_word, int words, std::uint64_t fill) {
+    first_row_ = first_row, first_word_ = first_word - 1, stride_ = words + 2;
+    bits_.assign(std::size_t(rows) * stride_, fill);
+  }
+  // Words from `first_word` on.
+  std::uint64_t* Row(int row) { return bits_.data() + Offset(row) + 1; }
+  const std::uint64_t* Row(int row) const { return bits_.data() + Offset(row) + 1; }
+  std::uint64_t& At(int row, int word) { return bits_[Offset(row) + (word - first_word_)]; }
+  std::uint64_t At(int row, int word) const { return bits_[Offset(row) + (word - first_word_)]; }
+  // Bit i: the mark of column 64·word + i + dx, |dx| < 64.
+  std::uint64_t Shifted(int row, int word, int dx) const {
+    const std::uint64_t* at = bits_.data() + Offset(row) + (word - first_word_);
+    if (dx == 0) return *at;
+    return dx > 0 ? at[0] >> dx | at[1] << (64 - dx) : at[0] << -dx | at[-1] >> (64 + dx);
+  }
+
+ private:
+  std::size_t Offset(int row) const { return std::size_t(row - first_row_) * stride_; }
+  int first_row_ = 0, first_word_ = 0;
+  std::size_t stride_ = 0;
+  std::vector<std::uint64_t> bits_;
+};
+
+// Bits [begin, end) of a word, clamped to it.
+inline std::uint64_t BitRange(int begin, int end) {
+  const auto below = [](int i) { return i <= 0 ? 0 : i >= 64 ? BitRows::kAll : (std::uint64_t{1} << i) - 1; };
+  return below(end) & ~below(begin);
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,42 @@
+// How a frame begins: who paints what, and nothing left over from the frame before.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "image/guides.h"
+#include "image/picture.h"
+#include "transfer/region.h"
+#include "transfer/source_field.h"
+#include "transfer/style_map.h"
+
+namespace scumble::internal {
+
+struct FrameInput {
+  const GuideSet& guides;
+  const StyleMap* map = nullptr;  // null: one style paints all
+  std::size_t styles = 1;
+  Region region;  // of the picture that is made; within it
+};
+
+struct FrameStart {
+  std::vector<Region> extents;             // the rectangle around each style's covered pixels
+  std::vector<std::vector<Region>> tiles;  // by style, with a map only: small rectangles that hold all its pixels
+  bool softly_covered = false;             // somewhere in the region coverage is between 0 and 1
+};
+
+// One pass over coverage and map. The field and `active` become as large as the guides, `out` too, unless it is
+// already.
+// - `active`: without a map 1 where coverage is above 0; with one 0 everywhere, see Activate.
+// - The field says kNoSource wherever no style paints and outside the region, and may say anything elsewhere.
+// - `out` is 0 wherever in the region no style paints, and may hold anything where one does; outside the region it is
+// left
+//   alone if it had its size.
+// Runs in the caller's arena.
+FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);
+
+// `active` tells the covered pixels of a style in these tiles, or none any more.
+void Activate(const FrameInput& input, int style, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
+void Deactivate(const FrameInput& input, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
+
+}  // namespace scumble::internal

@@ -1,0 +1,31 @@
+// Which texels of an exemplar may be shown, row by row.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "transfer/prepared_exemplar.h"
+
+namespace scumble::internal {
+
+class UsableRows {
+ public:
+  struct Span {
+    int begin, end;  // texels [begin, end)
+  };
+  // O(rows · log columns) for a sphere, O(texels) for a scene.
+  explicit UsableRows(const PreparedExemplar& exemplar);
+
+  // The spans of usable texels of row y, from left to right; none outside the picture.
+  std::span<const Span> Row(int y) const {
+    if (y < 0 || y + 1 >= static_cast<int>(first_.size())) return {};
+    return {spans_.data() + first_[y], spans_.data() + first_[y + 1]};
+  }
+
+ private:
+  std::vector<Span> spans_;
+  std::vector<std::uint32_t> first_;  // by row, and the end of the last
+};
+
+}  // namespace scumble::internal
