@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "guidegen/soft_light.h"
+#include "guidegen/tile_store.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -88,27 +89,6 @@ void Cast(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRay
   rtcIntersect16(valid, scene, context, &packet);
 }
 
-// Values of a tile by TilePixel into their plane.
-void CopyTile(const Tile& tile, const std::array<float, kTilePixels>& values, float* plane, std::size_t stride) {
-  for (int row = 0; row < tile.height; ++row) {
-    float* to = plane + std::size_t(tile.y0 + row) * stride + tile.x0;
-    for (int column = 0; column < tile.width; column += kSquareSide) {
-      const float* from = values.data() + TilePixel(column, row);
-      if (column + kSquareSide <= tile.width) {
-        std::copy_n(from, kSquareSide, to + column);
-      } else {
-        std::copy_n(from, tile.width - column, to + column);
-      }
-    }
-  }
-}
-
-void FillTile(const Tile& tile, float value, float* plane, std::size_t stride) {
-  for (int row = 0; row < tile.height; ++row) {
-    std::fill_n(plane + std::size_t(tile.y0 + row) * stride + tile.x0, tile.width, value);
-  }
-}
-
 // The smallest rotation that takes the direction to the eye to +Z.
 glm::dvec3 RotateToEye(const glm::dvec3& normal, const ViewRay& ray) {
   const glm::dvec3 to_eye = glm::normalize(-ray.direction);
@@ -136,6 +116,9 @@ std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSe
   return scene.objects();
 }
 
+// Planes of more pixels than this are not found in the caches by whoever reads them next.
+constexpr std::size_t kCachedPixels = std::size_t(1) << 19;
+
 // The sampler's stream for luminance and shadow: not the light paths' own.
 constexpr std::uint32_t kSoftStream = 1;
 
@@ -146,6 +129,7 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
       view_(view),
       options_(options),
       width_(guides.width()),
+      past_caches_(guides.pixel_count() > kCachedPixels),
       lights_(view.lights, LitObjects(scene, guides), view.world_radiance),
       object_records_(MakeObjectRecords(scene.objects())) {
   const int n = options.aa;
@@ -429,11 +413,14 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
 }
 
 void TileCaster::WriteWhole(const Tile& tile, const Scratch& scratch) const {
-  CopyTile(tile, scratch.coverage, planes_.coverage, width_);
-  CopyTile(tile, scratch.guides.depth, planes_.depth, width_);
-  CopyTile(tile, scratch.guides.object, planes_.object, width_);
-  CopyTile(tile, scratch.guides.material, planes_.material, width_);
-  for (std::size_t i = 0; i < 3; ++i) CopyTile(tile, scratch.guides.normal[i], planes_.normal[i], width_);
+  const auto store = [&](const std::array<float, kTilePixels>& values, float* plane) {
+    StoreTile(tile, values, plane, width_, past_caches_);
+  };
+  store(scratch.coverage, planes_.coverage);
+  store(scratch.guides.depth, planes_.depth);
+  store(scratch.guides.object, planes_.object);
+  store(scratch.guides.material, planes_.material);
+  for (std::size_t i = 0; i < 3; ++i) store(scratch.guides.normal[i], planes_.normal[i]);
 }
 
 void TileCaster::Cast(const Tile& tile, Scratch& scratch, RayCounts& counts, std::vector<PathPixel>* pixels) const {

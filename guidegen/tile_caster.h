@@ -104,6 +104,7 @@ class TileCaster {
   const View& view_;
   const GuidegenOptions& options_;
   std::size_t width_;
+  bool past_caches_;
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
   std::vector<Offset> offsets_;  // of subsamples, by rank

@@ -2,17 +2,20 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdlib>
 #include <new>
 #include <utility>
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 namespace scumble {
 
-// For std::vector. Elements without an initial value stay as the memory came. Large blocks ask for large pages: a frame's
-// planes are tens of megabytes, and the system hands them out page by page as they are first touched.
+// `bytes` of memory on a cache line, with anything in it; throws std::bad_alloc. The system hands out large blocks page
+// by page as they are first touched, and clears each: for a frame's planes that takes as long as a third of casting its
+// rays. So they ask for large pages, and a few megabytes that were given back are kept for the next who asks for the
+// same size, up to kKeptPlaneBytes in all. Free to use from any thread.
+void* AllocatePlane(std::size_t bytes);
+void FreePlane(void* memory, std::size_t bytes);
+inline constexpr std::size_t kKeptPlaneBytes = std::size_t(256) << 20;
+
+// The same for std::vector. Elements without an initial value stay as the memory came.
 template <class T>
 class PlaneAllocator {
  public:
@@ -24,17 +27,9 @@ class PlaneAllocator {
 
   T* allocate(std::size_t count) {
     if (count > std::size_t(-1) / 2 / sizeof(T)) throw std::bad_alloc();
-    const std::size_t bytes = count * sizeof(T);
-    const std::size_t alignment = bytes >= kLargePage ? kLargePage : kCacheLine;
-    void* memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
-    if (!memory) throw std::bad_alloc();
-#if defined(__linux__)
-    // Only ever a wish: where it is not granted, pages are small.
-    if (alignment == kLargePage) madvise(memory, bytes / kLargePage * kLargePage, MADV_HUGEPAGE);
-#endif
-    return static_cast<T*>(memory);
+    return static_cast<T*>(AllocatePlane(count * sizeof(T)));
   }
-  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  void deallocate(T* memory, std::size_t count) { FreePlane(memory, count * sizeof(T)); }
 
   template <class U>
   void construct(U* element) {
@@ -46,10 +41,6 @@ class PlaneAllocator {
   }
 
   bool operator==(const PlaneAllocator&) const { return true; }
-
- private:
-  static constexpr std::size_t kLargePage = std::size_t(2) << 20;
-  static constexpr std::size_t kCacheLine = 64;
 };
 
 }  // namespace scumble
