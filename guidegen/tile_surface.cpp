@@ -137,6 +137,7 @@ class TileWork {
   HWY_INLINE void Run() {
     const std::size_t step = hn::Lanes(Doubles());
     for (std::size_t pixel = 0; pixel < kTilePixels; pixel += step) Lanes<kPoints>(pixel);
+    for (std::size_t i = 0; i < work_count_; ++i) MakeUnits<kPoints>(work_[i]);
   }
 
  private:
@@ -254,29 +255,27 @@ class TileWork {
       const D turned = hn::Add(hn::Add(hn::Mul(a, normal.x), hn::Mul(b, normal.y)), hn::Mul(c, normal.z));
       return hn::Mul(turned, side);
     };
-    D3 shading = {turn(objects.column[0].x, objects.column[1].x, objects.column[2].x),
-                  turn(objects.column[0].y, objects.column[1].y, objects.column[2].y),
-                  turn(objects.column[0].z, objects.column[1].z, objects.column[2].z)};
+    const D3 shading = {turn(objects.column[0].x, objects.column[1].x, objects.column[2].x),
+                        turn(objects.column[0].y, objects.column[1].y, objects.column[2].y),
+                        turn(objects.column[0].z, objects.column[1].z, objects.column[2].z)};
     const D squared = Dot(shading, shading);
     const auto ordinary =
         hn::And(hn::Gt(squared, hn::Set(d, kLeastPlainSquare)), hn::Lt(squared, hn::Set(d, kLargestPlainSquare)));
-    const D inverse = hn::Div(hn::Set(d, 1.0), hn::Sqrt(squared));
-    shading = {hn::Mul(shading.x, inverse), hn::Mul(shading.y, inverse), hn::Mul(shading.z, inverse)};
 
     const auto met_double = hn::RebindMask(d, met);
     const auto left_over = hn::And(
         hn::Or(hn::Or(irregular, infinite), hn::Not(hn::And(usable, ordinary))), met_double);
     if (HWY_UNLIKELY(!hn::AllFalse(d, left_over))) LeaveOver(pixel, left_over);
 
-    const auto store = [&](D value, float* to) {
-      hn::Store(hn::DemoteTo(f, hn::IfThenElseZero(met_double, value)), f, to + pixel);
-    };
     const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
     const D depth = hn::IfThenElse(met_double, ZeroAtLeast(hn::Neg(z)), infinity);
     hn::Store(hn::DemoteTo(f, depth), f, guides_.depth.data() + pixel);
-    store(shading.x, guides_.normal[0].data());
-    store(shading.y, guides_.normal[1].data());
-    store(shading.z, guides_.normal[2].data());
+    // The square root and its division wait for each other; by themselves they need not wait for anything else.
+    hn::Store(hn::IfThenElseZero(met_double, shading.x), d, shading_[0] + pixel);
+    hn::Store(hn::IfThenElseZero(met_double, shading.y), d, shading_[1] + pixel);
+    hn::Store(hn::IfThenElseZero(met_double, shading.z), d, shading_[2] + pixel);
+    hn::Store(hn::IfThenElse(met_double, squared, hn::Set(d, 1.0)), d, squared_ + pixel);
+    work_[work_count_++] = std::uint8_t(pixel);
     const auto empty = SameObject(pixel, TileHits::kNothing);
     hn::Store(hn::IfThenZeroElse(empty, objects.object_id), f, guides_.object.data() + pixel);
     hn::Store(hn::IfThenZeroElse(empty, objects.material_id), f, guides_.material.data() + pixel);
@@ -287,13 +286,25 @@ class TileWork {
       const D3 position = {mix(triangles.corner.x, triangles.first_edge.x, triangles.second_edge.x),
                            mix(triangles.corner.y, triangles.first_edge.y, triangles.second_edge.y), z};
       StorePoint(position, points_->position, pixel);
-      StorePoint(shading, points_->normal, pixel);
       const D sign = hn::Mul(objects.winding, side);
       StorePoint({hn::Mul(triangles.facing.x, sign), hn::Mul(triangles.facing.y, sign),
                   hn::Mul(triangles.facing.z, sign)}, points_->facing, pixel);
       const D own = Magnitude(position);
       const D largest = hn::IfThenElse(hn::Lt(own, triangles.largest), triangles.largest, own);
       hn::Store(largest, d, points_->largest_coordinate.data() + pixel);
+    }
+  }
+
+  // MakeUnit where a square is ordinary.
+  template <bool kPoints>
+  HWY_INLINE void MakeUnits(std::size_t pixel) {
+    const Doubles d;
+    const Floats f;
+    const D inverse = hn::Div(hn::Set(d, 1.0), hn::Sqrt(hn::Load(d, squared_ + pixel)));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const D unit = hn::Mul(hn::Load(d, shading_[axis] + pixel), inverse);
+      hn::Store(hn::DemoteTo(f, unit), f, guides_.normal[axis].data() + pixel);
+      if constexpr (kPoints) hn::Store(unit, d, points_->normal[axis].data() + pixel);
     }
   }
 
@@ -321,6 +332,10 @@ class TileWork {
   TileGuides& guides_;
   TilePoints* points_;
   alignas(64) std::uint64_t keys_[kTilePixels];
+  alignas(64) double shading_[3][kTilePixels];  // before it has unit length
+  alignas(64) double squared_[kTilePixels];     // its length
+  std::uint8_t work_[kTilePixels];              // first pixels of the lanes that met something
+  std::size_t work_count_ = 0;
 };
 
 void Surface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides,
