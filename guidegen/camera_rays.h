@@ -27,6 +27,9 @@ class CameraRays {
   // The ray through a point of the picture, in pixels from the top left corner.
   ViewRay Through(double x, double y) const;
 
+  // Whether rays differ in their origin; otherwise in their direction.
+  bool orthographic() const { return orthographic_; }
+
   // Where in the picture a point of view space is seen, the inverse of Through; nothing behind the eye.
   std::optional<glm::dvec2> PixelOf(const glm::dvec3& point) const;
 

@@ -1,5 +1,6 @@
 #include "guidegen/cast_guides.h"
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -35,6 +36,7 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
   std::atomic<std::size_t> primary{0};
   std::atomic<std::size_t> coverage{0};
   std::atomic<std::size_t> shadow{0};
+  tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
   tbb::parallel_for(std::size_t(0), columns * rows, [&](std::size_t i) {
     if (gate.cancelled()) return;
     Tile tile;
@@ -43,7 +45,7 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
     tile.width = std::min(kTileSide, options.width - tile.x0);
     tile.height = std::min(kTileSide, options.height - tile.y0);
     RayCounts cast;
-    caster.Cast(tile, cast, pixels ? &(*pixels)[i] : nullptr);
+    caster.Cast(tile, scratch.local(), cast, pixels ? &(*pixels)[i] : nullptr);
     primary += cast.primary;
     coverage += cast.coverage;
     shadow += cast.shadow;
@@ -53,10 +55,11 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
   return !gate.cancelled();
 }
 
-GuideSet EmptyGuides(const GuidegenOptions& options) {
+// Tiles fill them, background included.
+GuideSet UnsetGuides(const GuidegenOptions& options) {
   GuideSet guides(options.width, options.height);
   for (const LayerInfo& info : AllLayers()) {
-    if (AlwaysWritten().Has(info.layer) || options.layers.Has(info.layer)) guides.Add(info.layer);
+    if (AlwaysWritten().Has(info.layer) || options.layers.Has(info.layer)) guides.AddUnset(info.layer);
   }
   return guides;
 }
@@ -70,7 +73,7 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa, keep_emitters));
   result.build_ms = watch.Lap();
 
-  result.guides = EmptyGuides(options);
+  result.guides = UnsetGuides(options);
   const PathFollower follower(options.layers, view.supply, options.max_bounces);
   const TileCaster caster(scene, view, options, result.guides);
   std::vector<std::vector<PathPixel>> pixels;

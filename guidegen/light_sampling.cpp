@@ -20,10 +20,6 @@ constexpr double kFlat = 0x1.0p-40;
 // Irradiance beyond this does not fit a float once it is reflected, and could become infinite on its way.
 constexpr double kMostIrradiance = std::numeric_limits<float>::max();
 
-double LargestCoordinate(const glm::dvec3& p) {
-  return std::max(std::abs(p.x), std::max(std::abs(p.y), std::abs(p.z)));
-}
-
 double AreaOf(const PlacedLight& lamp) {
   const double sides = glm::length(lamp.half_x) * glm::length(lamp.half_y);
   return lamp.ellipse ? kPi * sides : 4.0 * sides;

@@ -6,27 +6,6 @@
 namespace scumble {
 namespace {
 
-// Interpolated unit normals shorter than this have cancelled out: what is left is rounding.
-constexpr double kShortestNormal = 1e-6;
-
-double LargestCoordinate(const glm::dvec3& v) {
-  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
-}
-
-// False, and nothing changed, where there is no direction. Vectors whose square would leave a double's range are scaled
-// first.
-bool MakeUnit(glm::dvec3& v) {
-  const double squared = glm::dot(v, v);
-  if (squared > 1e-200 && squared < 1e200) {
-    v *= 1.0 / std::sqrt(squared);
-    return true;
-  }
-  const double largest = LargestCoordinate(v);
-  if (!std::isfinite(v.x + v.y + v.z) || !(largest > 0.0)) return false;
-  v = glm::normalize(v / largest);
-  return true;
-}
-
 glm::dvec3 DirectionToEye(const ViewRay& ray) { return glm::normalize(-ray.direction); }
 
 template <class T>
@@ -53,6 +32,10 @@ glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const 
   return sum > 1.0 ? result / sum : result;
 }
 
+glm::dvec3 Mix(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec2& barycentric) {
+  return a + (b - a) * barycentric.x + (c - a) * barycentric.y;
+}
+
 const Picture* FindTexture(const PlacedObject& object, const TextureUse& use) {
   if (use.texture < 0 || std::size_t(use.texture) >= object.textures.size() || !object.mesh) return nullptr;
   if (object.mesh->uvs[use.uv_set].empty()) return nullptr;
@@ -64,11 +47,10 @@ glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, 
   const Mesh& mesh = *object.mesh;
   if (mesh.normals.empty()) return glm::dvec3(0.0);
   const glm::dvec3 normal = Interpolate(mesh.normals, triangle, barycentric);
-  const TextureUse& use = object.material->normal_texture;
-  const Picture* map = FindTexture(object, use);
-  if (!map || mesh.tangents.empty() || !(glm::dot(normal, normal) > kShortestNormal * kShortestNormal)) return normal;
+  if (!HasNormalMap(object) || !(glm::dot(normal, normal) > kShortestNormal * kShortestNormal)) return normal;
 
-  const glm::vec4 texel = SampleRaw(*map, use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
+  const TextureUse& use = object.material->normal_texture;
+  const glm::vec4 texel = SampleRaw(*FindTexture(object, use), use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
   const glm::dvec3 bend = glm::dvec3(texel) * 2.0 - 1.0;
   const glm::dvec4 tangent4 = Interpolate(mesh.tangents, triangle, barycentric);
   const glm::dvec3 unit = glm::normalize(normal);
@@ -86,14 +68,8 @@ SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primiti
   const glm::dvec3 area = glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
   SurfacePoint point;
   point.barycentric = MeetTriangle(triangle, area, ray, barycentric);
-  const double v = point.barycentric.x;
-  const double w = point.barycentric.y;
-  const auto mix = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    return a + (b - a) * v + (c - a) * w;
-  };
-  point.position = mix(triangle.corner[0], triangle.corner[1], triangle.corner[2]);
-  const auto& positions = object.mesh->rest_positions.empty() ? object.mesh->positions : object.mesh->rest_positions;
-  point.rest_position = mix(positions[corners.x], positions[corners.y], positions[corners.z]);
+  point.position = Mix(triangle.corner[0], triangle.corner[1], triangle.corner[2], point.barycentric);
+  point.rest_position = RestPosition(object, primitive, point.barycentric);
   point.largest_coordinate = LargestCoordinate(point.position);
   for (const glm::dvec3& corner : triangle.corner) {
     point.largest_coordinate = std::max(point.largest_coordinate, LargestCoordinate(corner));
@@ -130,6 +106,33 @@ SurfacePoint FindSpherePoint(const PlacedObject& object, const ViewRay& ray) {
 }
 
 }  // namespace
+
+double LargestCoordinate(const glm::dvec3& v) {
+  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
+}
+
+// Vectors whose square would leave a double's range are scaled first.
+bool MakeUnit(glm::dvec3& v) {
+  const double squared = glm::dot(v, v);
+  if (squared > kLeastPlainSquare && squared < kLargestPlainSquare) {
+    v *= 1.0 / std::sqrt(squared);
+    return true;
+  }
+  const double largest = LargestCoordinate(v);
+  if (!std::isfinite(v.x + v.y + v.z) || !(largest > 0.0)) return false;
+  v = glm::normalize(v / largest);
+  return true;
+}
+
+bool HasNormalMap(const PlacedObject& object) {
+  return FindTexture(object, object.material->normal_texture) && !object.mesh->tangents.empty();
+}
+
+glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric) {
+  const glm::uvec3& corners = object.mesh->triangles[primitive];
+  const auto& positions = object.mesh->rest_positions.empty() ? object.mesh->positions : object.mesh->rest_positions;
+  return Mix(positions[corners.x], positions[corners.y], positions[corners.z], barycentric);
+}
 
 PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,
                    const glm::dmat4& view_from_object) {

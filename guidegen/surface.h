@@ -51,6 +51,24 @@ struct SurfacePoint {
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
                               const ViewRay& ray);
 
+// Where a point of a mesh's triangle is before anything deforms it, object space.
+glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);
+
+// Whether the shading normal is more than the corners' normals, interpolated.
+bool HasNormalMap(const PlacedObject& object);
+
+// Interpolated unit normals shorter than this have cancelled out: what is left is rounding.
+inline constexpr double kShortestNormal = 1e-6;
+
+// Squares of lengths between which a vector is made a unit vector without being scaled first.
+inline constexpr double kLeastPlainSquare = 1e-200;
+inline constexpr double kLargestPlainSquare = 1e200;
+
+// False, and nothing changed, where there is no direction.
+bool MakeUnit(glm::dvec3& v);
+
+double LargestCoordinate(const glm::dvec3& v);
+
 // Base colour × texture × vertex colour, linear, and alpha.
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
 

@@ -7,14 +7,13 @@
 #include <utility>
 
 #include "guidegen/soft_light.h"
+#include "guidegen/tile_store.h"
 #include "image/check.h"
 
 namespace scumble {
 namespace {
 
-constexpr int kPacket = 8;
-constexpr int kPacketWidth = 4;
-constexpr int kPacketHeight = 2;
+constexpr int kPacket = 8;  // of rays that ask for any hit
 
 // A ray and the stretch of it, in lengths of its direction, on which surfaces count.
 struct Segment {
@@ -75,6 +74,21 @@ class OcclusionBatch {
   int count_ = 0;
 };
 
+// Calls `visit(pixel)` for each pixel of the tile, row by row.
+template <class Visit>
+void ForEachPixel(const Tile& tile, const Visit& visit) {
+  for (int row = 0; row < tile.height; ++row) {
+    for (int column = 0; column < tile.width; ++column) visit(TilePixel(column, row));
+  }
+}
+
+void Cast(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRayHit8& packet) {
+  rtcIntersect8(valid, scene, context, &packet);
+}
+void Cast(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRayHit16& packet) {
+  rtcIntersect16(valid, scene, context, &packet);
+}
+
 // The smallest rotation that takes the direction to the eye to +Z.
 glm::dvec3 RotateToEye(const glm::dvec3& normal, const ViewRay& ray) {
   const glm::dvec3 to_eye = glm::normalize(-ray.direction);
@@ -102,6 +116,9 @@ std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSe
   return scene.objects();
 }
 
+// Planes of more pixels than this are not found in the caches by whoever reads them next.
+constexpr std::size_t kCachedPixels = std::size_t(1) << 19;
+
 // The sampler's stream for luminance and shadow: not the light paths' own.
 constexpr std::uint32_t kSoftStream = 1;
 
@@ -112,7 +129,9 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
       view_(view),
       options_(options),
       width_(guides.width()),
-      lights_(view.lights, LitObjects(scene, guides), view.world_radiance) {
+      past_caches_(guides.pixel_count() > kCachedPixels),
+      lights_(view.lights, LitObjects(scene, guides), view.world_radiance),
+      object_records_(MakeObjectRecords(scene.objects())) {
   const int n = options.aa;
   std::vector<std::array<int, 3>> ranked;  // squared distance in half subsamples, row, column
   for (int row = 0; row < n; ++row) {
@@ -136,52 +155,92 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
   planes_.pref = PlanesOrNull(guides, Layer::kPref);
   planes_.albedo = PlanesOrNull(guides, Layer::kAlbedo);
   planes_.motion = {PlaneOrNull(guides, Layer::kMotion, 0), PlaneOrNull(guides, Layer::kMotion, 1)};
+  const LayerSet whole = AlwaysWritten();
+  for (const LayerInfo& info : AllLayers()) {
+    if (!guides.Has(info.layer) || whole.Has(info.layer)) continue;
+    for (int i = 0; i < ChannelCount(info.layer); ++i) {
+      planes_.others.push_back({guides.Plane(info.layer, i).data(), BackgroundValue(info.layer)});
+    }
+  }
+  lit_ = (planes_.luminance || planes_.shadow) && !lights_.empty();
+  points_ = lit_ || planes_.position[0] || planes_.pref[0] || planes_.albedo[0] || planes_.motion[0] ||
+            options.normal_frame == NormalFrame::kEye;
 }
 
-void TileCaster::CastCentres(const Tile& tile, Hits& hits) const {
-  const CameraRays& camera = view_.camera;
+TileCaster::Scratch::Scratch(const TileCaster& caster)
+    : triangles(caster.scene_.objects(), caster.object_records_), lit(caster.lit_ ? kTilePixels : 0) {}
+
+void TileCaster::PlaceRays(const Tile& tile, TileRays& rays) const {
+  // Through moves one of the two only: which one tells the kind of the camera.
+  rays.orthographic = view_.camera.orthographic();
+  const auto moved = [&](double x, double y) {
+    const ViewRay ray = view_.camera.Through(x, y);
+    return rays.orthographic ? ray.origin : ray.direction;
+  };
+  for (int i = 0; i < kTileSide; ++i) {
+    rays.across[std::size_t(i)] = moved(tile.x0 + i + 0.5, 0.5).x;
+    rays.up[std::size_t(i)] = moved(0.5, tile.y0 + i + 0.5).y;
+  }
+}
+
+// A square is a packet of 16 rays or two of 8.
+template <class Packet>
+void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, TileHits& hits) const {
+  constexpr int kRays = sizeof(Packet::hit.geomID) / sizeof(unsigned);
+  constexpr int kRows = kRays / kSquareSide;
   CastContext context(true);
-  RTCRayHit8 packet = {};
-  alignas(32) int valid[kPacket];
-  for (int y = 0; y < tile.height; y += kPacketHeight) {
-    for (int x = 0; x < tile.width; x += kPacketWidth) {
-      for (int lane = 0; lane < kPacket; ++lane) {
-        const int column = x + lane % kPacketWidth;
-        const int row = y + lane / kPacketWidth;
-        valid[lane] = column < tile.width && row < tile.height ? -1 : 0;
-        Hit& hit = hits[row * kTileSide + column];
-        hit.x = tile.x0 + column + 0.5;
-        hit.y = tile.y0 + row + 0.5;
-        SetLane(packet.ray, lane, SeenBy(camera, camera.Through(hit.x, hit.y)));
+  Packet packet = {};
+  for (int lane = 0; lane < kRays; ++lane) {
+    SetLane(packet.ray, lane, SeenBy(view_.camera, ViewRay()));
+  }
+  const float far = float(view_.camera.far_depth());
+  float* across = rays.orthographic ? packet.ray.org_x : packet.ray.dir_x;
+  float* up = rays.orthographic ? packet.ray.org_y : packet.ray.dir_y;
+  alignas(64) int valid[kRays];
+  for (int row = 0; row < tile.height; row += kRows) {
+    for (int column = 0; column < tile.width; column += kSquareSide) {
+      for (int lane = 0; lane < kRays; ++lane) {
+        const int x = column + lane % kSquareSide;
+        const int y = row + lane / kSquareSide;
+        valid[lane] = x < tile.width && y < tile.height ? -1 : 0;
+        across[lane] = float(rays.across[std::size_t(x)]);
+        up[lane] = float(rays.up[std::size_t(y)]);
+        packet.ray.tfar[lane] = far;
         packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
       }
-      rtcIntersect8(valid, scene_.handle(), &context.embree, &packet);
-      for (int lane = 0; lane < kPacket; ++lane) {
-        if (valid[lane] == 0 || packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
-        Hit& hit = hits[(y + lane / kPacketWidth) * kTileSide + x + lane % kPacketWidth];
-        hit.object = packet.hit.geomID[lane];
-        hit.primitive = packet.hit.primID[lane];
-        hit.u = packet.hit.u[lane];
-        hit.v = packet.hit.v[lane];
-      }
+      scumble::Cast(valid, scene_.handle(), &context.embree, packet);
+      const std::size_t first = std::size_t(TilePixel(column, row));
+      std::copy_n(packet.hit.geomID, kRays, hits.object.data() + first);
+      std::copy_n(packet.hit.primID, kRays, hits.primitive.data() + first);
+      std::copy_n(packet.hit.u, kRays, hits.u.data() + first);
+      std::copy_n(packet.hit.v, kRays, hits.v.data() + first);
     }
+  }
+}
+
+void TileCaster::CastCentres(const Tile& tile, const TileRays& rays, TileHits& hits) const {
+  if (tile.width < kTileSide || tile.height < kTileSide) hits.object.fill(TileHits::kNothing);
+  if (scene_.wide_packets()) {
+    CastPackets<RTCRayHit16>(tile, rays, hits);
+  } else {
+    CastPackets<RTCRayHit8>(tile, rays, hits);
   }
 }
 
 // Pixels that are covered all over without casting a ray. Where the centres of a pixel and of its four neighbours see
 // the same triangle, the triangle's picture is convex and holds the diamond between those centres, and with it the
 // whole pixel. The same goes for a sphere. Nothing follows for surfaces with holes, nor at the tile's border.
-TileCaster::Mask TileCaster::FindWhole(const Tile& tile, const Hits& hits) const {
+TileCaster::Mask TileCaster::FindWhole(const Tile& tile, const TileHits& hits) const {
   Mask whole;
   for (int row = 1; row < tile.height - 1; ++row) {
     for (int column = 1; column < tile.width - 1; ++column) {
-      const int pixel = row * kTileSide + column;
-      const Hit& hit = hits[pixel];
-      if (hit.object == kNothing || MayHaveHoles(*scene_.objects()[hit.object].material)) continue;
+      const int pixel = TilePixel(column, row);
+      if (!hits.Met(pixel) || MayHaveHoles(*scene_.objects()[hits.object[pixel]].material)) continue;
       whole[pixel] = true;
-      for (const int neighbour : {pixel - 1, pixel + 1, pixel - kTileSide, pixel + kTileSide}) {
-        const Hit& other = hits[neighbour];
-        whole[pixel] = whole[pixel] && other.object == hit.object && other.primitive == hit.primitive;
+      for (const int neighbour : {TilePixel(column - 1, row), TilePixel(column + 1, row), TilePixel(column, row - 1),
+                                  TilePixel(column, row + 1)}) {
+        whole[pixel] = whole[pixel] && hits.object[neighbour] == hits.object[pixel] &&
+                       hits.primitive[neighbour] == hits.primitive[pixel];
       }
     }
   }
@@ -195,29 +254,28 @@ std::array<TileCaster::Samples, kTilePixels> TileCaster::CastSubsamples(const Ti
   const auto report = [&](const std::pair<int, int>& tag, bool blocked) {
     if (blocked) covered[tag.first].set(tag.second);
   };
-  for (int row = 0; row < tile.height; ++row) {
-    for (int column = 0; column < tile.width; ++column) {
-      if (whole[row * kTileSide + column]) continue;
-      for (int rank = 0; rank < int(offsets_.size()); ++rank) {
-        const ViewRay ray = camera.Through(tile.x0 + column + offsets_[rank].x, tile.y0 + row + offsets_[rank].y);
-        batch.Add(SeenBy(camera, ray), {row * kTileSide + column, rank}, report);
-      }
+  ForEachPixel(tile, [&](int pixel) {
+    if (whole[pixel]) return;
+    for (int rank = 0; rank < int(offsets_.size()); ++rank) {
+      const ViewRay ray = camera.Through(tile.x0 + TileColumn(pixel) + offsets_[rank].x,
+                                         tile.y0 + TileRow(pixel) + offsets_[rank].y);
+      batch.Add(SeenBy(camera, ray), {pixel, rank}, report);
     }
-  }
+  });
   batch.Flush(report);
   return covered;
 }
 
 // Looks for a surface at the covered subsamples, nearest first, and returns how many rays that took. The nearest nearly
 // always has it; a ray that grazes an edge may be blocked in one packet and pass alone.
-std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel, Hit& hit) const {
+std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel, Scratch& scratch) const {
   const CameraRays& camera = view_.camera;
   std::size_t cast = 0;
   for (std::size_t rank = 0; rank < offsets_.size(); ++rank) {
     if (!samples.test(rank)) continue;
     ++cast;
-    const double x = tile.x0 + pixel % kTileSide + offsets_[rank].x;
-    const double y = tile.y0 + pixel / kTileSide + offsets_[rank].y;
+    const double x = tile.x0 + TileColumn(pixel) + offsets_[rank].x;
+    const double y = tile.y0 + TileRow(pixel) + offsets_[rank].y;
     RTCRayHit8 packet = {};
     SetLane(packet.ray, 0, SeenBy(camera, camera.Through(x, y)));
     packet.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -225,7 +283,11 @@ std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel,
     CastContext context(true);
     rtcIntersect8(valid, scene_.handle(), &context.embree, &packet);
     if (packet.hit.geomID[0] == RTC_INVALID_GEOMETRY_ID) continue;
-    hit = {packet.hit.geomID[0], packet.hit.primID[0], packet.hit.u[0], packet.hit.v[0], x, y};
+    scratch.hits.object[pixel] = packet.hit.geomID[0];
+    scratch.hits.primitive[pixel] = packet.hit.primID[0];
+    scratch.hits.u[pixel] = packet.hit.u[0];
+    scratch.hits.v[pixel] = packet.hit.v[0];
+    scratch.moved.push_back({pixel, {x, y}});
     break;
   }
   return cast;
@@ -233,71 +295,83 @@ std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel,
 
 // Fills the coverage, and gives pixels whose centre misses what their nearest covered subsample sees. A pixel whose
 // centre is hit counts as one subsample at least, so that nothing thin is lost between them.
-void TileCaster::Cover(const Tile& tile, Hits& hits, RayCounts& counts) const {
+void TileCaster::Cover(const Tile& tile, Scratch& scratch, RayCounts& counts) const {
   const std::size_t per_pixel = offsets_.size();
   if (per_pixel == 1) {
-    for (int row = 0; row < tile.height; ++row) {
-      for (int column = 0; column < tile.width; ++column) {
-        const int pixel = row * kTileSide + column;
-        planes_.coverage[Index(tile, pixel)] = hits[pixel].object != kNothing ? 1.0f : 0.0f;
-      }
+    for (std::size_t pixel = 0; pixel < kTilePixels; ++pixel) {
+      scratch.coverage[pixel] = scratch.hits.object[pixel] != TileHits::kNothing ? 1.0f : 0.0f;
     }
     return;
   }
-  const Mask whole = FindWhole(tile, hits);
+  const Mask whole = FindWhole(tile, scratch.hits);
   const std::array<Samples, kTilePixels> covered = CastSubsamples(tile, whole);
   counts.coverage += per_pixel * (std::size_t(tile.width) * tile.height - whole.count());
-  for (int row = 0; row < tile.height; ++row) {
-    for (int column = 0; column < tile.width; ++column) {
-      const int pixel = row * kTileSide + column;
-      std::size_t count = whole[pixel] ? per_pixel : covered[pixel].count();
-      if (hits[pixel].object != kNothing) {
-        count = std::max<std::size_t>(count, 1);
-      } else if (count > 0) {
-        counts.coverage += CastMissed(tile, covered[pixel], pixel, hits[pixel]);
-        if (hits[pixel].object == kNothing) count = 0;
-      }
-      planes_.coverage[Index(tile, pixel)] = float(double(count) / double(per_pixel));
+  ForEachPixel(tile, [&](int pixel) {
+    std::size_t count = whole[pixel] ? per_pixel : covered[pixel].count();
+    if (scratch.hits.Met(pixel)) {
+      count = std::max<std::size_t>(count, 1);
+    } else if (count > 0) {
+      counts.coverage += CastMissed(tile, covered[pixel], pixel, scratch);
+      if (!scratch.hits.Met(pixel)) count = 0;
     }
-  }
+    scratch.coverage[pixel] = float(double(count) / double(per_pixel));
+  });
 }
 
-glm::dvec2 TileCaster::MotionOf(const Hit& hit, const glm::dvec2& barycentric) const {
-  const PlacedObject& next = view_.next_objects[hit.object];
+glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const {
+  const PlacedObject& next = view_.next_objects[hits.object[pixel]];
   if (!next.mesh) return glm::dvec2(0.0);
   // Both frames by the same sums, so that what stands still moves by exactly 0.
-  const auto pixel = [&](const PlacedObject& object, const CameraRays& camera) {
-    const Triangle triangle = ViewTriangle(object, hit.primitive);
+  const auto seen_at = [&](const PlacedObject& object, const CameraRays& camera) {
+    const Triangle triangle = ViewTriangle(object, hits.primitive[pixel]);
     return camera.PixelOf(triangle.corner[0] + (triangle.corner[1] - triangle.corner[0]) * barycentric.x +
                           (triangle.corner[2] - triangle.corner[0]) * barycentric.y);
   };
-  const std::optional<glm::dvec2> from = pixel(scene_.objects()[hit.object], view_.camera);
-  const std::optional<glm::dvec2> to = pixel(next, view_.next_camera);
+  const std::optional<glm::dvec2> from = seen_at(scene_.objects()[hits.object[pixel]], view_.camera);
+  const std::optional<glm::dvec2> to = seen_at(next, view_.next_camera);
   return from && to ? *to - *from : glm::dvec2(0.0);
 }
 
-SurfacePoint TileCaster::Write(std::size_t index, const Hit& hit) const {
-  const PlacedObject& object = scene_.objects()[hit.object];
-  const ViewRay ray = view_.camera.Through(hit.x, hit.y);
-  const SurfacePoint point = FindSurfacePoint(object, hit.primitive, {hit.u, hit.v}, ray);
-  planes_.depth[index] = float(std::max(-point.position.z, 0.0));
-  planes_.object[index] = float(object.object_id);
-  planes_.material[index] = float(object.material_id);
-  const bool to_eye = options_.normal_frame == NormalFrame::kEye;
-  Store(planes_.normal, index, to_eye ? RotateToEye(point.normal, ray) : point.normal);
-  if (planes_.position[0]) Store(planes_.position, index, view_.camera.WorldFromView(point.position));
-  Store(planes_.pref, index, point.rest_position);
-  if (planes_.albedo[0]) {
-    Store(planes_.albedo, index, glm::dvec3(SurfaceColor(object, hit.primitive, point.barycentric)));
-  }
-  if (planes_.motion[0]) {
-    const glm::dvec2 motion = MotionOf(hit, point.barycentric);
-    for (int i = 0; i < 2; ++i) planes_.motion[i][index] = float(motion[i]);
-  }
-  return point;
+// What no vector can tell: spheres, normal maps, degenerate triangles, rays that do not go through a pixel's centre.
+void TileCaster::WritePlain(int pixel, const glm::dvec2& at, Scratch& scratch) const {
+  const TileHits& hits = scratch.hits;
+  const PlacedObject& object = scene_.objects()[hits.object[pixel]];
+  const ViewRay ray = view_.camera.Through(at.x, at.y);
+  const SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], {hits.u[pixel], hits.v[pixel]}, ray);
+  scratch.guides.depth[pixel] = float(std::max(-point.position.z, 0.0));
+  scratch.guides.object[pixel] = float(object.object_id);
+  scratch.guides.material[pixel] = float(object.material_id);
+  for (int i = 0; i < 3; ++i) scratch.guides.normal[i][pixel] = float(point.normal[i]);
+  if (points_) scratch.points.Set(pixel, point);
 }
 
-void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<SurfacePoint>& points,
+void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, Scratch& scratch) const {
+  const TileHits& hits = scratch.hits;
+  const PlacedObject& object = scene_.objects()[hits.object[pixel]];
+  const std::size_t index = Index(tile, pixel);
+  const SurfacePoint point = scratch.points.At(pixel);
+  if (options_.normal_frame == NormalFrame::kEye) {
+    const glm::dvec3 normal = RotateToEye(point.normal, view_.camera.Through(at.x, at.y));
+    for (int i = 0; i < 3; ++i) scratch.guides.normal[i][pixel] = float(normal[i]);
+  }
+  if (planes_.position[0]) Store(planes_.position, index, view_.camera.WorldFromView(point.position));
+  if (planes_.pref[0]) {
+    const glm::dvec3 rest =
+        object.mesh ? RestPosition(object, hits.primitive[pixel], point.barycentric)
+                    : FindSurfacePoint(object, 0, glm::dvec2(0.0), view_.camera.Through(at.x, at.y)).rest_position;
+    Store(planes_.pref, index, rest);
+  }
+  if (planes_.albedo[0]) {
+    Store(planes_.albedo, index, glm::dvec3(SurfaceColor(object, hits.primitive[pixel], point.barycentric)));
+  }
+  if (planes_.motion[0]) {
+    const glm::dvec2 motion = MotionOf(hits, pixel, point.barycentric);
+    for (int i = 0; i < 2; ++i) planes_.motion[i][index] = float(motion[i]);
+  }
+  if (lit_) scratch.lit[pixel] = point;
+}
+
+void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points,
                        RayCounts& counts) const {
   std::array<double, kTilePixels> reached = {};  // shadows included
   std::array<double, kTilePixels> unoccluded = {};
@@ -307,21 +381,21 @@ void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<Sur
   };
   for (const PlacedLight& light : view_.lights) {
     if (!light.IsDelta()) continue;
-    for (int pixel = 0; pixel < kTilePixels; ++pixel) {
-      if (hits[pixel].object == kNothing) continue;
+    ForEachPixel(tile, [&](int pixel) {
+      if (!hits.Met(pixel)) return;
       const LightSample sample = SampleLight(light, points[pixel]);
-      if (!(sample.luminance > 0.0)) continue;
+      if (!(sample.luminance > 0.0)) return;
       unoccluded[pixel] += sample.luminance;
       ++counts.shadow;
       const glm::dvec3 origin = ShadowRayOrigin(points[pixel]);
       const glm::dvec3 way = sample.endless ? sample.to_light : light.position - origin;
       const double reach = sample.endless ? std::numeric_limits<double>::infinity() : kShadowReach;
       batch.Add({origin, way, 0.0, reach}, {pixel, sample.luminance}, report);
-    }
+    });
     batch.Flush(report);
   }
-  for (int pixel = 0; pixel < kTilePixels; ++pixel) {
-    if (hits[pixel].object == kNothing) continue;
+  ForEachPixel(tile, [&](int pixel) {
+    if (!hits.Met(pixel)) return;
     const std::size_t index = Index(tile, pixel);
     if (lights_.CanBeMet()) {
       const Sampler sampler(std::uint32_t(index), kSoftStream, options_.seed);
@@ -335,27 +409,51 @@ void TileCaster::Light(const Tile& tile, const Hits& hits, const std::vector<Sur
     if (planes_.shadow && unoccluded[pixel] > 0.0) {
       planes_.shadow[index] = float(1.0 - reached[pixel] / unoccluded[pixel]);
     }
-  }
+  });
 }
 
-void TileCaster::Cast(const Tile& tile, RayCounts& counts, std::vector<PathPixel>* pixels) const {
-  Hits hits;
-  CastCentres(tile, hits);
+void TileCaster::WriteWhole(const Tile& tile, const Scratch& scratch) const {
+  const auto store = [&](const std::array<float, kTilePixels>& values, float* plane) {
+    StoreTile(tile, values, plane, width_, past_caches_);
+  };
+  store(scratch.coverage, planes_.coverage);
+  store(scratch.guides.depth, planes_.depth);
+  store(scratch.guides.object, planes_.object);
+  store(scratch.guides.material, planes_.material);
+  for (std::size_t i = 0; i < 3; ++i) store(scratch.guides.normal[i], planes_.normal[i]);
+}
+
+void TileCaster::Cast(const Tile& tile, Scratch& scratch, RayCounts& counts, std::vector<PathPixel>* pixels) const {
+  const TileHits& hits = scratch.hits;
+  scratch.moved.clear();
+  PlaceRays(tile, scratch.rays);
+  CastCentres(tile, scratch.rays, scratch.hits);
   counts.primary += std::size_t(tile.width) * tile.height;
-  Cover(tile, hits, counts);
-  const bool lit = (planes_.luminance || planes_.shadow) && !lights_.empty();
-  std::vector<SurfacePoint> points(lit ? kTilePixels : 0);
-  for (int pixel = 0; pixel < kTilePixels; ++pixel) {
-    if (hits[pixel].object == kNothing) continue;
-    const SurfacePoint point = Write(Index(tile, pixel), hits[pixel]);
-    if (lit) points[pixel] = point;
-    if (pixels) {
-      const Hit& hit = hits[pixel];
-      pixels->push_back({std::uint32_t(Index(tile, pixel)), hit.object, hit.primitive, {hit.u, hit.v}, {hit.x, hit.y}});
-    }
+  Cover(tile, scratch, counts);
+  FindTileSurface(hits, scratch.rays, scratch.triangles, scratch.guides, points_ ? &scratch.points : nullptr);
+  for (int i = 0; i < scratch.guides.left_over_count; ++i) {
+    const int pixel = scratch.guides.left_over[std::size_t(i)];
+    WritePlain(pixel, Centre(tile, pixel), scratch);
+  }
+  for (const Moved& moved : scratch.moved) WritePlain(moved.pixel, moved.at, scratch);
+
+  for (const Plane& plane : planes_.others) FillTile(tile, plane.background, plane.values, width_);
+  if (points_ || pixels) {
+    ForEachPixel(tile, [&](int pixel) {
+      if (!hits.Met(pixel)) return;
+      const auto found = std::find_if(scratch.moved.begin(), scratch.moved.end(),
+                                      [&](const Moved& moved) { return moved.pixel == pixel; });
+      const glm::dvec2 at = found != scratch.moved.end() ? found->at : Centre(tile, pixel);
+      if (points_) WriteOthers(tile, pixel, at, scratch);
+      if (pixels) {
+        pixels->push_back({std::uint32_t(Index(tile, pixel)), hits.object[pixel], hits.primitive[pixel],
+                           {hits.u[pixel], hits.v[pixel]}, at});
+      }
+    });
   }
   // Where nothing shines, luminance and shadow keep their background value, which is 0.
-  if (lit) Light(tile, hits, points, counts);
+  if (lit_) Light(tile, hits, scratch.lit, counts);
+  WriteWhole(tile, scratch);
 }
 
 }  // namespace scumble

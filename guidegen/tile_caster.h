@@ -11,46 +11,58 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/light_paths.h"
 #include "guidegen/light_sampling.h"
+#include "guidegen/tile_hits.h"
+#include "guidegen/tile_surface.h"
+#include "guidegen/triangle_cache.h"
 
 namespace scumble {
 
-inline constexpr int kTileSide = 16;
-inline constexpr int kTilePixels = kTileSide * kTileSide;
 inline constexpr int kMaxAa = 16;
-
-// A rectangle of at most kTileSide × kTileSide pixels.
-struct Tile {
-  int x0 = 0;
-  int y0 = 0;
-  int width = 0;
-  int height = 0;
-};
 
 // Casts tiles into a GuideSet. Shared by all threads; tiles do not overlap, so nothing is locked.
 class TileCaster {
  public:
-  // All four outlive the caster. The set's layers are filled with their background values.
+  // All four outlive the caster. Of the set's layers every pixel is written, background included.
   TileCaster(const EmbreeScene& scene, const View& view, const GuidegenOptions& options, GuideSet& guides);
 
+  // What a thread keeps from tile to tile. It never changes what is written.
+  class Scratch {
+   public:
+    explicit Scratch(const TileCaster& caster);
+
+   private:
+    friend class TileCaster;
+    // A pixel whose centre misses, and where in the picture the ray went that met something all the same.
+    struct Moved {
+      int pixel;
+      glm::dvec2 at;
+    };
+    TriangleCache triangles;
+    TileHits hits;
+    TileRays rays;
+    TileGuides guides;
+    TilePoints points;
+    std::vector<SurfacePoint> lit;
+    std::vector<Moved> moved;
+    alignas(64) std::array<float, kTilePixels> coverage;
+  };
+
   // Adds what was cast to `counts`, and to `pixels`, unless null, the covered ones for their light paths.
-  void Cast(const Tile& tile, RayCounts& counts, std::vector<PathPixel>* pixels = nullptr) const;
+  void Cast(const Tile& tile, Scratch& scratch, RayCounts& counts, std::vector<PathPixel>* pixels = nullptr) const;
 
  private:
-  struct Hit {
-    std::uint32_t object = kNothing;
-    std::uint32_t primitive = 0;
-    float u = 0.0f;
-    float v = 0.0f;
-    double x = 0.0;  // where in the picture the ray went through
-    double y = 0.0;
-  };
-  static constexpr std::uint32_t kNothing = ~0u;
-  using Hits = std::array<Hit, kTilePixels>;
   using Samples = std::bitset<kMaxAa * kMaxAa>;  // by rank: nearest the pixel's centre first
+  using Mask = std::bitset<kTilePixels>;
+  using Moved = Scratch::Moved;
 
   struct Offset {
     double x;
     double y;
+  };
+  // A layer that is wanted; background is what its pixels are where nothing was met.
+  struct Plane {
+    float* values;
+    float background;
   };
   struct Planes {
     float* coverage = nullptr;
@@ -64,30 +76,41 @@ class TileCaster {
     std::array<float*, 3> pref{};
     std::array<float*, 3> albedo{};
     std::array<float*, 2> motion{};
+    std::vector<Plane> others;  // that are not written as whole tiles
   };
 
-  using Mask = std::bitset<kTilePixels>;
-
-  void CastCentres(const Tile& tile, Hits& hits) const;
-  Mask FindWhole(const Tile& tile, const Hits& hits) const;
+  void PlaceRays(const Tile& tile, TileRays& rays) const;
+  void CastCentres(const Tile& tile, const TileRays& rays, TileHits& hits) const;
+  template <class Packet>
+  void CastPackets(const Tile& tile, const TileRays& rays, TileHits& hits) const;
+  Mask FindWhole(const Tile& tile, const TileHits& hits) const;
   std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
-  std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, Hit& hit) const;
-  void Cover(const Tile& tile, Hits& hits, RayCounts& counts) const;
+  std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, Scratch& scratch) const;
+  void Cover(const Tile& tile, Scratch& scratch, RayCounts& counts) const;
   // How far the place that was hit moves in the picture until the next frame, pixels; 0 where it is not seen then.
-  glm::dvec2 MotionOf(const Hit& hit, const glm::dvec2& barycentric) const;
-  SurfacePoint Write(std::size_t index, const Hit& hit) const;
-  void Light(const Tile& tile, const Hits& hits, const std::vector<SurfacePoint>& points, RayCounts& counts) const;
+  glm::dvec2 MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const;
+  void WritePlain(int pixel, const glm::dvec2& at, Scratch& scratch) const;
+  void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, Scratch& scratch) const;
+  void WriteWhole(const Tile& tile, const Scratch& scratch) const;
+  void Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points, RayCounts& counts) const;
+  glm::dvec2 Centre(const Tile& tile, int pixel) const {
+    return {tile.x0 + TileColumn(pixel) + 0.5, tile.y0 + TileRow(pixel) + 0.5};
+  }
   std::size_t Index(const Tile& tile, int pixel) const {
-    return std::size_t(tile.y0 + pixel / kTileSide) * width_ + tile.x0 + pixel % kTileSide;
+    return std::size_t(tile.y0 + TileRow(pixel)) * width_ + tile.x0 + TileColumn(pixel);
   }
 
   const EmbreeScene& scene_;
   const View& view_;
   const GuidegenOptions& options_;
   std::size_t width_;
+  bool past_caches_;
   const LightSet lights_;
+  const std::vector<ObjectRecord> object_records_;
   std::vector<Offset> offsets_;  // of subsamples, by rank
   Planes planes_;
+  bool lit_ = false;     // luminance or shadow, and something shines
+  bool points_ = false;  // whether any layer asks for more than a tile's own guides
 };
 
 }  // namespace scumble

@@ -20,6 +20,12 @@ void GuideSet::Add(Layer layer) {
   layers_.Add(layer);
 }
 
+void GuideSet::AddUnset(Layer layer) {
+  if (Has(layer)) return;
+  planes_[static_cast<int>(layer)].resize(pixel_count() * ChannelCount(layer));
+  layers_.Add(layer);
+}
+
 void GuideSet::Remove(Layer layer) {
   planes_[static_cast<int>(layer)] = {};
   layers_.Remove(layer);

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "image/layers.h"
+#include "image/plane_allocator.h"
 #include "image/status.h"
 
 namespace scumble {
@@ -49,6 +50,9 @@ class GuideSet {
 
   // Adds the layer filled with its background value; does nothing where it exists.
   void Add(Layer layer);
+  // The same with anything in it, for who writes every pixel: large planes cost their first touch, so it had better be
+  // the thread's that fills them.
+  void AddUnset(Layer layer);
   void Remove(Layer layer);
 
   // One plane of width × height floats. The layer must exist.
@@ -76,7 +80,7 @@ class GuideSet {
   int width_ = 0;
   int height_ = 0;
   LayerSet layers_;
-  std::array<std::vector<float>, kLayerCount> planes_;
+  std::array<std::vector<float, PlaneAllocator<float>>, kLayerCount> planes_;
 };
 
 // The value that a layer has where there is nothing.

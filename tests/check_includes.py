@@ -34,7 +34,7 @@ THIRD_PARTY = {
     "oneapi/tbb": {"guidegen", "transfer"},
     "tbb/": {"cli", "guidegen", "transfer"},
     "nanoflann": {"transfer"},
-    "hwy/": {"transfer"},
+    "hwy/": {"guidegen", "transfer"},
     "toml++/": {"style"},
     "apriltag/": {"style"},
     "fmt/": {"measure", "cli"},
