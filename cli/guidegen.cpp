@@ -85,16 +85,19 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
     return CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()), verb.scene.half, settings});
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
-  work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameReport> {
+  work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
     SceneGuides report;  // what there is to say; the pixels stay where they are
-    Stopwatch watch;
-    SCUMBLE_RETURN_IF_ERROR(WriteGuides(output, guides->guides, write));
     report.times = guides->times, report.plan = guides->plan, report.rays = guides->rays;
     report.samples = guides->samples, report.noise = guides->noise;
-    report.times.emplace_back("write", watch.Lap());
     NameStylesInPlan(report.plan, styles);
-    return ReportOf(verb, output, guides->guides, report);
+    return FrameWrite([&verb, &write, output, kept = scene.Keep(),
+                       told = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
+      Stopwatch watch;
+      SCUMBLE_RETURN_IF_ERROR(WriteGuides(output, kept->guides, write));
+      told->times.emplace_back("write", watch.Lap());
+      return ReportOf(verb, output, kept->guides, *told);
+    });
   };
   ProgressBar bar("guidegen", globals.quiet);
   return RunSequence(sequence, work, bar, globals);

@@ -70,12 +70,12 @@ Status SceneFrames::StartFile(const Progress& progress) {
     return Ok();
   }
   const NextFrame next{now_, camera_};
-  SCUMBLE_ASSIGN(guides_, CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, globals_,
-                                    progress, false));
-  guides_.times.insert(guides_.times.begin(), {"load", load_ms});
+  SCUMBLE_ASSIGN(*guides_, CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, globals_,
+                                     progress, false));
+  guides_->times.insert(guides_->times.begin(), {"load", load_ms});
   film_.reset();
   now_ = {};
-  return guides_.guides.Validate(options_.scene);
+  return guides_->guides.Validate(options_.scene);
 }
 
 Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress) {
@@ -85,15 +85,16 @@ Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress
 }
 
 Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progress) {
-  if (used_) guides_.times.clear(), guides_.plan.clear();
+  if (used_) guides_->times.clear(), guides_->plan.clear();
   used_ = false;
-  if ((!blender_ && !film_) || frame_ == frame) return &guides_;
+  if ((!blender_ && !film_) || frame_ == frame) return guides_.get();
   frame_.reset();
-  SCUMBLE_ASSIGN(guides_, blender_ ? CastBlender(frame, progress) : CastFile(frame, progress));
-  SCUMBLE_RETURN_IF_ERROR(guides_.guides.Validate(options_.scene));
-  if (spoken_) guides_.plan.clear();
+  guides_ = std::make_shared<SceneGuides>();  // the last one may be being written
+  SCUMBLE_ASSIGN(*guides_, blender_ ? CastBlender(frame, progress) : CastFile(frame, progress));
+  SCUMBLE_RETURN_IF_ERROR(guides_->guides.Validate(options_.scene));
+  if (spoken_) guides_->plan.clear();
   spoken_ = true, frame_ = frame;
-  return &guides_;
+  return guides_.get();
 }
 
 Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress) {

@@ -44,8 +44,11 @@ class SceneFrames {
   // The same, for a look at a frame that At will be asked for next; plan and times are kept for it.
   Expected<const SceneGuides*> Ahead(int frame, const Progress& progress);
 
+  // What At has handed out last, to keep beyond the next call: only its guides, the rest may change.
+  std::shared_ptr<const SceneGuides> Keep() const { return guides_; }
+
   // Gives away what At has handed out last.
-  SceneGuides Take() { return std::move(guides_); }
+  SceneGuides Take() { return std::move(*guides_); }
 
  private:
   Status StartBlender(std::span<const int> frames);
@@ -78,7 +81,7 @@ class SceneFrames {
   std::map<int, Scene> scenes_;            // that a frame still needs
 
   std::optional<int> frame_;  // that guides_ are of
-  SceneGuides guides_;
+  std::shared_ptr<SceneGuides> guides_ = std::make_shared<SceneGuides>();
   bool used_ = false;    // At has handed out guides_
   bool spoken_ = false;  // the first frame has said what there is to say
   std::set<std::string> warned_;

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <future>
 #include <system_error>
 
 #include "cli/json_text.h"
@@ -141,6 +142,12 @@ class Tally {
     Add(Entry(frame, "kept"), sequence_.output.At(frame) + "  kept\n");
     ++kept_;
   }
+  // The error that ends the sequence, unless the other frames may go better.
+  Status Fail(int frame, const Error& error) {
+    if (error.kind != ErrorKind::kInput) return Error{error.kind, fmt::format("frame {}: {}", frame, error.message)};
+    Failed(frame, error.message);
+    return Ok();
+  }
   void Failed(int frame, const std::string& reason) {
     nlohmann::ordered_json json = Entry(frame, "failed");
     json["error"] = reason;
@@ -201,6 +208,33 @@ class Tally {
   int made_ = 0, kept_ = 0;
 };
 
+// The frame that is written while the next one is made.
+class FramesBeingWritten {
+ public:
+  FramesBeingWritten(Tally& tally, const Globals& globals)
+      : tally_(tally), policy_(globals.threads == 1 ? std::launch::deferred : std::launch::async) {}
+
+  void Begin(int frame, FrameWrite write) {
+    frame_ = frame;
+    report_ = std::async(policy_, std::move(write));
+  }
+
+  // Waits for it, if there is one, and tells of it.
+  Status Finish() {
+    if (!report_.valid()) return Ok();
+    Expected<FrameReport> report = report_.get();
+    if (!report) return tally_.Fail(frame_, report.error());
+    tally_.Made(frame_, *std::move(report));
+    return Ok();
+  }
+
+ private:
+  Tally& tally_;
+  std::launch policy_;
+  int frame_ = 0;
+  std::future<Expected<FrameReport>> report_;  // waits at its end, so that no thread outlives what it uses
+};
+
 }  // namespace
 
 Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& work, ProgressBar& bar,
@@ -215,20 +249,21 @@ Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& wor
       frames.push_back(frame);
     }
   }
+  FramesBeingWritten writing(tally, globals);
   const double steps = static_cast<double>(frames.size() + 1);
   if (!frames.empty()) SCUMBLE_RETURN_IF_ERROR(work.begin(frames, bar.Part(0.0, 1.0 / steps)));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double done = static_cast<double>(i + 1);
-    Expected<FrameReport> report =
+    Expected<FrameWrite> made =
         work.make(frames[i], sequence.output.At(frames[i]), bar.Part(done / steps, (done + 1.0) / steps));
-    if (report) {
-      tally.Made(frames[i], std::move(*report));
-    } else if (report.error().kind == ErrorKind::kInput) {
-      tally.Failed(frames[i], report.error().message);
+    SCUMBLE_RETURN_IF_ERROR(writing.Finish());  // what there is to tell of a frame comes before the next one's
+    if (made) {
+      writing.Begin(frames[i], *std::move(made));
     } else {
-      return Error{report.error().kind, fmt::format("frame {}: {}", frames[i], report.error().message)};
+      SCUMBLE_RETURN_IF_ERROR(tally.Fail(frames[i], made.error()));
     }
   }
+  SCUMBLE_RETURN_IF_ERROR(writing.Finish());
   const nlohmann::ordered_json more = work.end ? work.end() : nlohmann::ordered_json::object();
   tally.PrintTotals(watch.Lap(), more);
   return tally.Result();

@@ -40,9 +40,13 @@ double SecondsAt(int frame, const FrameRate& rate);
 
 // What one frame's work has to tell.
 struct FrameReport {
-  nlohmann::ordered_json json;
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::string text;  // one line or more, each ended
 };
+
+// A frame that is made, and has still to be encoded and written: does that once, on any thread, and needs nothing that the
+// next frame changes.
+using FrameWrite = std::function<Expected<FrameReport>()>;
 
 struct Sequence {
   std::vector<int> frames;  // never empty
@@ -64,8 +68,8 @@ struct SequenceWork {
   std::function<Status(int frame, const std::string& output)> check;
   // Called once, with the frames that are left to make, unless there are none. An error ends the sequence.
   std::function<Status(std::span<const int> frames, const Progress& progress)> begin;
-  // Makes the frame and writes it.
-  std::function<Expected<FrameReport>(int frame, const std::string& output, const Progress& progress)> make;
+  // Makes the frame, all but its file.
+  std::function<Expected<FrameWrite>(int frame, const std::string& output, const Progress& progress)> make;
   // Called once when all is done; what --json tells of the whole. May be null.
   std::function<nlohmann::ordered_json()> end = nullptr;
 };
@@ -73,7 +77,9 @@ struct SequenceWork {
 // Makes the frames one after the other and prints a line for each and one for all; under --json one object with an
 // array `frames`. With `resume` those that `check` accepts are left as they are. A frame whose input is missing or
 // broken (kInput) does not stop the others: the error at the end names all of them. Any other error would come again
-// in every frame, and ends the sequence at once.
+// in every frame, and ends the sequence. A frame is encoded and written while the next one is made, unless there is one
+// thread alone: so two frames are in memory, never three, and where one cannot be written, the next has been made in vain.
+// What is told of them, and in which order, is the same.
 Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& work, ProgressBar& bar,
                                const Globals& globals);
 

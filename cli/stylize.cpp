@@ -86,7 +86,7 @@ class PictureSequence {
     return sequence.frames.size() > 1 && MeasuresExposure(styles_, options_);
   }
 
-  Expected<FrameReport> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
+  Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
                              const Progress& progress) {
     SCUMBLE_ASSIGN(const PictureOptions one, OptionsAt(options_, frame, output));
     SCUMBLE_ASSIGN(const FrameGuides found, guides_at(frame, Within(progress, 0.0, guides_share)));

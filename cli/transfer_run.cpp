@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "cli/cache.h"
 #include "cli/json_text.h"
@@ -66,6 +68,11 @@ nlohmann::ordered_json ToJson(const std::string& given, const Style& style, cons
   return json;
 }
 
+void AddStep(const Steps::value_type& step, nlohmann::ordered_json& json) {
+  const auto& [name, spread] = step;
+  json["ms"][name] = {{"median", spread.median}, {"min", spread.least}, {"max", spread.most}};
+}
+
 // What stands outside `styles` about a style is the default one's.
 nlohmann::ordered_json ToJson(const StyleSet& styles, const std::vector<PreparedStyle>& prepared,
                               const SourceField& field, double exposure, const PictureOptions& options,
@@ -99,10 +106,28 @@ nlohmann::ordered_json ToJson(const StyleSet& styles, const std::vector<Prepared
   json["version"] = SCUMBLE_VERSION;
   json["repeat"] = options.repeat;
   if (!plan.empty()) json["plan"] = PlanToJson(plan);
-  for (const auto& [name, spread] : steps) {
-    json["ms"][name] = {{"median", spread.median}, {"min", spread.least}, {"max", spread.most}};
-  }
+  for (const auto& step : steps) AddStep(step, json);
   return json;
+}
+
+// A picture that is made and not written yet, and what is to be told of it.
+struct Made {
+  std::string output;
+  PictureWriteOptions write;
+  Picture picture;
+  Steps steps;
+  int repeat = 1;
+  FrameReport report;  // all but the step of writing
+};
+
+Expected<FrameReport> WriteMade(Made& made) {
+  Stopwatch watch;
+  SCUMBLE_RETURN_IF_ERROR(WritePicture(made.output, made.picture, made.write));
+  const double ms = watch.Lap();
+  made.steps.emplace_back("write", Spread{ms, ms, ms});
+  if (!made.report.json.empty()) AddStep(made.steps.back(), made.report.json);
+  made.report.text += fmt::format("{}  {}\n", made.output, StepsToText(made.steps, made.repeat));
+  return std::move(made.report);
 }
 
 // The picture underneath, if one is asked for.
@@ -332,13 +357,14 @@ bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
 Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                const PictureOptions& options, const Globals& globals, const Progress& progress) {
   TransferMemory memory;
-  SCUMBLE_ASSIGN(FrameReport report, TransferFrame(styles, guides, source, options, globals, progress, memory));
+  SCUMBLE_ASSIGN(const FrameWrite write, TransferFrame(styles, guides, source, options, globals, progress, memory));
+  SCUMBLE_ASSIGN(FrameReport report, write());
   report.json.update(SayHowAssigned(styles));
   Print(globals.json ? JsonText(report.json) : report.text);
   return ExitCode::kOk;
 }
 
-Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, const GuideSource& source,
+Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, const GuideSource& source,
                                     const PictureOptions& options, const Globals& globals, const Progress& progress,
                                     TransferMemory& memory) {
   SCUMBLE_ASSIGN(const FrameRate fps, RateFor(options, given));
@@ -389,23 +415,20 @@ Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& given, con
   if (const auto what = FindExplanation(options.show)) {
     picture = Show(*what, {prepared, map, guides, scratch.field, transfer.exposure, picture});
   }
-  watch.Lap();
-  PictureWriteOptions write{options.bits, options.png_level};
-  write.settings = SettingsText(styles, SettingsOf(options, fps, transfer.exposure), memory.hashes);
-  SCUMBLE_RETURN_IF_ERROR(WritePicture(options.output, picture, write));
-
-  Steps steps;
-  for (const auto& [name, ms] : times) steps.emplace_back(name, Spread{ms, ms, ms});
-  steps.emplace_back("match", SpreadOf(match));
-  steps.emplace_back("vote", SpreadOf(vote));
-  steps.emplace_back("compose", SpreadOf(compose));
-  const double write_ms = watch.Lap();
-  steps.emplace_back("write", Spread{write_ms, write_ms, write_ms});
-  FrameReport report;
-  report.json = ToJson(styles, prepared, scratch.field, transfer.exposure, options, source.plan, steps);
-  if (!source.plan.empty()) report.text = PlanToText(source.plan);
-  report.text += fmt::format("{}  {}\n", options.output, StepsToText(steps, options.repeat));
-  return report;
+  Made made;
+  made.output = options.output, made.repeat = options.repeat;
+  made.write = {options.bits, options.png_level};
+  made.write.settings = SettingsText(styles, SettingsOf(options, fps, transfer.exposure), memory.hashes);
+  for (const auto& [name, ms] : times) made.steps.emplace_back(name, Spread{ms, ms, ms});
+  made.steps.emplace_back("match", SpreadOf(match));
+  made.steps.emplace_back("vote", SpreadOf(vote));
+  made.steps.emplace_back("compose", SpreadOf(compose));
+  if (globals.json) {  // measuring coherence takes its time
+    made.report.json = ToJson(styles, prepared, scratch.field, transfer.exposure, options, source.plan, made.steps);
+  }
+  if (!source.plan.empty()) made.report.text = PlanToText(source.plan);
+  made.picture = std::move(picture);
+  return FrameWrite([shared = std::make_shared<Made>(std::move(made))] { return WriteMade(*shared); });
 }
 
 }  // namespace scumble

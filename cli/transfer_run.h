@@ -80,9 +80,9 @@ std::string LightInWords(const Exemplar& exemplar, double rim);
 Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptions& options, const Globals& globals,
                     TransferMemory& memory);
 
-// Prepares, transfers `repeat` times and writes the picture, or the one that explains it; reports its path with the time of each step, and as JSON
-// the steps, coherence and sizes.
-Expected<FrameReport> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+// Prepares, transfers `repeat` times and makes the picture, or the one that explains it; what it returns writes that. It reports
+// the path with the time of each step, and as JSON the steps, coherence and sizes. `globals` must outlive it.
+Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                     const PictureOptions& options, const Globals& globals, const Progress& progress,
                                     TransferMemory& memory);
 

@@ -1,10 +1,12 @@
+// Every channel by OpenImageIO. Part of the module of formats.
 #include "io/channel_file.h"
 
 #include <map>
 
+#include "io/formats.h"
 #include "io/oiio.h"
 
-namespace scumble {
+namespace scumble::formats {
 namespace {
 
 // More than any renderer writes; a damaged header may claim millions.
@@ -83,4 +85,4 @@ Expected<ChannelImage> ReadChannels(const std::filesystem::path& path) {
   return image;
 }
 
-}  // namespace scumble
+}  // namespace scumble::formats

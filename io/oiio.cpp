@@ -1,16 +1,15 @@
 #include "io/oiio.h"
 
 #include <cctype>
-#include <fstream>
 
 #include "image/guides.h"
 #include "io/atomic_file.h"
-#include "io/library.h"
+#include "io/formats.h"
 #include "io/whole_png.h"
 
 namespace scumble {
 
-void SetIoThreads(int threads) {
+void formats::SetThreads(int threads) {
   OIIO::attribute("threads", threads);
   OIIO::attribute("exr_threads", threads == 1 ? -1 : threads);  // OpenEXR's own pool; -1 means no pool at all
 }
@@ -45,9 +44,7 @@ bool LooksLikeScene(const std::filesystem::path& path) {
 }
 
 Status CheckIfPng(const std::filesystem::path& path) {
-  char start[8] = {};
-  std::ifstream(path, std::ios::binary).read(start, sizeof start);
-  if (!IsPng(std::as_bytes(std::span(start)))) return Ok();
+  if (!IsPngFile(path)) return Ok();
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
   return CheckPngIsWhole(bytes, path.string());
 }

@@ -16,9 +16,6 @@
 
 namespace scumble::internal {
 
-// The attribute that says what a picture or guides were made with.
-inline constexpr const char* kSettings = "scumble:settings";
-
 // Opens a picture file with straight alpha left as it is stored. The message carries the library's reason.
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path);
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <system_error>
 
+#include "io/formats.h"
 #include "io/guide_file.h"
-#include "io/oiio.h"
 #include "io/picture_file.h"
 
 namespace scumble {
@@ -61,22 +61,18 @@ int PictureChannels(const std::filesystem::path& path) {
 
 Status CheckWholePicture(const std::filesystem::path& path, const PictureShape& shape) {
   SCUMBLE_RETURN_IF_ERROR(CheckNotEmpty(path));
-  {
-    SCUMBLE_ASSIGN(const auto input, internal::OpenInput(path));
-    const auto& spec = input->spec();
-    SCUMBLE_RETURN_IF_ERROR(CheckSide(path, spec.full_width, spec.full_height, shape.width, shape.height));
-    if (shape.channels != 0 && spec.nchannels != shape.channels) {
-      return InputError(path.string() + " has " + std::to_string(spec.nchannels) + " channels, not " +
-                        std::to_string(shape.channels));
-    }
-    const int bits = static_cast<int>(8 * spec.format.basesize());
-    if (shape.bits != 0 && bits != shape.bits) {
-      return InputError(path.string() + " has " + std::to_string(bits) + " bits a channel, not " +
-                        std::to_string(shape.bits));
-    }
-    SCUMBLE_RETURN_IF_ERROR(
-        CheckSettings(path, std::string(spec.get_string_attribute(internal::kSettings)), shape.settings));
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const StoredPicture stored, formats->inspect_stored(path));
+  SCUMBLE_RETURN_IF_ERROR(CheckSide(path, stored.width, stored.height, shape.width, shape.height));
+  if (shape.channels != 0 && stored.channels != shape.channels) {
+    return InputError(path.string() + " has " + std::to_string(stored.channels) + " channels, not " +
+                      std::to_string(shape.channels));
   }
+  if (shape.bits != 0 && stored.bits != shape.bits) {
+    return InputError(path.string() + " has " + std::to_string(stored.bits) + " bits a channel, not " +
+                      std::to_string(shape.bits));
+  }
+  SCUMBLE_RETURN_IF_ERROR(CheckSettings(path, stored.settings, shape.settings));
   if (const auto read = ReadPicture(path); !read) return read.error();
   return Ok();
 }
@@ -97,7 +93,7 @@ Status CheckWholeGuides(const std::filesystem::path& path, const GuideShape& sha
     return InputError(path.string() + " has its colours in " + (info.has_half ? "half floats" : "floats") + ", not " +
                       (shape.half ? "half floats" : "floats"));
   }
-  const auto settings = info.header.attributes.find(internal::kSettings);
+  const auto settings = info.header.attributes.find(kSettingsKey);
   if (settings != info.header.attributes.end()) {
     SCUMBLE_RETURN_IF_ERROR(CheckSettings(path, settings->second, shape.settings));
   }

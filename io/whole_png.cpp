@@ -1,30 +1,20 @@
 #include "io/whole_png.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <fstream>
+#include <system_error>
 
 namespace scumble::internal {
 namespace {
 
 constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
-// Annex D of the specification.
-std::array<std::uint32_t, 256> MakeTable() {
-  std::array<std::uint32_t, 256> table;
-  for (std::uint32_t n = 0; n < 256; ++n) {
-    std::uint32_t c = n;
-    for (int bit = 0; bit < 8; ++bit) c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
-    table[n] = c;
-  }
-  return table;
-}
-
 std::uint32_t Sum(std::span<const std::byte> bytes) {
-  static const std::array<std::uint32_t, 256> kTable = MakeTable();
-  std::uint32_t sum = 0xffffffffu;
-  for (const std::byte byte : bytes) sum = kTable[(sum ^ std::to_integer<std::uint32_t>(byte)) & 0xff] ^ (sum >> 8);
-  return sum ^ 0xffffffffu;
+  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 std::uint32_t Number(std::span<const std::byte> bytes) {
@@ -51,6 +41,14 @@ bool IsPng(std::span<const std::byte> bytes) {
   return bytes.size() >= kSignature.size() &&
          std::equal(kSignature.begin(), kSignature.end(), bytes.begin(),
                     [](unsigned char a, std::byte b) { return a == std::to_integer<unsigned char>(b); });
+}
+
+bool IsPngFile(const std::filesystem::path& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed)) return false;
+  char start[kSignature.size()] = {};
+  std::ifstream(path, std::ios::binary).read(start, sizeof start);
+  return IsPng(std::as_bytes(std::span(start)));
 }
 
 Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name) {

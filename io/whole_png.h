@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,8 @@ namespace scumble::internal {
 
 // Whether the bytes begin as every PNG file does.
 bool IsPng(std::span<const std::byte> bytes);
+// Whether a regular file does. A pipe is not asked: it would be waited for.
+bool IsPngFile(const std::filesystem::path& path);
 
 // What a PNG file's first bytes say of its picture: kPngHeaderBytes of them are enough.
 inline constexpr std::size_t kPngHeaderBytes = 33;

@@ -1,3 +1,4 @@
+// Guides by OpenImageIO. Part of the module of formats.
 #include "io/guide_file.h"
 
 #include <Imath/half.h>
@@ -11,23 +12,13 @@
 
 #include "io/blender_camera.h"
 #include "io/blender_passes.h"
+#include "io/formats.h"
 #include "io/guide_header.h"
+#include "io/guide_storage.h"
 #include "io/oiio.h"
 
-namespace scumble {
+namespace scumble::formats {
 namespace {
-
-constexpr const char* kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
-
-bool IsLossless(const std::string& compression) {
-  return std::find(std::begin(kCompressions), std::end(kCompressions), compression) != std::end(kCompressions);
-}
-
-// The nearest half float. Brighter values than half floats reach become the brightest one: infinity is no radiance.
-Imath::half ToHalf(float value) {
-  constexpr float kLargest = 65504.0f;
-  return std::isfinite(value) ? Imath::half(std::clamp(value, -kLargest, kLargest)) : Imath::half(value);
-}
 
 // OpenImageIO's matrices are for row vectors, ours for column vectors: the same 16 numbers in memory.
 void SetMatrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix) {
@@ -84,7 +75,7 @@ std::vector<std::byte> Interleave(const GuideSet& guides, const OIIO::ImageSpec&
       std::byte* out = bytes.data() + offset;
       for (std::size_t i = 0; i < plane.size(); ++i, out += pixel_bytes) {
         if (half) {
-          const Imath::half value = ToHalf(plane[i]);
+          const Imath::half value = internal::ToHalf(plane[i]);
           std::memcpy(out, &value, sizeof value);
         } else {
           std::memcpy(out, &plane[i], sizeof(float));
@@ -387,19 +378,7 @@ void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
 
 }  // namespace
 
-Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options) {
-  if (path.extension() != ".exr" && path.extension() != ".EXR") {
-    return UsageError("cannot write guides to " + path.string() + ": guides are EXR files, name it .exr");
-  }
-  if (!IsLossless(options.compression)) {
-    return UsageError("compression '" + options.compression +
-                      "' is not one of none, rle, zips, zip, piz: guides are data and lossy compression is refused");
-  }
-  return Ok();
-}
-
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
-  SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(path, options));
   const OIIO::ImageSpec spec = SpecFor(guides, options);
   const std::vector<std::byte> pixels = Interleave(guides, spec);
   return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
@@ -521,13 +500,4 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   return info;
 }
 
-void RoundColorLayersToHalf(GuideSet& guides) {
-  for (const LayerInfo& info : AllLayers()) {
-    if (!guides.Has(info.layer) || !info.is_color) continue;
-    for (int c = 0; c < ChannelCount(info.layer); ++c) {
-      for (float& value : guides.Plane(info.layer, c)) value = static_cast<float>(ToHalf(value));
-    }
-  }
-}
-
-}  // namespace scumble
+}  // namespace scumble::formats

@@ -1,0 +1,19 @@
+// The table by which the module of formats is called. The symbol's name holds the version, so that a module of another one
+// is refused.
+#include "io/formats.h"
+
+namespace scumble {
+
+#define SCUMBLE_JOINED_INNER(a, b) a##b
+#define SCUMBLE_JOINED(a, b) SCUMBLE_JOINED_INNER(a, b)
+
+extern "C" {
+__attribute__((visibility("default"))) extern const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL);
+const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL) = {
+    formats::ReadPicture,  formats::DecodePicture, formats::InspectPicture, formats::InspectStored,
+    formats::WritePicture, formats::ReadChannels,  formats::ReadGuides,     formats::InspectGuides,
+    formats::WriteGuides,  formats::SetThreads,
+};
+}
+
+}  // namespace scumble
