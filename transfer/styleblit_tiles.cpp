@@ -283,6 +283,7 @@ class TileMatcher {
       const int block = open_[k], from = row_.x + block * kBlock - seeds.left();
       seeds.NeedOffers(cell_row, row_.x + block * kBlock, kBlock);
       TileMap::Block& found = map.blocks[static_cast<std::size_t>(y)][static_cast<std::size_t>(block)];
+      __builtin_prefetch(&found + 2 * (kTileWidth / kBlock));  // two rows on; a tile's rows are too short to be foreseen
       if (!(map.known[static_cast<std::size_t>(y)] >> block & 1)) {
         Learn(seeds, block, found);
         map.known[static_cast<std::size_t>(y)] |= 1u << block;
