@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "image/status.h"
@@ -21,11 +22,14 @@ enum class ExitCode {
   kInternal = 6,
 };
 
+class Timing;
+
 // Options that every verb takes.
 struct Globals {
   bool quiet = false;
   bool json = false;
   int threads = 0;
+  std::shared_ptr<Timing> timing;  // null unless --timing was given, which not every verb takes
 };
 
 // A verb's work: returns the exit code, or the error that decides it.

@@ -15,6 +15,7 @@
 #include "cli/scene_frames.h"
 #include "cli/sequence.h"
 #include "cli/style_set.h"
+#include "cli/timing.h"
 #include "io/guide_file.h"
 #include "io/whole_output.h"
 
@@ -26,6 +27,7 @@ struct GuidegenVerb {
   StyleOptions style;
   std::string layers;
   std::string compression = "zip";
+  bool fast_io = false;
   std::string output;
   SequenceOptions sequence;
 };
@@ -95,8 +97,11 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
                        told = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
       Stopwatch watch;
       SCUMBLE_RETURN_IF_ERROR(WriteGuides(output, kept->guides, write));
-      told->times.emplace_back("write", watch.Lap());
-      return ReportOf(verb, output, kept->guides, *told);
+      const double ms = watch.Lap();
+      told->times.emplace_back("write", ms);
+      FrameReport done = ReportOf(verb, output, kept->guides, *told);
+      done.write_ms = ms;
+      return done;
     });
   };
   ProgressBar bar("guidegen", globals.quiet);
@@ -118,6 +123,7 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
   std::optional<StyleSet> styles;
   if (!verb.style.style.empty()) {
     SCUMBLE_ASSIGN(styles, OpenStyles(verb.style));
+    EndStage(globals, "style");
   }
   const LayersFor layers_for = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
     LayerSet layers = asked;
@@ -130,7 +136,7 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
   const std::optional<int> frame = verb.scene.blender.frame;
   if (plan_only && !verb.scene.explain)
     return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
-  const GuideWriteOptions write{verb.scene.half, verb.compression};
+  const GuideWriteOptions write{verb.scene.half, verb.fast_io ? kFastCompression : verb.compression};
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(verb.output, write));
   if (verb.style.style.empty() && !verb.style.sets.empty()) return UsageError("--set changes a style: give --style too");
   if (verb.style.style.empty() && !verb.style.assigned.empty()) {
@@ -160,8 +166,13 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
     Stopwatch watch;
     SCUMBLE_RETURN_IF_ERROR(WriteGuides(verb.output, made.guides, write));
     made.times.emplace_back("write", watch.Lap());
+    EndStage(globals, "write");
   }
-  const FrameReport report = ReportOf(verb, verb.output, made.guides, made);
+  FrameReport report = ReportOf(verb, verb.output, made.guides, made);
+  if (globals.timing) {
+    report.json["timing"] = globals.timing->ToJson();
+    report.text += globals.timing->ToText();
+  }
   Print(globals.json ? JsonText(report.json) : report.text);
   return ExitCode::kOk;
 }
@@ -188,12 +199,15 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
          "luminance, shadow, lpe.full, lpe.LDE, lpe.LSE, lpe.LDDE, lpe.LD12E; with --frame or --frames motion, to the "
          "next frame")
       ->type_name("LIST");
-  sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless")
-      ->type_name("NAME")
-      ->capture_default_str();
+  auto* compression =
+      sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless");
+  compression->type_name("NAME")->capture_default_str();
+  sub->add_flag("--fast-io", verb->fast_io, "the compression that is written and read in the least time, rle: the same pixels, larger files")
+      ->excludes(compression);
   sub->add_option("-o,--output", verb->output, "guide file to write, .exr; required unless --explain is given")
       ->type_name("FILE");
   AddSequenceOptions(*sub, verb->sequence);
+  AddTimingOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunGuidegenVerb(*verb, globals); }; });
 }

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "cli/sequence.h"
+#include "cli/timing.h"
 #include "io/guide_file.h"
 #include "style/style_file.h"
 
@@ -268,6 +269,7 @@ Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const 
   result.plan = PlanGuides(scene, guidegen);
   if (plan_only) return result;
 
+  EndStage(globals, "scene");
   SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
                                                : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);
@@ -277,6 +279,7 @@ Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const 
   if (options.half) RoundColorLayersToHalf(result.guides);
   result.guides.attributes["scumble:settings"] = GuideSettings(options);
   if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene);
+  EndStage(globals, "guides", result.times);
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "cli/json_text.h"
+#include "cli/timing.h"
 #include "image/stopwatch.h"
 
 namespace scumble {
@@ -170,6 +171,7 @@ class Tally {
                                   {"failed", failed_.size()},
                                   {"total_ms", total_ms}};
       json.update(more);
+      if (globals_.timing) json["timing"] = globals_.timing->ToJson();
       Print(JsonText(json));
       return;
     }
@@ -177,6 +179,7 @@ class Tally {
     if (sequence_.resume) text += fmt::format(", {} kept", kept_);
     if (!failed_.empty()) text += fmt::format(", {} not made", failed_.size());
     Print(text + fmt::format("; {:.1f} s\n", total_ms / 1000.0));
+    if (globals_.timing) Print(globals_.timing->ToText());
   }
 
   Expected<ExitCode> Result() const {
@@ -212,7 +215,7 @@ class Tally {
 class FramesBeingWritten {
  public:
   FramesBeingWritten(Tally& tally, const Globals& globals)
-      : tally_(tally), policy_(globals.threads == 1 ? std::launch::deferred : std::launch::async) {}
+      : tally_(tally), globals_(globals), policy_(globals.threads == 1 ? std::launch::deferred : std::launch::async) {}
 
   void Begin(int frame, FrameWrite write) {
     frame_ = frame;
@@ -223,6 +226,8 @@ class FramesBeingWritten {
   Status Finish() {
     if (!report_.valid()) return Ok();
     Expected<FrameReport> report = report_.get();
+    EndStage(globals_, "waiting");
+    if (globals_.timing && report) globals_.timing->Add("write", report->write_ms);
     if (!report) return tally_.Fail(frame_, report.error());
     tally_.Made(frame_, *std::move(report));
     return Ok();
@@ -230,6 +235,7 @@ class FramesBeingWritten {
 
  private:
   Tally& tally_;
+  const Globals& globals_;
   std::launch policy_;
   int frame_ = 0;
   std::future<Expected<FrameReport>> report_;  // waits at its end, so that no thread outlives what it uses

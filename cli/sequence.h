@@ -42,6 +42,7 @@ double SecondsAt(int frame, const FrameRate& rate);
 struct FrameReport {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   std::string text;  // one line or more, each ended
+  double write_ms = 0;  // of that, encoding and writing
 };
 
 // A frame that is made, and has still to be encoded and written: does that once, on any thread, and needs nothing that the

@@ -14,6 +14,7 @@
 #include "cli/run_files.h"
 #include "cli/scene_frames.h"
 #include "cli/sequence.h"
+#include "cli/timing.h"
 #include "cli/transfer_run.h"
 #include "io/blender_camera.h"
 #include "io/guide_file.h"
@@ -146,6 +147,7 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
     one.blender_camera = camera.At(frame);
     Stopwatch watch;
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
+    EndStage(globals, "read");
     guides_file = file;
     return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}}};
   };
@@ -215,6 +217,7 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   }
   SCUMBLE_RETURN_IF_ERROR(CheckNumbers(verb.picture));
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
+  EndStage(globals, "style");
   RunFiles files;
   for (const auto& [what, name] : {std::pair("the guides", &verb.guides), {"the .camera file", &verb.camera}}) {
     SCUMBLE_ASSIGN(const auto names, NamesOf(*name, sequence));
@@ -226,6 +229,7 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, verb.guides, read));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
+  EndStage(globals, "read");
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
   return RunTransfer(styles, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
@@ -339,6 +343,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   Stopwatch watch;
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
   const double style_ms = watch.Lap();
+  EndStage(globals, "style");
   RunFiles files;
   files.ReadsScene(verb.scene.scene);
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
@@ -371,6 +376,7 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, true);
   AddSequenceOptions(*sub, verb->sequence);
+  AddTimingOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTransferVerb(*verb, globals); }; });
 }
@@ -382,6 +388,7 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, false);
   AddSequenceOptions(*sub, verb->sequence);
+  AddTimingOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunStylizeVerb(*verb, globals); }; });
 }

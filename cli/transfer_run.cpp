@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <memory>
 #include <optional>
 #include <set>
@@ -14,6 +15,7 @@
 #include "cli/cache.h"
 #include "cli/json_text.h"
 #include "cli/show.h"
+#include "cli/timing.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
 #include "style/style_keyframes.h"
@@ -123,7 +125,7 @@ struct Made {
 Expected<FrameReport> WriteMade(Made& made) {
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(WritePicture(made.output, made.picture, made.write));
-  const double ms = watch.Lap();
+  const double ms = made.report.write_ms = watch.Lap();
   made.steps.emplace_back("write", Spread{ms, ms, ms});
   if (!made.report.json.empty()) AddStep(made.steps.back(), made.report.json);
   made.report.text += fmt::format("{}  {}\n", made.output, StepsToText(made.steps, made.repeat));
@@ -359,7 +361,12 @@ Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const G
   TransferMemory memory;
   SCUMBLE_ASSIGN(const FrameWrite write, TransferFrame(styles, guides, source, options, globals, progress, memory));
   SCUMBLE_ASSIGN(FrameReport report, write());
+  EndStage(globals, "write");
   report.json.update(SayHowAssigned(styles));
+  if (globals.timing) {
+    report.json["timing"] = globals.timing->ToJson();
+    report.text += globals.timing->ToText();
+  }
   Print(globals.json ? JsonText(report.json) : report.text);
   return ExitCode::kOk;
 }
@@ -390,6 +397,7 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
     SCUMBLE_ASSIGN(map, MapStyles(styles, guides, source.name));
   }
   times.emplace_back("prepare", watch.Lap());
+  EndStage(globals, "prepare");
 
   TransferOptions transfer;
   transfer.seed = options.seed;
@@ -415,6 +423,8 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   if (const auto what = FindExplanation(options.show)) {
     picture = Show(*what, {prepared, map, guides, scratch.field, transfer.exposure, picture});
   }
+  const auto sum = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
+  EndStage(globals, "transfer", {{"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}});
   Made made;
   made.output = options.output, made.repeat = options.repeat;
   made.write = {options.bits, options.png_level};

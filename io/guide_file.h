@@ -15,6 +15,9 @@ struct GuideWriteOptions {
   std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
 };
 
+// Lossless, and the quickest to write and read here: background is packed, surfaces are hardly touched.
+inline constexpr const char* kFastCompression = "rle";
+
 // Writes all layers of the set, object and material names and their styles, camera matrices (worldToCamera and worldToNDC in
 // OpenEXR's own conventions) and attributes.
 // Refuses a lossy compression. The file appears whole or not at all.

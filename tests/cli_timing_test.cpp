@@ -1,0 +1,64 @@
+// --timing and --fast-io: figures that add up, and pixels that do not change.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+class CliTiming : public CliTest {};
+
+TEST_F(CliTiming, TheStagesAddUpToTheWhole) {
+  WriteStyle("style");
+  const Arguments stylize = {"stylize", Scene("ball.glb"), "--style", "style", "--size", "64", "-o", "p.png"};
+  const auto text = Run(With(stylize, {"--timing"}));
+  ASSERT_EQ(text.code, 0) << text.err;
+  for (const char* stage : {"start ", "style ", "scene ", "build ", "rays ", "prepare ", "match ", "vote ", "write ", "total "}) {
+    EXPECT_NE(text.out.find(std::string("\n") + stage), std::string::npos) << stage << text.out;
+  }
+  const auto plain = Run(stylize);
+  EXPECT_EQ(plain.out.find("total  "), std::string::npos) << "only where it is asked for";
+  const auto asked = Run(With(stylize, {"--timing", "--json"}));
+  ASSERT_EQ(asked.code, 0) << asked.err;
+  const auto json = nlohmann::json::parse(asked.out);
+  double wall = 0, cpu = 0;
+  for (const auto& stage : json["timing"]) {
+    if (stage["stage"] == "total") continue;
+    wall += stage["wall_ms"].get<double>();
+    cpu += stage.value("cpu_ms", 0.0);
+  }
+  const auto& total = json["timing"].back();
+  EXPECT_EQ(total["stage"], "total");
+  EXPECT_NEAR(wall, total["wall_ms"].get<double>(), 1.0 + 0.2 * wall) << "nothing is counted twice or left out";
+  EXPECT_NEAR(cpu, total["cpu_ms"].get<double>(), 1.0 + 0.2 * cpu);
+}
+
+TEST_F(CliTiming, OfASequenceItIsTheSum) {
+  WriteStyle("style");
+  const auto run = Run({"stylize", Scene("toys.glb"), "--style", "style", "--size", "48", "--frames", "1-3", "--json",
+                        "--timing", "-o", "p.####.png"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  const auto json = nlohmann::json::parse(run.out);
+  double rays = 0, counted = 0;
+  for (const auto& frame : json["frames"]) rays += frame["ms"]["rays"]["median"].get<double>();
+  for (const auto& stage : json["timing"]) {
+    if (stage["stage"] == "rays") counted = stage["wall_ms"].get<double>();
+  }
+  EXPECT_NEAR(counted, rays, 1e-6 + 1e-6 * rays);
+}
+
+TEST_F(CliTiming, FastGuidesHoldTheSamePixels) {
+  const Arguments guidegen = {"guidegen", Scene("ball.glb"), "--size", "64x48"};
+  ASSERT_EQ(Run(With(guidegen, {"-o", "zip.exr"})).code, 0);
+  ASSERT_EQ(Run(With(guidegen, {"--fast-io", "-o", "fast.exr"})).code, 0);
+  const auto same = Run({"compare", "zip.exr", "fast.exr"});
+  EXPECT_EQ(same.code, 0) << same.out;
+  EXPECT_NE(Bytes("zip.exr"), Bytes("fast.exr")) << "another compression";
+  const auto both = Run(With(guidegen, {"--fast-io", "--compression", "zip", "-o", "g.exr"}));
+  EXPECT_EQ(both.code, 2) << both.err;
+}
+
+}  // namespace
+}  // namespace scumble
