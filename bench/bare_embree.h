@@ -51,7 +51,8 @@ class BareEmbree {
     const int rows = (height_ + kSide - 1) / kSide;
     tbb::task_arena arena(threads);
     arena.execute([&] {
-      tbb::parallel_for(0, columns * rows, [&](int i) { CastTile(kind, i % columns * kSide, i / columns * kSide, depth); });
+      tbb::parallel_for(0, columns * rows,
+                        [&](int i) { CastTile(kind, i % columns * kSide, i / columns * kSide, depth); });
     });
   }
 
@@ -90,17 +91,18 @@ class BareEmbree {
   void CastTile(BareKind kind, int x0, int y0, float* depth) const {
     switch (kind) {
       case BareKind::kSingle:
-        return CastBlocks<1, 1, RTCRayHitNt<1>>(x0, y0, depth, [&](const int*, RTCIntersectContext* context, auto& ray) {
-          RTCRayHit one = {};
-          one.ray.dir_x = ray.ray.dir_x[0];
-          one.ray.dir_y = ray.ray.dir_y[0];
-          one.ray.dir_z = -1.0f;
-          one.ray.mask = ~0u;
-          one.ray.tfar = ray.ray.tfar[0];
-          one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-          rtcIntersect1(scene_, context, &one);
-          ray.ray.tfar[0] = one.ray.tfar;
-        });
+        return CastBlocks<1, 1, RTCRayHitNt<1>>(x0, y0, depth,
+                                                [&](const int*, RTCIntersectContext* context, auto& ray) {
+                                                  RTCRayHit one = {};
+                                                  one.ray.dir_x = ray.ray.dir_x[0];
+                                                  one.ray.dir_y = ray.ray.dir_y[0];
+                                                  one.ray.dir_z = -1.0f;
+                                                  one.ray.mask = ~0u;
+                                                  one.ray.tfar = ray.ray.tfar[0];
+                                                  one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+                                                  rtcIntersect1(scene_, context, &one);
+                                                  ray.ray.tfar[0] = one.ray.tfar;
+                                                });
       case BareKind::kPacket4:
         return CastBlocks<4, 2, RTCRayHit4>(x0, y0, depth, [&](const int* valid, auto* context, auto& packet) {
           rtcIntersect4(valid, scene_, context, &packet);

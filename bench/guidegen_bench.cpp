@@ -1,5 +1,5 @@
-// Guides against the least that their rays could cost (bare_embree.h), in one run: 1920 × 1080 pixels, 100,002 triangles,
-// every pixel covered. "Guides" is all of RenderGuides but the hierarchy, the planes' memory included.
+// Guides against the least that their rays could cost (bare_embree.h), in one run: 1920 × 1080 pixels, 100,002
+// triangles, every pixel covered. "Guides" is all of RenderGuides but the hierarchy, the planes' memory included.
 #include <benchmark/benchmark.h>
 #include <time.h>
 

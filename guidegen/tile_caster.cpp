@@ -257,8 +257,8 @@ std::array<TileCaster::Samples, kTilePixels> TileCaster::CastSubsamples(const Ti
   ForEachPixel(tile, [&](int pixel) {
     if (whole[pixel]) return;
     for (int rank = 0; rank < int(offsets_.size()); ++rank) {
-      const ViewRay ray = camera.Through(tile.x0 + TileColumn(pixel) + offsets_[rank].x,
-                                         tile.y0 + TileRow(pixel) + offsets_[rank].y);
+      const ViewRay ray =
+          camera.Through(tile.x0 + TileColumn(pixel) + offsets_[rank].x, tile.y0 + TileRow(pixel) + offsets_[rank].y);
       batch.Add(SeenBy(camera, ray), {pixel, rank}, report);
     }
   });
@@ -446,8 +446,11 @@ void TileCaster::Cast(const Tile& tile, Scratch& scratch, RayCounts& counts, std
       const glm::dvec2 at = found != scratch.moved.end() ? found->at : Centre(tile, pixel);
       if (points_) WriteOthers(tile, pixel, at, scratch);
       if (pixels) {
-        pixels->push_back({std::uint32_t(Index(tile, pixel)), hits.object[pixel], hits.primitive[pixel],
-                           {hits.u[pixel], hits.v[pixel]}, at});
+        pixels->push_back({std::uint32_t(Index(tile, pixel)),
+                           hits.object[pixel],
+                           hits.primitive[pixel],
+                           {hits.u[pixel], hits.v[pixel]},
+                           at});
       }
     });
   }

@@ -39,12 +39,12 @@ class TileCaster {
     };
     TriangleCache triangles;
     TileHits hits;
+    alignas(64) std::array<float, kTilePixels> coverage;
     TileRays rays;
     TileGuides guides;
     TilePoints points;
     std::vector<SurfacePoint> lit;
     std::vector<Moved> moved;
-    alignas(64) std::array<float, kTilePixels> coverage;
   };
 
   // Adds what was cast to `counts`, and to `pixels`, unless null, the covered ones for their light paths.

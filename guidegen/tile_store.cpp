@@ -13,7 +13,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace scumble {
 namespace HWY_NAMESPACE {
-namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // A whole row of a tile is one line of the cache, where it begins with one.
@@ -28,7 +27,6 @@ void StreamTile(int rows, const float* values, float* to, std::size_t stride) {
   hwy::FlushStream();
 }
 
-}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace scumble
 HWY_AFTER_NAMESPACE();

@@ -217,11 +217,10 @@ class TileWork {
     // MeetTriangle. A product with −1 changes the sign and no more.
     const D3 from = {hn::Sub(origin.x, triangles.corner.x), hn::Sub(origin.y, triangles.corner.y),
                      hn::Sub(origin.z, triangles.corner.z)};
-    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(way.y, from.z)),
-                       hn::Add(hn::Mul(from.z, way.x), from.x),
+    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(way.y, from.z)), hn::Add(hn::Mul(from.z, way.x), from.x),
                        hn::Sub(hn::Mul(from.x, way.y), hn::Mul(way.x, from.y))};
-    const D along = hn::Sub(hn::Add(hn::Mul(triangles.area.x, way.x), hn::Mul(triangles.area.y, way.y)),
-                            triangles.area.z);
+    const D along =
+        hn::Sub(hn::Add(hn::Mul(triangles.area.x, way.x), hn::Mul(triangles.area.y, way.y)), triangles.area.z);
     const D scale = hn::Div(hn::Set(d, -1.0), along);
     D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
     D w = hn::Mul(Dot(triangles.first_edge, moment), scale);
@@ -263,8 +262,7 @@ class TileWork {
         hn::And(hn::Gt(squared, hn::Set(d, kLeastPlainSquare)), hn::Lt(squared, hn::Set(d, kLargestPlainSquare)));
 
     const auto met_double = hn::RebindMask(d, met);
-    const auto left_over = hn::And(
-        hn::Or(hn::Or(irregular, infinite), hn::Not(hn::And(usable, ordinary))), met_double);
+    const auto left_over = hn::And(hn::Or(hn::Or(irregular, infinite), hn::Not(hn::And(usable, ordinary))), met_double);
     if (HWY_UNLIKELY(!hn::AllFalse(d, left_over))) LeaveOver(pixel, left_over);
 
     const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
@@ -287,8 +285,9 @@ class TileWork {
                            mix(triangles.corner.y, triangles.first_edge.y, triangles.second_edge.y), z};
       StorePoint(position, points_->position, pixel);
       const D sign = hn::Mul(objects.winding, side);
-      StorePoint({hn::Mul(triangles.facing.x, sign), hn::Mul(triangles.facing.y, sign),
-                  hn::Mul(triangles.facing.z, sign)}, points_->facing, pixel);
+      StorePoint(
+          {hn::Mul(triangles.facing.x, sign), hn::Mul(triangles.facing.y, sign), hn::Mul(triangles.facing.z, sign)},
+          points_->facing, pixel);
       const D own = Magnitude(position);
       const D largest = hn::IfThenElse(hn::Lt(own, triangles.largest), triangles.largest, own);
       hn::Store(largest, d, points_->largest_coordinate.data() + pixel);

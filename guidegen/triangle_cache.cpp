@@ -16,7 +16,8 @@ std::vector<ObjectRecord> MakeObjectRecords(std::span<const PlacedObject> object
   for (const PlacedObject& object : objects) {
     ObjectRecord record;
     for (int column = 0; column < 3; ++column) {
-      for (int row = 0; row < 3; ++row) record.view_from_normal[3 * column + row] = object.view_from_normal[column][row];
+      for (int row = 0; row < 3; ++row)
+        record.view_from_normal[3 * column + row] = object.view_from_normal[column][row];
     }
     record.winding = object.winding;
     record.object_id = float(object.object_id);

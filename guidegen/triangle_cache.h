@@ -22,16 +22,16 @@ std::vector<ObjectRecord> MakeObjectRecords(std::span<const PlacedObject> object
 
 // What FindSurfacePoint takes from a triangle, by the same sums.
 struct TriangleRecord {
-  double corner[3];         // the first, view space
-  double first_edge[3];     // back from the second corner to the first
-  double second_edge[3];    // from the first corner to the third
-  double area[3];           // the edges' cross product
-  double facing[3];         // `area` as a unit vector
+  double corner[3];       // the first, view space
+  double first_edge[3];   // back from the second corner to the first
+  double second_edge[3];  // from the first corner to the third
+  double area[3];         // the edges' cross product
+  double facing[3];       // `area` as a unit vector
   double largest_coordinate;
-  float normal[9];          // of the three corners, object space
+  float normal[9];  // of the three corners, object space
   std::uint32_t object;
   std::uint32_t primitive;
-  bool regular;             // false: it takes FindSurfacePoint itself to say what is here
+  bool regular;  // false: it takes FindSurfacePoint itself to say what is here
 };
 
 // The triangles met last, for one thread. Answers do not depend on what was asked before.

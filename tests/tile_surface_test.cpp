@@ -14,8 +14,8 @@
 
 #include "guidegen/camera_rays.h"
 #include "guidegen/tile_store.h"
-#include "tests/guidegen_scenes.h"
 #include "image/plane_allocator.h"
+#include "tests/guidegen_scenes.h"
 
 namespace scumble::testing {
 namespace {
@@ -68,7 +68,8 @@ void ExpectPlainPixel(const Case& scene, int pixel, const TileGuides& guides, co
   SCOPED_TRACE("pixel " + std::to_string(pixel));
   if (!scene.hits.Met(pixel)) {
     EXPECT_EQ(guides.depth[pixel], kInfinity);
-    for (const auto* plane : {&guides.object, &guides.material, &guides.normal[0], &guides.normal[1], &guides.normal[2]})
+    for (const auto* plane :
+         {&guides.object, &guides.material, &guides.normal[0], &guides.normal[1], &guides.normal[2]})
       EXPECT_SAME_BITS((*plane)[pixel], 0.0f);
     return;
   }
@@ -201,8 +202,10 @@ TEST(TileSurface, WildGeometry) {
   OnEveryInstructionSet([] {
     Case scene = RandomCase(9, false, 3, 0.1);
     Mesh& mesh = scene.meshes[0];
-    const std::vector<glm::vec3> wild_normals = {{kNan, 0, 1}, {0, 0, 0}, {1e-30f, 0, 0}, {kInfinity, 0, 0}, {-0.0f, 1, -0.0f}};
-    for (std::size_t i = 0; i < mesh.normals.size(); i += 4) mesh.normals[i] = wild_normals[i / 4 % wild_normals.size()];
+    const std::vector<glm::vec3> wild_normals = {
+        {kNan, 0, 1}, {0, 0, 0}, {1e-30f, 0, 0}, {kInfinity, 0, 0}, {-0.0f, 1, -0.0f}};
+    for (std::size_t i = 0; i < mesh.normals.size(); i += 4)
+      mesh.normals[i] = wild_normals[i / 4 % wild_normals.size()];
     for (std::size_t i = 0; i + 2 < mesh.positions.size(); i += 15) {
       mesh.positions[i + 1] = mesh.positions[i];
       if (i % 2 == 0) mesh.positions[i + 2] = mesh.positions[i] * 1.0000001f;
@@ -266,7 +269,8 @@ TEST(TileStore, WritesTheTileAndNothingElse) {
             for (int x = 0; x < int(stride); ++x) {
               const int column = x - tile.x0, row = y - tile.y0;
               const bool inside = column >= 0 && column < tile.width && row >= 0 && row < tile.height;
-              ASSERT_EQ(plane[std::size_t(y) * stride + std::size_t(x)], inside ? values[TilePixel(column, row)] : -1.0f)
+              ASSERT_EQ(plane[std::size_t(y) * stride + std::size_t(x)],
+                        inside ? values[TilePixel(column, row)] : -1.0f)
                   << x << ", " << y;
             }
           }
