@@ -81,7 +81,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
                     TransferMemory& memory);
 
 // Prepares, transfers `repeat` times and makes the picture, or the one that explains it; what it returns writes that. It reports
-// the path with the time of each step, and as JSON the steps, coherence and sizes. `globals` must outlive it.
+// the path with the time of each step, and as JSON the steps, coherence and sizes.
 Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                     const PictureOptions& options, const Globals& globals, const Progress& progress,
                                     TransferMemory& memory);

@@ -9,8 +9,8 @@ namespace scumble {
 
 // `bytes` of memory on a cache line, with anything in it; throws std::bad_alloc. The system hands out large blocks page
 // by page as they are first touched, and clears each: for a frame's planes that takes as long as a third of casting its
-// rays. So they ask for large pages, and a few megabytes that were given back are kept for the next who asks for the
-// same size, up to kKeptPlaneBytes in all. Free to use from any thread.
+// rays. So they ask for large pages, and blocks that were given back are kept for the next who asks for the same
+// size: up to kKeptPlaneBytes in all, the oldest going first. Free to use from any thread.
 void* AllocatePlane(std::size_t bytes);
 void FreePlane(void* memory, std::size_t bytes);
 inline constexpr std::size_t kKeptPlaneBytes = std::size_t(256) << 20;

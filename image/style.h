@@ -27,7 +27,7 @@ enum class NearestSearch {
   kAuto,      // the formula for a sphere, a table for an exemplar with guides of its own
   kAnalytic,  // the sphere's formula
   kTable,     // a look-up table over all directions that face the viewer
-  kTree,      // a kd-tree: exact, and slow because every pixel asks it
+  kTree,      // a tree of boxes: exact, and slower, for more than seeds ask it
 };
 
 enum class ThresholdMetric {

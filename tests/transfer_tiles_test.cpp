@@ -171,17 +171,23 @@ TEST(TransferTiles, EverySizeAndRegion) {
 TEST(TransferTiles, SeedsAreKeptWhereTheyStay) {
   internal::SeedMaps maps;
   const SeedRules rules{1, 2, 1.0f, 0};
+  maps.BeginFrame();
   EXPECT_EQ(maps.For(rules, 700, 300), nullptr) << "a single picture keeps nothing";
+  EXPECT_EQ(maps.For(rules, 700, 300), nullptr) << "nor does its second style";
+  maps.BeginFrame();
   internal::SeedMap* const map = maps.For(rules, 700, 300);
   ASSERT_NE(map, nullptr);
-  EXPECT_EQ(maps.For(rules, 700, 300), map);
   EXPECT_EQ(maps.For(rules, 701, 300), nullptr);
+  maps.BeginFrame();
   EXPECT_EQ(maps.For(rules, 700, 300), map);
+  EXPECT_NE(maps.For(rules, 701, 300), nullptr);
   SeedRules later = rules;
   for (int step = 3; step < 8; ++step) {
+    maps.BeginFrame();
     later.time_step = step;
-    EXPECT_EQ(maps.For(later, 700, 300), nullptr);
+    EXPECT_EQ(maps.For(later, 700, 300), nullptr) << "renewed jitter";
   }
+  EXPECT_EQ(maps.For(rules, 700, 300), nullptr) << "what nobody asked for is gone";
 
   const GuideSet hills = HillGuides(700, 300), mixed = MixedGuides(700, 300, 8);
   const PreparedExemplar exemplar(NoisePicture(64), 2.0, 128);

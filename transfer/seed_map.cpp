@@ -17,20 +17,23 @@ TileMap& SeedMap::Of(int tile_x, int tile_y, int level) {
   return *map;
 }
 
+void SeedMaps::BeginFrame() {
+  ++frame_;
+  std::erase_if(entries_, [&](const Entry& entry) { return entry.last_frame < frame_ - 1; });
+}
+
 SeedMap* SeedMaps::For(const SeedRules& rules, int width, int height) {
   const auto same = [&](const Entry& entry) {
     return entry.rules == rules && entry.width == width && entry.height == height;
   };
   const auto found = std::find_if(entries_.begin(), entries_.end(), same);
   if (found == entries_.end()) {
-    if (entries_.size() == kMost) entries_.erase(entries_.begin());
-    entries_.push_back({rules, width, height, nullptr});
+    if (entries_.size() < kMost) entries_.push_back({rules, width, height, frame_, frame_, nullptr});
     return nullptr;
   }
-  std::rotate(found, found + 1, entries_.end());
-  Entry& latest = entries_.back();
-  if (!latest.map) latest.map = std::make_unique<SeedMap>(width, height);
-  return latest.map.get();
+  found->last_frame = frame_;
+  if (!found->map && found->first_frame < frame_) found->map = std::make_unique<SeedMap>(width, height);
+  return found->map.get();
 }
 
 }  // namespace scumble::internal

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "transfer/seeds.h"
@@ -45,20 +44,23 @@ class SeedMap {
   std::vector<std::unique_ptr<TileMap>> tiles_;
 };
 
-// The maps of a sequence. One is made when the same seeds are asked for a second time: where jitter is renewed with every
-// frame, and for single pictures, there is nothing to keep.
+// The maps of a sequence. One is made when the same seeds are asked for in a second frame: where jitter is renewed with
+// every frame, and for single pictures, there is nothing to keep.
 class SeedMaps {
  public:
-  // Null: not yet, or not worth while. Holds until the next call.
+  void BeginFrame();
+  // Null: not yet, or not worth while. Holds until the next frame begins.
   SeedMap* For(const SeedRules& rules, int width, int height);
 
  private:
   struct Entry {
     SeedRules rules;
     int width, height;
+    std::int64_t first_frame, last_frame;  // that asked for it
     std::unique_ptr<SeedMap> map;
   };
-  static constexpr std::size_t kMost = 2;  // the latest
+  static constexpr std::size_t kMost = 4;
+  std::int64_t frame_ = 0;
   std::vector<Entry> entries_;
 };
 

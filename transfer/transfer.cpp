@@ -73,6 +73,7 @@ class Run {
         frame_{guides, map, styles, region_} {
     Stopwatch watch;
     scratch.times = {};
+    scratch.seed_maps.BeginFrame();
     start_ = internal::StartFrame(frame_, scratch.field, scratch.active, out);
     scratch.times.compose_ms += watch.Lap();
   }
