@@ -113,9 +113,9 @@ TEST(FastTint, OnlyActivePixelsOfTheRegionChange) {
             if (active[i]) tint.Apply(guides.Vec3(Layer::kAlbedo, i), expected.At(x, y));
           }
         }
-        const Progress unheard;
-        internal::RowProgress progress(unheard, 0.0, 1.0, 1);
-        ASSERT_TRUE(internal::Colorize({guides, active, tint, region}, found, progress));
+        for (int y = region.y0; y < region.y1; ++y) {
+          internal::ColorizeRow({guides, active, tint}, y, region.x0, region.x1, found);
+        }
         ASSERT_TRUE(found.rgba == expected.rgba) << "one in " << dense;
       }
     }

@@ -2,10 +2,12 @@
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "tests/transfer_fixtures.h"
+#include "transfer/hybrid.h"
 #include "transfer/wide_vote.h"
 
 namespace scumble {
@@ -326,6 +328,49 @@ TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
     EXPECT_EQ(Different(WideVotes(input), expected), 0u) << hwy::TargetName(rest & (0u - rest));
   }
   hwy::SetSupportedTargetsForTest(0);
+}
+
+// What is done to finished pixels (here: turned to their negatives, which doing twice undoes) is done once to each, when
+// nothing writes them any more, by every way to vote.
+TEST(Vote, TellsOfEveryFinishedPixelOnce) {
+  Case all = MakeCase(2300, 70, Pieces::kMixed, 150, 1, true, 20);
+  all.guides.Add(Layer::kNormal);
+  std::ranges::fill(all.guides.Plane(Layer::kNormal, 2), 1.0f);
+  const std::vector<Picture> tones = MakeTones(all.exemplar, 2.0);
+  const Illumination even_light;
+  for (const Region& region : {Whole(all), Region{13, 21, 1100, 66}, Region{2050, 0, 2299, 1}, Region{5, 5, 5, 9}}) {
+    for (const int radius : {0, 1, 3, 9}) {
+      const auto paint = [&](bool negative, int way) {
+        Picture out(all.field.width, all.field.height);
+        internal::VoteInput input = all.Input(radius, region);
+        const auto turn = [&](int y, int x0, int x1) {
+          ASSERT_TRUE(y >= region.y0 && y < region.y1 && x0 >= region.x0 && x1 <= region.x1);
+          for (int x = x0; x < x1; ++x) {
+            for (int c = 0; c < 4 && all.active[all.field.Index(x, y)]; ++c) out.At(x, y)[c] ^= 0xffff;
+          }
+        };
+        if (negative) input.finished = turn;
+        const Progress unheard;
+        internal::RowProgress progress(unheard, 0.0, 1.0, 1);
+        tbb::task_arena(2).execute([&] {
+          const internal::HybridInput hybrid{input, all.guides, even_light, {}, tones};
+          EXPECT_TRUE(way == 0   ? internal::Vote(input, out, progress)
+                      : way == 1 ? internal::VotePlainly(input, out, progress)
+                                 : internal::VoteHybrid(hybrid, out, progress));
+        });
+        return out;
+      };
+      for (const int way : {0, 1, 2}) {
+        Picture expected = paint(false, way);
+        for (int y = region.y0; y < region.y1; ++y) {
+          for (int x = region.x0; x < region.x1; ++x) {
+            for (int c = 0; c < 4 && all.active[all.field.Index(x, y)]; ++c) expected.At(x, y)[c] ^= 0xffff;
+          }
+        }
+        EXPECT_TRUE(paint(true, way).rgba == expected.rgba) << "way " << way << ", radius " << radius;
+      }
+    }
+  }
 }
 
 }  // namespace

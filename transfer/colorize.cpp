@@ -96,18 +96,15 @@ void ForEachRun(std::span<const std::uint8_t> active, const Run& run) {
 
 }  // namespace
 
-bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress) {
-  const Region& region = input.region;
-  const float* albedo[3];
-  for (int c = 0; c < 3; ++c) albedo[c] = input.guides.Plane(Layer::kAlbedo, c).data();
-  return ForEachRow(region, progress, [&](int y) {
-    const std::size_t row = input.guides.Index(region.x0, y);
-    ForEachRun(input.active.subspan(row, std::size_t(std::max(0, region.x1 - region.x0))), [&](std::size_t from, std::size_t to) {
-      const float* const here[3] = {albedo[0] + row + from, albedo[1] + row + from, albedo[2] + row + from};
-      std::uint16_t* texels = picture.At(region.x0, y) + 4 * from;
-      if (input.tint.mode == ColorizeMode::kMultiply) return MultiplyTint(here, to - from, input.tint.weight, texels);
-      for (std::size_t i = 0; i < to - from; ++i) input.tint.Apply({here[0][i], here[1][i], here[2][i]}, texels + 4 * i);
-    });
+void ColorizeRow(const ColorizeInput& input, int y, int x0, int x1, Picture& picture) {
+  if (x1 <= x0) return;
+  const std::size_t row = input.guides.Index(x0, y);
+  ForEachRun(input.active.subspan(row, std::size_t(x1 - x0)), [&](std::size_t from, std::size_t to) {
+    const float* albedo[3];
+    for (int c = 0; c < 3; ++c) albedo[c] = input.guides.Plane(Layer::kAlbedo, c).data() + row + from;
+    std::uint16_t* texels = picture.At(x0, y) + 4 * from;
+    if (input.tint.mode == ColorizeMode::kMultiply) return MultiplyTint(albedo, to - from, input.tint.weight, texels);
+    for (std::size_t i = 0; i < to - from; ++i) input.tint.Apply({albedo[0][i], albedo[1][i], albedo[2][i]}, texels + 4 * i);
   });
 }
 

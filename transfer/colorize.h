@@ -8,7 +8,6 @@
 #include "image/guides.h"
 #include "image/picture.h"
 #include "image/style.h"
-#include "transfer/parallel.h"
 #include "transfer/prepared_exemplar.h"
 
 namespace scumble::internal {
@@ -38,11 +37,10 @@ struct ColorizeInput {
   const GuideSet& guides;                // with albedo
   std::span<const std::uint8_t> active;  // 1: a pixel that this style paints
   Tint tint;
-  Region region;
 };
 
-// Tints active pixels in place. False: asked to stop.
-bool Colorize(const ColorizeInput& input, Picture& picture, RowProgress& progress);
+// Tints the active ones of the pixels x0 … x1 - 1 of a row in place. Rows and pieces of rows are independent of each other.
+void ColorizeRow(const ColorizeInput& input, int y, int x0, int x1, Picture& picture);
 
 // The mean of Oklab's L over the usable texels of an exemplar's picture, weighted by alpha.
 float MeanLightness(const PreparedExemplar& exemplar, int index);

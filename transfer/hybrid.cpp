@@ -101,6 +101,7 @@ bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
       for (int c = 0; c < 4; ++c) color[c] += FloorDivide(texture[c] + count / 2, count);
       Store(color, out.At(x, y));
     }
+    if (votes.finished) votes.finished(y, votes.region.x0, votes.region.x1);
   });
 }
 

@@ -64,10 +64,14 @@ class VoteTile {
         any_mixed |= mixed, any_whole |= whole[w];
       }
       CopyMarked(row, copied, linked);
-      if (!any_mixed) continue;
-      for (int w = 0; w < words; ++w) copied[w] = mixed_.At(y, first_word + w) & ~whole[w];  // one by one
-      if (any_whole) MeanOfMarked(row, sources, whole);
-      for (int w = 0; w < words; ++w) VoteOneByOne(y, first_word + w, JoinedAt(w), copied[w] | whole[w], out);
+      if (any_mixed) {
+        for (int w = 0; w < words; ++w) copied[w] = mixed_.At(y, first_word + w) & ~whole[w];  // one by one
+        if (any_whole) MeanOfMarked(row, sources, whole);
+        for (int w = 0; w < words; ++w) VoteOneByOne(y, first_word + w, JoinedAt(w), copied[w] | whole[w], out);
+      }
+      if (input_.finished) {
+        input_.finished(y, std::max(region_.x0, 64 * first_word), std::min(region_.x1, 64 * (first_word + words)));
+      }
     }
   }
 

@@ -25,7 +25,7 @@ constexpr std::size_t kBruteForcePixels = 1 << 20;
 constexpr int kFlatReach = 16;
 
 // Where the time of one style goes, as shares of it.
-constexpr double kMatchShare = 0.6, kVoteShare = 0.35;
+constexpr double kMatchShare = 0.6;  // the rest is for votes, with their tint
 constexpr double kComposeShare = 0.1;  // of the whole
 
 Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
@@ -195,9 +195,11 @@ class Run {
                                     map_ ? std::span<const std::uint8_t>() : scratch_.active};
     const bool edge_aware = settings.edge_aware && style.blend_radius > 0;
     const int rows = painted.y1 - painted.y0;
-    internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(kMatchShare + kVoteShare), rows);
-    const internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
-                                     edge_aware ? &edges : nullptr, painted};
+    internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(1.0), rows);
+    internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
+                              edge_aware ? &edges : nullptr, painted};
+    const internal::ColorizeInput tint{guides_, scratch_.active, TintOf(style)};
+    if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { internal::ColorizeRow(tint, y, x0, x1, out_); };
     if (style.tones.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
@@ -206,12 +208,6 @@ class Run {
       if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
     }
     scratch_.times.vote_ms += watch.Lap();
-
-    if (!(settings.colorize > 0.0)) return Ok();
-    internal::RowProgress tint_progress(options_.progress, part(kMatchShare + kVoteShare), part(1.0), rows);
-    const internal::ColorizeInput tint{guides_, scratch_.active, TintOf(style), painted};
-    if (!internal::Colorize(tint, out_, tint_progress)) return CancelledError();
-    scratch_.times.compose_ms += watch.Lap();
     return Ok();
   }
 

@@ -27,6 +27,7 @@ bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress) {
       else ForEachVote(input, joined, x, y, add);
       ballot.Count(out.At(x, y));
     }
+    if (input.finished) input.finished(y, region.x0, region.x1);
   });
 }
 

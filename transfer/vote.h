@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "image/guides.h"
@@ -21,6 +22,9 @@ struct VoteInput {
   int radius = 0;
   const EdgeRules* edges = nullptr;  // null: plain voting
   Region region;
+  // Called from any thread for pieces x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once for
+  // each active pixel of the region, and maybe for others. It may change those pixels of the picture.
+  std::function<void(int y, int x0, int x1)> finished = {};
 };
 
 // Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every pixel q of the (2·radius + 1)²

@@ -52,6 +52,7 @@ bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress) {
         mine.joined.Withdraw(input, *ways, mine.tile, mine.surface, limits, mine.sums);
       }
       mine.sums.Write(mine.tile, out);
+      for (int y = area.y0; input.finished && y < area.y1; ++y) input.finished(y, area.x0, area.x1);
     }
     if (--left[std::size_t(row)] == 0) progress.Finished(area.y1 - area.y0);
   });
