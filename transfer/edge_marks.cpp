@@ -36,6 +36,8 @@ struct EdgePair {
   int dx = 0, dy = 0;
   int width = 0;
   float crease_cosine = 0, depth_tolerance = 0;
+  const std::uint64_t* needed = nullptr;  // words of a row; only where one is not 0 something is told
+  std::uint64_t* same = nullptr;
 };
 
 }  // namespace scumble::internal
@@ -83,9 +85,9 @@ void SlopeWord(const float* above, const float* here, const float* below, float*
 // As std::min has it.
 HWY_INLINE F Least(F a, F b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
 
-// The words of a row in which something is needed: bit i, whether that pixel and the one a step further on are the same
-// surface.
-void TestRow(const EdgePair& pair, int first_word, int words, const std::uint64_t* needed, std::uint64_t* same) {
+// A word of a row, of which `needed` marks what is asked for: bit i, whether that pixel and the one a step further on are
+// the same surface.
+HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t needed) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   const std::uint64_t whole = lanes < 64 ? (std::uint64_t{1} << lanes) - 1 : ~std::uint64_t{0};
   const float x = static_cast<float>(pair.dx), y = static_cast<float>(pair.dy);
@@ -93,44 +95,51 @@ void TestRow(const EdgePair& pair, int first_word, int words, const std::uint64_
   const F far_x = hn::Set(kFloat, std::abs(x)), far_y = hn::Set(kFloat, std::abs(y));
   const F tolerance = hn::Set(kFloat, pair.depth_tolerance), crease = hn::Set(kFloat, pair.crease_cosine);
   const EdgeRow &p = pair.here, &q = pair.there;
-  for (int w = 0; w < words; ++w) {
-    if (!needed[w]) continue;
-    std::uint64_t bits = 0;
-    for (int i = 0; i < 64; i += lanes) {
-      if (!(needed[w] >> i & whole)) continue;
-      const int a = 64 * (first_word + w) + i, b = a + pair.dx;
-      if (a >= pair.width) break;
-      const F depth_p = hn::LoadU(kFloat, p.depth + a), depth_q = hn::LoadU(kFloat, q.depth + b);
-      const F slope_px = hn::LoadU(kFloat, p.slope_x + a), slope_qx = hn::LoadU(kFloat, q.slope_x + b);
-      const F slope_py = hn::LoadU(kFloat, p.slope_y + a), slope_qy = hn::LoadU(kFloat, q.slope_y + b);
-      const F expected = hn::Mul(
-          half, hn::Add(hn::Mul(hn::Add(slope_px, slope_qx), step_x), hn::Mul(hn::Add(slope_py, slope_qy), step_y)));
-      const F leeway = hn::Add(hn::Mul(Least(hn::Abs(slope_px), hn::Abs(slope_qx)), far_x),
-                               hn::Mul(Least(hn::Abs(slope_py), hn::Abs(slope_qy)), far_y));
-      const F most = hn::Add(leeway, hn::Mul(tolerance, Least(depth_p, depth_q)));
-      auto one = hn::Le(hn::Abs(hn::Sub(hn::Sub(depth_q, depth_p), expected)), most);
-      // Guides of the last and first pixels of the picture would be read beyond their ends.
-      const bool inside = a >= -p.before && b >= -q.before && a + lanes <= p.readable && b + lanes <= q.readable;
-      const float* guide_p[4] = {p.object + a, p.normal[0] + a, p.normal[1] + a, p.normal[2] + a};
-      const float* guide_q[4] = {q.object + b, q.normal[0] + b, q.normal[1] + b, q.normal[2] + b};
-      float copies[8][16];
-      if (HWY_UNLIKELY(!inside)) {
-        for (int k = 0; k < 4; ++k) {
-          guide_p[k] = CopyInside(guide_p[k], -p.before - a, p.readable - a, lanes, copies[k]);
-          guide_q[k] = CopyInside(guide_q[k], -q.before - b, q.readable - b, lanes, copies[4 + k]);
-        }
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 64; i += lanes) {
+    if (!(needed >> i & whole)) continue;
+    const int a = 64 * word + i, b = a + pair.dx;
+    if (a >= pair.width) break;
+    const F depth_p = hn::LoadU(kFloat, p.depth + a), depth_q = hn::LoadU(kFloat, q.depth + b);
+    const F slope_px = hn::LoadU(kFloat, p.slope_x + a), slope_qx = hn::LoadU(kFloat, q.slope_x + b);
+    const F slope_py = hn::LoadU(kFloat, p.slope_y + a), slope_qy = hn::LoadU(kFloat, q.slope_y + b);
+    const F expected = hn::Mul(
+        half, hn::Add(hn::Mul(hn::Add(slope_px, slope_qx), step_x), hn::Mul(hn::Add(slope_py, slope_qy), step_y)));
+    const F leeway = hn::Add(hn::Mul(Least(hn::Abs(slope_px), hn::Abs(slope_qx)), far_x),
+                             hn::Mul(Least(hn::Abs(slope_py), hn::Abs(slope_qy)), far_y));
+    const F most = hn::Add(leeway, hn::Mul(tolerance, Least(depth_p, depth_q)));
+    auto one = hn::Le(hn::Abs(hn::Sub(hn::Sub(depth_q, depth_p), expected)), most);
+    // Guides of the last and first pixels of the picture would be read beyond their ends.
+    const bool inside = a >= -p.before && b >= -q.before && a + lanes <= p.readable && b + lanes <= q.readable;
+    const float* guide_p[4] = {p.object + a, p.normal[0] + a, p.normal[1] + a, p.normal[2] + a};
+    const float* guide_q[4] = {q.object + b, q.normal[0] + b, q.normal[1] + b, q.normal[2] + b};
+    float copies[8][16];
+    if (HWY_UNLIKELY(!inside)) {
+      for (int k = 0; k < 4; ++k) {
+        guide_p[k] = CopyInside(guide_p[k], -p.before - a, p.readable - a, lanes, copies[k]);
+        guide_q[k] = CopyInside(guide_q[k], -q.before - b, q.readable - b, lanes, copies[4 + k]);
       }
-      one = hn::And(one, hn::Eq(hn::LoadU(kFloat, guide_p[0]), hn::LoadU(kFloat, guide_q[0])));
-      const auto product = [&](int k) HWY_ATTR {
-        return hn::Mul(hn::LoadU(kFloat, guide_p[k]), hn::LoadU(kFloat, guide_q[k]));
-      };
-      const F along = product(1), across = product(2), forth = product(3);
-      one = hn::And(one, hn::Gt(hn::Add(hn::Add(along, across), forth), crease));
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(kFloat, one, bytes);
-      bits |= (std::uint64_t(bytes[0] | bytes[1] << 8) & whole) << i;
     }
-    same[w] = bits;
+    one = hn::And(one, hn::Eq(hn::LoadU(kFloat, guide_p[0]), hn::LoadU(kFloat, guide_q[0])));
+    const auto product = [&](int k) HWY_ATTR {
+      return hn::Mul(hn::LoadU(kFloat, guide_p[k]), hn::LoadU(kFloat, guide_q[k]));
+    };
+    const F along = product(1), across = product(2), forth = product(3);
+    one = hn::And(one, hn::Gt(hn::Add(hn::Add(along, across), forth), crease));
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(kFloat, one, bytes);
+    bits |= (std::uint64_t(bytes[0] | bytes[1] << 8) & whole) << i;
+  }
+  return bits;
+}
+
+// All steps of a word before the next word, so that what they read stays in the nearest cache.
+void TestRow(const EdgePair* pairs, std::size_t count, int first_word, int words) {
+  for (int w = 0; w < words; ++w) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint64_t needed = pairs[k].needed[w];
+      if (needed) pairs[k].same[w] = TestWord(pairs[k], first_word + w, needed);
+    }
   }
 }
 
@@ -269,15 +278,19 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const
     return false;
   };
   EdgeRows rows(rules, radius, tile);
-  std::vector<std::uint64_t> needed(tile.words);
+  const float crease_cosine = rules.CreaseCosine();
+  std::vector<std::uint64_t> needed_words(steps.size() * tile.words);
+  std::vector<EdgePair> pairs;
   const int end = std::min(tile.first_row + tile.rows, rules.guides.height());
   for (int y = tile.first_row; y < end; ++y) {
     rows.Reach(std::min(y + radius, end - 1), wanted);
     if (y < 0) continue;
+    pairs.clear();
     for (std::size_t k = 0; k < steps.size(); ++k) {
       const PixelStep step = steps[k];
       if (y + step.dy >= end) continue;
       const BitRows& about = std::max(std::abs(step.dx), step.dy) == 1 ? near : centres;
+      std::uint64_t* needed = needed_words.data() + k * tile.words;
       std::uint64_t any = 0;
       for (int w = 0; w < tile.words; ++w) {
         const int word = tile.first_word + w;
@@ -285,10 +298,10 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const
         any |= needed[w];
       }
       if (!any) continue;
-      const EdgePair pair{rows.At(y),           rows.At(y + step.dy),  step.dx, step.dy, rules.guides.width(),
-                          rules.CreaseCosine(), rules.DepthTolerance()};
-      HWY_DYNAMIC_DISPATCH(TestRow)(pair, tile.first_word, tile.words, needed.data(), same[k].Row(y));
+      pairs.push_back({rows.At(y), rows.At(y + step.dy), step.dx, step.dy, rules.guides.width(), crease_cosine,
+                       rules.DepthTolerance(), needed, same[k].Row(y)});
     }
+    if (!pairs.empty()) HWY_DYNAMIC_DISPATCH(TestRow)(pairs.data(), pairs.size(), tile.first_word, tile.words);
   }
 }
 

@@ -40,8 +40,9 @@ class VoteTile {
 
  private:
   void VoteStrip(int first_word, int words, bool edges, Picture& out) {
-    std::array<std::uint64_t, kStripWords> copied{}, linked{}, whole{};
+    std::array<std::uint64_t, kStripWords> copied{}, linked{}, whole{}, parts{};
     joined_.assign(std::size_t(ways_.count()) * words, BitRows::kAll);
+    votes_.assign(joined_.size(), 0);
     const int radius = input_.radius, first = std::max(0, 64 * first_word - radius);
     const int end = std::min(input_.field.width, 64 * (first_word + words) + radius);
     SourceRows sources(radius, first, end);
@@ -49,7 +50,7 @@ class VoteTile {
     for (int y = region_.y0; y < region_.y1; ++y) {
       sources.Add(input_.field, texels_, y + radius);
       const VoteRow row{texels_, input_.field, y, out.At(0, y), first_word, words};
-      std::uint64_t any_whole = 0, any_mixed = 0;
+      std::uint64_t any_whole = 0, any_parts = 0, any_mixed = 0;
       for (int w = 0; w < words; ++w) {
         const int word = first_word + w;
         const std::uint64_t mixed = mixed_.At(y, word);
@@ -61,13 +62,20 @@ class VoteTile {
           ways_.Join(same_, y, word, joined);
           for (const std::uint64_t bits : joined) whole[w] &= bits;
         }
-        any_mixed |= mixed, any_whole |= whole[w];
+        parts[w] = mixed & ~whole[w];
+        if (parts[w]) parts[w] = SureParts(y, word, parts[w], w);
+        any_mixed |= mixed, any_whole |= whole[w], any_parts |= parts[w];
       }
       CopyMarked(row, copied, linked);
       if (any_mixed) {
-        for (int w = 0; w < words; ++w) copied[w] = mixed_.At(y, first_word + w) & ~whole[w];  // one by one
+        for (int w = 0; w < words; ++w) {
+          copied[w] = mixed_.At(y, first_word + w) & ~whole[w] & ~parts[w];  // one by one
+        }
         if (any_whole) MeanOfMarked(row, sources, whole);
-        for (int w = 0; w < words; ++w) VoteOneByOne(y, first_word + w, JoinedAt(w), copied[w] | whole[w], out);
+        if (any_parts) MeanOfParts(row, sources, ways_.ways, votes_, parts);
+        for (int w = 0; w < words; ++w) {
+          VoteOneByOne(y, first_word + w, JoinedAt(w), copied[w] | whole[w] | parts[w], out);
+        }
       }
       if (input_.finished) {
         input_.finished(y, std::max(region_.x0, 64 * first_word), std::min(region_.x1, 64 * (first_word + words)));
@@ -117,6 +125,20 @@ class VoteTile {
     return whole;
   }
 
+  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the votes.
+  std::uint64_t SureParts(int y, int word, std::uint64_t pixels, int w) {
+    const std::span<const std::uint64_t> joined = JoinedAt(w);
+    std::uint64_t* votes = votes_.data() + std::size_t(w) * joined.size();
+    pixels &= marks_.deep.At(y, word);
+    for (std::size_t k = 0; k < joined.size(); ++k) {
+      const PixelStep way = ways_.ways[k];
+      const std::uint64_t deep = marks_.deep.Shifted(y + way.dy, word, way.dx);
+      pixels &= ~(joined[k] & marks_.active.Shifted(y + way.dy, word, way.dx) & ~deep);
+      votes[k] = joined[k] & deep;
+    }
+    return pixels;
+  }
+
   void VoteOneByOne(int y, int word, std::span<const std::uint64_t> joined, std::uint64_t pixels, Picture& out) {
     const SourceField& field = input_.field;
     for (; pixels; pixels &= pixels - 1) {
@@ -149,7 +171,7 @@ class VoteTile {
   BitRows mixed_;
   bool mixed_any_ = false;
   std::vector<BitRows> same_;
-  std::vector<std::uint64_t> joined_;  // by word and way
+  std::vector<std::uint64_t> joined_, votes_;  // by word and way
 };
 
 }  // namespace

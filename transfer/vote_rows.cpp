@@ -106,16 +106,33 @@ HWY_INLINE hn::Vec<D> SumOfWindow(D d, const VoteRow& row, const std::uint16_t* 
   return sum;
 }
 
+#if HWY_TARGET != HWY_SCALAR
+// floor(2^32 / 2n) + 1, for MeanTexel.
+HWY_INLINE std::uint32_t MeanReciprocal(std::uint32_t votes) {
+  return static_cast<std::uint32_t>((std::uint64_t{1} << 32) / (2 * votes) + 1);
+}
+
+// The mean of n votes, n at most 49. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32 at
+// most, which is less than 1 / 2n. `rounding` is n in all lanes, `reciprocal` is m.
+template <class V>
+HWY_INLINE void MeanTexel(V sum, V rounding, V reciprocal, std::uint16_t* out) {
+  const hn::FixedTag<std::uint32_t, 4> d;
+  const hn::RepartitionToWide<decltype(d)> twice;
+  const hn::Rebind<std::uint16_t, decltype(d)> narrow;
+  const auto doubled = hn::Add(hn::Add(sum, sum), rounding);
+  const auto even = hn::ShiftRight<32>(hn::MulEven(doubled, reciprocal));
+  const auto odd = hn::MulEven(hn::BitCast(d, hn::ShiftRight<32>(hn::BitCast(twice, doubled))), reciprocal);
+  const auto mean = hn::OddEven(hn::BitCast(d, odd), hn::BitCast(d, even));
+  hn::StoreU(hn::DemoteTo(narrow, hn::BitCast(hn::RebindToSigned<decltype(d)>(), mean)), narrow, out);
+}
+#endif
+
 template <int kRadius, bool kOne>
 void MeanRowOf(const VoteRow& row, const SourceRows& sources, std::uint64_t* marked) {
 #if HWY_TARGET != HWY_SCALAR
   constexpr std::uint32_t kVotes = (2 * kRadius + 1) * (2 * kRadius + 1);
   const hn::FixedTag<std::uint32_t, 4> d;
-  const hn::RepartitionToWide<decltype(d)> twice;
-  const hn::Rebind<std::uint16_t, decltype(d)> narrow;
-  // floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32 at most, which is less than 1 /
-  // 2n.
-  const auto reciprocal = hn::Set(d, static_cast<std::uint32_t>((std::uint64_t{1} << 32) / (2 * kVotes) + 1));
+  const auto reciprocal = hn::Set(d, MeanReciprocal(kVotes));
   const auto rounding = hn::Set(d, kVotes);
   const std::int32_t* rows[2 * kRadius + 1];
   const std::uint16_t* texels[2 * kRadius + 1];
@@ -132,12 +149,7 @@ void MeanRowOf(const VoteRow& row, const SourceRows& sources, std::uint64_t* mar
       for (int k = 0; k <= 2 * kRadius; ++k) places[k] = rows[k] + (p - sources.begin());
       const auto sum =
           SumOfWindow<kRadius, kOne>(d, row, texels + kRadius, places + kRadius, row.field.Index(p, row.y));
-      const auto doubled = hn::Add(hn::Add(sum, sum), rounding);
-      const auto even = hn::ShiftRight<32>(hn::MulEven(doubled, reciprocal));
-      const auto odd = hn::MulEven(hn::BitCast(d, hn::ShiftRight<32>(hn::BitCast(twice, doubled))), reciprocal);
-      const auto mean = hn::OddEven(hn::BitCast(d, odd), hn::BitCast(d, even));
-      std::uint16_t* out = row.out + 4 * std::size_t(p);
-      hn::StoreU(hn::DemoteTo(narrow, hn::BitCast(hn::RebindToSigned<decltype(d)>(), mean)), narrow, out);
+      MeanTexel(sum, rounding, reciprocal, row.out + 4 * std::size_t(p));
       // All are opaque only where the mean of the alphas is and nothing was rounded away.
       refused |= hn::ExtractLane(sum, 3) == kVotes * 65535 ? 0 : left & (0 - left);
     }
@@ -160,6 +172,47 @@ void MeanRow(const VoteRow& row, const SourceRows& sources, std::uint64_t* marke
   }
 }
 
+void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const PixelStep> ways, const std::uint64_t* votes,
+             std::uint64_t* marked) {
+#if HWY_TARGET != HWY_SCALAR
+  const hn::FixedTag<std::uint32_t, 4> d;
+  const hn::Rebind<std::uint16_t, decltype(d)> narrow;
+  std::uint32_t reciprocals[50] = {};
+  for (std::uint32_t n = 1; n <= ways.size() + 1; ++n) reciprocals[n] = MeanReciprocal(n);
+  const std::int32_t* places[48];  // of each way, from the pixel at column `begin` on
+  std::ptrdiff_t steps[48];        // of each way, in the exemplar
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    places[k] = sources.Row(row.y + ways[k].dy) + ways[k].dx;
+    steps[k] = ways[k].dy * std::ptrdiff_t(row.texels.width) + ways[k].dx;
+  }
+  const std::int32_t* own = sources.Row(row.y);
+  for (int w = 0; w < row.words; ++w, votes += ways.size()) {
+    std::uint64_t refused = 0;
+    for (std::uint64_t left = marked[w]; left; left &= left - 1) {
+      const int i = std::countr_zero(left), p = 64 * (row.first_word + w) + i, column = p - sources.begin();
+      const std::size_t q = row.field.Index(p, row.y);
+      std::uint64_t voting = 0;
+      for (std::size_t k = 0; k < ways.size(); ++k) voting |= (votes[k] >> i & 1) << k;
+      const auto texel = [&](std::size_t from, std::ptrdiff_t place) HWY_ATTR {
+        return hn::PromoteTo(d, hn::LoadU(narrow, row.texels.picture[row.field.exemplar[from]] + 4 * place));
+      };
+      const std::uint32_t count = 1 + static_cast<std::uint32_t>(std::popcount(voting));
+      auto sum = texel(q, own[column]);
+      for (; voting; voting &= voting - 1) {
+        const int k = std::countr_zero(voting);
+        const std::ptrdiff_t from = std::ptrdiff_t(q) + ways[k].dy * std::ptrdiff_t(row.field.width) + ways[k].dx;
+        sum = hn::Add(sum, texel(std::size_t(from), places[k][column] - steps[k]));
+      }
+      MeanTexel(sum, hn::Set(d, count), hn::Set(d, reciprocals[count]), row.out + 4 * std::size_t(p));
+      refused |= hn::ExtractLane(sum, 3) == count * 65535 ? 0 : left & (0 - left);
+    }
+    marked[w] = refused;
+  }
+#else
+  (void)row, (void)sources, (void)ways, (void)votes, (void)marked;
+#endif
+}
+
 }  // namespace scumble::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -168,6 +221,7 @@ namespace scumble::internal {
 
 HWY_EXPORT(CopyRow);
 HWY_EXPORT(MeanRow);
+HWY_EXPORT(PartRow);
 HWY_EXPORT(PlaceRow);
 
 TexelPlanes::TexelPlanes(const PreparedExemplar& exemplar)
@@ -190,6 +244,12 @@ void SourceRows::Add(const SourceField& field, const TexelPlanes& texels, int y)
 void MeanOfMarked(const VoteRow& row, const SourceRows& sources, std::span<std::uint64_t> marked) {
   SCUMBLE_DCHECK(sources.radius() >= 1 && sources.radius() <= 3);
   HWY_DYNAMIC_DISPATCH(MeanRow)(row, sources, marked.data());
+}
+
+void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const PixelStep> ways,
+                 std::span<const std::uint64_t> votes, std::span<std::uint64_t> marked) {
+  SCUMBLE_DCHECK(ways.size() <= 48);
+  HWY_DYNAMIC_DISPATCH(PartRow)(row, sources, ways, votes.data(), marked.data());
 }
 
 }  // namespace scumble::internal

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "transfer/edges.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/source_field.h"
 
@@ -61,5 +62,10 @@ void CopyMarked(const VoteRow& row, std::span<const std::uint64_t> marked, std::
 // an/2 lies half-way between two integers, so no multiple of an lies between it and the lower one, and both quotients
 // have one floor.
 void MeanOfMarked(const VoteRow& row, const SourceRows& sources, std::span<std::uint64_t> marked);
+
+// The same for windows of which a part votes: the pixel itself, and the one `ways[k]` from it where its bit of votes[w ·
+// ways + k] is set; such pixels are in the picture, and the texels that they vote for are usable. At most 48 ways.
+void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const PixelStep> ways,
+                 std::span<const std::uint64_t> votes, std::span<std::uint64_t> marked);
 
 }  // namespace scumble::internal
