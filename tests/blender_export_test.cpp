@@ -426,6 +426,8 @@ class BlenderVerbs : public CliTest {
   BlenderVerbs() {
     fs::create_directories(At("home/bin"));
     fs::copy_file(SCUMBLE_BINARY, At("home/bin/scumble"));
+    const std::string module = "libscumble_formats.so";
+    fs::create_symlink(fs::path(SCUMBLE_BINARY).parent_path() / module, At("home/bin") / module);
     fs::create_directory_symlink(Cases::Source("blender_scripts"), At("home/blender_scripts"));
     fs::create_directory_symlink(Cases::Source("exemplars"), At("home/exemplars"));
     settings_.program = At("home/bin/scumble").string();
