@@ -13,11 +13,9 @@ constexpr const char* kModule = "libscumble_formats.so";
 
 class CliModule : public CliTest {
  protected:
-  CliModule() {
-    fs::create_directories(At("home/bin"));
+  CliModule() : settings_(CopyProgram("home/bin")) {
+    fs::remove(At("home/bin") / kModule);
     fs::create_directories(At("home/lib/scumble"));
-    fs::copy_file(SCUMBLE_BINARY, At("home/bin/scumble"));
-    settings_.program = At("home/bin/scumble").string();
   }
   void Put(const fs::path& module, const std::string& folder) {
     fs::copy_file(module, At(folder) / kModule, fs::copy_options::overwrite_existing);
