@@ -118,10 +118,11 @@ std::string WithoutNumber(const std::string& reason, int frame) {
   return text;
 }
 
-// Whether an output can be kept; says why one that is there cannot.
-bool CanKeep(const Sequence& sequence, const SequenceWork& work, int frame, const Globals& globals) {
+// Whether an output can be kept; says why one that is there cannot. An error where it cannot be known.
+Expected<bool> CanKeep(const Sequence& sequence, const SequenceWork& work, int frame, const Globals& globals) {
   const std::string output = sequence.output.At(frame);
   const Status whole = work.check(frame, output);
+  if (!whole && whole.error().kind == ErrorKind::kUnavailable) return whole.error();
   std::error_code failed;
   if (!whole && std::filesystem::exists(output, failed)) Say(globals, whole.error().message + ": made again");
   return whole.ok();
@@ -211,15 +212,24 @@ class Tally {
   int made_ = 0, kept_ = 0;
 };
 
-// The frame that is written while the next one is made.
+// The frame that is written while the next one is made; at once, where there is one thread alone or no other to be had.
 class FramesBeingWritten {
  public:
-  FramesBeingWritten(Tally& tally, const Globals& globals)
-      : tally_(tally), globals_(globals), policy_(globals.threads == 1 ? std::launch::deferred : std::launch::async) {}
+  FramesBeingWritten(Tally& tally, const Globals& globals) : tally_(tally), globals_(globals) {}
 
-  void Begin(int frame, FrameWrite write) {
+  Status Begin(int frame, const FrameWrite& write) {
     frame_ = frame;
-    report_ = std::async(policy_, std::move(write));
+    if (globals_.threads != 1) {
+      try {
+        report_ = std::async(std::launch::async, write);
+        return Ok();
+      } catch (const std::system_error&) {
+        // The limit of processes is reached, or memory's.
+      }
+    }
+    Expected<FrameReport> report = write();
+    EndStage(globals_, "write");
+    return Tell(std::move(report));
   }
 
   // Waits for it, if there is one, and tells of it.
@@ -228,15 +238,18 @@ class FramesBeingWritten {
     Expected<FrameReport> report = report_.get();
     EndStage(globals_, "waiting");
     if (globals_.timing && report) globals_.timing->Add("write", report->write_ms);
+    return Tell(std::move(report));
+  }
+
+ private:
+  Status Tell(Expected<FrameReport> report) {
     if (!report) return tally_.Fail(frame_, report.error());
     tally_.Made(frame_, *std::move(report));
     return Ok();
   }
 
- private:
   Tally& tally_;
   const Globals& globals_;
-  std::launch policy_;
   int frame_ = 0;
   std::future<Expected<FrameReport>> report_;  // waits at its end, so that no thread outlives what it uses
 };
@@ -249,7 +262,11 @@ Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& wor
   Tally tally(sequence, bar, globals);
   std::vector<int> frames;
   for (const int frame : sequence.frames) {
-    if (sequence.resume && CanKeep(sequence, work, frame, globals)) {
+    bool keep = false;
+    if (sequence.resume) {
+      SCUMBLE_ASSIGN(keep, CanKeep(sequence, work, frame, globals));
+    }
+    if (keep) {
       tally.Kept(frame);
     } else {
       frames.push_back(frame);
@@ -264,7 +281,7 @@ Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& wor
         work.make(frames[i], sequence.output.At(frames[i]), bar.Part(done / steps, (done + 1.0) / steps));
     SCUMBLE_RETURN_IF_ERROR(writing.Finish());  // what there is to tell of a frame comes before the next one's
     if (made) {
-      writing.Begin(frames[i], *std::move(made));
+      SCUMBLE_RETURN_IF_ERROR(writing.Begin(frames[i], *made));
     } else {
       SCUMBLE_RETURN_IF_ERROR(tally.Fail(frames[i], made.error()));
     }

@@ -78,9 +78,9 @@ struct SequenceWork {
 // Makes the frames one after the other and prints a line for each and one for all; under --json one object with an
 // array `frames`. With `resume` those that `check` accepts are left as they are. A frame whose input is missing or
 // broken (kInput) does not stop the others: the error at the end names all of them. Any other error would come again
-// in every frame, and ends the sequence. A frame is encoded and written while the next one is made, unless there is one
-// thread alone: so two frames are in memory, never three, and where one cannot be written, the next has been made in vain.
-// What is told of them, and in which order, is the same.
+// in every frame, and ends the sequence. A frame is encoded and written by another thread while the next one is made: so two
+// frames are in memory, never three, and where one cannot be written, the next has been made in vain. Where there is one thread
+// alone, or no other to be had, it is written before the next one is begun. What is told of them, and in which order, is the same.
 Expected<ExitCode> RunSequence(const Sequence& sequence, const SequenceWork& work, ProgressBar& bar,
                                const Globals& globals);
 

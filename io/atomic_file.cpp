@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 
@@ -60,12 +61,26 @@ int OpenTemporary(const fs::path& target, std::string& name) {
   return ::mkostemps(name.data(), kSuffixLength, O_CLOEXEC);
 }
 
+// The process's umask, which the system tells only by setting another; Linux has it in proc(5) as well (4.7 and later), so
+// that files that other threads make meanwhile get none of it. Elsewhere it is asked once.
+mode_t FileModeMask() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    unsigned mask = 0;
+    if (std::sscanf(line.c_str(), "Umask: %o", &mask) == 1) return static_cast<mode_t>(mask);
+  }
+  static const mode_t kMask = [] {
+    const mode_t mask = ::umask(077);
+    ::umask(mask);
+    return mask;
+  }();
+  return kMask;
+}
+
 // mkostemp makes private files; a new file gets what the user's umask allows, a replaced one keeps what it had.
 mode_t ModeFor(const fs::file_status& replaced) {
   if (fs::exists(replaced)) return static_cast<mode_t>(replaced.permissions());
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  return 0666 & ~mask;
+  return 0666 & ~FileModeMask();
 }
 
 // A target with its links followed, and whether it is a device or a pipe, which is written to directly.

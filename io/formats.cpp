@@ -3,7 +3,10 @@
 #include <dlfcn.h>
 
 #include <atomic>
+#include <filesystem>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include "io/channel_file.h"
 #include "io/library.h"
@@ -11,20 +14,48 @@
 namespace scumble {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::atomic<int> io_threads{0};
 
 constexpr const char* kFile = "libscumble_formats.so";
 
+// Beside the program, as in a build; or where it is installed. Only files of these full names are loaded: a name alone would be
+// looked for where the environment says, or in the folder that the program runs in.
+std::vector<fs::path> Folders() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) return {};
+  const fs::path folder = program.parent_path();
+  return {folder, (folder / "../lib/scumble").lexically_normal()};
+}
+
+Error Unusable(const std::string& module, const std::string& what) {
+  return UnavailableError(module + ", which reads and writes EXR, JPEG and TIFF, " + what +
+                          ": build or install scumble again, with all of its files");
+}
+
+Expected<const Formats*> LoadFrom(const fs::path& path) {
+  // What the module's libraries define stays out of everybody else's way.
+  void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (!module) {
+    const char* const reason = ::dlerror();
+    return Unusable(path.string(), "cannot be loaded (" + std::string(reason ? reason : "no reason is given") + ")");
+  }
+  const auto* const found = static_cast<const Formats*>(::dlsym(module, "scumble_formats_" SCUMBLE_MODULE_VERSION));
+  if (found && found->layout == kFormatsLayout) return found;
+  ::dlclose(module);
+  return Unusable(path.string(), "is of another version than scumble");
+}
+
 Expected<const Formats*> Load() {
-  // Found by the program's own run path: beside it in a build, in ../lib/scumble where it is installed. What the
-  // module's libraries define stays out of everybody else's way.
-  void* const module = ::dlopen(kFile, RTLD_LAZY | RTLD_LOCAL);
-  const char* const reason = module ? nullptr : ::dlerror();
-  const void* const found = module ? ::dlsym(module, "scumble_formats_" SCUMBLE_MODULE_VERSION) : nullptr;
-  if (found) return static_cast<const Formats*>(found);
-  return UnavailableError(std::string(kFile) + ", which reads and writes EXR, JPEG and TIFF, " +
-                          (module ? "is of another version than scumble" : "cannot be loaded") +
-                          (reason ? " (" + std::string(reason) + ")" : "") + ": build or install scumble again, with all of its files");
+  std::string searched;
+  for (const fs::path& folder : Folders()) {
+    std::error_code failed;
+    if (fs::exists(folder / kFile, failed)) return LoadFrom(folder / kFile);
+    searched += (searched.empty() ? "" : " or ") + folder.string();
+  }
+  return Unusable(kFile, searched.empty() ? "cannot be looked for: /proc/self/exe is not readable" : "is not in " + searched);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 // it. Everybody else calls the functions of picture_file.h, channel_file.h, guide_file.h and whole_output.h.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -43,8 +45,22 @@ void SetThreads(int threads);
 
 }  // namespace formats
 
-// The module's only export, `scumble_formats`, points to one of these.
+// Sizes of what goes to and from the module, in one number: two builds of one version may still differ in them.
+inline constexpr std::uint64_t kFormatsLayout = [] {
+  constexpr std::uint64_t kOffset = 0xcbf29ce484222325u, kPrime = 0x100000001b3u;  // FNV-1a's
+  std::uint64_t layout = kOffset;
+  for (const std::size_t size :
+       {sizeof(Expected<Picture>), sizeof(Picture), sizeof(PictureHeader), sizeof(StoredPicture), sizeof(PictureWriteOptions),
+        sizeof(ChannelImage), sizeof(GuideSet), sizeof(GuideReadOptions), sizeof(GuideFileInfo),
+        sizeof(GuideWriteOptions), sizeof(LayerSet), sizeof(Error), sizeof(std::string), sizeof(std::filesystem::path)}) {
+    layout = (layout ^ size) * kPrime;
+  }
+  return layout;
+}();
+
+// The module's only export, `scumble_formats_` and the version, as in scumble_formats_0_1_0, is one of these.
 struct Formats {
+  std::uint64_t layout = 0;  // the module's own kFormatsLayout
   decltype(&formats::ReadPicture) read_picture;
   decltype(&formats::DecodePicture) decode_picture;
   decltype(&formats::InspectPicture) inspect_picture;

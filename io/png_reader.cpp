@@ -110,18 +110,22 @@ std::uint16_t From16(const std::vector<png_byte>& samples, std::size_t i) {
   return static_cast<std::uint16_t>(samples[2 * i] << 8 | samples[2 * i + 1]);
 }
 
+bool Begin(Source& source, Reading& reading, Picture& picture) {
+  reading.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, Fail, Ignore);
+  if (!reading.png) return false;
+  reading.info = png_create_info_struct(reading.png);
+  if (!reading.info) return false;
+  png_set_read_fn(reading.png, &source, Take);
+  return ReadHead(reading, picture);
+}
+
 }  // namespace
 
 std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes) {
   Source source{bytes};
   Reading reading;
-  reading.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, Fail, Ignore);
-  if (!reading.png) return std::nullopt;
-  reading.info = png_create_info_struct(reading.png);
-  if (!reading.info) return std::nullopt;
-  png_set_read_fn(reading.png, &source, Take);
   Picture picture;
-  if (!ReadHead(reading, picture)) return std::nullopt;
+  if (!Begin(source, reading, picture)) return std::nullopt;
   const std::size_t row_bytes = std::size_t(picture.width) * std::size_t(reading.channels * reading.bits / 8);
   std::vector<png_byte> samples(row_bytes * std::size_t(picture.height));
   std::vector<png_bytep> rows(std::size_t(picture.height));
@@ -131,6 +135,21 @@ std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes) {
   if (reading.bits == 8) Spread(samples, reading.channels, From8, picture);
   else Spread(samples, reading.channels, From16, picture);
   return picture;
+}
+
+std::optional<StoredPicture> InspectPlainPng(std::span<const std::byte> bytes) {
+  Source source{bytes};
+  Reading reading;
+  Picture picture;
+  if (!Begin(source, reading, picture)) return std::nullopt;
+  StoredPicture stored{picture.width, picture.height, reading.channels, reading.bits, {}};
+  png_textp texts = nullptr;
+  int count = 0;
+  png_get_text(reading.png, reading.info, &texts, &count);
+  for (const png_text& text : std::span(texts, static_cast<std::size_t>(count))) {
+    if (text.key && text.text && std::strcmp(text.key, kSettingsKey) == 0) stored.settings = text.text;
+  }
+  return stored;
 }
 
 }  // namespace scumble::internal

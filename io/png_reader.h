@@ -6,6 +6,7 @@
 #include <span>
 
 #include "image/picture.h"
+#include "io/formats.h"
 
 namespace scumble::internal {
 
@@ -13,5 +14,8 @@ namespace scumble::internal {
 // than a picture may be, or has what only the picture library knows how to take: Exif, XMP, an offset, a linear gamma, or words
 // about colour spaces. That library then reads it, or says what is wrong. Thread-safe.
 std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes);
+
+// What that file's header says, as `InspectStored` gives it: of the same files, whole or not.
+std::optional<StoredPicture> InspectPlainPng(std::span<const std::byte> bytes);
 
 }  // namespace scumble::internal

@@ -7,9 +7,12 @@
 #include <string>
 #include <system_error>
 
+#include "io/atomic_file.h"
 #include "io/formats.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
+#include "io/png_reader.h"
+#include "io/whole_png.h"
 
 namespace scumble {
 namespace {
@@ -51,6 +54,17 @@ Status CheckSettings(const std::filesystem::path& path, const std::string& found
   return Ok();
 }
 
+// A plain PNG needs no module.
+Expected<StoredPicture> Inspect(const std::filesystem::path& path) {
+  if (internal::IsPngFile(path)) {
+    SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
+    SCUMBLE_RETURN_IF_ERROR(internal::CheckPngIsWhole(bytes, path.string()));
+    if (auto stored = internal::InspectPlainPng(bytes)) return *std::move(stored);
+  }
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  return formats->inspect_stored(path);
+}
+
 }  // namespace
 
 int PictureChannels(const std::filesystem::path& path) {
@@ -61,8 +75,7 @@ int PictureChannels(const std::filesystem::path& path) {
 
 Status CheckWholePicture(const std::filesystem::path& path, const PictureShape& shape) {
   SCUMBLE_RETURN_IF_ERROR(CheckNotEmpty(path));
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
-  SCUMBLE_ASSIGN(const StoredPicture stored, formats->inspect_stored(path));
+  SCUMBLE_ASSIGN(const StoredPicture stored, Inspect(path));
   SCUMBLE_RETURN_IF_ERROR(CheckSide(path, stored.width, stored.height, shape.width, shape.height));
   if (shape.channels != 0 && stored.channels != shape.channels) {
     return InputError(path.string() + " has " + std::to_string(stored.channels) + " channels, not " +

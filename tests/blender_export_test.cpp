@@ -423,12 +423,9 @@ TEST(BlenderRenders, CyclesSeesTheSameSurfaces) {
 // The program beside its scripts, wherever it was built.
 class BlenderVerbs : public CliTest {
  protected:
-  BlenderVerbs() {
-    fs::create_directories(At("home/bin"));
-    fs::copy_file(SCUMBLE_BINARY, At("home/bin/scumble"));
+  BlenderVerbs() : settings_(CopyProgram("home/bin")) {
     fs::create_directory_symlink(Cases::Source("blender_scripts"), At("home/blender_scripts"));
     fs::create_directory_symlink(Cases::Source("exemplars"), At("home/exemplars"));
-    settings_.program = At("home/bin/scumble").string();
   }
   CommandResult RunHere(const Arguments& arguments) { return Run(arguments, settings_); }
   void ExpectErrorHere(const Arguments& arguments, int code, const std::vector<std::string>& parts) {

@@ -75,6 +75,18 @@ class CliTest : public testing::Test {
   std::filesystem::path Work() const { return folder_ / "work"; }
   std::filesystem::path At(const std::string& name) const { return Work() / name; }
 
+  // Copies the program to a folder, its module of formats beside it, and gives what runs the copy.
+  CommandSettings CopyProgram(const std::string& folder) {
+    namespace fs = std::filesystem;
+    const fs::path program = SCUMBLE_BINARY, module = "libscumble_formats.so";
+    fs::create_directories(At(folder));
+    fs::copy_file(program, At(folder) / "scumble");
+    fs::create_symlink(program.parent_path() / module, At(folder) / module);
+    CommandSettings settings;
+    settings.program = (At(folder) / "scumble").string();
+    return settings;
+  }
+
   CommandResult Run(const Arguments& arguments, const CommandSettings& settings = {}) {
     const std::string out = settings.stdout_file.empty() ? (folder_ / "stdout").string() : settings.stdout_file;
     const std::string err = (folder_ / "stderr").string(), work = Work().string();

@@ -312,10 +312,7 @@ TEST_F(CliVerbs, BundledStylesByName) {
     const std::string root = styles.substr(0, styles.find('/'));
     WriteStyle(styles + "/beta");
     WriteStyle(styles + "/alpha");
-    fs::create_directories(At(root + "/bin"));
-    fs::copy_file(SCUMBLE_BINARY, At(root + "/bin/scumble"));
-    CommandSettings installed;
-    installed.program = At(root + "/bin/scumble").string();
+    const CommandSettings installed = CopyProgram(root + "/bin");
     const CommandResult list = Run({"styles"}, installed);
     EXPECT_EQ(list.code, 0) << list.err;
     EXPECT_LT(list.out.find("alpha"), list.out.find("beta"));

@@ -49,6 +49,23 @@ TEST_F(CliTiming, OfASequenceItIsTheSum) {
   EXPECT_NEAR(counted, rays, 1e-6 + 1e-6 * rays);
 }
 
+TEST_F(CliTiming, OneThreadWritesAtOnceAndIsCountedOnce) {
+  WriteStyle("style");
+  const auto run = Run({"stylize", Scene("ball.glb"), "--style", "style", "--size", "512", "--frames", "1-3", "--json", "--bits",
+                        "16", "--png-level", "9", "--threads", "1", "--timing", "-o", "p.####.png"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  double wall = 0, write_cpu = 0, total = 0;
+  const auto json = run.Json();
+  for (const auto& stage : json["timing"]) {
+    const std::string name = stage["stage"];
+    EXPECT_NE(name, "waiting") << "for what, with one thread";
+    if (name == "write") write_cpu = stage.value("cpu_ms", 0.0);
+    (name == "total" ? total : wall) += stage["wall_ms"].get<double>();
+  }
+  EXPECT_GT(write_cpu, 0.0);
+  EXPECT_NEAR(wall, total, 2.0 + 0.02 * total);
+}
+
 TEST_F(CliTiming, FastGuidesHoldTheSamePixels) {
   const Arguments guidegen = {"guidegen", Scene("ball.glb"), "--size", "64x48"};
   ASSERT_EQ(Run(With(guidegen, {"-o", "zip.exr"})).code, 0);

@@ -11,6 +11,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "image/hash.h"
@@ -231,7 +232,7 @@ TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
       {kPalette, 1}, {kPalette, 2}, {kPalette, 4}, {kPalette, 8}, {kPalette, 8, false, true}, {kPalette, 4, true, true},
       {kRgb, 8, false, true}, {kG, 8, false, true}, {kRgb, 16, false, true}, {kG, 2, false, true}, {kRgba, 8, true},
       {kRgba, 16, true}, {kG, 1, true}, {kRgba, 8, false, false, 1 / 2.2}, {kRgb, 8, false, false, 1 / 1.8},
-      {kRgb, 8, false, false, 0, "Comment", "a word"}, {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"}};
+      {kRgb, 8, false, false, 0, "Comment", "a word"}, {kRgba, 16, false, false, 0, "scumble:settings", "seed 1"}, {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"}};
   TemporaryFolder folder;
   for (const Kind& kind : kinds) {
     for (const auto& [width, height] : {Shape{1, 1}, Shape{19, 13}, Shape{7, 40}}) {
@@ -245,6 +246,11 @@ TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
       ASSERT_TRUE(library) << library.error().message;
       EXPECT_EQ(plain->width, library->width);
       EXPECT_TRUE(plain->rgba == library->rgba);
+      const auto head = internal::InspectPlainPng(*ReadWholeFile(folder / "p.png"));
+      const auto stored = (*LoadFormats())->inspect_stored(folder / "p.png");
+      ASSERT_TRUE(head && stored);
+      EXPECT_EQ(std::tie(head->width, head->height, head->channels, head->bits, head->settings),
+                std::tie(stored->width, stored->height, stored->channels, stored->bits, stored->settings));
     }
   }
 }
