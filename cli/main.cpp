@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/ending_signals.h"
 #include "cli/help_format.h"
 #include "image/check.h"
 #include "io/library.h"
@@ -139,6 +140,7 @@ int Run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     scumble::OccupyStandardStreams();
+    scumble::CleanUpOnSignals();
     return scumble::Run(argc, argv);
   } catch (const std::bad_alloc&) {
     std::fputs("scumble: error: out of memory; ask for a smaller picture\n", stderr);

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "io/unfinished_files.h"
+
 namespace scumble {
 namespace {
 
@@ -49,16 +51,6 @@ Expected<fs::path> FollowLinks(const fs::path& path) {
   }
   const fs::path canonical = fs::weakly_canonical(target, failed);
   return failed || canonical.empty() ? target : canonical;
-}
-
-// A new file beside the target that nobody else has: hidden, with a random name, short enough where the target's own
-// name is as long as a name may be. The descriptor, or -1 and errno.
-int OpenTemporary(const fs::path& target, std::string& name) {
-  constexpr std::size_t kMaxStem = 200;
-  const std::string stem = target.filename().string().substr(0, kMaxStem);
-  name = (target.parent_path() / ("." + stem + ".XXXXXX.tmp")).string();
-  constexpr int kSuffixLength = 4;
-  return ::mkostemps(name.data(), kSuffixLength, O_CLOEXEC);
 }
 
 // The process's umask, which the system tells only by setting another; Linux has it in proc(5) as well (4.7 and later), so
@@ -108,11 +100,9 @@ Expected<Target> CheckTarget(const fs::path& path) {
 Status CheckWritable(const fs::path& path) {
   SCUMBLE_ASSIGN(const Target target, CheckTarget(path));
   if (target.is_special) return ::access(target.path.c_str(), W_OK) == 0 ? Ok() : Status(WriteFailure(path, errno));
-  std::string temporary;
-  const int descriptor = OpenTemporary(target.path, temporary);
-  if (descriptor < 0) return WriteFailure(path, errno);
-  ::close(descriptor);
-  ::unlink(temporary.c_str());
+  const internal::UnfinishedFile temporary(target.path);
+  if (temporary.descriptor() < 0) return WriteFailure(path, errno);
+  ::close(temporary.descriptor());
   return Ok();
 }
 
@@ -125,18 +115,14 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
     const int failure = WriteAllAndClose(descriptor, bytes, false);
     return failure == 0 ? Ok() : Status(WriteFailure(path, failure));
   }
-  std::string temporary;
-  const int descriptor = OpenTemporary(target, temporary);
+  internal::UnfinishedFile temporary(target);
+  const int descriptor = temporary.descriptor();
   if (descriptor < 0) return WriteFailure(path, errno);
   // Where the file system has no permissions, that is no failure to write.
   [[maybe_unused]] const int kept = ::fchmod(descriptor, ModeFor(checked.status));
   int failure = WriteAllAndClose(descriptor, bytes, true);
-  if (failure == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) failure = errno;
-  if (failure != 0) {
-    ::unlink(temporary.c_str());
-    return WriteFailure(path, failure);
-  }
-  return Ok();
+  if (failure == 0) failure = temporary.Finish(target);
+  return failure == 0 ? Ok() : Status(WriteFailure(path, failure));
 }
 
 Status WriteFileAtomically(const fs::path& path, std::string_view text) {

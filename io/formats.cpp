@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "io/atomic_file.h"
 #include "io/channel_file.h"
 #include "io/library.h"
 
@@ -91,7 +92,8 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
   SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(path, options));
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
-  return formats->write_guides(path, guides, options);
+  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, formats->encode_guides(path, guides, options));
+  return WriteFileAtomically(path, encoded);
 }
 
 }  // namespace scumble

@@ -3,11 +3,13 @@
 // it. Everybody else calls the functions of picture_file.h, channel_file.h, guide_file.h and whole_output.h.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "image/channel_image.h"
 #include "image/guides.h"
@@ -31,16 +33,19 @@ struct StoredPicture {
 
 namespace formats {
 
-// What the functions of these names outside of this namespace do, for files that need the library.
+// What the functions of these names outside of this namespace do, for files that need the library. It writes no file itself: that
+// is WriteFileAtomically's, of which the module would have a copy that no handler of signals knows.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path);
-Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options);
+Expected<std::vector<std::byte>> EncodePicture(const std::filesystem::path& path, const Picture& picture,
+                                               const PictureWriteOptions& options);
 Expected<ChannelImage> ReadChannels(const std::filesystem::path& path);
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options);
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
-Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options);
+Expected<std::vector<std::byte>> EncodeGuides(const std::filesystem::path& path, const GuideSet& guides,
+                                              const GuideWriteOptions& options);
 void SetThreads(int threads);
 
 }  // namespace formats
@@ -52,7 +57,7 @@ inline constexpr std::uint64_t kFormatsLayout = [] {
   for (const std::size_t size :
        {sizeof(Expected<Picture>), sizeof(Picture), sizeof(PictureHeader), sizeof(StoredPicture), sizeof(PictureWriteOptions),
         sizeof(ChannelImage), sizeof(GuideSet), sizeof(GuideReadOptions), sizeof(GuideFileInfo),
-        sizeof(GuideWriteOptions), sizeof(LayerSet), sizeof(Error), sizeof(std::string), sizeof(std::filesystem::path)}) {
+        sizeof(GuideWriteOptions), sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet), sizeof(Error), sizeof(std::string), sizeof(std::filesystem::path)}) {
     layout = (layout ^ size) * kPrime;
   }
   return layout;
@@ -65,11 +70,11 @@ struct Formats {
   decltype(&formats::DecodePicture) decode_picture;
   decltype(&formats::InspectPicture) inspect_picture;
   decltype(&formats::InspectStored) inspect_stored;
-  decltype(&formats::WritePicture) write_picture;
+  decltype(&formats::EncodePicture) encode_picture;
   decltype(&formats::ReadChannels) read_channels;
   decltype(&formats::ReadGuides) read_guides;
   decltype(&formats::InspectGuides) inspect_guides;
-  decltype(&formats::WriteGuides) write_guides;
+  decltype(&formats::EncodeGuides) encode_guides;
   decltype(&formats::SetThreads) set_threads;
 };
 

@@ -11,8 +11,8 @@ extern "C" {
 __attribute__((visibility("default"))) extern const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL);
 const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL) = {
     kFormatsLayout,        formats::ReadPicture,  formats::DecodePicture, formats::InspectPicture,
-    formats::InspectStored, formats::WritePicture, formats::ReadChannels,  formats::ReadGuides,
-    formats::InspectGuides, formats::WriteGuides,  formats::SetThreads,
+    formats::InspectStored, formats::EncodePicture, formats::ReadChannels,  formats::ReadGuides,
+    formats::InspectGuides, formats::EncodeGuides,  formats::SetThreads,
 };
 }
 

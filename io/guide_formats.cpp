@@ -378,10 +378,11 @@ void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
 
 }  // namespace
 
-Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
+Expected<std::vector<std::byte>> EncodeGuides(const std::filesystem::path& path, const GuideSet& guides,
+                                              const GuideWriteOptions& options) {
   const OIIO::ImageSpec spec = SpecFor(guides, options);
   const std::vector<std::byte> pixels = Interleave(guides, spec);
-  return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
+  return internal::Encode(path.string(), spec, [&](OIIO::ImageOutput& output) {
     return output.write_image(OIIO::TypeDesc::UNKNOWN, pixels.data());  // UNKNOWN: already in the file's own formats
   });
 }

@@ -118,12 +118,6 @@ Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::Ima
   return std::vector<std::byte>(bytes.begin(), bytes.end());
 }
 
-Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
-                      const std::function<bool(OIIO::ImageOutput&)>& write_pixels) {
-  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, Encode(path.string(), spec, write_pixels));
-  return WriteFileAtomically(path, encoded);
-}
-
 Status CheckSize(const OIIO::ImageSpec& spec, const std::string& name) {
   constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;  // 16384²
   const bool fits = spec.width >= 1 && spec.height >= 1 && spec.width <= kMaxImageSide &&

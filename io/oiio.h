@@ -26,14 +26,10 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemRea
 // TIFF that ends too soon: ask has_error() as well.
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name);
 
-// Encodes with `write_pixels` into memory, in the format that the name's ending says.
+// Encodes with `write_pixels` into memory, in the format that the name's ending says. The library's failures become errors that
+// name the file.
 Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::ImageSpec& spec,
                                         const std::function<bool(OIIO::ImageOutput&)>& write_pixels);
-
-// Encodes, then writes the file atomically: the library's and the disk's failures both
-// become errors that name the file.
-Status EncodeAndWrite(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
-                      const std::function<bool(OIIO::ImageOutput&)>& write_pixels);
 
 // Refuses sizes that no real picture has, before anything of that size is allocated.
 Status CheckSize(const OIIO::ImageSpec& spec, const std::string& name);

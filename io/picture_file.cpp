@@ -60,7 +60,8 @@ Status WritePicture(const std::filesystem::path& path, const Picture& picture, c
     return WriteFileAtomically(path, Png(picture, options));
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
-  return formats->write_picture(path, picture, options);
+  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, formats->encode_picture(path, picture, options));
+  return WriteFileAtomically(path, encoded);
 }
 
 Expected<std::vector<std::byte>> EncodePng(const Picture& picture, int dpi) {

@@ -40,6 +40,7 @@ struct PictureWriteOptions {
   int jpeg_quality = 92;
   int dpi = 0;        // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted
   bool grey = false;  // PNG and TIFF: the red channel alone, for pictures that are grey and opaque
+  bool fast = false;  // EXR: kFastCompression of guide_file.h instead of zip, the same pixels
   std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
 };
 

@@ -15,6 +15,8 @@ namespace scumble::formats {
 using internal::Upper;
 namespace {
 
+using Bytes = Expected<std::vector<std::byte>>;
+
 // Which channel of a file is which colour; -1 where there is none.
 struct ColorChannels {
   int r = -1, g = -1, b = -1, a = -1;
@@ -149,28 +151,28 @@ OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureW
   return spec;
 }
 
-Status WriteTiff(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+Bytes EncodeTiff(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   OIIO::ImageSpec spec = EncodedSpec(picture, options.grey ? 1 : 4, options);
   // A TIFF would say sRGB in a second directory, which OpenImageIO 2.4 spoils in memory; integers are sRGB without it.
   spec.erase_attribute("oiio:ColorSpace");
   if (options.grey) {
     std::vector<std::uint16_t> grey(picture.rgba.size() / 4);
     for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = picture.rgba[4 * i];
-    return internal::EncodeAndWrite(
+    return internal::Encode(
         path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT16, grey.data()); });
   }
   if (options.bits == 8) {
     const std::vector<std::uint8_t> bytes = In8Bits(picture);
-    return internal::EncodeAndWrite(
+    return internal::Encode(
         path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT8, bytes.data()); });
   }
-  return internal::EncodeAndWrite(path, spec, [&](OIIO::ImageOutput& output) {
+  return internal::Encode(path, spec, [&](OIIO::ImageOutput& output) {
     return output.write_image(OIIO::TypeDesc::UINT16, picture.rgba.data());
   });
 }
 
 // JPEG has no alpha: what is transparent becomes white paper, blended in linear light.
-Status WriteOnWhite(const std::filesystem::path& path, const Picture& picture, PictureWriteOptions options) {
+Bytes EncodeOnWhite(const std::filesystem::path& path, const Picture& picture, PictureWriteOptions options) {
   options.bits = 8;
   std::vector<std::uint8_t> bytes(std::size_t(3) * picture.width * picture.height);
   for (std::size_t i = 0; i < bytes.size() / 3; ++i) {
@@ -182,16 +184,16 @@ Status WriteOnWhite(const std::filesystem::path& path, const Picture& picture, P
       bytes[3 * i + c] = static_cast<std::uint8_t>((value + 128u) / 257u);
     }
   }
-  return internal::EncodeAndWrite(path, EncodedSpec(picture, 3, options), [&](OIIO::ImageOutput& output) {
+  return internal::Encode(path, EncodedSpec(picture, 3, options), [&](OIIO::ImageOutput& output) {
     return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
   });
 }
 
-Status WriteLinear(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+Bytes EncodeLinear(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   OIIO::ImageSpec spec(picture.width, picture.height, 4,
                        options.bits == 32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
   spec.attribute("oiio:ColorSpace", "Linear");
-  spec.attribute("compression", "zip");
+  spec.attribute("compression", options.fast ? kFastCompression : "zip");
   if (!options.settings.empty()) spec.attribute(kSettingsKey, options.settings);
   std::vector<float> pixels(picture.rgba.size());
   for (std::size_t i = 0; i < pixels.size(); i += 4) {
@@ -199,7 +201,7 @@ Status WriteLinear(const std::filesystem::path& path, const Picture& picture, co
     for (int c = 0; c < 3; ++c) pixels[i + c] = Srgb16ToLinear(picture.rgba[i + c]) * alpha;
     pixels[i + 3] = alpha;
   }
-  return internal::EncodeAndWrite(
+  return internal::Encode(
       path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data()); });
 }
 
@@ -266,11 +268,11 @@ Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {
                        std::string(spec.get_string_attribute(kSettingsKey))};
 }
 
-Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+Bytes EncodePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   const std::string ending = Upper(path.extension().string());
-  if (ending == ".EXR") return WriteLinear(path, picture, options);
-  if (ending == ".JPG" || ending == ".JPEG") return WriteOnWhite(path, picture, options);
-  return WriteTiff(path, picture, options);
+  if (ending == ".EXR") return EncodeLinear(path, picture, options);
+  if (ending == ".JPG" || ending == ".JPEG") return EncodeOnWhite(path, picture, options);
+  return EncodeTiff(path, picture, options);
 }
 
 }  // namespace scumble::formats

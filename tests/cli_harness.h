@@ -88,19 +88,27 @@ class CliTest : public testing::Test {
   }
 
   CommandResult Run(const Arguments& arguments, const CommandSettings& settings = {}) {
-    const std::string out = settings.stdout_file.empty() ? (folder_ / "stdout").string() : settings.stdout_file;
-    const std::string err = (folder_ / "stderr").string(), work = Work().string();
+    return Finish(Start(arguments, settings), settings);
+  }
+
+  // Starts it; Finish, with the same settings, waits for its end.
+  pid_t Start(const Arguments& arguments, const CommandSettings& settings = {}) {
+    const std::string out = OutputFile(settings);
+    const std::string err = ErrorFile(), work = Work().string();
     std::vector<char*> argv{const_cast<char*>(settings.program.c_str())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     const pid_t child = ::fork();
     if (child == 0) Become(argv, out, err, work, settings);
+    return child;
+  }
+  CommandResult Finish(pid_t child, const CommandSettings& settings = {}) {
     int status = 0;
     EXPECT_EQ(::waitpid(child, &status, 0), child);
     CommandResult result;
     result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    if (settings.stdout_file.empty() && !settings.close_stdout) result.out = ReadAll(out);
-    result.err = ReadAll(err);
+    if (settings.stdout_file.empty() && !settings.close_stdout) result.out = ReadAll(OutputFile(settings));
+    result.err = ReadAll(ErrorFile());
     return result;
   }
 
@@ -247,6 +255,11 @@ class CliTest : public testing::Test {
   }
 
  private:
+  std::string OutputFile(const CommandSettings& settings) const {
+    return settings.stdout_file.empty() ? (folder_ / "stdout").string() : settings.stdout_file;
+  }
+  std::string ErrorFile() const { return (folder_ / "stderr").string(); }
+
   // In the child: only calls that are safe between fork and exec.
   [[noreturn]] static void Become(const std::vector<char*>& argv, const std::string& out, const std::string& err,
                                   const std::string& work, const CommandSettings& settings) {
