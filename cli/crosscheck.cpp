@@ -40,6 +40,7 @@ struct CrosscheckVerb {
   std::string baseline;
   std::string write_baseline;
   std::string keep;
+  bool fast_io = false;
   std::string html;
 };
 
@@ -138,8 +139,10 @@ Status KeepGuides(const CrosscheckVerb& verb, const std::string& scene, const Gu
     AddLayers(light.back().reference.guides, theirs_whole);
     AddLayers(light.back().ours, ours_whole);
   }
-  SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".cycles.exr", theirs_whole));
-  SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".ours.exr", ours_whole));
+  GuideWriteOptions write;
+  if (verb.fast_io) write.compression = kFastCompression;
+  SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".cycles.exr", theirs_whole, write));
+  SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".ours.exr", ours_whole, write));
   Say(globals, stem + ".cycles.exr, " + stem + ".ours.exr: the guides of both sides");
   return Ok();
 }
@@ -393,8 +396,9 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   sub->add_option("--write-baseline", verb->write_baseline, "write what was measured, with some room, as a baseline")
       ->type_name("FILE");
-  sub->add_option("--keep", verb->keep, "keep both sides' guides here, as SCENE.cycles.exr and SCENE.ours.exr")
-      ->type_name("FOLDER");
+  auto* keep = sub->add_option("--keep", verb->keep, "keep both sides' guides here, as SCENE.cycles.exr and SCENE.ours.exr");
+  keep->type_name("FOLDER");
+  AddFastIoOption(*sub, verb->fast_io)->needs(keep);
   sub->add_option("--blender", verb->blender, "the Blender to run")
       ->type_name("PATH")
       ->check(RefuseEmpty)

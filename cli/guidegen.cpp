@@ -202,8 +202,7 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto* compression =
       sub->add_option("--compression", verb->compression, "none, rle, zips, zip or piz; all are lossless");
   compression->type_name("NAME")->capture_default_str();
-  sub->add_flag("--fast-io", verb->fast_io, "the compression that is written and read in the least time, rle: the same pixels, larger files")
-      ->excludes(compression);
+  AddFastIoOption(*sub, verb->fast_io)->excludes(compression);
   sub->add_option("-o,--output", verb->output, "guide file to write, .exr; required unless --explain is given")
       ->type_name("FILE");
   AddSequenceOptions(*sub, verb->sequence);

@@ -25,6 +25,12 @@ void AddGlobalOptions(CLI::App& verb, Globals& globals) {
       ->capture_default_str();
 }
 
+CLI::Option* AddFastIoOption(CLI::App& verb, bool& fast_io) {
+  return verb.add_flag("--fast-io", fast_io,
+                       "of EXR files the compression that is written and read in the least time, rle: the same pixels, larger "
+                       "files");
+}
+
 std::string RefuseNegative(const std::string& text) {
   return text.rfind('-', 0) == 0 ? text + " is negative: expected a whole number, 0 or more" : "";
 }
@@ -175,12 +181,20 @@ Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, B
   return scene;
 }
 
-bool IsScene(const std::string& path) {
+namespace {
+
+// In letters of either case.
+bool EndsWithOneOf(const std::string& path, std::initializer_list<const char*> endings) {
   std::string ending = fs::path(path).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const std::vector<std::string> kEndings = {".glb", ".gltf", ".obj", ".ply", ".blend"};
-  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
+
+}  // namespace
+
+bool IsScene(const std::string& path) { return EndsWithOneOf(path, {".glb", ".gltf", ".obj", ".ply", ".blend"}); }
+
+bool IsExr(const std::string& path) { return EndsWithOneOf(path, {".exr"}); }
 
 namespace {
 

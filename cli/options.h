@@ -23,6 +23,11 @@ namespace scumble {
 
 void AddGlobalOptions(CLI::App& verb, Globals& globals);
 
+// --fast-io, of verbs that write EXR.
+CLI::Option* AddFastIoOption(CLI::App& verb, bool& fast_io);
+// Whether a name ends in .exr, in letters of either case.
+bool IsExr(const std::string& path);
+
 // For counts: the parser would take -1 for the largest number there is. Returns what is wrong, or nothing.
 std::string RefuseNegative(const std::string& text);
 // For names, which a shell's empty variable would leave out unseen.

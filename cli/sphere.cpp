@@ -35,6 +35,7 @@ struct SphereVerb {
   std::string layers;
   int aa = 4;
   std::string isa;
+  bool fast_io = false;
   std::string output;
   RectifyRequest rectify;
 };
@@ -97,6 +98,7 @@ Expected<int> PrintedSize(const std::string& length, int dpi) {
 Expected<KitOptions> ReadKitOptions(const SphereVerb& verb) {
   KitOptions options;
   options.dpi = verb.dpi;
+  options.fast_guides = verb.fast_io;
   SCUMBLE_ASSIGN(options.page, ParsePaperSize(verb.page));
   if (verb.only.empty()) return options;
   options.png = options.ora = options.pdf = false;
@@ -243,6 +245,7 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--isa", verb->isa,
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine")
       ->type_name("NAME");
+  AddFastIoOption(*sub, verb->fast_io);
   sub->add_option("-o,--output", verb->output, "folder to write to; what is painted there is kept. With --rectify the picture to write: the kit's lit.png")
       ->type_name("FOLDER")
       ->required();

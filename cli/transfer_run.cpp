@@ -163,6 +163,9 @@ void WarnOfIdleOptions(const StyleSet& styles, const PictureOptions& options, Tr
     Warn("--exposure " + options.exposure + " changes nothing: style " + styles.first().name +
          " has one exemplar and no weight for light, so it does not look at it");
   }
+  if (options.fast_io && !IsExr(options.output)) {
+    Warn("--fast-io changes nothing: " + options.output + " is no .exr; --png-level 1 makes PNG quick to write");
+  }
   const auto shadowed = std::find_if(styles.styles.begin(), styles.styles.end(), [](const Style& style) {
     return style.transfer.shadow != ShadowMode::kNone;
   });
@@ -221,6 +224,7 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
       ->type_name("N")
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
+  AddFastIoOption(verb, options.fast_io);
   verb.add_option("--frame", options.frame,
                   "frame number, for transfer.jitter_fps, for keys of the style that change over time, and of a scene "
                   "that moves; left out: 0, of a .blend the frame that it was saved at, of glTF the nodes as they stand")
@@ -271,7 +275,7 @@ Expected<double> ExposureFor(const std::vector<PreparedStyle>& prepared, const G
                              const PictureOptions& options, const Globals& globals) {
   SCUMBLE_ASSIGN(const std::optional<double> given, ParseExposure(options.exposure));
   if (given) return *given;
-  const std::optional<double> stops = MeasureExposure(prepared, guides);
+  const std::optional<double> stops = MeasureExposure(prepared, guides, globals.threads);
   if (!stops) return 0.0;
   Say(globals, fmt::format("exposure: {:.2f} stops; --exposure {:.2f} repeats it", *stops, *stops));
   return *stops;
@@ -428,6 +432,7 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   Made made;
   made.output = options.output, made.repeat = options.repeat;
   made.write = {options.bits, options.png_level};
+  made.write.fast = options.fast_io;
   made.write.settings = SettingsText(styles, SettingsOf(options, fps, transfer.exposure), memory.hashes);
   for (const auto& [name, ms] : times) made.steps.emplace_back(name, Spread{ms, ms, ms});
   made.steps.emplace_back("match", SpreadOf(match));

@@ -21,6 +21,7 @@ struct PictureOptions {
   std::string over;
   int bits = 8;
   int png_level = 6;
+  bool fast_io = false;
   std::optional<int> frame;
   std::string fps;  // empty: what the guides say, or kUsualFps
   std::string exposure = "auto";

@@ -300,6 +300,8 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
   }
   const fs::path style = folder / "style.toml", howto = folder / "HOWTO.txt";
   SCUMBLE_ASSIGN(const std::optional<std::string> new_style, NewStyle(style, lights));
+  GuideWriteOptions write;
+  if (options.fast_guides) write.compression = kFastCompression;
   std::vector<fs::path> written;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     for (const KitFile& file : templates[i]) {
@@ -309,7 +311,7 @@ Expected<std::vector<fs::path>> WriteSphereKit(const fs::path& folder, std::vect
     GuideSet& guides = lights[i].guides;
     guides.attributes[kMarginAttribute] = std::to_string(TemplateMargin(guides.width()));
     const fs::path guide_file = folder / GuidesName(lights[i], i);
-    SCUMBLE_RETURN_IF_ERROR(WriteGuides(guide_file, guides));
+    SCUMBLE_RETURN_IF_ERROR(WriteGuides(guide_file, guides, write));
     written.push_back(guide_file);
   }
   if (new_style) {

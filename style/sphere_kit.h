@@ -17,6 +17,7 @@ struct KitOptions {
   bool png = true;  // for any painting program
   bool ora = true;  // in layers, for Krita, GIMP and MyPaint
   bool pdf = true;  // for the printer
+  bool fast_guides = false;  // guides in kFastCompression
   int dpi = 300;    // pixels an inch on paper
   PaperSize page = PaperSize::kAuto;
 };

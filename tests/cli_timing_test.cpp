@@ -8,7 +8,17 @@
 namespace scumble {
 namespace {
 
-class CliTiming : public CliTest {};
+class CliTiming : public CliTest {
+ protected:
+  static constexpr int kRle = 1, kZip = 3;  // as EXR files number them
+
+  // The value behind the header's "compression", its type and its length.
+  int CompressionOf(const std::string& name) const {
+    const std::string key("compression\0compression\0\1\0\0\0", 28), bytes = Bytes(name);
+    const std::size_t at = bytes.find(key);
+    return at == std::string::npos ? -1 : bytes[at + key.size()];
+  }
+};
 
 TEST_F(CliTiming, TheStagesAddUpToTheWhole) {
   WriteStyle("style");
@@ -75,6 +85,42 @@ TEST_F(CliTiming, FastGuidesHoldTheSamePixels) {
   EXPECT_NE(Bytes("zip.exr"), Bytes("fast.exr")) << "another compression";
   const auto both = Run(With(guidegen, {"--fast-io", "--compression", "zip", "-o", "g.exr"}));
   EXPECT_EQ(both.code, 2) << both.err;
+}
+
+TEST_F(CliTiming, EveryVerbThatWritesExrCanBeFast) {
+  const auto same = [&](const std::string& plain, const std::string& fast) {
+    const auto compared = Run({"compare", plain, fast});
+    EXPECT_EQ(compared.code, 0) << compared.out << compared.err;
+    EXPECT_NE(Bytes(plain), Bytes(fast)) << "another compression";
+    EXPECT_EQ(CompressionOf(plain), kZip) << plain;
+    EXPECT_EQ(CompressionOf(fast), kRle) << fast;
+  };
+  WriteStyle("style");
+  for (const char* bits : {"16", "32"}) {
+    const Arguments stylize = {"stylize", Scene("ball.glb"), "--style", "style", "--size", "64x48", "--bits", bits};
+    RunOk(With(stylize, {"-o", "zip.exr"}));
+    RunOk(With(stylize, {"--fast-io", "-o", "fast.EXR"}));
+    same("zip.exr", "fast.EXR");
+  }
+  RunOk({"guidegen", Scene("ball.glb"), "--size", "64x48", "-o", "g.exr"});
+  const Arguments transfer = {"transfer", "g.exr", "--style", "style"};
+  RunOk(With(transfer, {"-o", "zip.exr"}));
+  const auto quiet = RunOk(With(transfer, {"--fast-io", "-o", "fast.exr"}));
+  EXPECT_EQ(quiet.Warning(), "");
+  same("zip.exr", "fast.exr");
+  const auto png = RunOk(With(transfer, {"--fast-io", "-o", "fast.png"}));
+  EXPECT_NE(png.Warning().find("--fast-io changes nothing: fast.png is no .exr"), std::string::npos) << png.err;
+  // A frame that is there is kept, whichever way it was packed.
+  RunOk(With(transfer, {"--frames", "1", "-o", "p.#.exr"}));
+  const auto kept = RunOk(With(transfer, {"--frames", "1", "--fast-io", "--resume", "-o", "p.#.exr"}));
+  EXPECT_NE(kept.out.find("0 made, 1 kept"), std::string::npos) << kept.out;
+
+  RunOk({"sphere", "--size", "64", "-o", "kit"});
+  RunOk({"sphere", "--size", "64", "--fast-io", "-o", "fast-kit"});
+  same("kit/guides.exr", "fast-kit/guides.exr");
+  const auto needs = Run({"crosscheck", Scene("ball.glb"), "--fast-io"});
+  EXPECT_EQ(needs.code, 2) << needs.err;
+  EXPECT_NE(needs.Error().find("--keep"), std::string::npos) << needs.err;
 }
 
 }  // namespace
