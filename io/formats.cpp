@@ -8,9 +8,9 @@
 #include <system_error>
 #include <vector>
 
-#include "io/atomic_file.h"
 #include "io/channel_file.h"
 #include "io/library.h"
+#include "io/plain_guides.h"
 
 namespace scumble {
 namespace {
@@ -80,20 +80,15 @@ Expected<ChannelImage> ReadChannels(const std::filesystem::path& path) {
 }
 
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
+  if (auto plain = internal::ReadPlainGuides(path, options)) return *std::move(plain);
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
   return formats->read_guides(path, options);
 }
 
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
+  if (auto plain = internal::InspectPlainGuides(path)) return *std::move(plain);
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
   return formats->inspect_guides(path);
-}
-
-Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options) {
-  SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(path, options));
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
-  SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, formats->encode_guides(path, guides, options));
-  return WriteFileAtomically(path, encoded);
 }
 
 }  // namespace scumble

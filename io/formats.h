@@ -1,6 +1,7 @@
 // Where OpenImageIO is: in a module that is loaded when a file first needs it. Loading that library with all that it
 // brings along takes a fifth of a second of looking up names, and a picture in PNG of a scene without EXR or JPEG needs none of
-// it. Everybody else calls the functions of picture_file.h, channel_file.h, guide_file.h and whole_output.h.
+// it; nor do Scumble's own guides and EXR pictures, for which io/exr_file.h is enough. Everybody else calls the functions of
+// picture_file.h, channel_file.h, guide_file.h and whole_output.h.
 #pragma once
 
 #include <cstddef>
@@ -44,8 +45,6 @@ Expected<std::vector<std::byte>> EncodePicture(const std::filesystem::path& path
 Expected<ChannelImage> ReadChannels(const std::filesystem::path& path);
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options);
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
-Expected<std::vector<std::byte>> EncodeGuides(const std::filesystem::path& path, const GuideSet& guides,
-                                              const GuideWriteOptions& options);
 void SetThreads(int threads);
 
 }  // namespace formats
@@ -57,7 +56,7 @@ inline constexpr std::uint64_t kFormatsLayout = [] {
   for (const std::size_t size :
        {sizeof(Expected<Picture>), sizeof(Picture), sizeof(PictureHeader), sizeof(StoredPicture), sizeof(PictureWriteOptions),
         sizeof(ChannelImage), sizeof(GuideSet), sizeof(GuideReadOptions), sizeof(GuideFileInfo),
-        sizeof(GuideWriteOptions), sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet), sizeof(Error), sizeof(std::string), sizeof(std::filesystem::path)}) {
+        sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet), sizeof(Error), sizeof(std::string), sizeof(std::filesystem::path)}) {
     layout = (layout ^ size) * kPrime;
   }
   return layout;
@@ -74,7 +73,6 @@ struct Formats {
   decltype(&formats::ReadChannels) read_channels;
   decltype(&formats::ReadGuides) read_guides;
   decltype(&formats::InspectGuides) inspect_guides;
-  decltype(&formats::EncodeGuides) encode_guides;
   decltype(&formats::SetThreads) set_threads;
 };
 

@@ -12,7 +12,7 @@ __attribute__((visibility("default"))) extern const Formats SCUMBLE_JOINED(scumb
 const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL) = {
     kFormatsLayout,        formats::ReadPicture,  formats::DecodePicture, formats::InspectPicture,
     formats::InspectStored, formats::EncodePicture, formats::ReadChannels,  formats::ReadGuides,
-    formats::InspectGuides, formats::EncodeGuides,  formats::SetThreads,
+    formats::InspectGuides,   formats::SetThreads,
 };
 }
 

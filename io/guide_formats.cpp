@@ -1,13 +1,8 @@
-// Guides by OpenImageIO. Part of the module of formats.
+// Reading guides by OpenImageIO, as any program may have written them. Part of the module of formats.
 #include "io/guide_file.h"
-
-#include <Imath/half.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstring>
-#include <limits>
 #include <set>
 
 #include "io/blender_camera.h"
@@ -19,73 +14,6 @@
 
 namespace scumble::formats {
 namespace {
-
-// OpenImageIO's matrices are for row vectors, ours for column vectors: the same 16 numbers in memory.
-void SetMatrix(OIIO::ImageSpec& spec, const char* name, const glm::dmat4& matrix) {
-  std::array<float, 16> values;
-  for (int i = 0; i < 16; ++i) values[i] = static_cast<float>(matrix[i / 4][i % 4]);
-  spec.attribute(name, OIIO::TypeMatrix, values.data());
-}
-
-// OpenEXR's camera space looks down +Z and is left-handed; its NDC runs from (0, 0) in the upper left corner to (1, 1)
-// in the lower right (ImfStandardAttributes.h). Column by column.
-const glm::dmat4 kExrFromView{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
-const glm::dmat4 kNdcFromClip{0.5, 0, 0, 0, 0, -0.5, 0, 0, 0, 0, 1, 0, 0.5, 0.5, 0, 1};
-
-OIIO::ImageSpec SpecFor(const GuideSet& guides, const GuideWriteOptions& options) {
-  OIIO::ImageSpec spec(guides.width(), guides.height(), 0, OIIO::TypeDesc::FLOAT);
-  for (const LayerInfo& info : AllLayers()) {
-    if (!guides.Has(info.layer)) continue;
-    for (const char* channel : info.channels) {
-      spec.channelnames.emplace_back(channel);
-      spec.channelformats.push_back(options.half && info.is_color ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
-    }
-  }
-  spec.nchannels = static_cast<int>(spec.channelnames.size());
-  spec.alpha_channel = guides.Has(Layer::kCoverage) ? 0 : -1;
-  spec.attribute("compression", options.compression);
-  spec.attribute("oiio:ColorSpace", "Linear");
-  for (const auto& [name, value] : guides.attributes) spec.attribute(name, value);
-  if (!guides.object_names.empty()) spec.attribute("scumble:objects", internal::NamesToText(guides.object_names));
-  if (!guides.material_names.empty()) spec.attribute("scumble:materials", internal::NamesToText(guides.material_names));
-  if (!guides.object_styles.empty()) spec.attribute("scumble:objectStyles", internal::NamesToText(guides.object_styles));
-  if (!guides.material_styles.empty()) {
-    spec.attribute("scumble:materialStyles", internal::NamesToText(guides.material_styles));
-  }
-  if (guides.camera) {
-    spec.attribute("scumble:camera", guides.camera->name);
-    spec.attribute("scumble:viewFromWorld", internal::MatrixToText(guides.camera->view_from_world));
-    spec.attribute("scumble:clipFromView", internal::MatrixToText(guides.camera->clip_from_view));
-    SetMatrix(spec, "worldtocamera", kExrFromView * guides.camera->view_from_world);
-    SetMatrix(spec, "worldtoNDC", kNdcFromClip * guides.camera->clip_from_view * guides.camera->view_from_world);
-  }
-  return spec;
-}
-
-// Pixels interleaved as the file wants them: each channel in its own format, side by side.
-std::vector<std::byte> Interleave(const GuideSet& guides, const OIIO::ImageSpec& spec) {
-  const std::size_t pixel_bytes = spec.pixel_bytes(true);
-  std::vector<std::byte> bytes(pixel_bytes * guides.pixel_count());
-  std::size_t offset = 0, channel = 0;
-  for (const LayerInfo& info : AllLayers()) {
-    if (!guides.Has(info.layer)) continue;
-    for (int c = 0; c < ChannelCount(info.layer); ++c, ++channel) {
-      const auto plane = guides.Plane(info.layer, c);
-      const bool half = spec.channelformats[channel] == OIIO::TypeDesc::HALF;
-      std::byte* out = bytes.data() + offset;
-      for (std::size_t i = 0; i < plane.size(); ++i, out += pixel_bytes) {
-        if (half) {
-          const Imath::half value = internal::ToHalf(plane[i]);
-          std::memcpy(out, &value, sizeof value);
-        } else {
-          std::memcpy(out, &plane[i], sizeof(float));
-        }
-      }
-      offset += half ? sizeof(Imath::half) : sizeof(float);
-    }
-  }
-  return bytes;
-}
 
 // A channel of a file that means something to us.
 struct FoundChannel {
@@ -295,6 +223,14 @@ Status ReadPlanes(OIIO::ImageInput& input, const std::vector<PlaneRead>& reads, 
   return Ok();
 }
 
+void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
+  std::map<std::string, std::string> texts;
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    if (value.type() == OIIO::TypeString) texts[std::string(value.name())] = std::string(value.get_string());
+  }
+  internal::TakeHeader(texts, guides);
+}
+
 // The Cryptomattes of a view layer, their planes still to be read.
 Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const std::string& name) {
   BlenderMattes mattes;
@@ -326,68 +262,6 @@ void ReadMattesToo(const FileContents& contents, const std::string& prefix, Blen
     reads.push_back({found.subimage, found.channel, plane});
   }
 }
-
-// Normals squeezed into [0, 1] for an 8-bit picture have no negative component anywhere and are rarely of length 1. A few
-// pixels prove nothing.
-bool LookPacked(const GuideSet& guides) {
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  std::size_t covered = 0, not_unit = 0;
-  for (std::size_t i = 0; i < coverage.size(); ++i) {
-    if (!(coverage[i] > 0.0f)) continue;
-    const glm::vec3 n = guides.Vec3(Layer::kNormal, i);
-    if (n.x < 0.0f || n.y < 0.0f || n.z < 0.0f) return false;
-    ++covered;
-    not_unit += std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1.0f) > 0.02f;
-  }
-  constexpr std::size_t kEnoughPixels = 16;
-  return covered >= kEnoughPixels && 2 * not_unit > covered;
-}
-
-// Half floats and filtered passes shorten normals; a direction is what the transfer needs. Lengths that no rounding
-// or filter explains are left for Validate to refuse.
-void NormalizeNormals(GuideSet& guides) {
-  const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1),
-             z = guides.Plane(Layer::kNormal, 2);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
-    if (std::fabs(squared - 1.0f) <= 4e-3f || !(squared > 0.01f && squared < 100.0f)) continue;
-    const float length = std::sqrt(squared);
-    x[i] /= length, y[i] /= length, z[i] /= length;
-  }
-}
-
-void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
-  for (const OIIO::ParamValue& value : spec.extra_attribs) {
-    if (value.type() == OIIO::TypeString && value.name().substr(0, 8) == "scumble:") {
-      guides.attributes[std::string(value.name())] = std::string(value.get_string());
-    }
-  }
-  const auto take = [&](const char* name) {
-    const auto found = guides.attributes.extract(name);
-    return found.empty() ? std::string() : found.mapped();
-  };
-  guides.object_names = internal::NamesFromText(take("scumble:objects"));
-  guides.material_names = internal::NamesFromText(take("scumble:materials"));
-  guides.object_styles = internal::NamesFromText(take("scumble:objectStyles"));
-  guides.material_styles = internal::NamesFromText(take("scumble:materialStyles"));
-  const std::string camera = take("scumble:camera");
-  const auto view = internal::MatrixFromText(take("scumble:viewFromWorld"));
-  const auto clip = internal::MatrixFromText(take("scumble:clipFromView"));
-  if (view && clip) guides.camera = GuideCamera{camera, *view, *clip};
-}
-
-}  // namespace
-
-Expected<std::vector<std::byte>> EncodeGuides(const std::filesystem::path& path, const GuideSet& guides,
-                                              const GuideWriteOptions& options) {
-  const OIIO::ImageSpec spec = SpecFor(guides, options);
-  const std::vector<std::byte> pixels = Interleave(guides, spec);
-  return internal::Encode(path.string(), spec, [&](OIIO::ImageOutput& output) {
-    return output.write_image(OIIO::TypeDesc::UNKNOWN, pixels.data());  // UNKNOWN: already in the file's own formats
-  });
-}
-
-namespace {
 
 // What guidegen writes unasked needs no option.
 std::string MendFor(const LayerSet& missing) {
@@ -473,10 +347,10 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     }
   }
   if (guides.Has(Layer::kNormal)) {
-    if (guides.Has(Layer::kCoverage) && LookPacked(guides)) {
+    if (guides.Has(Layer::kCoverage) && internal::LookPacked(guides)) {
       return InputError(name + ": its normals look packed into 0 to 1; write them as they are, in -1 to 1");
     }
-    NormalizeNormals(guides);
+    internal::NormalizeNormals(guides);
   }
   SCUMBLE_RETURN_IF_ERROR(guides.Validate(name));
   return guides;

@@ -67,4 +67,22 @@ std::optional<glm::dmat4> MatrixFromText(const std::string& text) {
   return matrix;
 }
 
+void TakeHeader(const std::map<std::string, std::string>& texts, GuideSet& guides) {
+  for (const auto& [name, value] : texts) {
+    if (name.starts_with("scumble:")) guides.attributes[name] = value;
+  }
+  const auto take = [&](const char* name) {
+    const auto found = guides.attributes.extract(name);
+    return found.empty() ? std::string() : found.mapped();
+  };
+  guides.object_names = NamesFromText(take("scumble:objects"));
+  guides.material_names = NamesFromText(take("scumble:materials"));
+  guides.object_styles = NamesFromText(take("scumble:objectStyles"));
+  guides.material_styles = NamesFromText(take("scumble:materialStyles"));
+  const std::string camera = take("scumble:camera");
+  const auto view = MatrixFromText(take("scumble:viewFromWorld"));
+  const auto clip = MatrixFromText(take("scumble:clipFromView"));
+  if (view && clip) guides.camera = GuideCamera{camera, *view, *clip};
+}
+
 }  // namespace scumble::internal

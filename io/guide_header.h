@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "image/guides.h"
+
 namespace scumble::internal {
 
 // "id name" a line; backslash and line feed in a name are escaped, so any name survives.
@@ -16,5 +18,8 @@ std::map<std::uint32_t, std::string> NamesFromText(const std::string& text);
 // 16 numbers, column by column, with the 17 digits that keep a double exact.
 std::string MatrixToText(const glm::dmat4& matrix);
 std::optional<glm::dmat4> MatrixFromText(const std::string& text);
+
+// What a header's texts that begin with "scumble:" say, names, camera and attributes, put into `guides`.
+void TakeHeader(const std::map<std::string, std::string>& texts, GuideSet& guides);
 
 }  // namespace scumble::internal

@@ -23,6 +23,31 @@ Imath::half ToHalf(float value) {
   return std::isfinite(value) ? Imath::half(std::clamp(value, -kLargest, kLargest)) : Imath::half(value);
 }
 
+bool LookPacked(const GuideSet& guides) {
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  std::size_t covered = 0, not_unit = 0;
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
+    if (!(coverage[i] > 0.0f)) continue;
+    const glm::vec3 n = guides.Vec3(Layer::kNormal, i);
+    if (n.x < 0.0f || n.y < 0.0f || n.z < 0.0f) return false;
+    ++covered;
+    not_unit += std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1.0f) > 0.02f;
+  }
+  constexpr std::size_t kEnoughPixels = 16;
+  return covered >= kEnoughPixels && 2 * not_unit > covered;
+}
+
+void NormalizeNormals(GuideSet& guides) {
+  const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1),
+             z = guides.Plane(Layer::kNormal, 2);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+    if (std::fabs(squared - 1.0f) <= 4e-3f || !(squared > 0.01f && squared < 100.0f)) continue;
+    const float length = std::sqrt(squared);
+    x[i] /= length, y[i] /= length, z[i] /= length;
+  }
+}
+
 }  // namespace internal
 
 Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options) {

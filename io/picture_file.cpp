@@ -1,9 +1,13 @@
 #include "io/picture_file.h"
 
+#include <array>
 #include <utility>
 
+#include "image/color.h"
 #include "io/atomic_file.h"
+#include "io/exr_file.h"
 #include "io/formats.h"
+#include "io/guide_file.h"
 #include "io/open_raster.h"
 #include "io/picture_rules.h"
 #include "io/png_reader.h"
@@ -23,6 +27,23 @@ std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const st
 std::vector<std::byte> Png(const Picture& picture, const PictureWriteOptions& options) {
   return internal::WritePng(picture, {options.bits, options.grey, options.png_level, options.dpi, options.settings,
                                       internal::IoThreads()});
+}
+
+// Linear, with associated alpha.
+Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& picture, const PictureWriteOptions& options) {
+  internal::ExrImage image{picture.width, picture.height, {}, options.fast ? kFastCompression : "zip", {}, {}};
+  if (!options.settings.empty()) image.texts[kSettingsKey] = options.settings;
+  const std::size_t size = picture.rgba.size() / 4;
+  std::array<std::vector<float>, 4> planes;
+  for (std::size_t c = 0; c < planes.size(); ++c) {
+    planes[c].resize(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      const float alpha = static_cast<float>(picture.rgba[4 * i + 3]) / 65535.0f;
+      planes[c][i] = c == 3 ? alpha : Srgb16ToLinear(picture.rgba[4 * i + c]) * alpha;
+    }
+    image.channels.push_back({std::string(1, "RGBA"[c]), options.bits != 32, planes[c]});
+  }
+  return internal::EncodeExr(name, image);
 }
 
 }  // namespace
@@ -58,6 +79,10 @@ Status WritePicture(const std::filesystem::path& path, const Picture& picture, c
   // What the picture library says of an empty one serves for all.
   if (internal::Upper(path.extension().string()) == ".PNG" && !picture.empty()) {
     return WriteFileAtomically(path, Png(picture, options));
+  }
+  if (internal::Upper(path.extension().string()) == ".EXR") {
+    SCUMBLE_ASSIGN(const auto encoded, Exr(path.string(), picture, options));
+    return WriteFileAtomically(path, encoded);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
   SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, formats->encode_picture(path, picture, options));

@@ -1,5 +1,5 @@
-// Pictures from and to files, by OpenImageIO: PNG, JPEG, TIFF, EXR and what else it reads; layered OpenRaster files by
-// io/open_raster.h.
+// Pictures from and to files: PNG by libpng, EXR written by OpenEXR, everything else by OpenImageIO; layered OpenRaster files
+// by io/open_raster.h.
 #pragma once
 
 #include <cstddef>

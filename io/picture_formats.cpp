@@ -189,22 +189,6 @@ Bytes EncodeOnWhite(const std::filesystem::path& path, const Picture& picture, P
   });
 }
 
-Bytes EncodeLinear(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
-  OIIO::ImageSpec spec(picture.width, picture.height, 4,
-                       options.bits == 32 ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF);
-  spec.attribute("oiio:ColorSpace", "Linear");
-  spec.attribute("compression", options.fast ? kFastCompression : "zip");
-  if (!options.settings.empty()) spec.attribute(kSettingsKey, options.settings);
-  std::vector<float> pixels(picture.rgba.size());
-  for (std::size_t i = 0; i < pixels.size(); i += 4) {
-    const float alpha = static_cast<float>(picture.rgba[i + 3]) / 65535.0f;
-    for (int c = 0; c < 3; ++c) pixels[i + c] = Srgb16ToLinear(picture.rgba[i + c]) * alpha;
-    pixels[i + 3] = alpha;
-  }
-  return internal::Encode(
-      path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::FLOAT, pixels.data()); });
-}
-
 // The JPEG reader fills what is missing at the end with grey and says nothing. So the markers are followed here, from
 // segment to segment and through the coded data, until the one that ends the picture (ITU-T T.81, annex B).
 Status CheckJpegIsWhole(std::span<const std::byte> bytes, const std::string& name) {
@@ -270,7 +254,6 @@ Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {
 
 Bytes EncodePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   const std::string ending = Upper(path.extension().string());
-  if (ending == ".EXR") return EncodeLinear(path, picture, options);
   if (ending == ".JPG" || ending == ".JPEG") return EncodeOnWhite(path, picture, options);
   return EncodeTiff(path, picture, options);
 }

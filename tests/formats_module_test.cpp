@@ -1,6 +1,7 @@
 // Where the program finds its module of formats, and what it does without one: in the folders of builds and installations.
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tests/cli_harness.h"
 
@@ -28,12 +29,12 @@ class CliModule : public CliTest {
 
 TEST_F(CliModule, BesideTheProgramOrInstalledAndNowhereElse) {
   WriteGuideFile("g.exr", Ball(16));
-  const Arguments info = {"info", "g.exr"};
+  const Arguments compare = {"compare", "g.exr", "g.exr"};  // any channels of any file
   Put(Module(), ".");  // the folder that it runs in
-  ExpectError(info, 5, {kModule, At("home/bin").string(), At("home/lib/scumble").string()}, settings_);
+  ExpectError(compare, 5, {kModule, At("home/bin").string(), At("home/lib/scumble").string()}, settings_);
   for (const std::string folder : {"home/bin", "home/lib/scumble"}) {
     Put(Module(), folder);
-    const CommandResult found = RunHere(info);
+    const CommandResult found = RunHere(compare);
     EXPECT_EQ(found.code, 0) << folder << found.err;
     fs::remove(At(folder) / kModule);
   }
@@ -42,9 +43,22 @@ TEST_F(CliModule, BesideTheProgramOrInstalledAndNowhereElse) {
 TEST_F(CliModule, OneOfOtherTypesIsRefused) {
   WriteGuideFile("g.exr", Ball(16));
   Put(SCUMBLE_OTHER_MODULE, "home/bin");
-  ExpectError({"info", "g.exr"}, 5, {At("home/bin").string(), "of another version"}, settings_);
+  ExpectError({"compare", "g.exr", "g.exr"}, 5, {At("home/bin").string(), "of another version"}, settings_);
   WriteText(std::string("home/bin/") + kModule, "no library");
-  ExpectError({"info", "g.exr"}, 5, {"cannot be loaded"}, settings_);
+  ExpectError({"compare", "g.exr", "g.exr"}, 5, {"cannot be loaded"}, settings_);
+}
+
+TEST_F(CliModule, GuidesAndPicturesInExrNeedNone) {
+  WriteStyle("style");
+  const std::vector<Arguments> commands = {{"guidegen", Scene("ball.glb"), "--size", "32", "-o", "g.exr"},
+                                           {"info", "g.exr"},
+                                           {"transfer", "g.exr", "--style", "style", "-o", "p.exr"},
+                                           {"stylize", Scene("ball.glb"), "--style", "style", "--size", "32", "-o", "s.exr"}};
+  for (const Arguments& command : commands) {
+    const CommandResult without = RunHere(command);
+    EXPECT_EQ(without.code, 0) << without.err;
+  }
+  EXPECT_EQ(Bytes("p.exr"), Bytes("s.exr"));
 }
 
 TEST_F(CliModule, ResumeWithoutItKeepsPlainPngsAndMakesNothingAgain) {

@@ -17,6 +17,7 @@
 #include "image/hash.h"
 #include "io/atomic_file.h"
 #include "io/guide_header.h"
+#include "tests/guide_files.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -26,70 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
-
-LayerSet EveryLayer() {
-  LayerSet all;
-  for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
-  return all;
-}
-
-GuideReadOptions Everything() {
-  GuideReadOptions options;
-  options.required = EveryLayer();
-  return options;
-}
-
-// All layers with values that no two pixels share, some background in between.
-GuideSet RandomGuides(int width, int height) {
-  GuideSet guides(width, height);
-  for (const LayerInfo& info : AllLayers()) {
-    guides.Add(info.layer);
-    for (int c = 0; c < ChannelCount(info.layer); ++c) {
-      const auto plane = guides.Plane(info.layer, c);
-      for (std::size_t i = 0; i < plane.size(); ++i) {
-        plane[i] = 10.0f * UnitFloat(Hash(static_cast<int>(info.layer), c, i)) - (info.is_color ? 0.0f : 5.0f);
-      }
-    }
-  }
-  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-    const bool covered = i % 5 != 3;
-    guides.Plane(Layer::kCoverage)[i] = covered ? 0.5f + 0.5f * UnitFloat(Hash(i)) : 0.0f;
-    guides.Plane(Layer::kDepth)[i] = covered ? 0.1f + UnitFloat(Hash(i, 1)) : kInf;
-    guides.Plane(Layer::kObject)[i] = static_cast<float>(Hash(i, 2) >> 40);
-    const glm::vec3 n = covered ? glm::normalize(guides.Vec3(Layer::kNormal, i)) : glm::vec3(0.0f);
-    for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = n[c];
-  }
-  return guides;
-}
-
-void ExpectSameBits(const GuideSet& found, const GuideSet& expected) {
-  ASSERT_EQ(found.width(), expected.width());
-  ASSERT_EQ(found.height(), expected.height());
-  ASSERT_EQ(found.layers().ToString(), expected.layers().ToString());
-  for (const LayerInfo& info : AllLayers()) {
-    if (!expected.Has(info.layer)) continue;
-    for (int c = 0; c < ChannelCount(info.layer); ++c) {
-      const auto a = found.Plane(info.layer, c), b = expected.Plane(info.layer, c);
-      EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size_bytes()), 0) << info.channels[c];
-    }
-  }
-}
-
-// A float EXR whose channel c of pixel i holds value(c, i), as any other program might write it.
-void WriteExr(const fs::path& path, OIIO::ImageSpec spec, const std::vector<std::string>& channels,
-              const std::function<float(std::size_t c, std::size_t i)>& value) {
-  spec.nchannels = static_cast<int>(channels.size());
-  spec.channelnames = channels;
-  spec.set_format(OIIO::TypeDesc::FLOAT);
-  spec.alpha_channel = -1;
-  std::vector<float> pixels(channels.size() * spec.width * spec.height);
-  for (std::size_t k = 0; k < pixels.size(); ++k) pixels[k] = value(k % channels.size(), k / channels.size());
-  auto output = OIIO::ImageOutput::create(path.string());
-  ASSERT_TRUE(output);
-  ASSERT_TRUE(output->open(path.string(), spec)) << output->geterror();
-  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data())) << output->geterror();
-  ASSERT_TRUE(output->close());
-}
 
 const std::vector<std::string> kNormalAndA = {"A", "normal.X", "normal.Y", "normal.Z"};
 
