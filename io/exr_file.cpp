@@ -50,7 +50,8 @@ class MemoryOutput : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
-// OpenEXR's threads, which OpenImageIO shares and sets in the same way: none beside the caller's where one is asked for.
+// OpenEXR's threads, which OpenImageIO shares and sets in the same way: none beside the caller's where one is asked
+// for.
 void SetThreads() {
   static std::mutex mutex;
   static int last = -1;

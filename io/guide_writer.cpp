@@ -20,8 +20,8 @@ internal::ExrImage ImageOf(const GuideSet& guides, const GuideWriteOptions& opti
   for (const LayerInfo& info : AllLayers()) {
     if (!guides.Has(info.layer)) continue;
     for (int c = 0; c < ChannelCount(info.layer); ++c) {
-      image.channels.push_back({info.channels[static_cast<std::size_t>(c)], options.half && info.is_color,
-                                guides.Plane(info.layer, c)});
+      image.channels.push_back(
+          {info.channels[static_cast<std::size_t>(c)], options.half && info.is_color, guides.Plane(info.layer, c)});
     }
   }
   image.texts = {guides.attributes.begin(), guides.attributes.end()};

@@ -9,8 +9,8 @@
 
 namespace scumble::internal {
 
-// As ReadGuides and InspectGuides. Nothing where the file holds anything else than guides without a view layer, or anything is wrong with
-// it: the module of io/formats.h reads it, or says why nobody can.
+// As ReadGuides and InspectGuides. Nothing where the file holds anything else than guides without a view layer, or
+// anything is wrong with it: the module of io/formats.h reads it, or says why nobody can.
 std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options);
 std::optional<GuideFileInfo> InspectPlainGuides(const std::filesystem::path& path);
 

@@ -14,8 +14,8 @@
 namespace scumble {
 namespace {
 
-// What a signal handler may touch. Each place holds the name of a file, or null; whoever takes the name out of its place,
-// the writer or the handler, is the one that has it.
+// What a signal handler may touch. Each place holds the name of a file, or null; whoever takes the name out of its
+// place, the writer or the handler, is the one that has it.
 constexpr std::size_t kMostFiles = 64;  // written at a time; any beyond are not known here
 std::array<std::atomic<const char*>, kMostFiles> names{};
 std::atomic<int> being_made{0};

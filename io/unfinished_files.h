@@ -9,7 +9,8 @@ namespace scumble {
 
 // Removes the temporary files of all writes under way. Nothing is begun from then on: a thread that would make another
 // temporary file, or give one its name, waits for the end of the process instead. For handlers of signals that end it:
-// calls nothing but what is safe there, and waits no longer than a second for a file that another thread is just making.
+// calls nothing but what is safe there, and waits no longer than a second for a file that another thread is just
+// making.
 void RemoveUnfinishedFiles();
 
 namespace internal {
@@ -17,8 +18,9 @@ namespace internal {
 // A temporary file that RemoveUnfinishedFiles knows of as long as this lives. What is left of it then is removed.
 class UnfinishedFile {
  public:
-  // Makes a new file that nobody else has beside `target`: hidden, with a random name, short enough where the target's own
-  // name is as long as a name may be. descriptor() is -1 where it cannot, and errno says why; otherwise the caller's to close.
+  // Makes a new file that nobody else has beside `target`: hidden, with a random name, short enough where the target's
+  // own name is as long as a name may be. descriptor() is -1 where it cannot, and errno says why; otherwise the
+  // caller's to close.
   explicit UnfinishedFile(const std::filesystem::path& target);
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;

@@ -121,7 +121,8 @@ TEST_F(CliInterrupted, GuidesOnAFullDisk) {
 
 // As a shell's `ulimit -f` leaves it: the system would end the program, and is told not to.
 TEST_F(CliInterrupted, ALimitOfFileSizesIsAnErrorOfWriting) {
-  WriteText("run.sh", std::string("ulimit -f 1; exec ") + SCUMBLE_BINARY + " guidegen " + Scene("suzanne.glb") + " --size 64 -o g.exr\n");
+  WriteText("run.sh", std::string("ulimit -f 1; exec ") + SCUMBLE_BINARY + " guidegen " + Scene("suzanne.glb") +
+                          " --size 64 -o g.exr\n");
   CommandSettings shell;
   shell.program = "/bin/sh";
   const CommandResult result = Run({"run.sh"}, shell);
@@ -135,8 +136,8 @@ TEST_F(CliInterrupted, SignalsLeaveNoTemporaryFiles) {
   WriteGuideFile("g.exr", Ball(kSize));
   for (const std::string ending : {".png", ".exr", ".tif"}) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
-      const CommandResult result = RunAndSignal({"transfer", "g.exr", "--style", "style", "--frames", "1-9999", "--threads",
-                                                 signal == SIGHUP ? "1" : "2", "-o", "p.####" + ending},
+      const CommandResult result = RunAndSignal({"transfer", "g.exr", "--style", "style", "--frames", "1-9999",
+                                                 "--threads", signal == SIGHUP ? "1" : "2", "-o", "p.####" + ending},
                                                 signal);
       EXPECT_EQ(result.code, 128 + signal) << result.err;
       EXPECT_EQ(result.Error(), "") << "a signal is no failure to write";
@@ -150,8 +151,8 @@ TEST_F(CliInterrupted, SignalsLeaveNoTemporaryFiles) {
 }
 
 TEST_F(CliInterrupted, SignalsLeaveNoTemporaryGuides) {
-  const CommandResult result =
-      RunAndSignal({"guidegen", Scene("suzanne.glb"), "--size", "64", "--frames", "1-9999", "-o", "g.####.exr"}, SIGTERM);
+  const CommandResult result = RunAndSignal(
+      {"guidegen", Scene("suzanne.glb"), "--size", "64", "--frames", "1-9999", "-o", "g.####.exr"}, SIGTERM);
   EXPECT_EQ(result.code, 128 + SIGTERM) << result.err;
   EXPECT_EQ(Unfinished(), std::vector<std::string>());
 }

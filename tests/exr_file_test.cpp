@@ -66,8 +66,7 @@ TEST(ExrFile, GuidesAreTheBytesOfOpenImageIO) {
             planes.push_back(guides.Plane(info.layer, c));
           }
         }
-        const auto expected =
-            ByOpenImageIO(spec, channels, [&](std::size_t c, std::size_t i) { return planes[c][i]; });
+        const auto expected = ByOpenImageIO(spec, channels, [&](std::size_t c, std::size_t i) { return planes[c][i]; });
         for (const int threads : {1, 2, 0}) {
           SetIoThreads(threads);
           ASSERT_TRUE(WriteGuides(folder / "g.exr", guides, {half, compression}));

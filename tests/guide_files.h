@@ -67,7 +67,7 @@ inline void ExpectSameBits(const GuideSet& found, const GuideSet& expected) {
 
 // A float EXR whose channel c of pixel i holds value(c, i), as any other program might write it.
 inline void WriteExr(const std::filesystem::path& path, OIIO::ImageSpec spec, const std::vector<std::string>& channels,
-              const std::function<float(std::size_t c, std::size_t i)>& value) {
+                     const std::function<float(std::size_t c, std::size_t i)>& value) {
   spec.nchannels = static_cast<int>(channels.size());
   spec.channelnames = channels;
   spec.set_format(OIIO::TypeDesc::FLOAT);
