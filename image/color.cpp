@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <vector>
 
 namespace scumble {
@@ -33,15 +34,15 @@ constexpr int kBinShift = 16;                       // 128 bins an octave
 constexpr std::uint32_t kFirstBin = 0x35000000u >> kBinShift;  // of 2^-21, below where code 1 begins
 constexpr std::uint32_t kBins = (0x3f800000u >> kBinShift) - kFirstBin;
 
-// decoded[i] is what code i means; border[i] is where codes i - 1 and i meet.
+// decoded[i] is what code i means; border[i] is where codes i - 1 and i meet, and whatever is beyond the first and the last is theirs.
 struct Tables {
   std::vector<float> decoded = std::vector<float>(kCodes);
-  std::vector<float> border = std::vector<float>(kCodes);
+  std::vector<float> border = std::vector<float>(kCodes + 2, std::numeric_limits<float>::infinity());
   std::vector<std::uint16_t> bin = std::vector<std::uint16_t>(kBins + 1);  // the code of each bin's first float
   Tables() {
     for (int i = 0; i < kCodes; ++i) {
       decoded[i] = static_cast<float>(Decode(i / 65535.0));
-      border[i] = i == 0 ? 0.0f : static_cast<float>(Decode((i - 0.5) / 65535.0));
+      border[i] = i == 0 ? -border[kCodes] : static_cast<float>(Decode((i - 0.5) / 65535.0));
     }
     int code = 0;
     for (std::uint32_t b = 0; b <= kBins; ++b) {
@@ -63,6 +64,8 @@ float SrgbToLinear(float encoded) { return static_cast<float>(Decode(encoded)); 
 
 float Srgb16ToLinear(std::uint16_t encoded) { return SrgbTables().decoded[encoded]; }
 
+const float* Srgb16Linear() { return SrgbTables().decoded.data(); }
+
 std::uint16_t Srgb16FromLinear(float linear) {
   if (!(linear > 0.0f)) return 0;
   if (linear >= 1.0f) return kCodes - 1;
@@ -77,12 +80,10 @@ std::uint16_t Srgb16FromLinear(float linear) {
 }
 
 std::uint16_t Srgb16FromLinear(float linear, std::uint16_t guess) {
-  const std::vector<float>& border = SrgbTables().border;
-  const auto is = [&](int code) { return border[code] <= linear && (code + 1 == kCodes || linear < border[code + 1]); };
-  if (is(guess)) return guess;
-  if (guess > 0 && is(guess - 1)) return static_cast<std::uint16_t>(guess - 1);
-  if (guess + 1 < kCodes && is(guess + 1)) return static_cast<std::uint16_t>(guess + 1);
-  return Srgb16FromLinear(linear);
+  const float* border = SrgbTables().border.data();
+  // Without branches, since whether a guess is right is a matter of chance.
+  const int code = guess - (linear < border[guess]) + (border[guess + 1] <= linear);
+  return border[code] <= linear && linear < border[code + 1] ? static_cast<std::uint16_t>(code) : Srgb16FromLinear(linear);
 }
 
 }  // namespace scumble

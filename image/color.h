@@ -11,6 +11,8 @@ float SrgbToLinear(float encoded);
 // 16-bit encoded → linear in [0, 1], from a table of 65,536 floats that is the same on
 // every machine.
 float Srgb16ToLinear(std::uint16_t encoded);
+// That table.
+const float* Srgb16Linear();
 // Linear → 16-bit encoded, clamped to [0, 1], rounded to nearest; NaN becomes 0.
 // Srgb16FromLinear(Srgb16ToLinear(v)) == v for every v.
 std::uint16_t Srgb16FromLinear(float linear);

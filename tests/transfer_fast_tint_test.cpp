@@ -11,6 +11,7 @@
 #include "tests/transfer_fixtures.h"
 #include "transfer/colorize.h"
 #include "transfer/multiply_tint.h"
+#include "transfer/oklab_tint.h"
 
 namespace scumble {
 namespace {
@@ -61,32 +62,57 @@ Pixels AnyPixels(std::size_t count, int kind) {
   return pixels;
 }
 
-void ExpectPlain(const Pixels& pixels, float weight) {
+void ExpectPlain(const Pixels& pixels, const internal::Tint& tint) {
   std::vector<std::uint16_t> expected = pixels.texels, found = pixels.texels;
-  const internal::Tint tint{0.0f, weight, ColorizeMode::kMultiply};
   for (std::size_t i = 0; i < pixels.count(); ++i) {
     tint.Apply({pixels.albedo[0][i], pixels.albedo[1][i], pixels.albedo[2][i]}, &expected[4 * i]);
   }
   const float* const albedo[3] = {pixels.albedo[0].data(), pixels.albedo[1].data(), pixels.albedo[2].data()};
-  internal::MultiplyTint(albedo, pixels.count(), weight, found.data());
+  if (tint.mode == ColorizeMode::kMultiply) internal::MultiplyTint(albedo, pixels.count(), tint.weight, found.data());
+  else internal::OklabTint(albedo, pixels.count(), tint, found.data());
   const auto [a, b] = std::mismatch(expected.begin(), expected.end(), found.begin());
   if (a == expected.end()) return;
   const auto at = static_cast<std::size_t>(a - expected.begin());
   ADD_FAILURE() << "texel " << at / 4 << " channel " << at % 4 << ": " << pixels.texels[at] << " by albedo "
-                << pixels.albedo[at % 4][at / 4] << ", weight " << weight << " became " << *b << ", not " << *a;
+                << pixels.albedo[at % 4][at / 4] << ", weight " << tint.weight << " became " << *b << ", not " << *a;
 }
+
+internal::Tint Multiplied(float weight) { return {0.0f, weight, ColorizeMode::kMultiply}; }
 
 TEST(FastTint, MultipliesEveryCodeAsThePlainTintDoes) {
   OnEveryInstructionSet([] {
     for (int kind = 0; kind < 24; ++kind) {
-      ExpectPlain(AnyPixels(65536, kind), kind % 3 == 0 ? 1.0f : UnitFloat(Hash(kind, 77)));
+      ExpectPlain(AnyPixels(65536, kind), Multiplied(kind % 3 == 0 ? 1.0f : UnitFloat(Hash(kind, 77))));
+    }
+  });
+}
+
+// Paint of any colour, and paint that is nearly grey, as much of it is; references as low and as high as they may be.
+TEST(FastTint, TakesHueAndChromaAsThePlainTintDoes) {
+  constexpr float kReferences[] = {0.75f, 0.0f, 1.0f, 0.3f, 0.6f, 0.9f, 1e-7f}, kWeights[] = {1.0f, 0.5f, 0.01f, 1.0f, 0.9f};
+  OnEveryInstructionSet([&] {
+    for (int kind = 0; kind < 48; ++kind) {
+      Pixels pixels = AnyPixels(6000, kind % 24);
+      for (std::size_t i = 0; i < pixels.count(); ++i) {
+        const std::uint64_t grey = 10000 + Hash(i / 8, kind) % 45000;
+        for (std::size_t c = 0; c < 3 && kind < 24; ++c) {
+          pixels.texels[4 * i + c] = static_cast<std::uint16_t>(kind % 2 ? Hash(i, c, kind) : grey + Hash(i, c) % 9000);
+        }
+      }
+      ExpectPlain(pixels, {kReferences[kind % 7], kWeights[kind % 5], ColorizeMode::kOklab});
     }
   });
 }
 
 TEST(FastTint, EveryLengthAndPlace) {
   OnEveryInstructionSet([] {
-    for (std::size_t count = 0; count < 70; ++count) ExpectPlain(AnyPixels(count, int(count)), 0.7f);
+    for (std::size_t count = 0; count < 70; ++count) {
+      ExpectPlain(AnyPixels(count, int(count)), Multiplied(0.7f));
+      ExpectPlain(AnyPixels(count, int(count)), {0.6f, 0.7f, ColorizeMode::kOklab});
+    }
+    for (const std::size_t count : {255u, 256u, 257u, 511u, 1000u}) {
+      ExpectPlain(AnyPixels(count, 0), {0.5f, 1.0f, ColorizeMode::kOklab});
+    }
   });
 }
 

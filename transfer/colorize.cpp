@@ -6,6 +6,7 @@
 #include "image/color.h"
 #include "image/oklab.h"
 #include "transfer/multiply_tint.h"
+#include "transfer/oklab_tint.h"
 
 namespace scumble::internal {
 namespace {
@@ -104,7 +105,7 @@ void ColorizeRow(const ColorizeInput& input, int y, int x0, int x1, Picture& pic
     for (int c = 0; c < 3; ++c) albedo[c] = input.guides.Plane(Layer::kAlbedo, c).data() + row + from;
     std::uint16_t* texels = picture.At(x0, y) + 4 * from;
     if (input.tint.mode == ColorizeMode::kMultiply) return MultiplyTint(albedo, to - from, input.tint.weight, texels);
-    for (std::size_t i = 0; i < to - from; ++i) input.tint.Apply({albedo[0][i], albedo[1][i], albedo[2][i]}, texels + 4 * i);
+    OklabTint(albedo, to - from, input.tint, texels);
   });
 }
 

@@ -22,6 +22,7 @@ constexpr float kOffset = 0.055f * 65535.0f;
 constexpr float kSpan = 1.055f * 65535.0f;
 constexpr float kKink = 0.04045f * 65535.0f;
 constexpr float kSteepness = 12.92f * 65535.0f;
+constexpr float kLinearKink = 0.04045f / 12.92f;
 
 // The least value whose 5/12th power is approximated; below it every result lies under the kink.
 constexpr float kLeastRoot = 1.0f / 32768.0f;
@@ -99,6 +100,38 @@ HWY_INLINE hn::Vec<D> BelowKink(D d, hn::Vec<D> root) {
   p = hn::MulAdd(s, p, hn::Set(d, -20.2001f));
   p = hn::MulAdd(s, p, hn::Set(d, 0.830549f));
   return hn::Mul(z, p);
+}
+
+// Which lanes of some vectors, of up to 16 lanes each, are marked. Vectors that were marked are looked through later, all at
+// once: a processor that has to guess whether one has marks would guess wrong too often, and late.
+template <int kVectors>
+class LaneMarks {
+ public:
+  template <class D>
+  HWY_INLINE void Set(D d, int vector, hn::Mask<D> mask) {
+    bytes_[2 * vector + 1] = 0;
+    hn::StoreMaskBits(d, mask, bytes_ + 2 * vector);
+  }
+  // Calls visit(vector, lane) for each mark of the first vectors.
+  template <class Visit>
+  HWY_INLINE void ForEach(int vectors, const Visit& visit) const {
+    for (int vector = 0; vector < vectors; ++vector) {
+      std::uint32_t left = bytes_[2 * vector] | std::uint32_t(bytes_[2 * vector + 1]) << 8;
+      for (; left != 0; left &= left - 1) visit(vector, hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
+    }
+  }
+
+ private:
+  std::uint8_t bytes_[2 * kVectors + 8];  // eight bytes are what storing a mask may ask for
+};
+
+// The code of a linear value of 0 … 1, to fractions of a code.
+template <class D>
+HWY_INLINE hn::Vec<D> CodeOf(D d, hn::Vec<D> linear) {
+  const auto root = FiveTwelfths(d, linear);
+  const auto curved = hn::MulAdd(root.high, hn::Set(d, kSpan), hn::MulAdd(root.low, hn::Set(d, kSpan), hn::Set(d, -kOffset)));
+  const auto straight = hn::Mul(linear, hn::Set(d, kSteepness));
+  return hn::IfThenElse(hn::Lt(linear, hn::Set(d, kLinearKink)), straight, curved);
 }
 
 // Rounds codes of 0 … 65535, given to fractions of a code; `doubtful` gets the lanes whose fraction is within `doubt` of a
