@@ -64,8 +64,6 @@ float SrgbToLinear(float encoded) { return static_cast<float>(Decode(encoded)); 
 
 float Srgb16ToLinear(std::uint16_t encoded) { return SrgbTables().decoded[encoded]; }
 
-const float* Srgb16Linear() { return SrgbTables().decoded.data(); }
-
 std::uint16_t Srgb16FromLinear(float linear) {
   if (!(linear > 0.0f)) return 0;
   if (linear >= 1.0f) return kCodes - 1;
@@ -79,11 +77,9 @@ std::uint16_t Srgb16FromLinear(float linear) {
   return static_cast<std::uint16_t>(code);
 }
 
-std::uint16_t Srgb16FromLinear(float linear, std::uint16_t guess) {
-  const float* border = SrgbTables().border.data();
-  // Without branches, since whether a guess is right is a matter of chance.
-  const int code = guess - (linear < border[guess]) + (border[guess + 1] <= linear);
-  return border[code] <= linear && linear < border[code + 1] ? static_cast<std::uint16_t>(code) : Srgb16FromLinear(linear);
+const Srgb16Tables& Srgb16() {
+  static const Srgb16Tables tables{SrgbTables().decoded.data(), SrgbTables().border.data()};
+  return tables;
 }
 
 }  // namespace scumble

@@ -172,12 +172,12 @@ TEST(FastTint, EncodingFindsTheCodeOfEveryValue) {
     ASSERT_NEAR(border, linear, 1e-7 * linear) << "the standard's curve";
     for (const int guess : {0, code - 2, code - 1, code, code + 1, 65535}) {
       const auto from = static_cast<std::uint16_t>(std::clamp(guess, 0, 65535));
-      ASSERT_EQ(Srgb16FromLinear(border, from), code);
-      ASSERT_EQ(Srgb16FromLinear(before, from), code - 1);
+      ASSERT_EQ(Srgb16().Encode(border, from), code);
+      ASSERT_EQ(Srgb16().Encode(before, from), code - 1);
     }
   }
   for (const float value : {-1.0f, kNan, -kInfinity, kInfinity, 2.0f, 0.0f, 1e-38f, 1e-45f, 4e-7f}) {
-    for (const std::uint16_t guess : {0, 1, 65535}) ASSERT_EQ(Srgb16FromLinear(value, guess), Srgb16FromLinear(value));
+    for (const std::uint16_t guess : {0, 1, 65535}) ASSERT_EQ(Srgb16().Encode(value, guess), Srgb16FromLinear(value));
   }
 }
 

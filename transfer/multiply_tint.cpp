@@ -10,12 +10,12 @@
 #include <hwy/highway.h>
 
 #include "transfer/srgb_encode-inl.h"
+#include "transfer/tint_blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-using Floats = hn::CappedTag<float, 16>;
 using Ints = hn::RebindToSigned<Floats>;
 using Float = hn::Vec<Floats>;
 using Int = hn::Vec<Ints>;
@@ -93,67 +93,58 @@ HWY_INLINE Int TintChannel(Int channel, const Factor& factor, bool plain, hn::Ma
   return RoundCode(d, hn::Min(tinted.code, hn::Set(d, 65535.0f)), tinted.doubt, doubtful);
 }
 
-// Makes the doubtful lanes of one channel by the tables.
-HWY_INLINE void Settle(hn::Mask<Floats> doubtful, Int before, Float factor, std::uint16_t* HWY_RESTRICT channel) {
-  const Floats d;
-  const Ints di;
-  HWY_ALIGN std::int32_t code[16];
-  HWY_ALIGN float times[16];
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(d, doubtful, bits);
-  std::uint32_t left = bits[0] | std::uint32_t(bits[1]) << 8;
-  if (left == 0) return;
-  hn::Store(before, di, code), hn::Store(factor, d, times);
-  for (; left != 0; left &= left - 1) {
-    const int lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
-    const float linear = Srgb16ToLinear(static_cast<std::uint16_t>(code[lane])) * times[lane];
-    channel[4 * lane] = Srgb16FromLinear(linear, channel[4 * lane]);
-  }
-}
+// Tints up to kBlock pixels, in whole vectors.
+class Block {
+ public:
+  explicit Block(float weight) : rest_(1.0f - weight), share_(weight) {}
 
-// One vector of pixels.
-HWY_INLINE void TintBlock(Float red_albedo, Float green_albedo, Float blue_albedo, float weight, Factors& factors,
-                          std::uint16_t* HWY_RESTRICT texels) {
-  const Floats d;
-  const hn::RebindToUnsigned<Floats> du;
-  const Ints di;
-  const auto rest = hn::Set(d, 1.0f - weight), share = hn::Set(d, weight);
-  factors.Become(hn::Add(rest, hn::Mul(share, red_albedo)), hn::Add(rest, hn::Mul(share, green_albedo)),
-                 hn::Add(rest, hn::Mul(share, blue_albedo)));
-  hn::Vec<decltype(du)> red_green, blue_alpha;
-  auto* words = reinterpret_cast<std::uint32_t*>(texels);
-  hn::LoadInterleaved2(du, words, red_green, blue_alpha);
-  const auto lower = hn::Set(du, 0xffff);
-  const Int red = hn::BitCast(di, hn::And(red_green, lower)), green = hn::BitCast(di, hn::ShiftRight<16>(red_green));
-  const Int blue = hn::BitCast(di, hn::And(blue_alpha, lower));
-  hn::Mask<Floats> red_doubt, green_doubt, blue_doubt;
-  const auto new_red = hn::BitCast(du, TintChannel(red, factors.red, factors.plain, red_doubt));
-  const auto new_green = hn::BitCast(du, TintChannel(green, factors.green, factors.plain, green_doubt));
-  const auto new_blue = hn::BitCast(du, TintChannel(blue, factors.blue, factors.plain, blue_doubt));
-  hn::StoreInterleaved2(hn::Or(new_red, hn::ShiftLeft<16>(new_green)), hn::Or(new_blue, hn::AndNot(lower, blue_alpha)),
-                        du, words);
-  if (hn::AllFalse(d, hn::Or(hn::Or(red_doubt, green_doubt), blue_doubt))) return;
-  Settle(red_doubt, red, factors.red.value, texels);
-  Settle(green_doubt, green, factors.green.value, texels + 1);
-  Settle(blue_doubt, blue, factors.blue.value, texels + 2);
-}
+  void Make(const float* const* albedo, std::size_t count, std::uint16_t* HWY_RESTRICT texels) {
+    std::copy_n(texels, 4 * count, before_);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) MakeVector(albedo, i, texels + 4 * i);
+    for (int c = 0; c < 3; ++c) {
+      doubtful_[c].ForEach(Floats(), count, [&](std::size_t i) {
+        const float linear = srgb_.decoded[before_[4 * i + c]] * (rest_ + share_ * albedo[c][i]);
+        texels[4 * i + c] = srgb_.Encode(linear, texels[4 * i + c]);
+      });
+    }
+  }
+
+ private:
+  HWY_INLINE Float FactorOf(const float* HWY_RESTRICT albedo) const {
+    const Floats d;
+    return hn::Add(hn::Set(d, rest_), hn::Mul(hn::Set(d, share_), hn::LoadU(d, albedo)));
+  }
+
+  HWY_INLINE void MakeVector(const float* const* albedo, std::size_t i, std::uint16_t* HWY_RESTRICT texels) {
+    const Floats d;
+    const hn::RebindToUnsigned<Floats> du;
+    const Ints di;
+    factors_.Become(FactorOf(albedo[0] + i), FactorOf(albedo[1] + i), FactorOf(albedo[2] + i));
+    hn::Vec<decltype(du)> red_green, blue_alpha;
+    auto* words = reinterpret_cast<std::uint32_t*>(texels);
+    hn::LoadInterleaved2(du, words, red_green, blue_alpha);
+    const auto lower = hn::Set(du, 0xffff);
+    const Int red = hn::BitCast(di, hn::And(red_green, lower)), green = hn::BitCast(di, hn::ShiftRight<16>(red_green));
+    const Int blue = hn::BitCast(di, hn::And(blue_alpha, lower));
+    hn::Mask<Floats> red_doubt, green_doubt, blue_doubt;
+    const auto new_red = hn::BitCast(du, TintChannel(red, factors_.red, factors_.plain, red_doubt));
+    const auto new_green = hn::BitCast(du, TintChannel(green, factors_.green, factors_.plain, green_doubt));
+    const auto new_blue = hn::BitCast(du, TintChannel(blue, factors_.blue, factors_.plain, blue_doubt));
+    doubtful_[0].Set(d, i, red_doubt), doubtful_[1].Set(d, i, green_doubt), doubtful_[2].Set(d, i, blue_doubt);
+    hn::StoreInterleaved2(hn::Or(new_red, hn::ShiftLeft<16>(new_green)), hn::Or(new_blue, hn::AndNot(lower, blue_alpha)),
+                          du, words);
+  }
+
+  float rest_, share_;
+  const Srgb16Tables srgb_ = Srgb16();
+  Factors factors_;
+  LaneMarks doubtful_[3];
+  std::uint16_t before_[4 * kBlock];
+};
 
 void MultiplyTintHere(const float* const* albedo, std::size_t count, float weight, std::uint16_t* texels) {
-  const Floats d;
-  const std::size_t lanes = hn::Lanes(d);
-  Factors factors;
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    TintBlock(hn::LoadU(d, albedo[0] + i), hn::LoadU(d, albedo[1] + i), hn::LoadU(d, albedo[2] + i), weight, factors,
-              texels + 4 * i);
-  }
-  if (i == count) return;
-  HWY_ALIGN float rest[3][16] = {};
-  HWY_ALIGN std::uint16_t last[4 * 16] = {};
-  for (int c = 0; c < 3; ++c) std::copy(albedo[c] + i, albedo[c] + count, rest[c]);
-  std::copy(texels + 4 * i, texels + 4 * count, last);
-  TintBlock(hn::Load(d, rest[0]), hn::Load(d, rest[1]), hn::Load(d, rest[2]), weight, factors, last);
-  std::copy(last, last + 4 * (count - i), texels + 4 * i);
+  Block block(weight);
+  ForEachBlock(block, albedo, count, texels);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -11,12 +11,12 @@
 
 #include "transfer/oklab-inl.h"
 #include "transfer/srgb_encode-inl.h"
+#include "transfer/tint_blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-using Floats = hn::CappedTag<float, 16>;
 using Ints = hn::RebindToSigned<Floats>;
 using Words = hn::RebindToUnsigned<Floats>;
 using Float = hn::Vec<Floats>;
@@ -94,10 +94,6 @@ HWY_INLINE Color Target(const Scene& scene, Float own, float reference) {
   return WithChroma(target, ChromaThatFits(lighter, out, scene.high));
 }
 
-HWY_INLINE Float Mix(Float own, Float target, Float weight) {
-  return hn::Add(own, hn::Mul(hn::Sub(target, own), weight));
-}
-
 HWY_INLINE Int Encode(Float linear, Mask& doubtful) {
   const Floats d;
   const Float value = hn::Min(hn::Max(linear, hn::Zero(d)), All(1.0f));
@@ -105,109 +101,124 @@ HWY_INLINE Int Encode(Float linear, Mask& doubtful) {
   return RoundCode(d, code, hn::MulAdd(code, All(kRelativeDoubt), All(kDoubt)), doubtful);
 }
 
-constexpr int kBlock = 256;  // pixels that are tinted before their doubtful codes are settled
+// One colour a pixel.
+struct Colors {
+  HWY_ALIGN float a[kBlock], b[kBlock], c[kBlock];
 
-// A stretch of pixels.
-struct Block {
-  const Tint& tint;
-  const float* HWY_RESTRICT decoded = Srgb16Linear();
-  Scene scene{tint.reference_lightness};
+  HWY_INLINE Color Load(std::size_t i) const {
+    const Floats d;
+    return {hn::Load(d, a + i), hn::Load(d, b + i), hn::Load(d, c + i)};
+  }
+  HWY_INLINE void Store(Color color, std::size_t i) {
+    const Floats d;
+    hn::Store(color.a, d, a + i), hn::Store(color.b, d, b + i), hn::Store(color.c, d, c + i);
+  }
+};
 
-  explicit Block(const Tint& wanted) : tint(wanted) {}
+// Tints up to kBlock pixels, in whole vectors. Each step is taken by all of them before the next: the steps of one vector wait for
+// each other, those of several do not.
+class Block {
+ public:
+  explicit Block(const Tint& tint) : tint_(tint), scene_(tint.reference_lightness) {}
 
-  HWY_ALIGN float linear[3][kBlock];
-  LaneMarks<3 * kBlock> doubtful;
+  void Make(const float* const* albedo, std::size_t count, std::uint16_t* HWY_RESTRICT texels) {
+    all_known_ = true;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) Read(texels + 4 * i, i);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
+      const Floats d;
+      Mix({hn::LoadU(d, albedo[0] + i), hn::LoadU(d, albedo[1] + i), hn::LoadU(d, albedo[2] + i)}, i);
+    }
+    if (HWY_UNLIKELY(!all_known_)) std::copy_n(texels, 4 * count, before_);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) Write(texels + 4 * i, i);
+    Settle(count, texels);
+    if (HWY_UNLIKELY(!all_known_)) MakePlainly(albedo, count, texels);
+  }
 
-  // The pixels of one vector, the first of which is at `from`.
-  HWY_INLINE void Make(Color albedo, std::size_t from, std::uint16_t* HWY_RESTRICT texels) {
+ private:
+  // The paint's Oklab.
+  HWY_INLINE void Read(const std::uint16_t* HWY_RESTRICT texels, std::size_t i) {
     const Floats d;
     const Words du;
     const Ints di;
-    scene.Become(albedo, tint.reference_lightness);
     hn::Vec<Words> red_green, blue_alpha;
-    auto* words = reinterpret_cast<std::uint32_t*>(texels);
-    hn::LoadInterleaved2(du, words, red_green, blue_alpha);
+    hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(texels), red_green, blue_alpha);
     const auto lower = hn::Set(du, 0xffff);
-    const Color paint{hn::GatherIndex(d, decoded, hn::BitCast(di, hn::And(red_green, lower))),
-                      hn::GatherIndex(d, decoded, hn::BitCast(di, hn::ShiftRight<16>(red_green))),
-                      hn::GatherIndex(d, decoded, hn::BitCast(di, hn::And(blue_alpha, lower)))};
-    Mask unknown = scene.unusual;
-    const Color own = OklabFromLinear(d, paint, unknown);
-    const Color target = Target(scene, own.a, tint.reference_lightness);
-    const Float weight = All(tint.weight);
-    const Color mixed{Mix(own.a, target.a, weight), Mix(own.b, target.b, weight), Mix(own.c, target.c, weight)};
+    const Color paint{hn::GatherIndex(d, srgb_.decoded, hn::BitCast(di, hn::And(red_green, lower))),
+                      hn::GatherIndex(d, srgb_.decoded, hn::BitCast(di, hn::ShiftRight<16>(red_green))),
+                      hn::GatherIndex(d, srgb_.decoded, hn::BitCast(di, hn::And(blue_alpha, lower)))};
+    Mask unknown = hn::Lt(hn::Zero(d), hn::Zero(d));
+    colors_.Store(OklabFromLinear(d, paint, unknown), i);
+    Mark(unknown, i, read_unknown_);
+  }
+
+  // From the paint's Oklab to the result, linear.
+  HWY_INLINE void Mix(Color albedo, std::size_t i) {
+    const Floats d;
+    scene_.Become(albedo, tint_.reference_lightness);
+    const Color own = colors_.Load(i), target = Target(scene_, own.a, tint_.reference_lightness);
+    const Float weight = All(tint_.weight);
+    const Color mixed = Each([&](Float o, Float t) HWY_ATTR { return hn::Add(o, hn::Mul(hn::Sub(t, o), weight)); }, own, target);
     Color result = LinearFromOklab(d, mixed);
     const Float high = All(1.0f + kSlack);
     const Mask in = InGamut(result, All(-kSlack), high);
     if (HWY_UNLIKELY(!hn::AllTrue(d, in))) {
       result = LinearFromOklab(d, WithChroma(mixed, ChromaThatFits(mixed, hn::Not(in), high)));
     }
-    hn::Store(result.a, d, linear[0] + from), hn::Store(result.b, d, linear[1] + from);
-    hn::Store(result.c, d, linear[2] + from);
-    const int vector = static_cast<int>(from / hn::Lanes(d));
-    Mask red_doubt, green_doubt, blue_doubt;
-    const auto red = hn::BitCast(du, Encode(result.a, red_doubt));
-    const auto green = hn::BitCast(du, Encode(result.b, green_doubt));
-    const auto blue = hn::BitCast(du, Encode(result.c, blue_doubt));
-    doubtful.Set(d, 3 * vector, red_doubt), doubtful.Set(d, 3 * vector + 1, green_doubt);
-    doubtful.Set(d, 3 * vector + 2, blue_doubt);
-    const auto new_red_green = hn::Or(red, hn::ShiftLeft<16>(green)), new_blue_alpha = hn::Or(blue, hn::AndNot(lower, blue_alpha));
-    hn::StoreInterleaved2(new_red_green, new_blue_alpha, du, words);
-    if (HWY_UNLIKELY(!hn::AllFalse(d, unknown))) MakePlainly(albedo, red_green, blue_alpha, unknown, from, texels);
+    colors_.Store(result, i);
+    Mark(scene_.unusual, i, scene_unknown_);
   }
 
-  // The same of the unknown ones.
-  HWY_NOINLINE void MakePlainly(Color albedo, hn::Vec<Words> red_green, hn::Vec<Words> blue_alpha, Mask unknown,
-                                std::size_t from, std::uint16_t* HWY_RESTRICT texels) {
+  HWY_INLINE void Mark(Mask unknown, std::size_t i, LaneMarks& marks) {
+    marks.Set(Floats(), i, unknown);
+    all_known_ &= hn::AllFalse(Floats(), unknown);
+  }
+
+  HWY_INLINE void Write(std::uint16_t* HWY_RESTRICT texels, std::size_t i) {
     const Floats d;
-    HWY_ALIGN float albedos[3][16];
-    HWY_ALIGN std::uint16_t before[4 * 16];
-    hn::Store(albedo.a, d, albedos[0]), hn::Store(albedo.b, d, albedos[1]), hn::Store(albedo.c, d, albedos[2]);
-    hn::StoreInterleaved2(red_green, blue_alpha, Words(), reinterpret_cast<std::uint32_t*>(before));
-    LaneMarks<1> marks;
-    marks.Set(d, 0, unknown);
-    marks.ForEach(1, [&](int, std::size_t lane) {
-      std::uint16_t* texel = texels + 4 * lane;
-      std::copy_n(before + 4 * lane, 4, texel);
-      tint.Apply({albedos[0][lane], albedos[1][lane], albedos[2][lane]}, texel);
-      for (int c = 0; c < 3; ++c) linear[c][from + lane] = Srgb16ToLinear(texel[c]);
-    });
+    const Words du;
+    const Color linear = colors_.Load(i);
+    hn::Vec<Words> red_green, blue_alpha;
+    hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(texels), red_green, blue_alpha);
+    Mask red_doubt, green_doubt, blue_doubt;
+    const auto red = hn::BitCast(du, Encode(linear.a, red_doubt));
+    const auto green = hn::BitCast(du, Encode(linear.b, green_doubt));
+    const auto blue = hn::BitCast(du, Encode(linear.c, blue_doubt));
+    red_doubtful_.Set(d, i, red_doubt), green_doubtful_.Set(d, i, green_doubt);
+    blue_doubtful_.Set(d, i, blue_doubt);
+    hn::StoreInterleaved2(hn::Or(red, hn::ShiftLeft<16>(green)), hn::Or(blue, hn::AndNot(hn::Set(du, 0xffff), blue_alpha)), du,
+                          reinterpret_cast<std::uint32_t*>(texels));
   }
 
-  HWY_INLINE void Settle(std::size_t count, std::uint16_t* HWY_RESTRICT texels) {
-    const std::size_t lanes = hn::Lanes(Floats());
-    doubtful.ForEach(static_cast<int>(3 * ((count + lanes - 1) / lanes)), [&](std::size_t at, std::size_t lane) {
-      const std::size_t i = std::size_t(at) / 3 * lanes + lane, c = std::size_t(at) % 3;
-      if (i < count) texels[4 * i + c] = Srgb16FromLinear(linear[c][i], texels[4 * i + c]);
-    });
+  HWY_INLINE void Settle(std::size_t count, std::uint16_t* HWY_RESTRICT texels) const {
+    const auto settle = [&](const LaneMarks& doubtful, const float* linear, std::size_t c) {
+      doubtful.ForEach(Floats(), count, [&](std::size_t i) {
+        texels[4 * i + c] = srgb_.Encode(linear[i], texels[4 * i + c]);
+      });
+    };
+    settle(red_doubtful_, colors_.a, 0), settle(green_doubtful_, colors_.b, 1), settle(blue_doubtful_, colors_.c, 2);
   }
+
+  HWY_NOINLINE void MakePlainly(const float* const* albedo, std::size_t count, std::uint16_t* HWY_RESTRICT texels) const {
+    const auto make = [&](std::size_t i) {
+      std::copy_n(before_ + 4 * i, 4, texels + 4 * i);
+      tint_.Apply({albedo[0][i], albedo[1][i], albedo[2][i]}, texels + 4 * i);
+    };
+    read_unknown_.ForEach(Floats(), count, make);
+    scene_unknown_.ForEach(Floats(), count, make);
+  }
+
+  const Tint& tint_;
+  const Srgb16Tables srgb_ = Srgb16();
+  Scene scene_;
+  Colors colors_;  // the paint's Oklab, then the result
+  LaneMarks red_doubtful_, green_doubtful_, blue_doubtful_, read_unknown_, scene_unknown_;
+  std::uint16_t before_[4 * kBlock];  // where not all are known
+  bool all_known_ = true;
 };
 
 void OklabTintHere(const float* const* albedo, std::size_t count, const Tint& tint, std::uint16_t* texels) {
-  const Floats d;
-  const std::size_t lanes = hn::Lanes(d);
   Block block(tint);
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    const std::size_t size = std::min<std::size_t>(kBlock, count - first);
-    std::size_t i = 0;
-    for (; i + lanes <= size; i += lanes) {
-      const std::size_t at = first + i;
-      block.Make({hn::LoadU(d, albedo[0] + at), hn::LoadU(d, albedo[1] + at), hn::LoadU(d, albedo[2] + at)}, i, texels + 4 * at);
-    }
-    if (i < size) {
-      HWY_ALIGN float rest[3][16];
-      HWY_ALIGN std::uint16_t last[4 * 16] = {};
-      const std::size_t left = size - i, at = first + i;
-      for (int c = 0; c < 3; ++c) {
-        std::fill_n(rest[c], 16, albedo[c][count - 1]);
-        std::copy_n(albedo[c] + at, left, rest[c]);
-      }
-      std::copy_n(texels + 4 * at, 4 * left, last);
-      block.Make({hn::Load(d, rest[0]), hn::Load(d, rest[1]), hn::Load(d, rest[2])}, i, last);
-      std::copy_n(last, 4 * left, texels + 4 * at);
-    }
-    block.Settle(size, texels + 4 * first);
-  }
+  ForEachBlock(block, albedo, count, texels);
 }
 
 }  // namespace HWY_NAMESPACE

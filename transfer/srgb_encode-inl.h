@@ -29,8 +29,8 @@ constexpr float kLeastRoot = 1.0f / 32768.0f;
 
 // How far, in codes, a code made from these may be from what the tables say, which round too: above the kink
 // kDoubt + kRelativeDoubt · code, below it, where BelowKink made it, kKinkDoubt.
-constexpr float kDoubt = 0.006f;
-constexpr float kRelativeDoubt = 2e-7f;
+constexpr float kDoubt = 0.003f;
+constexpr float kRelativeDoubt = 1.8e-7f;
 constexpr float kKinkDoubt = 0.012f;
 
 // 1.5^(5/12) · 2^(5 e / 12) for e of -15 … 0: what floats hold of it, and the rest.
@@ -101,29 +101,6 @@ HWY_INLINE hn::Vec<D> BelowKink(D d, hn::Vec<D> root) {
   p = hn::MulAdd(s, p, hn::Set(d, 0.830549f));
   return hn::Mul(z, p);
 }
-
-// Which lanes of some vectors, of up to 16 lanes each, are marked. Vectors that were marked are looked through later, all at
-// once: a processor that has to guess whether one has marks would guess wrong too often, and late.
-template <int kVectors>
-class LaneMarks {
- public:
-  template <class D>
-  HWY_INLINE void Set(D d, int vector, hn::Mask<D> mask) {
-    bytes_[2 * vector + 1] = 0;
-    hn::StoreMaskBits(d, mask, bytes_ + 2 * vector);
-  }
-  // Calls visit(vector, lane) for each mark of the first vectors.
-  template <class Visit>
-  HWY_INLINE void ForEach(int vectors, const Visit& visit) const {
-    for (int vector = 0; vector < vectors; ++vector) {
-      std::uint32_t left = bytes_[2 * vector] | std::uint32_t(bytes_[2 * vector + 1]) << 8;
-      for (; left != 0; left &= left - 1) visit(vector, hwy::Num0BitsBelowLS1Bit_Nonzero32(left));
-    }
-  }
-
- private:
-  std::uint8_t bytes_[2 * kVectors + 8];  // eight bytes are what storing a mask may ask for
-};
 
 // The code of a linear value of 0 … 1, to fractions of a code.
 template <class D>
