@@ -34,7 +34,8 @@ constexpr int kBinShift = 16;                       // 128 bins an octave
 constexpr std::uint32_t kFirstBin = 0x35000000u >> kBinShift;  // of 2^-21, below where code 1 begins
 constexpr std::uint32_t kBins = (0x3f800000u >> kBinShift) - kFirstBin;
 
-// decoded[i] is what code i means; border[i] is where codes i - 1 and i meet, and whatever is beyond the first and the last is theirs.
+// decoded[i] is what code i means; border[i] is where codes i - 1 and i meet; what is beyond the first
+// and the last is theirs.
 struct Tables {
   std::vector<float> decoded = std::vector<float>(kCodes);
   std::vector<float> border = std::vector<float>(kCodes + 2, std::numeric_limits<float>::infinity());

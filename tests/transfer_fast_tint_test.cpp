@@ -104,6 +104,21 @@ TEST(FastTint, TakesHueAndChromaAsThePlainTintDoes) {
   });
 }
 
+// Where cube roots are so near to the middle of two floats that they are doubtful, once in seven thousand colours: the
+// pixels of greys between black and white are enough to meet some.
+TEST(FastTint, MakesDoubtfulRootsPlainly) {
+  OnEveryInstructionSet([] {
+    Pixels pixels(1 << 17);
+    for (std::size_t i = 0; i < pixels.count(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        pixels.albedo[c][i] = i < 65536 ? 0.3f : std::ldexp(1.0f + static_cast<float>(i % 65536) / 65536.0f, -int(i % 70));
+        pixels.texels[4 * i + c] = static_cast<std::uint16_t>(i);
+      }
+    }
+    ExpectPlain(pixels, {0.6f, 1.0f, ColorizeMode::kOklab});
+  });
+}
+
 TEST(FastTint, EveryLengthAndPlace) {
   OnEveryInstructionSet([] {
     for (std::size_t count = 0; count < 70; ++count) {

@@ -9,16 +9,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "transfer/srgb_encode-inl.h"
 #include "transfer/tint_blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
-
-using Ints = hn::RebindToSigned<Floats>;
-using Float = hn::Vec<Floats>;
-using Int = hn::Vec<Ints>;
 
 // What albedo makes of one channel: a code c becomes c · high + (c · low + shift).
 struct Factor {
@@ -94,9 +89,9 @@ HWY_INLINE Int TintChannel(Int channel, const Factor& factor, bool plain, hn::Ma
 }
 
 // Tints up to kBlock pixels, in whole vectors.
-class Block {
+class MultiplyBlock {
  public:
-  explicit Block(float weight) : rest_(1.0f - weight), share_(weight) {}
+  explicit MultiplyBlock(float weight) : rest_(1.0f - weight), share_(weight) {}
 
   void Make(const float* const* albedo, std::size_t count, std::uint16_t* HWY_RESTRICT texels) {
     std::copy_n(texels, 4 * count, before_);
@@ -117,22 +112,14 @@ class Block {
 
   HWY_INLINE void MakeVector(const float* const* albedo, std::size_t i, std::uint16_t* HWY_RESTRICT texels) {
     const Floats d;
-    const hn::RebindToUnsigned<Floats> du;
-    const Ints di;
     factors_.Become(FactorOf(albedo[0] + i), FactorOf(albedo[1] + i), FactorOf(albedo[2] + i));
-    hn::Vec<decltype(du)> red_green, blue_alpha;
-    auto* words = reinterpret_cast<std::uint32_t*>(texels);
-    hn::LoadInterleaved2(du, words, red_green, blue_alpha);
-    const auto lower = hn::Set(du, 0xffff);
-    const Int red = hn::BitCast(di, hn::And(red_green, lower)), green = hn::BitCast(di, hn::ShiftRight<16>(red_green));
-    const Int blue = hn::BitCast(di, hn::And(blue_alpha, lower));
-    hn::Mask<Floats> red_doubt, green_doubt, blue_doubt;
-    const auto new_red = hn::BitCast(du, TintChannel(red, factors_.red, factors_.plain, red_doubt));
-    const auto new_green = hn::BitCast(du, TintChannel(green, factors_.green, factors_.plain, green_doubt));
-    const auto new_blue = hn::BitCast(du, TintChannel(blue, factors_.blue, factors_.plain, blue_doubt));
-    doubtful_[0].Set(d, i, red_doubt), doubtful_[1].Set(d, i, green_doubt), doubtful_[2].Set(d, i, blue_doubt);
-    hn::StoreInterleaved2(hn::Or(new_red, hn::ShiftLeft<16>(new_green)), hn::Or(new_blue, hn::AndNot(lower, blue_alpha)),
-                          du, words);
+    const Codes codes(texels);
+    Mask doubtful[3];
+    const Int red = TintChannel(codes.red, factors_.red, factors_.plain, doubtful[0]);
+    const Int green = TintChannel(codes.green, factors_.green, factors_.plain, doubtful[1]);
+    const Int blue = TintChannel(codes.blue, factors_.blue, factors_.plain, doubtful[2]);
+    for (int c = 0; c < 3; ++c) doubtful_[c].Set(d, i, doubtful[c]);
+    codes.Replace(red, green, blue, texels);
   }
 
   float rest_, share_;
@@ -143,8 +130,8 @@ class Block {
 };
 
 void MultiplyTintHere(const float* const* albedo, std::size_t count, float weight, std::uint16_t* texels) {
-  Block block(weight);
-  ForEachBlock(block, albedo, count, texels);
+  MultiplyBlock stretch(weight);
+  ForEachBlock(stretch, albedo, count, texels);
 }
 
 }  // namespace HWY_NAMESPACE

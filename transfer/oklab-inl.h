@@ -24,8 +24,8 @@ struct Triple {
 // Smaller numbers than this, 0 excepted, have no known cube root.
 constexpr float kLeastCube = 1e-17f;
 
-// How far, as a share of the root, the plain formula's and the one below may be apart: the one errs by less than 1.2e-12, the
-// other by less than 2e-13.
+// How far, as a share of the root, the plain formula's and the one below may be apart: the one errs by less than 1.2e-12,
+// the other by less than 2e-13.
 constexpr float kRootDoubt = 2e-12f;
 
 // f of each of the three, one beside the other: chains of steps that wait for each other run abreast.

@@ -10,18 +10,12 @@
 #include <hwy/highway.h>
 
 #include "transfer/oklab-inl.h"
-#include "transfer/srgb_encode-inl.h"
 #include "transfer/tint_blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scumble::internal {
 namespace HWY_NAMESPACE {
 
-using Ints = hn::RebindToSigned<Floats>;
-using Words = hn::RebindToUnsigned<Floats>;
-using Float = hn::Vec<Floats>;
-using Int = hn::Vec<Ints>;
-using Mask = hn::Mask<Floats>;
 using Color = Triple<Floats>;
 
 HWY_INLINE Float All(float value) { return hn::Set(Floats(), value); }
@@ -115,11 +109,11 @@ struct Colors {
   }
 };
 
-// Tints up to kBlock pixels, in whole vectors. Each step is taken by all of them before the next: the steps of one vector wait for
-// each other, those of several do not.
-class Block {
+// Tints up to kBlock pixels, in whole vectors. Each step is taken by all of them before the next: the steps of one vector
+// wait for each other, those of several do not.
+class OklabBlock {
  public:
-  explicit Block(const Tint& tint) : tint_(tint), scene_(tint.reference_lightness) {}
+  explicit OklabBlock(const Tint& tint) : tint_(tint), scene_(tint.reference_lightness) {}
 
   void Make(const float* const* albedo, std::size_t count, std::uint16_t* HWY_RESTRICT texels) {
     all_known_ = true;
@@ -138,14 +132,9 @@ class Block {
   // The paint's Oklab.
   HWY_INLINE void Read(const std::uint16_t* HWY_RESTRICT texels, std::size_t i) {
     const Floats d;
-    const Words du;
-    const Ints di;
-    hn::Vec<Words> red_green, blue_alpha;
-    hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(texels), red_green, blue_alpha);
-    const auto lower = hn::Set(du, 0xffff);
-    const Color paint{hn::GatherIndex(d, srgb_.decoded, hn::BitCast(di, hn::And(red_green, lower))),
-                      hn::GatherIndex(d, srgb_.decoded, hn::BitCast(di, hn::ShiftRight<16>(red_green))),
-                      hn::GatherIndex(d, srgb_.decoded, hn::BitCast(di, hn::And(blue_alpha, lower)))};
+    const Codes codes(texels);
+    const Color paint{hn::GatherIndex(d, srgb_.decoded, codes.red), hn::GatherIndex(d, srgb_.decoded, codes.green),
+                      hn::GatherIndex(d, srgb_.decoded, codes.blue)};
     Mask unknown = hn::Lt(hn::Zero(d), hn::Zero(d));
     colors_.Store(OklabFromLinear(d, paint, unknown), i);
     Mark(unknown, i, read_unknown_);
@@ -157,7 +146,8 @@ class Block {
     scene_.Become(albedo, tint_.reference_lightness);
     const Color own = colors_.Load(i), target = Target(scene_, own.a, tint_.reference_lightness);
     const Float weight = All(tint_.weight);
-    const Color mixed = Each([&](Float o, Float t) HWY_ATTR { return hn::Add(o, hn::Mul(hn::Sub(t, o), weight)); }, own, target);
+    const auto mix = [&](Float o, Float t) HWY_ATTR { return hn::Add(o, hn::Mul(hn::Sub(t, o), weight)); };
+    const Color mixed = Each(mix, own, target);
     Color result = LinearFromOklab(d, mixed);
     const Float high = All(1.0f + kSlack);
     const Mask in = InGamut(result, All(-kSlack), high);
@@ -175,18 +165,11 @@ class Block {
 
   HWY_INLINE void Write(std::uint16_t* HWY_RESTRICT texels, std::size_t i) {
     const Floats d;
-    const Words du;
     const Color linear = colors_.Load(i);
-    hn::Vec<Words> red_green, blue_alpha;
-    hn::LoadInterleaved2(du, reinterpret_cast<const std::uint32_t*>(texels), red_green, blue_alpha);
     Mask red_doubt, green_doubt, blue_doubt;
-    const auto red = hn::BitCast(du, Encode(linear.a, red_doubt));
-    const auto green = hn::BitCast(du, Encode(linear.b, green_doubt));
-    const auto blue = hn::BitCast(du, Encode(linear.c, blue_doubt));
-    red_doubtful_.Set(d, i, red_doubt), green_doubtful_.Set(d, i, green_doubt);
-    blue_doubtful_.Set(d, i, blue_doubt);
-    hn::StoreInterleaved2(hn::Or(red, hn::ShiftLeft<16>(green)), hn::Or(blue, hn::AndNot(hn::Set(du, 0xffff), blue_alpha)), du,
-                          reinterpret_cast<std::uint32_t*>(texels));
+    const Int red = Encode(linear.a, red_doubt), green = Encode(linear.b, green_doubt), blue = Encode(linear.c, blue_doubt);
+    red_doubtful_.Set(d, i, red_doubt), green_doubtful_.Set(d, i, green_doubt), blue_doubtful_.Set(d, i, blue_doubt);
+    Codes(texels).Replace(red, green, blue, texels);
   }
 
   HWY_INLINE void Settle(std::size_t count, std::uint16_t* HWY_RESTRICT texels) const {
@@ -217,8 +200,7 @@ class Block {
 };
 
 void OklabTintHere(const float* const* albedo, std::size_t count, const Tint& tint, std::uint16_t* texels) {
-  Block block(tint);
-  ForEachBlock(block, albedo, count, texels);
+  ForEachBlock(OklabBlock(tint), albedo, count, texels);
 }
 
 }  // namespace HWY_NAMESPACE
