@@ -104,9 +104,8 @@ TEST(FastTint, TakesHueAndChromaAsThePlainTintDoes) {
   });
 }
 
-// Where cube roots are so near to the middle of two floats that they are doubtful, once in seven thousand colours: the
-// pixels of greys between black and white are enough to meet some.
-TEST(FastTint, MakesDoubtfulRootsPlainly) {
+// Greys of every code, on one albedo and on albedos of every magnitude.
+TEST(FastTint, TintsEveryGrey) {
   OnEveryInstructionSet([] {
     Pixels pixels(1 << 17);
     for (std::size_t i = 0; i < pixels.count(); ++i) {
