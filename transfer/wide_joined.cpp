@@ -91,15 +91,15 @@ HWY_ATTR bool FindLacking(const JoinedRows& rows, int dx, int dy, std::uint64_t*
   }
   if (!rows.unsure || !all) return any != 0;
   const std::uint8_t* doubtful =
-      rows.doubtful + ((dy >> 2) + rows.quarters) * (2 * rows.quarters + 1) + (dx >> 2) + rows.quarters;
-  if (!(doubtful[0] | doubtful[1] | doubtful[2 * rows.quarters + 1] | doubtful[2 * rows.quarters + 2])) return any != 0;
-  // Pixels of a quarter see the quarter that is a whole number of quarters further, or the next.
-  const std::size_t side = 2 * std::size_t(rows.quarters) + 1;
+      rows.doubtful + ((dy >> 2) + rows.reach) * (2 * rows.reach + 1) + (dx >> 2) + rows.reach;
+  if (!(doubtful[0] | doubtful[1] | doubtful[2 * rows.reach + 1] | doubtful[2 * rows.reach + 2])) return any != 0;
+  // Pixels of a cell see the cell that is a whole number of cells further, or the next.
+  const std::size_t side = 2 * std::size_t(rows.reach) + 1;
   const std::uint64_t near = 0x1111111111111111u * (0xfu >> (dx & 3));
   const std::uint64_t* unsure =
-      rows.unsure + 2 * ((std::size_t((dy >> 2) + rows.quarters)) * side + std::size_t((dx >> 2) + rows.quarters));
+      rows.unsure + 2 * (std::size_t((dy >> 2) + rows.reach) * side + std::size_t((dx >> 2) + rows.reach));
   for (int half = 0; half < 2; ++half, unsure += 2 * side * side) {
-    // Rows of a quarter see the quarters of two rows.
+    // Rows of a cell see the cells of two rows.
     const auto words = [&](const std::uint64_t* of, int cause) { return (of[cause] & near) | (of[2 + cause] & ~near); };
     const std::uint64_t* lower = unsure + 2 * side;
     const std::uint64_t depths[] = {words(unsure, 0), words(lower, 0)}, facings[] = {words(unsure, 1), words(lower, 1)};
@@ -144,12 +144,22 @@ HWY_EXPORT(ReachWindow);
 namespace {
 
 constexpr int kStepX[] = {1, -1, 0, 1}, kStepY[] = {0, 1, 1, 1};
-constexpr int kCell = WideSurface::kCell, kCells = WideSurface::kCells;
+constexpr int kBand = WideSurface::kBand, kSide = WideCells::kSide, kAcross = WideCells::kAcross;
 
 // The side of a way after n - 1 of its n steps: the row or column nearest to the line, halves away from the middle.
 int OneBefore(int side, int n) {
   const int length = (2 * std::abs(side) * (n - 1) + n) / (2 * n);
   return side < 0 ? -length : length;
+}
+
+// Each of 16 bits four times.
+std::uint64_t PixelsOf(std::uint32_t cells) {
+  std::uint64_t bits = cells;
+  bits = (bits | bits << 24) & 0x000000ff000000ff;
+  bits = (bits | bits << 12) & 0x000f000f000f000f;
+  bits = (bits | bits << 6) & 0x0303030303030303;
+  bits = (bits | bits << 3) & 0x1111111111111111;
+  return bits * 0xf;
 }
 
 int StepOf(int dx, int dy) {
@@ -179,58 +189,44 @@ WideWays::WideWays(int radius) : radius_(radius) {
   }
 }
 
-bool WideJoined::MarkDoubts(const WideSurface& surface, const EdgeLimits& limits) {
-  unsigned all = 0;
-  const int reach = surface.reach(), cells = kCells + 2 * reach;
-  doubts_.assign(std::size_t(cells) * cells, 0);
-  for (int row = 0; row < cells; ++row) {
-    for (int column = 0; column < cells; ++column) {
-      unsigned bits = surface.Doubts(limits, column - reach, row - reach, 0, 0);
-      for (int k = 0; k < 4; ++k) {
-        const int x = column + kStepX[k], y = row + kStepY[k];
-        if (x < 0 || x >= cells || y >= cells) continue;
-        bits |= surface.Doubts(limits, column - reach, row - reach, kStepX[k], kStepY[k]) << 2 * (k + 1);
+// Whether there are any. A step's two pixels are of one cell, or of cells side by side.
+bool WideJoined::MarkStepDoubts(const WideSurface& surface, const EdgeLimits& limits) {
+  const int margin = surface.margin() / kSide, across = kAcross + 2 * margin;
+  const int words = (across + kAcross - 1) / kAcross;
+  constexpr struct {
+    int dx, dy;
+  } kPairs[] = {{0, 0}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+  step_doubts_.assign(std::size_t(words) * across, 0);
+  std::uint64_t any = 0;
+  for (int row = 0; row < across; ++row) {
+    for (int word = 0; word < words; ++word) {
+      std::uint32_t doubts = 0;
+      for (const auto& pair : kPairs) {
+        const WideCells::Bits bits = cells_.Doubts(limits, kAcross * word - margin, row - margin, pair.dx, pair.dy);
+        doubts |= bits.depth | bits.facing;
       }
-      doubts_[std::size_t(row) * cells + column] = static_cast<std::uint16_t>(bits);
-      all |= bits;
+      any |= step_doubts_[std::size_t(row) * words + word] = PixelsOf(doubts);
     }
   }
-  return all != 0;
+  return any != 0;
 }
 
-// As the surface says it; for neighbours it is known.
-unsigned WideJoined::Doubts(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx,
-                            int dy) const {
-  if (std::abs(dx) > 1 || std::abs(dy) > 1) return surface.Doubts(limits, column, row, dx, dy);
-  const int reach = surface.reach(), cells = kCells + 2 * reach;
-  const bool back = dy < 0 || (dy == 0 && dx < 0);
-  const int x = back ? column + dx : column, y = back ? row + dy : row;
-  const int which = dx == 0 && dy == 0 ? 0 : 1 + (back ? StepOf(-dx, -dy) : StepOf(dx, dy));
-  return doubts_[std::size_t(y + reach) * cells + (x + reach)] >> 2 * which & 3;
-}
-
-// For a row of cells: whether any pixel of the window may fail. Where a cell leaves doubts its quarters are asked.
-bool WideJoined::MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int cell_row, std::uint64_t active) {
-  const int reach = surface.reach(), quarters = 2 * reach + 1, side = 2 * quarters + 1;
+// For eight rows: whether any pixel of the window may fail.
+bool WideJoined::MarkUnsure(int radius, const EdgeLimits& limits, int first_row, std::uint64_t active) {
+  const int reach = (radius + kSide - 1) / kSide, side = 2 * reach + 1;
   unsure_.assign(std::size_t(4) * side * side + 2 * side + 4, 0);
   doubtful_.assign(std::size_t(side) * (side + 1) + 1, 0);
   bool any = false;
-  for (int dy = -reach; dy <= reach; ++dy) {
-    for (int dx = -reach; dx <= reach; ++dx) {
-      for (int column = 0; column < kCells; ++column) {
-        if (!(active >> (kCell * column) & 0xff) || !Doubts(surface, limits, column, cell_row, dx, dy)) continue;
-        for (int k = 0; k < 16; ++k) {
-          const int px = k & 1, py = k >> 1 & 1, x = 2 * dx + (k >> 2 & 1) - px, y = 2 * dy + (k >> 3) - py;
-          const unsigned doubts = surface.QuarterDoubts(limits, 2 * column + px, 2 * cell_row + py, x, y);
-          if (!doubts) continue;
-          any = true;
-          doubtful_[std::size_t((y + quarters) * side + x + quarters)] = 1;
-          const std::uint64_t bits = std::uint64_t{0xf} << (kCell * column + WideSurface::kQuarter * px);
-          std::uint64_t* unsure =
-              unsure_.data() + 2 * (std::size_t(py * side + y + quarters) * side + std::size_t(x + quarters));
-          if (doubts & WideSurface::kDepthDoubt) unsure[0] |= bits;
-          if (doubts & WideSurface::kFacingDoubt) unsure[1] |= bits;
-        }
+  std::uint64_t* unsure = unsure_.data();
+  for (int half = 0; half < 2; ++half) {
+    for (int dy = -reach; dy <= reach; ++dy) {
+      for (int dx = -reach; dx <= reach; ++dx, unsure += 2) {
+        const WideCells::Bits bits = cells_.Doubts(limits, 0, first_row / kSide + half, dx, dy);
+        if (!(bits.depth | bits.facing)) continue;
+        unsure[0] = PixelsOf(bits.depth) & active, unsure[1] = PixelsOf(bits.facing) & active;
+        if (!(unsure[0] | unsure[1])) continue;
+        any = true;
+        doubtful_[std::size_t((dy + reach) * side + dx + reach)] = 1;
       }
     }
   }
@@ -239,19 +235,14 @@ bool WideJoined::MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int 
 
 // Forward steps of every pixel of the tile and around it; columns and rows beyond the radius do not matter.
 void WideJoined::MarkSteps(const WideSurface& surface, const EdgeLimits& limits) {
-  const int margin = surface.margin(), radius = surface.radius(), cells = kCells + 2 * surface.reach();
+  const int margin = surface.margin(), radius = surface.radius();
+  const int words = (kTileSide + 2 * margin + 63) / 64;
   for (BitPlane& plane : steps_) plane.Reset(margin);
   blocked_.assign(std::size_t(kTileSide + 2 * margin), 0);
   for (int y = -radius; y < kTileSide + radius; ++y) {
-    const std::uint16_t* doubts = doubts_.data() + std::size_t((y + margin) / kCell) * cells;
+    const std::uint64_t* doubts = step_doubts_.data() + std::size_t((y + margin) / kSide) * words;
     for (int x = -margin; x < kTileSide + margin; x += 64) {
-      std::uint64_t doubtful = 0;
-      for (int k = 0; k < kCells && (x + margin) / kCell + k < cells; ++k) {
-        const int cell = (x + margin) / kCell + k;
-        // A step down left may end in the cell to the left, whose pair with this one is kept there.
-        const bool left = cell > 0 && (doubts[cell - 1] >> 2 & 3) != 0;
-        if (doubts[cell] || left) doubtful |= std::uint64_t{0xff} << (kCell * k);
-      }
+      const std::uint64_t doubtful = doubts[(x + margin) / 64];
       const std::uint64_t here = surface.covered().Read(y, x);
       for (int k = 0; k < 4; ++k) {
         // Steps out of the surroundings are refused, but nobody takes them.
@@ -281,17 +272,15 @@ void WideJoined::MarkPixels(const WideTile& tile, int margin) {
   }
 }
 
-void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
+void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
                           const EdgeLimits& limits, WideSums& sums) {
-  const bool sure = !MarkDoubts(surface, limits);
-  if (sure && surface.all_covered()) {
-    if (surface.reach() == 1) return;
-    blocked_.assign(std::size_t(kTileSide + 2 * surface.margin()), 0);
-  } else {
+  cells_.Read(surface);
+  if (MarkStepDoubts(surface, limits) || !surface.all_covered())
     MarkSteps(surface, limits);
-  }
+  else
+    blocked_.assign(std::size_t(kTileSide + 2 * surface.margin()), 0);
   MarkPixels(tile, surface.margin());
-  for (int row = 0; row < tile.area().y1 - tile.area().y0; row += kCell) {
+  for (int row = 0; row < tile.area().y1 - tile.area().y0; row += kBand) {
     WithdrawRows(input, ways, tile, surface, limits, row, sums);
   }
 }
@@ -307,18 +296,18 @@ struct Missing {
 
 }  // namespace
 
-void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
+void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
                               const EdgeLimits& limits, int first_row, WideSums& sums) {
   const int radius = surface.radius(), margin = surface.margin(), side = 2 * radius + 1;
-  JoinedRows rows{surface, limits, votes_, first_row, {}, nullptr, nullptr, nullptr, 2 * surface.reach() + 1};
+  JoinedRows rows{surface, limits, votes_, first_row, {}, nullptr, nullptr, nullptr, (radius + kSide - 1) / kSide};
   std::uint64_t any = 0;
-  for (int k = 0; k < std::min(kCell, tile.area().y1 - tile.area().y0 - first_row); ++k) {
+  for (int k = 0; k < std::min(kBand, tile.area().y1 - tile.area().y0 - first_row); ++k) {
     any |= rows.active[k] = tile.ActiveWord(first_row + k);
   }
   if (!any) return;
   const auto* blocked = blocked_.data() + (first_row + margin);
-  const bool open = std::none_of(blocked - radius, blocked + kCell + radius, [](std::uint8_t row) { return row != 0; });
-  if (MarkUnsure(surface, limits, first_row / kCell, any)) {
+  const bool open = std::none_of(blocked - radius, blocked + kBand + radius, [](std::uint8_t row) { return row != 0; });
+  if (MarkUnsure(radius, limits, first_row, any)) {
     rows.unsure = unsure_.data(), rows.doubtful = doubtful_.data();
   }
   if (open && !rows.unsure) return;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "transfer/vote.h"
+#include "transfer/wide_cells.h"
 #include "transfer/wide_sums.h"
 #include "transfer/wide_surface.h"
 #include "transfer/wide_tile.h"
@@ -39,11 +40,11 @@ struct JoinedRows {
   std::uint64_t active[8];
   // By pixel of the window and row: which pixels are reached by steps; null: all.
   const std::uint64_t* reached;
-  // By the upper or lower quarters of the row of cells, and by row and column of the quarters that are looked at,
-  // counted from the own: the pixels that may fail, by depth and by facing. From -quarters to quarters; null: none.
+  // By the upper or lower cells of these rows, and by row and column of the cells that are looked at, counted from the
+  // own: the pixels that may fail, by depth and by facing. From -reach to reach; null: none.
   const std::uint64_t* unsure;
-  const std::uint8_t* doubtful;  // by row and column of quarters: whether any pixel may
-  int quarters;
+  const std::uint8_t* doubtful;  // by row and column of cells: whether any pixel may
+  int reach;
 };
 
 // Kept from tile to tile by a thread.
@@ -51,20 +52,20 @@ class WideJoined {
  public:
   // Takes the votes of all pixels that are not joined to the one they vote for back from `sums`, which holds all votes
   // of the tile. The definition is JoinedWindow's, to the bit.
-  void Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
+  void Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
                 const EdgeLimits& limits, WideSums& sums);
 
  private:
-  bool MarkDoubts(const WideSurface& surface, const EdgeLimits& limits);
-  unsigned Doubts(const WideSurface& surface, const EdgeLimits& limits, int column, int row, int dx, int dy) const;
+  bool MarkStepDoubts(const WideSurface& surface, const EdgeLimits& limits);
   void MarkSteps(const WideSurface& surface, const EdgeLimits& limits);
   void MarkPixels(const WideTile& tile, int margin);
-  bool MarkUnsure(WideSurface& surface, const EdgeLimits& limits, int cell_row, std::uint64_t active);
-  void WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, WideSurface& surface,
+  bool MarkUnsure(int radius, const EdgeLimits& limits, int first_row, std::uint64_t active);
+  void WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
                     const EdgeLimits& limits, int first_row, WideSums& sums);
 
-  // By cell, two bits of doubts each: with itself and the four neighbours forward.
-  std::vector<std::uint16_t> doubts_;
+  WideCells cells_;
+  // By row of cells from -margin and word: pixels for which a step may be refused.
+  std::vector<std::uint64_t> step_doubts_;
   BitPlane steps_[4], votes_, changes_;  // changes: pixels that are not of the chunk of the one before
   std::vector<std::uint8_t> blocked_;    // by row from -margin: a step from it is refused
   std::vector<std::uint64_t> reached_;   // by pixel of the window and row of eight
