@@ -25,7 +25,8 @@ struct Columns {
   static constexpr int kMost = kTileSide + 2 * 128 + 64;
   enum { kPlanes = 7 };  // depth, slopes, normal, object
   float low[kPlanes][kMost], high[kPlanes][kMost];
-  float length2[kMost], strange[kMost], seen[kMost];
+  float length2[kMost], seen[kMost];
+  float strange[kMost];  // NaN where a value is not finite, else 0
   float slope_x[kMost], slope_y[kMost];
 };
 
@@ -40,26 +41,27 @@ HWY_ATTR bool AllCovered(const WideSurface& surface, int y, int begin, int end) 
   return true;
 }
 
-// NaN and infinity are told by a sum of values times 0, which is NaN then.
+// NaN and infinity are told by the sum of all values, which is no number then either; where it overflows nothing is
+// known, and nothing is taken for sure.
 template <bool kAll>
 HWY_ATTR void FoldColumns(const WideSurface& surface, int y, int begin, int end, Columns& out) {
   const DF d;
   const V far = hn::Set(d, kFar), back = hn::Set(d, -kFar), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   for (int x = begin; x < end; x += static_cast<int>(hn::Lanes(d))) {
     const int at = x - begin;
-    V strange = zero, seen = kAll ? one : zero, shortest = far;
+    V sum = zero, seen = kAll ? one : zero, shortest = far;
     for (int k = 0; k < Columns::kPlanes; ++k) {
       V low = far, high = back;
       for (int row = y; row < y + kSide; ++row) {
         const V value = hn::LoadU(d, surface.Row(WideSurface::Plane(k), row) + x);
         if constexpr (kAll) {
           low = hn::Min(low, value), high = hn::Max(high, value);
-          strange = hn::Add(strange, hn::Mul(value, zero));
+          sum = hn::Add(sum, value);
         } else {
           const auto covered = hn::Gt(hn::LoadU(d, surface.Row(WideSurface::kCoverage, row) + x), zero);
           low = hn::Min(low, hn::IfThenElse(covered, value, far));
           high = hn::Max(high, hn::IfThenElse(covered, value, back));
-          strange = hn::Add(strange, hn::IfThenElseZero(covered, hn::Mul(value, zero)));
+          sum = hn::Add(sum, hn::IfThenElseZero(covered, value));
         }
       }
       hn::StoreU(low, d, out.low[k] + at), hn::StoreU(high, d, out.high[k] + at);
@@ -77,7 +79,7 @@ HWY_ATTR void FoldColumns(const WideSurface& surface, int y, int begin, int end,
       shortest = hn::Min(shortest, length2);
     }
     hn::StoreU(shortest, d, out.length2 + at);
-    hn::StoreU(strange, d, out.strange + at), hn::StoreU(seen, d, out.seen + at);
+    hn::StoreU(hn::Mul(sum, zero), d, out.strange + at), hn::StoreU(seen, d, out.seen + at);
   }
 }
 
@@ -177,9 +179,31 @@ HWY_ATTR void BoundRow(const WideSurface& surface, int y, int begin, int end, fl
   }
 }
 
+// Whether normals and objects surely pass, by the bounds of either side.
+template <class OfP, class OfQ>
+HWY_ATTR HWY_INLINE hn::Mask<DF> FacingAlike(const OfP& of_p, const OfQ& of_q, float crease_cosine) {
+  const DF d;
+  const V half = hn::Set(d, 0.5f);
+  V spread = hn::Zero(d), length2 = hn::Zero(d);
+  for (int c = 0; c < 3; ++c) {
+    const V most = hn::Max(of_p(WideCells::kMostNormal + c), of_q(WideCells::kMostNormal + c));
+    const V least = hn::Min(of_p(WideCells::kLeastNormal + c), of_q(WideCells::kLeastNormal + c));
+    const V wide = hn::Sub(most, least);
+    spread = hn::Add(spread, hn::Mul(wide, wide));
+    length2 = hn::Add(length2, hn::Max(hn::Mul(most, most), hn::Mul(least, least)));
+  }
+  // a · b = ½ (|a|² + |b|² - |a - b|²).
+  const V cosine = hn::Sub(hn::Min(of_p(WideCells::kLeastLength2), of_q(WideCells::kLeastLength2)),
+                           hn::Mul(half, spread));
+  const V enough = hn::Add(hn::Set(d, crease_cosine),
+                           hn::Mul(hn::Set(d, 1e-5f), hn::Add(hn::Set(d, 1.0f), length2)));
+  return hn::And(hn::Gt(cosine, enough), hn::Eq(of_p(WideCells::kObject), of_q(WideCells::kObject)));
+}
+
 // EdgeTest::SameSurface for all pairs at once. With p = P + u and q = Q + v from the cells' centres, planes differ from
 // each other by depth(Q) - depth(P) - ½ (g_P + g_Q) · (Q - P) + ½ (g_Q - g_P) · (u + v) more than the slopes explain.
-HWY_ATTR WideCells::Bits DoubtBits(const CellPairs& pair, const EdgeLimits& limits) {
+template <bool kFacing>
+HWY_ATTR WideCells::Bits DoubtBitsOf(const CellPairs& pair, const EdgeLimits& limits) {
   const DF d;
   WideCells::Bits bits;
   const V zero = hn::Zero(d), half = hn::Set(d, 0.5f);
@@ -196,21 +220,6 @@ HWY_ATTR WideCells::Bits DoubtBits(const CellPairs& pair, const EdgeLimits& limi
   for (std::size_t i = 0; i < WideCells::kAcross; i += hn::Lanes(d)) {
     const auto of_p = [&](int bound) HWY_ATTR { return hn::LoadU(d, pair.p + std::size_t(bound) * pair.plane + i); };
     const auto of_q = [&](int bound) HWY_ATTR { return hn::LoadU(d, pair.q + std::size_t(bound) * pair.plane + i); };
-    V spread = zero, length2 = zero;
-    for (int c = 0; c < 3; ++c) {
-      const V most = hn::Max(of_p(WideCells::kMostNormal + c), of_q(WideCells::kMostNormal + c));
-      const V least = hn::Min(of_p(WideCells::kLeastNormal + c), of_q(WideCells::kLeastNormal + c));
-      const V wide = hn::Sub(most, least);
-      spread = hn::Add(spread, hn::Mul(wide, wide));
-      length2 = hn::Add(length2, hn::Max(hn::Mul(most, most), hn::Mul(least, least)));
-    }
-    // a · b = ½ (|a|² + |b|² - |a - b|²).
-    const V cosine = hn::Sub(hn::Min(of_p(WideCells::kLeastLength2), of_q(WideCells::kLeastLength2)),
-                             hn::Mul(half, spread));
-    const V enough = hn::Add(hn::Set(d, limits.crease_cosine),
-                             hn::Mul(hn::Set(d, 1e-5f), hn::Add(hn::Set(d, 1.0f), length2)));
-    const auto faces = hn::And(hn::Gt(cosine, enough), hn::Eq(of_p(WideCells::kObject), of_q(WideCells::kObject)));
-
     const V slope_x = of_p(WideCells::kSlopeX), slope_y = of_p(WideCells::kSlopeY);
     const V other_x = of_q(WideCells::kSlopeX), other_y = of_q(WideCells::kSlopeY);
     const V along = hn::Add(hn::Mul(hn::Add(slope_x, other_x), x), hn::Mul(hn::Add(slope_y, other_y), y));
@@ -238,9 +247,51 @@ HWY_ATTR WideCells::Bits DoubtBits(const CellPairs& pair, const EdgeLimits& limi
       hn::StoreMaskBits(d, hn::AndNot(sure, seen), bytes);
       word |= std::uint32_t(bytes[0] | bytes[1] << 8) << i;
     };
-    put(hn::Le(off, tolerance), bits.depth), put(faces, bits.facing);
+    put(hn::Le(off, tolerance), bits.depth);
+    if constexpr (kFacing) put(FacingAlike(of_p, of_q, limits.crease_cosine), bits.facing);
   }
   return bits;
+}
+
+HWY_ATTR WideCells::Bits DoubtBits(const CellPairs& pair, const EdgeLimits& limits) {
+  return (pair.facing ? DoubtBitsOf<true> : DoubtBitsOf<false>)(pair, limits);
+}
+
+// Whether no pixel of any cell can fail by facing, rows of `cells` cells.
+HWY_ATTR bool AllFaceAlike(const float* first, std::size_t stride, std::size_t plane, int cells, float crease_cosine) {
+  const DF d;
+  const V far = hn::Set(d, kFar), zero = hn::Zero(d);
+  V low[4] = {far, far, far, far}, high[4], shortest = far;
+  for (V& value : high) value = hn::Neg(far);
+  auto whole = hn::Eq(zero, zero);
+  for (int row = 0; row < cells; ++row) {
+    for (int cell = 0; cell < cells; cell += static_cast<int>(hn::Lanes(d))) {
+      const auto of = [&](int bound) HWY_ATTR {
+        return hn::LoadU(d, first + std::size_t(row) * stride + std::size_t(bound) * plane + std::size_t(cell));
+      };
+      const auto seen = hn::Gt(of(WideCells::kSeen), zero);
+      for (int c = 0; c < 4; ++c) {
+        const V least = of(c < 3 ? WideCells::kLeastNormal + c : int(WideCells::kObject));
+        const V most = of(c < 3 ? WideCells::kMostNormal + c : int(WideCells::kObject));
+        low[c] = hn::Min(low[c], hn::IfThenElse(seen, least, far));
+        high[c] = hn::Max(high[c], hn::IfThenElse(seen, most, hn::Neg(far)));
+      }
+      shortest = hn::Min(shortest, hn::IfThenElse(seen, of(WideCells::kLeastLength2), far));
+      const V object = of(WideCells::kObject);
+      whole = hn::And(whole, hn::Or(hn::Not(seen), hn::Eq(object, object)));
+    }
+  }
+  if (!hn::AllTrue(d, whole)) return false;
+  float bounds[WideCells::kBounds];
+  for (int c = 0; c < 3; ++c) {
+    bounds[WideCells::kLeastNormal + c] = hn::GetLane(hn::MinOfLanes(d, low[c]));
+    bounds[WideCells::kMostNormal + c] = hn::GetLane(hn::MaxOfLanes(d, high[c]));
+  }
+  bounds[WideCells::kLeastLength2] = hn::GetLane(hn::MinOfLanes(d, shortest));
+  bounds[WideCells::kObject] = hn::GetLane(hn::MinOfLanes(d, low[3]));
+  if (bounds[WideCells::kObject] != hn::GetLane(hn::MaxOfLanes(d, high[3]))) return false;
+  const auto of_all = [&](int bound) HWY_ATTR { return hn::Set(d, bounds[bound]); };
+  return hn::AllTrue(d, FacingAlike(of_all, of_all, crease_cosine));
 }
 
 }  // namespace scumble::internal::HWY_NAMESPACE
@@ -251,8 +302,9 @@ namespace scumble::internal {
 
 HWY_EXPORT(BoundRow);
 HWY_EXPORT(DoubtBits);
+HWY_EXPORT(AllFaceAlike);
 
-void WideCells::Read(const WideSurface& surface) {
+void WideCells::Read(const WideSurface& surface, const EdgeLimits& limits) {
   margin_ = surface.margin() / kSide, radius_ = surface.radius();
   const int across = kAcross + 2 * margin_;
   stride_ = std::size_t(across + 2 * kPad + kAcross), plane_ = stride_ * std::size_t(across);
@@ -262,13 +314,15 @@ void WideCells::Read(const WideSurface& surface) {
     HWY_DYNAMIC_DISPATCH(BoundRow)
     (surface, begin + kSide * row, begin, end, bounds_.data() + std::size_t(row) * stride_ + kPad, plane_);
   }
+  facing_ = !HWY_DYNAMIC_DISPATCH(AllFaceAlike)(bounds_.data() + kPad, stride_, plane_, across, limits.crease_cosine);
 }
 
 WideCells::Bits WideCells::Doubts(const EdgeLimits& limits, int column, int row, int dx, int dy) const {
   const int across = kAcross + 2 * margin_, y = row + margin_;
   if (y < 0 || y >= across || y + dy < 0 || y + dy >= across) return {};
   const float* p = bounds_.data() + std::size_t(y) * stride_ + std::size_t(column + margin_ + kPad);
-  return HWY_DYNAMIC_DISPATCH(DoubtBits)({p, p + std::ptrdiff_t(dy) * std::ptrdiff_t(stride_) + dx, plane_, dx, dy, radius_}, limits);
+  const float* q = p + std::ptrdiff_t(dy) * std::ptrdiff_t(stride_) + dx;
+  return HWY_DYNAMIC_DISPATCH(DoubtBits)({p, q, plane_, dx, dy, radius_, facing_}, limits);
 }
 
 }  // namespace scumble::internal

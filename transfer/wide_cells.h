@@ -13,6 +13,7 @@ struct CellPairs {
   const float *p, *q;
   std::size_t plane;  // from a bound to the next
   int dx, dy, radius;
+  bool facing;  // whether any may fail by facing
 };
 
 // Kept from tile to tile by a thread.
@@ -21,8 +22,8 @@ class WideCells {
   static constexpr int kSide = 4;                    // pixels
   static constexpr int kAcross = kTileSide / kSide;  // cells of a tile, on each side
 
-  // Bounds of all cells of the surface, its margin included.
-  void Read(const WideSurface& surface);
+  // Bounds of all cells of the surface, its margin included, for these limits.
+  void Read(const WideSurface& surface, const EdgeLimits& limits);
 
   // What may make some covered pixel of a cell fail the edge test with a covered one of the cell (dx, dy) cells further,
   // for kAcross cells from `column` on, the lowest bit the first; without the bit of a cause, surely none fails by it.
@@ -49,6 +50,7 @@ class WideCells {
 
   int margin_ = 0, radius_ = 0;  // cells; pixels
   std::size_t stride_ = 0, plane_ = 0;
+  bool facing_ = true;
   std::vector<float> bounds_;  // plane by plane
 };
 

@@ -7,7 +7,6 @@
 // This file is compiled once for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/wide_joined.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -274,7 +273,7 @@ void WideJoined::MarkPixels(const WideTile& tile, int margin) {
 
 void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
                           const EdgeLimits& limits, WideSums& sums) {
-  cells_.Read(surface);
+  cells_.Read(surface, limits);
   if (MarkStepDoubts(surface, limits) || !surface.all_covered())
     MarkSteps(surface, limits);
   else
@@ -284,17 +283,6 @@ void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const Wi
     WithdrawRows(input, ways, tile, surface, limits, row, sums);
   }
 }
-
-namespace {
-
-// Votes of one row of pixels that are taken back together: those of one chunk, side by side, for the same pixel.
-struct Missing {
-  std::uint64_t bits = 0;                 // of pixels that lack the vote that was looked at last
-  std::int16_t since[kTileSide];          // by pixel, the first of those that are taken back with it
-  const std::uint16_t* texel[kTileSide];  // what they are for; null where it is not usable
-};
-
-}  // namespace
 
 void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
                               const EdgeLimits& limits, int first_row, WideSums& sums) {
@@ -317,29 +305,11 @@ void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, cons
     rows.reached = reached_.data();
   }
 
-  const SourceField& field = input.field;
-  Missing missing[8];
-  // All votes of a chunk for a pixel are for one texel.
-  const auto begin = [&](int k, std::uint64_t bits, int dx, int dy) {
-    for (; bits; bits &= bits - 1) {
-      const int x = std::countr_zero(bits);
-      const std::size_t q = field.Index(tile.area().x0 + x + dx, tile.area().y0 + first_row + k + dy);
-      const Source source{field.x[q] - dx, field.y[q] - dy};
-      missing[k].since[x] = static_cast<std::int16_t>(dx), missing[k].texel[x] = nullptr;
-      if (!input.exemplar.Usable(source.x, source.y)) continue;
-      missing[k].texel[x] = input.exemplar.picture(field.exemplar[q]).At(source.x, source.y);
-      hwy::Prefetch(missing[k].texel[x]);
-    }
-  };
-  const auto take_back = [&](int k, std::uint64_t bits, int dx) {
-    for (; bits; bits &= bits - 1) {
-      const int x = std::countr_zero(bits);
-      const std::uint16_t* texel = missing[k].texel[x];
-      if (texel) sums.Withdraw(x, first_row + k, texel, static_cast<std::uint32_t>(dx - missing[k].since[x]));
-    }
-  };
   const auto find = HWY_DYNAMIC_DISPATCH(FindLacking);
   for (int dy = -radius; dy <= radius; ++dy) {
+    // By row: pixels that lack the vote that was looked at last, and the first of those that are taken back with it.
+    std::uint64_t before[8] = {};
+    std::int16_t since[8][kTileSide + 1];
     bool lacked = false;
     for (int dx = -radius; dx <= radius + 1; ++dx) {
       std::uint64_t lacking[8] = {};
@@ -347,15 +317,17 @@ void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, cons
       if (!lacks && !lacked) continue;
       lacked = lacks;
       for (int k = 0; k < 8; ++k) {
-        const std::uint64_t before = missing[k].bits;
-        if (!(before | lacking[k])) continue;
-        const std::uint64_t on = before & lacking[k] & ~changes_.Read(first_row + k + dy, dx);
-        take_back(k, before & ~on, dx);
-        begin(k, lacking[k] & ~on, dx, dy);
-        missing[k].bits = lacking[k];
+        if (!(before[k] | lacking[k])) continue;
+        const std::uint64_t on = before[k] & lacking[k] & ~changes_.Read(first_row + k + dy, dx);
+        withdrawals_.End(before[k] & ~on, {static_cast<std::int16_t>(first_row + k), static_cast<std::int16_t>(dx - 1),
+                                           static_cast<std::int16_t>(dy)},
+                         since[k]);
+        ForEachBit(lacking[k] & ~on, [&](int x) { since[k][x] = static_cast<std::int16_t>(dx); });
+        before[k] = lacking[k];
       }
     }
   }
+  withdrawals_.Apply(input, tile, sums);
 }
 
 }  // namespace scumble::internal

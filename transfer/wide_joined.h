@@ -9,6 +9,7 @@
 #include "transfer/wide_sums.h"
 #include "transfer/wide_surface.h"
 #include "transfer/wide_tile.h"
+#include "transfer/wide_withdrawals.h"
 
 namespace scumble::internal {
 
@@ -71,6 +72,7 @@ class WideJoined {
   std::vector<std::uint64_t> reached_;   // by pixel of the window and row of eight
   std::vector<std::uint64_t> unsure_;    // see JoinedRows
   std::vector<std::uint8_t> doubtful_;
+  WideWithdrawals withdrawals_;
 };
 
 }  // namespace scumble::internal

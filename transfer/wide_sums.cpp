@@ -233,14 +233,25 @@ HWY_ATTR bool SumWeighted(const Work& work) { return SumTile<false>(work); }
 // times the votes. With half a unit more the quotient is never an integer, and at least 1 / (4 · votes) from the next:
 // far more than a double's rounding.
 HWY_ATTR void WriteRow(std::uint64_t active, const std::uint32_t* sums, const double* inverses, std::uint16_t* out) {
+  const HWY_CAPPED(double, 4) d;
+  const hn::Rebind<std::uint32_t, decltype(d)> u32;
+  const hn::Rebind<std::int32_t, decltype(d)> i32;
+  const hn::Rebind<std::uint16_t, decltype(d)> u16;
+  // Doubles are made of signed integers.
+  constexpr std::uint32_t kSign = 0x80000000u;
   for (; active; active &= active - 1) {
     const int x = std::countr_zero(active);
     const std::uint32_t* sum = sums + 4 * x;
     const std::uint32_t votes = (sum[3] >> 16) + 1;
-    const double inverse = inverses[votes], half = votes + 0.5;
+    const auto inverse = hn::Set(d, inverses[votes]);
+    const auto half = hn::Set(d, 2.0 * kSign + votes + 0.5);
     std::uint16_t pixel[4];
-    for (int c = 0; c < 4; ++c)
-      pixel[c] = static_cast<std::uint16_t>(static_cast<std::int32_t>((2.0 * sum[c] + half) * inverse));
+    for (std::size_t c = 0; c < 4; c += hn::Lanes(d)) {
+      const auto lowered = hn::BitCast(i32, hn::Xor(hn::LoadU(u32, sum + c), hn::Set(u32, kSign)));
+      const auto twice = hn::Mul(hn::PromoteTo(d, lowered), hn::Set(d, 2.0));
+      const auto mean = hn::DemoteTo(i32, hn::Mul(hn::Add(twice, half), inverse));
+      hn::StoreU(hn::DemoteTo(u16, mean), u16, pixel + c);
+    }
     std::memcpy(out + 4 * x, pixel, 8);
   }
 }

@@ -5,6 +5,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/wide_surface.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -111,7 +112,15 @@ void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
   for (const Plane plane : {kDepth, kSlopeX, kSlopeY})
     bases_[plane] = Own(plane, 0), strides_[plane] = std::ptrdiff_t(stride_);
   const std::ptrdiff_t depth_stride = depth == Own(kDepth, 0) ? std::ptrdiff_t(stride_) : guides.width();
+  const bool next = area.x0 + 2 * kTileSide + most <= guides.width();
   for (int row = -most; row < kTileSide + most; ++row) {
+    if (next && area.y0 + row >= 0 && area.y0 + row < guides.height()) {
+      const std::size_t at = guides.Index(area.x0 + kTileSide + most, area.y0 + row);
+      for (const GuideSource& source : kSources) {
+        const float* values = guides.Plane(source.layer, source.component).data() + at;
+        for (int x = 0; x < kTileSide; x += 16) hwy::Prefetch(values + x);
+      }
+    }
     HWY_DYNAMIC_DISPATCH(MaskDepth)
     (Row(kCoverage, row) - most, depth + row * depth_stride - most, across + 2, Own(kDepth, row) - most);
   }

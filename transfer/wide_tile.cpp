@@ -1,5 +1,7 @@
 #include "transfer/wide_tile.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <bit>
 
@@ -29,6 +31,14 @@ bool WideTile::Read(const VoteInput& input, const Region& area) {
   }
   for (int row = 0; row < rows; ++row) {
     const std::size_t i = field.Index(surround_.x0, surround_.y0 + row);
+    // The next tile is the one to the right.
+    if (surround_.x1 + kTileSide <= field.width) {
+      const std::size_t next = i + std::size_t(columns);
+      for (int x = 0; x < kTileSide; x += 32) {
+        hwy::Prefetch(field.x.data() + next + x), hwy::Prefetch(field.y.data() + next + x);
+      }
+      hwy::Prefetch(field.exemplar.data() + next), hwy::Prefetch(input.active.data() + next);
+    }
     const FieldRow source{field.x.data() + i, field.y.data() + i, field.exemplar.data() + i, input.active.data() + i,
                           columns};
     MarkRuns(source, votes_.data() + std::size_t(row) * words_, changes_.data() + std::size_t(row) * words_);
