@@ -17,7 +17,7 @@ UsableRows::Span DiscRow(const PreparedExemplar& exemplar, int y) {
 
 }  // namespace
 
-UsableRows::UsableRows(const PreparedExemplar& exemplar) {
+UsableRows::UsableRows(const PreparedExemplar& exemplar) : is_sphere_(exemplar.is_sphere()) {
   first_.reserve(std::size_t(exemplar.height()) + 1);
   for (int y = 0; y < exemplar.height(); ++y) {
     first_.push_back(static_cast<std::uint32_t>(spans_.size()));

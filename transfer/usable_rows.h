@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "transfer/prepared_exemplar.h"
+#include "transfer/region.h"
 
 namespace scumble::internal {
 
@@ -23,7 +24,18 @@ class UsableRows {
     return {spans_.data() + first_[y], spans_.data() + first_[y + 1]};
   }
 
+  // Whether all texels of a rectangle are surely usable: of a sphere, whose disc bulges nowhere inwards, its first and its
+  // last row tell; of a scene it is not found out.
+  bool AllOf(const Region& texels) const {
+    const auto holds = [&](int y) {
+      const std::span<const Span> row = Row(y);
+      return !row.empty() && row.front().begin <= texels.x0 && texels.x1 <= row.front().end;
+    };
+    return is_sphere_ && !texels.empty() && holds(texels.y0) && holds(texels.y1 - 1);
+  }
+
  private:
+  bool is_sphere_;
   std::vector<Span> spans_;
   std::vector<std::uint32_t> first_;  // by row, and the end of the last
 };

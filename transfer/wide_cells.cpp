@@ -14,10 +14,10 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using DF = HWY_CAPPED(float, 16);
-using V = hn::Vec<DF>;
 constexpr int kSide = WideCells::kSide;
 constexpr float kFar = std::numeric_limits<float>::infinity();
+using DF = HWY_CAPPED(float, 16);
+using V = hn::Vec<DF>;
 
 // By column of pixels, over the rows of a row of cells.
 struct Columns {

@@ -139,6 +139,17 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
   const int radius = work.tile.radius();
   const Picture& picture = work.exemplar.picture(chunk.exemplar);
   const std::uint16_t* texels_end = picture.rgba.data() + picture.rgba.size();
+  const bool inside = work.usable.AllOf(
+      {group.x0 + chunk.shift_x, group.y0 + chunk.shift_y, group.x1 + chunk.shift_x, group.y1 + chunk.shift_y});
+  const auto add = [&](int y, int x0, int x1) HWY_ATTR {
+    const std::uint16_t* texels = picture.At(x0 + chunk.shift_x, y + chunk.shift_y);
+    const std::size_t at = std::size_t(y) * WideSums::kStride + x0;
+    if constexpr (kOpaque) {
+      AddTexels(counts + (x0 - group.x0), texels, texels_end, x1 - x0, work.sums + 4 * at, all);
+    } else {
+      AddWeighted(counts + (x0 - group.x0), texels, x1 - x0, work.weighted + 4 * at, work.votes + at, all);
+    }
+  };
   const ChunkRun *enter = group.first, *leave = group.first;
   for (int y = group.y0; y < group.y1; ++y) {
     for (; enter != group.last && enter->row <= y + radius; ++enter) {
@@ -148,16 +159,13 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
       CountRun(*leave, radius, group.x0, group.x1, true, counts);
     if (leave == enter) continue;
     if (y + kAhead < group.y1) AskFor(picture, chunk, group.x0, group.x1, y + kAhead);
+    if (inside) {
+      add(y, group.x0, group.x1);
+      continue;
+    }
     for (const UsableRows::Span& span : work.usable.Row(y + chunk.shift_y)) {
       const int x0 = std::max(group.x0, span.begin - chunk.shift_x), x1 = std::min(group.x1, span.end - chunk.shift_x);
-      if (x0 >= x1) continue;
-      const std::uint16_t* texels = picture.At(x0 + chunk.shift_x, y + chunk.shift_y);
-      const std::size_t at = std::size_t(y) * WideSums::kStride + x0;
-      if constexpr (kOpaque) {
-        AddTexels(counts + (x0 - group.x0), texels, texels_end, x1 - x0, work.sums + 4 * at, all);
-      } else {
-        AddWeighted(counts + (x0 - group.x0), texels, x1 - x0, work.weighted + 4 * at, work.votes + at, all);
-      }
+      if (x0 < x1) add(y, x0, x1);
     }
   }
 }
