@@ -176,10 +176,11 @@ Group GroupOf(const WideTile& tile, const ChunkRun* first, const ChunkRun* last)
   for (const ChunkRun* run = first; run != last; ++run) {
     begin = std::min<int>(begin, run->begin), end = std::max<int>(end, run->end);
   }
+  // From whole vectors of four pixels to whole ones: then sums are aligned, and nothing is left over at a row's end.
   return {first,
           last,
-          std::max(0, begin - radius),
-          std::min(width, end + radius),
+          std::max(0, begin - radius) & ~3,
+          (std::min(width, end + radius) + 3) & ~3,
           std::max(0, first->row - radius),
           std::min(height, (last - 1)->row + radius + 1)};
 }
@@ -277,8 +278,9 @@ HWY_EXPORT(WriteRow);
 void WideSums::Sum(const WideTile& tile, const PreparedExemplar& exemplar, const UsableRows& usable) {
   constexpr std::size_t kPixels = std::size_t(kStride) * kTileSide;
   if (opaque_) {
-    sums_.assign(4 * kPixels, 0);
-    opaque_ = HWY_DYNAMIC_DISPATCH(SumOpaque)({tile, exemplar, usable, sums_.data(), nullptr, nullptr});
+    if (!sums_) sums_ = hwy::AllocateAligned<std::uint32_t>(4 * kPixels);
+    std::fill_n(sums_.get(), 4 * kPixels, 0u);
+    opaque_ = HWY_DYNAMIC_DISPATCH(SumOpaque)({tile, exemplar, usable, sums_.get(), nullptr, nullptr});
     weights_count_ = !opaque_;
     if (opaque_) return;
   }
@@ -300,7 +302,7 @@ void WideSums::Write(const WideTile& tile, Picture& out) {
     if (weights_count_)
       WriteWeighted(active, first, out.At(area.x0, y));
     else
-      HWY_DYNAMIC_DISPATCH(WriteRow)(active, sums_.data() + 4 * first, inverses_.data(), out.At(area.x0, y));
+      HWY_DYNAMIC_DISPATCH(WriteRow)(active, sums_.get() + 4 * first, inverses_.data(), out.At(area.x0, y));
   }
 }
 

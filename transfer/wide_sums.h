@@ -2,6 +2,8 @@
 // there.
 #pragma once
 
+#include <hwy/aligned_allocator.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -50,7 +52,7 @@ class WideSums {
   void WriteWeighted(std::uint64_t active, std::size_t first, std::uint16_t* out) const;
 
   // Where all texels are opaque: Σ count · texel in four channels, of which alpha is 65535 times the votes.
-  std::vector<std::uint32_t> sums_;
+  hwy::AlignedFreeUniquePtr<std::uint32_t[]> sums_;
   // Where they are not: Σ count · alpha · colour, and Σ count · alpha; Σ count.
   std::vector<std::uint64_t> weighted_;
   std::vector<std::uint32_t> votes_;
