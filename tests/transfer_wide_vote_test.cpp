@@ -8,6 +8,7 @@
 
 #include "tests/transfer_fixtures.h"
 #include "transfer/hybrid.h"
+#include "transfer/usable_rows.h"
 #include "transfer/wide_vote.h"
 
 namespace scumble {
@@ -176,6 +177,23 @@ TEST(WideVote, RegionsThreadsAndAFewActivePixels) {
   all.active[all.field.Index(209, 149)] = 1;
   all.field.Set(all.field.Index(209, 149), 75, 70, 0, 1);
   EXPECT_EQ(WideVotes(all.Input(9, Whole(all))).rgba, PlainVotes(all.Input(9, Whole(all))).rgba);
+}
+
+// A rectangle that is told to be usable is; and most of the middle of a sphere is told to be.
+TEST(UsableRows, RectanglesThatAreUsable) {
+  for (const int size : {1, 2, 5, 16, 33}) {
+    const PreparedExemplar exemplar = Prepared(Paints(size, 1, true), 1.0);
+    const internal::UsableRows usable(exemplar);
+    for (int k = 0; k < 4000; ++k) {
+      const int x = int(Hash(k, 1) % (size + 4)) - 2, y = int(Hash(k, 2) % (size + 4)) - 2;
+      const Region texels{x, y, x + int(Hash(k, 3) % (size + 2)), y + int(Hash(k, 4) % (size + 2))};
+      bool all = !texels.empty();
+      for (int v = texels.y0; v < texels.y1; ++v) {
+        for (int u = texels.x0; u < texels.x1; ++u) all = all && exemplar.Usable(u, v);
+      }
+      EXPECT_EQ(usable.AllOf(texels), all) << size << ": " << x << ", " << y << " … " << texels.x1 << ", " << texels.y1;
+    }
+  }
 }
 
 // A painted scene is usable in any shape, also in several spans a row.
