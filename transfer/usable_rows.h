@@ -24,8 +24,8 @@ class UsableRows {
     return {spans_.data() + first_[y], spans_.data() + first_[y + 1]};
   }
 
-  // Whether all texels of a rectangle are surely usable: of a sphere, whose disc bulges nowhere inwards, its first and its
-  // last row tell; of a scene it is not found out.
+  // Whether all texels of a rectangle are surely usable: of a sphere, whose disc bulges nowhere inwards, its first and
+  // its last row tell; of a scene it is not found out.
   bool AllOf(const Region& texels) const {
     const auto holds = [&](int y) {
       const std::span<const Span> row = Row(y);

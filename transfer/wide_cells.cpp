@@ -101,8 +101,7 @@ HWY_ATTR void FoldRests(const WideSurface& surface, int y, int begin, int end, C
       if constexpr (kAll) {
         low = hn::Min(low, rest), high = hn::Max(high, rest);
       } else {
-        const auto covered =
-            hn::Gt(hn::LoadU(d, surface.Row(WideSurface::kCoverage, y + row) + x), hn::Zero(d));
+        const auto covered = hn::Gt(hn::LoadU(d, surface.Row(WideSurface::kCoverage, y + row) + x), hn::Zero(d));
         low = hn::Min(low, hn::IfThenElse(covered, rest, hn::Set(d, kFar)));
         high = hn::Max(high, hn::IfThenElse(covered, rest, hn::Set(d, -kFar)));
       }
@@ -139,9 +138,8 @@ HWY_ATTR void BoundRow(const WideSurface& surface, int y, int begin, int end, fl
   const bool all = AllCovered(surface, y, begin, end);
   (all ? FoldColumns<true> : FoldColumns<false>)(surface, y, begin, end, columns);
   const V half = hn::Set(d, 0.5f), zero = hn::Zero(d), nothing = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
-  const auto put = [&](int bound, int cell, V value) HWY_ATTR {
-    hn::StoreU(value, d, out + std::size_t(bound) * plane + std::size_t(cell));
-  };
+  const auto put = [&](int bound, int cell, V value)
+                       HWY_ATTR { hn::StoreU(value, d, out + std::size_t(bound) * plane + std::size_t(cell)); };
   for (int cell = 0; cell < cells; cell += static_cast<int>(hn::Lanes(d))) {
     const int at = kSide * cell;
     const auto low = [&](int k) HWY_ATTR { return LeastOf(columns.low[k] + at); };
@@ -171,8 +169,7 @@ HWY_ATTR void BoundRow(const WideSurface& surface, int y, int begin, int end, fl
     const V least = LeastOf(columns.low[0] + kSide * cell), most = MostOf(columns.high[0] + kSide * cell);
     const V object = hn::LoadU(d, out + WideCells::kObject * plane + std::size_t(cell));
     put(WideCells::kDepth, cell, hn::Mul(half, hn::Add(least, most)));
-    put(WideCells::kBend, cell,
-        hn::IfThenElse(hn::Eq(object, object), hn::Mul(half, hn::Sub(most, least)), nothing));
+    put(WideCells::kBend, cell, hn::IfThenElse(hn::Eq(object, object), hn::Mul(half, hn::Sub(most, least)), nothing));
   }
   for (int bound = 0; bound < WideCells::kBounds; ++bound) {
     std::fill_n(out + std::size_t(bound) * plane + std::size_t(cells), 16, 0.0f);  // vectors went beyond the end
@@ -193,10 +190,9 @@ HWY_ATTR HWY_INLINE hn::Mask<DF> FacingAlike(const OfP& of_p, const OfQ& of_q, f
     length2 = hn::Add(length2, hn::Max(hn::Mul(most, most), hn::Mul(least, least)));
   }
   // a · b = ½ (|a|² + |b|² - |a - b|²).
-  const V cosine = hn::Sub(hn::Min(of_p(WideCells::kLeastLength2), of_q(WideCells::kLeastLength2)),
-                           hn::Mul(half, spread));
-  const V enough = hn::Add(hn::Set(d, crease_cosine),
-                           hn::Mul(hn::Set(d, 1e-5f), hn::Add(hn::Set(d, 1.0f), length2)));
+  const V cosine =
+      hn::Sub(hn::Min(of_p(WideCells::kLeastLength2), of_q(WideCells::kLeastLength2)), hn::Mul(half, spread));
+  const V enough = hn::Add(hn::Set(d, crease_cosine), hn::Mul(hn::Set(d, 1e-5f), hn::Add(hn::Set(d, 1.0f), length2)));
   return hn::And(hn::Gt(cosine, enough), hn::Eq(of_p(WideCells::kObject), of_q(WideCells::kObject)));
 }
 
@@ -235,9 +231,9 @@ HWY_ATTR WideCells::Bits DoubtBitsOf(const CellPairs& pair, const EdgeLimits& li
                              drift(WideCells::kTurnY, WideCells::kLeastSlopeY, most_y, least_y));
     // Neither these sums nor the test's own are exact.
     const V steepest = hn::Add(of_p(WideCells::kSteepest), of_q(WideCells::kSteepest));
-    const V slack = hn::Mul(hn::Set(d, 4e-6f),
-                            hn::Add(hn::Add(of_p(WideCells::kFarthest), of_q(WideCells::kFarthest)),
-                                    hn::Mul(steepest, hn::Set(d, static_cast<float>(pair.radius + 2 * kSide)))));
+    const V slack =
+        hn::Mul(hn::Set(d, 4e-6f), hn::Add(hn::Add(of_p(WideCells::kFarthest), of_q(WideCells::kFarthest)),
+                                           hn::Mul(steepest, hn::Set(d, static_cast<float>(pair.radius + 2 * kSide)))));
     const V off = hn::Add(hn::Add(hn::Add(step, twist), bends), hn::Add(drifts, slack));
     const V tolerance = hn::Mul(hn::Set(d, limits.depth_tolerance),
                                 hn::Min(of_p(WideCells::kLeastDepth), of_q(WideCells::kLeastDepth)));

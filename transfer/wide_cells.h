@@ -25,9 +25,9 @@ class WideCells {
   // Bounds of all cells of the surface, its margin included, for these limits.
   void Read(const WideSurface& surface, const EdgeLimits& limits);
 
-  // What may make some covered pixel of a cell fail the edge test with a covered one of the cell (dx, dy) cells further,
-  // for kAcross cells from `column` on, the lowest bit the first; without the bit of a cause, surely none fails by it.
-  // Columns and rows count from the tile's corner; what lies beyond the margin fails nothing.
+  // What may make some covered pixel of a cell fail the edge test with a covered one of the cell (dx, dy) cells
+  // further, for kAcross cells from `column` on, the lowest bit the first; without the bit of a cause, surely none
+  // fails by it. Columns and rows count from the tile's corner; what lies beyond the margin fails nothing.
   struct Bits {
     std::uint32_t depth = 0, facing = 0;  // facing: normals, and objects
   };
@@ -36,12 +36,22 @@ class WideCells {
   // Planes of bounds over the covered pixels of each cell. Depth is a plane through the centre, give or take kBend;
   // slopes are the plane's, give or take kTurnX and kTurnY.
   enum Bound {
-    kDepth, kBend, kSlopeX, kSlopeY, kTurnX, kTurnY,
-    kLeastSlopeX, kLeastSlopeY,  // how steep it is everywhere, 0 where slopes change their sign
-    kLeastDepth, kFarthest, kSteepest,  // depth; |depth|, and |slopes| together, at most
-    kLeastNormal, kMostNormal = kLeastNormal + 3, kLeastLength2 = kMostNormal + 3,  // of normals
-    kObject,  // NaN: several, or some value has no order; then kBend is NaN too
-    kSeen,  // above 0: pixels are covered
+    kDepth,
+    kBend,
+    kSlopeX,
+    kSlopeY,
+    kTurnX,
+    kTurnY,
+    kLeastSlopeX,
+    kLeastSlopeY,  // how steep it is everywhere, 0 where slopes change their sign
+    kLeastDepth,
+    kFarthest,
+    kSteepest,  // depth; |depth|, and |slopes| together, at most
+    kLeastNormal,
+    kMostNormal = kLeastNormal + 3,
+    kLeastLength2 = kMostNormal + 3,  // of normals
+    kObject,                          // NaN: several, or some value has no order; then kBend is NaN too
+    kSeen,                            // above 0: pixels are covered
     kBounds
   };
 

@@ -192,9 +192,7 @@ WideWays::WideWays(int radius) : radius_(radius) {
 bool WideJoined::MarkStepDoubts(const WideSurface& surface, const EdgeLimits& limits) {
   const int margin = surface.margin() / kSide, across = kAcross + 2 * margin;
   const int words = (across + kAcross - 1) / kAcross;
-  constexpr struct {
-    int dx, dy;
-  } kPairs[] = {{0, 0}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+  constexpr struct { int dx, dy; } kPairs[] = {{0, 0}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
   step_doubts_.assign(std::size_t(words) * across, 0);
   std::uint64_t any = 0;
   for (int row = 0; row < across; ++row) {
@@ -271,8 +269,8 @@ void WideJoined::MarkPixels(const WideTile& tile, int margin) {
   }
 }
 
-void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
-                          const EdgeLimits& limits, WideSums& sums) {
+void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const WideTile& tile,
+                          const WideSurface& surface, const EdgeLimits& limits, WideSums& sums) {
   cells_.Read(surface, limits);
   if (MarkStepDoubts(surface, limits) || !surface.all_covered())
     MarkSteps(surface, limits);
@@ -284,8 +282,8 @@ void WideJoined::Withdraw(const VoteInput& input, const WideWays& ways, const Wi
   }
 }
 
-void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile, const WideSurface& surface,
-                              const EdgeLimits& limits, int first_row, WideSums& sums) {
+void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, const WideTile& tile,
+                              const WideSurface& surface, const EdgeLimits& limits, int first_row, WideSums& sums) {
   const int radius = surface.radius(), margin = surface.margin(), side = 2 * radius + 1;
   JoinedRows rows{surface, limits, votes_, first_row, {}, nullptr, nullptr, nullptr, (radius + kSide - 1) / kSide};
   std::uint64_t any = 0;
@@ -319,8 +317,9 @@ void WideJoined::WithdrawRows(const VoteInput& input, const WideWays& ways, cons
       for (int k = 0; k < 8; ++k) {
         if (!(before[k] | lacking[k])) continue;
         const std::uint64_t on = before[k] & lacking[k] & ~changes_.Read(first_row + k + dy, dx);
-        withdrawals_.End(before[k] & ~on, {static_cast<std::int16_t>(first_row + k), static_cast<std::int16_t>(dx - 1),
-                                           static_cast<std::int16_t>(dy)},
+        withdrawals_.End(before[k] & ~on,
+                         {static_cast<std::int16_t>(first_row + k), static_cast<std::int16_t>(dx - 1),
+                          static_cast<std::int16_t>(dy)},
                          since[k]);
         ForEachBit(lacking[k] & ~on, [&](int x) { since[k][x] = static_cast<std::int16_t>(dx); });
         before[k] = lacking[k];

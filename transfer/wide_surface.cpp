@@ -112,6 +112,7 @@ void WideSurface::Read(const GuideSet& guides, const Region& area, int radius) {
   for (const Plane plane : {kDepth, kSlopeX, kSlopeY})
     bases_[plane] = Own(plane, 0), strides_[plane] = std::ptrdiff_t(stride_);
   const std::ptrdiff_t depth_stride = depth == Own(kDepth, 0) ? std::ptrdiff_t(stride_) : guides.width();
+  // Rows of a tile are short, so the machine does not see by itself that the next tile, to the right, will be read.
   const bool next = area.x0 + 2 * kTileSide + most <= guides.width();
   for (int row = -most; row < kTileSide + most; ++row) {
     if (next && area.y0 + row >= 0 && area.y0 + row < guides.height()) {

@@ -31,7 +31,7 @@ bool WideTile::Read(const VoteInput& input, const Region& area) {
   }
   for (int row = 0; row < rows; ++row) {
     const std::size_t i = field.Index(surround_.x0, surround_.y0 + row);
-    // The next tile is the one to the right.
+    // The next tile is the one to the right: its rows are too short for the machine to see it come.
     if (surround_.x1 + kTileSide <= field.width) {
       const std::size_t next = i + std::size_t(columns);
       for (int x = 0; x < kTileSide; x += 32) {
