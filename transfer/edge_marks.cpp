@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "transfer/calm_marks.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/edge_marks.cpp"
 #include <hwy/foreach_target.h>
@@ -36,7 +38,9 @@ struct EdgePair {
   int dx = 0, dy = 0;
   int width = 0;
   float crease_cosine = 0, depth_tolerance = 0;
-  const std::uint64_t* needed = nullptr;  // words of a row; only where one is not 0 something is told
+  // Words of a row: pixels to test, and those of which only the normals are in question; others keep their marks.
+  const std::uint64_t* asked = nullptr;
+  const std::uint64_t* creases = nullptr;
   std::uint64_t* same = nullptr;
 };
 
@@ -85,9 +89,42 @@ void SlopeWord(const float* above, const float* here, const float* below, float*
 // As std::min has it.
 HWY_INLINE F Least(F a, F b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
 
-// A word of a row, of which `needed` marks what is asked for: bit i, whether that pixel and the one a step further on are
+template <class Mask>
+HWY_INLINE std::uint64_t BitsOf(const Mask& mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kFloat, mask, bytes);
+  return unsigned(bytes[0] | bytes[1] << 8) & ((1u << hn::MaxLanes(kFloat)) - 1);
+}
+
+// Object and normal of as many pixels as a vector has, from columns a and b on. Guides of the last and first pixels of the
+// picture would be read beyond their ends, and are copied.
+struct GuidesOfPair {
+  HWY_INLINE GuidesOfPair(const EdgePair& pair, int a, int b)
+      : p{pair.here.object + a, pair.here.normal[0] + a, pair.here.normal[1] + a, pair.here.normal[2] + a},
+        q{pair.there.object + b, pair.there.normal[0] + b, pair.there.normal[1] + b, pair.there.normal[2] + b} {
+    const int lanes = static_cast<int>(hn::Lanes(kFloat));
+    const EdgeRow &here = pair.here, &there = pair.there;
+    if (HWY_LIKELY(a >= -here.before && b >= -there.before && a + lanes <= here.readable && b + lanes <= there.readable)) {
+      return;
+    }
+    for (int k = 0; k < 4; ++k) {
+      p[k] = CopyInside(p[k], -here.before - a, here.readable - a, lanes, copies[k]);
+      q[k] = CopyInside(q[k], -there.before - b, there.readable - b, lanes, copies[4 + k]);
+    }
+  }
+  HWY_INLINE hn::Mask<hn::CappedTag<float, 16>> NoCrease(F crease) const {
+    const auto product = [&](int k) HWY_ATTR { return hn::Mul(hn::LoadU(kFloat, p[k]), hn::LoadU(kFloat, q[k])); };
+    const F along = product(1), across = product(2), forth = product(3);
+    return hn::Gt(hn::Add(hn::Add(along, across), forth), crease);
+  }
+  const float* p[4];
+  const float* q[4];
+  float copies[8][16];
+};
+
+// A word of a row, of which `asked` marks what is asked for: bit i, whether that pixel and the one a step further on are
 // the same surface.
-HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t needed) {
+HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t asked) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   const std::uint64_t whole = lanes < 64 ? (std::uint64_t{1} << lanes) - 1 : ~std::uint64_t{0};
   const float x = static_cast<float>(pair.dx), y = static_cast<float>(pair.dy);
@@ -97,7 +134,7 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
   const EdgeRow &p = pair.here, &q = pair.there;
   std::uint64_t bits = 0;
   for (int i = 0; i < 64; i += lanes) {
-    if (!(needed >> i & whole)) continue;
+    if (!(asked >> i & whole)) continue;
     const int a = 64 * word + i, b = a + pair.dx;
     if (a >= pair.width) break;
     const F depth_p = hn::LoadU(kFloat, p.depth + a), depth_q = hn::LoadU(kFloat, q.depth + b);
@@ -109,36 +146,34 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
                              hn::Mul(Least(hn::Abs(slope_py), hn::Abs(slope_qy)), far_y));
     const F most = hn::Add(leeway, hn::Mul(tolerance, Least(depth_p, depth_q)));
     auto one = hn::Le(hn::Abs(hn::Sub(hn::Sub(depth_q, depth_p), expected)), most);
-    // Guides of the last and first pixels of the picture would be read beyond their ends.
-    const bool inside = a >= -p.before && b >= -q.before && a + lanes <= p.readable && b + lanes <= q.readable;
-    const float* guide_p[4] = {p.object + a, p.normal[0] + a, p.normal[1] + a, p.normal[2] + a};
-    const float* guide_q[4] = {q.object + b, q.normal[0] + b, q.normal[1] + b, q.normal[2] + b};
-    float copies[8][16];
-    if (HWY_UNLIKELY(!inside)) {
-      for (int k = 0; k < 4; ++k) {
-        guide_p[k] = CopyInside(guide_p[k], -p.before - a, p.readable - a, lanes, copies[k]);
-        guide_q[k] = CopyInside(guide_q[k], -q.before - b, q.readable - b, lanes, copies[4 + k]);
-      }
-    }
-    one = hn::And(one, hn::Eq(hn::LoadU(kFloat, guide_p[0]), hn::LoadU(kFloat, guide_q[0])));
-    const auto product = [&](int k) HWY_ATTR {
-      return hn::Mul(hn::LoadU(kFloat, guide_p[k]), hn::LoadU(kFloat, guide_q[k]));
-    };
-    const F along = product(1), across = product(2), forth = product(3);
-    one = hn::And(one, hn::Gt(hn::Add(hn::Add(along, across), forth), crease));
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kFloat, one, bytes);
-    bits |= (std::uint64_t(bytes[0] | bytes[1] << 8) & whole) << i;
+    const GuidesOfPair guides(pair, a, b);
+    one = hn::And(one, hn::Eq(hn::LoadU(kFloat, guides.p[0]), hn::LoadU(kFloat, guides.q[0])));
+    one = hn::And(one, guides.NoCrease(crease));
+    bits |= BitsOf(one) << i;
   }
-  return bits;
+  return bits & asked;
+}
+
+// The same, where objects and depths are known to pass.
+HWY_INLINE std::uint64_t TestCreases(const EdgePair& pair, int word, std::uint64_t asked) {
+  const int lanes = static_cast<int>(hn::Lanes(kFloat));
+  const std::uint64_t whole = lanes < 64 ? (std::uint64_t{1} << lanes) - 1 : ~std::uint64_t{0};
+  const F crease = hn::Set(kFloat, pair.crease_cosine);
+  std::uint64_t bits = 0;
+  for (int i = 0; i < 64; i += lanes) {
+    if (!(asked >> i & whole)) continue;
+    const int a = 64 * word + i;
+    bits |= BitsOf(GuidesOfPair(pair, a, a + pair.dx).NoCrease(crease)) << i;
+  }
+  return bits & asked;
 }
 
 // All steps of a word before the next word, so that what they read stays in the nearest cache.
 void TestRow(const EdgePair* pairs, std::size_t count, int first_word, int words) {
   for (int w = 0; w < words; ++w) {
     for (std::size_t k = 0; k < count; ++k) {
-      const std::uint64_t needed = pairs[k].needed[w];
-      if (needed) pairs[k].same[w] = TestWord(pairs[k], first_word + w, needed);
+      if (pairs[k].asked[w]) pairs[k].same[w] |= TestWord(pairs[k], first_word + w, pairs[k].asked[w]);
+      if (pairs[k].creases[w]) pairs[k].same[w] |= TestCreases(pairs[k], first_word + w, pairs[k].creases[w]);
     }
   }
 }
@@ -198,31 +233,74 @@ void Dilate(const MarkedTile& tile, const BitRows& marks, int reach, BitRows& ou
   }
 }
 
-// Makes depths and slopes as rows are asked for.
+// Makes depths and the marks of calm pixels as rows are come to, slopes when they are asked for.
 class EdgeRows {
  public:
-  EdgeRows(const EdgeRules& rules, int radius, const MarkedTile& tile)
+  EdgeRows(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres)
       : rules_(rules),
+        radius_(radius),
         tile_(tile),
+        centres_(centres),
+        calm_(rules, radius, tile),
         depth_(radius + 3, tile.first_word, tile.words, std::numeric_limits<float>::quiet_NaN()),
         slope_x_(radius + 1, tile.first_word, tile.words, 0.0f),
         slope_y_(radius + 1, tile.first_word, tile.words, 0.0f),
+        tall_(std::size_t(tile.words + 2)),
+        wanted_(std::size_t(tile.words)),
+        sloped_(std::size_t(radius + 1) * tile.words),
         next_depth_(tile.first_row - 1),
-        next_slope_(tile.first_row) {}
+        next_row_(tile.first_row) {}
 
-  // Slopes are there up to row y; `wanted` tells in which words of a row.
-  template <class Wanted>
-  void Reach(int y, const Wanted& wanted) {
-    for (; next_slope_ <= y; ++next_slope_) {
-      for (; next_depth_ <= next_slope_ + 1; ++next_depth_) MakeDepth(next_depth_);
-      for (int w = tile_.first_word; w < tile_.first_word + tile_.words; ++w) {
-        if (!wanted(next_slope_, w)) continue;
-        const int x = 64 * w;
-        HWY_DYNAMIC_DISPATCH(SlopeWord)
-        (depth_.Row(next_slope_ - 1) + x, depth_.Row(next_slope_) + x, depth_.Row(next_slope_ + 1) + x,
-         slope_x_.Row(next_slope_) + x, slope_y_.Row(next_slope_) + x);
+  // Depths and calm pixels are there up to row y.
+  void Reach(int y) {
+    for (; next_row_ <= y; ++next_row_) {
+      for (; next_depth_ <= next_row_ + 1; ++next_depth_) MakeDepth(next_depth_);
+      std::fill_n(sloped_.begin() + SlopedAt(next_row_), tile_.words, std::uint8_t{0});
+      if (next_row_ >= 0 && next_row_ + 1 < rules_.guides.height() && Wanted(next_row_, radius_)) {
+        const EdgeRow row = At(next_row_), below = At(next_row_ + 1);
+        calm_.Add(next_row_,
+                  {depth_.Row(next_row_ - 1), row.depth, below.depth, row.object, below.object,
+                   {row.normal[0], row.normal[1], row.normal[2]}, below.readable},
+                  wanted_.data());
+      } else {
+        calm_.AddNothing(next_row_);
       }
     }
+  }
+
+  // By word of a row, its four blocks of 16 pixels in which, or at most `radius` columns beside which, centres stand at most
+  // `reach` rows away.
+  bool Wanted(int y, int reach) {
+    std::fill(tall_.begin(), tall_.end(), 0);
+    const int first = std::max(tile_.first_row, y - reach), last = std::min(tile_.first_row + tile_.rows - 1, y + reach);
+    for (int v = first; v <= last; ++v) {
+      const std::uint64_t* row = centres_.Row(v);
+      for (int w = 0; w < tile_.words; ++w) tall_[std::size_t(w + 1)] |= row[w];
+    }
+    std::uint8_t any = 0;
+    for (std::size_t w = 0; w < wanted_.size(); ++w) {
+      const std::uint64_t tall = tall_[w + 1];
+      if (!(tall | tall_[w] | tall_[w + 2])) {
+        wanted_[w] = 0;
+        continue;
+      }
+      const std::uint64_t wide =
+          tall | tall << radius_ | tall >> radius_ | tall_[w] >> (64 - radius_) | tall_[w + 2] << (64 - radius_);
+      wanted_[w] = static_cast<std::uint8_t>((wide << 48 != 0) | (wide << 32 >> 48 != 0) << 1 |
+                                             (wide << 16 >> 48 != 0) << 2 | (wide >> 48 != 0) << 3);
+      any |= wanted_[w];
+    }
+    return any != 0;
+  }
+  // Whether any of a word is, by the last call.
+  bool wanted(int w) const { return wanted_[std::size_t(w)] != 0; }
+  CalmMarks& calm() { return calm_; }
+
+  // Slopes are there for the marked columns of a word moved by dx.
+  void Slopes(int y, int word, int dx, std::uint64_t marked) {
+    if (dx < 0 ? marked >> -dx : marked << dx) SlopesOf(y, word);
+    if (dx < 0 && marked << (64 + dx)) SlopesOf(y, word - 1);
+    if (dx > 0 && marked >> (64 - dx)) SlopesOf(y, word + 1);
   }
 
   // Of a row of the picture.
@@ -240,66 +318,99 @@ class EdgeRows {
   }
 
  private:
+  std::ptrdiff_t SlopedAt(int y) const { return std::ptrdiff_t(y + radius_ + 1) % (radius_ + 1) * tile_.words; }
+
+  void SlopesOf(int y, int word) {
+    std::uint8_t& sloped = sloped_[std::size_t(SlopedAt(y) + word - tile_.first_word)];
+    if (sloped) return;
+    sloped = 1;
+    const int x = 64 * word;
+    HWY_DYNAMIC_DISPATCH(SlopeWord)
+    (depth_.Row(y - 1) + x, depth_.Row(y) + x, depth_.Row(y + 1) + x, slope_x_.Row(y) + x, slope_y_.Row(y) + x);
+  }
+
+  // Of all words of which slopes may be asked for, and of a column more on either side.
   void MakeDepth(int y) {
     const GuideSet& guides = rules_.guides;
     if (y < 0 || y >= guides.height()) {
       depth_.Fill(y, std::numeric_limits<float>::quiet_NaN());
       return;
     }
-    const int x0 = std::max(0, 64 * tile_.first_word - 1);
-    const int x1 = std::min(guides.width(), 64 * (tile_.first_word + tile_.words) + 1);
-    const std::size_t begin = guides.Index(x0, y);
-    HWY_DYNAMIC_DISPATCH(DepthRow)
-    (guides.Plane(Layer::kDepth).data() + begin, guides.Plane(Layer::kCoverage).data() + begin,
-     rules_.covered.empty() ? nullptr : rules_.covered.data() + begin, std::size_t(x1 - x0), depth_.Row(y) + x0);
+    if (!Wanted(y, radius_ + 1)) return;
+    for (int w = 0, end; w < tile_.words; w = end) {
+      for (end = w + 1; wanted(w) && end < tile_.words && wanted(end);) ++end;
+      if (!wanted(w)) continue;
+      const int x0 = std::max(0, 64 * (tile_.first_word + w) - 1);
+      const int x1 = std::min(guides.width(), 64 * (tile_.first_word + end) + 1);
+      if (x0 >= x1) continue;
+      const std::size_t begin = guides.Index(x0, y);
+      HWY_DYNAMIC_DISPATCH(DepthRow)
+      (guides.Plane(Layer::kDepth).data() + begin, guides.Plane(Layer::kCoverage).data() + begin,
+       rules_.covered.empty() ? nullptr : rules_.covered.data() + begin, std::size_t(x1 - x0), depth_.Row(y) + x0);
+    }
   }
 
   const EdgeRules& rules_;
+  int radius_;
   MarkedTile tile_;
+  const BitRows& centres_;
+  CalmMarks calm_;
   PassingRows depth_, slope_x_, slope_y_;
-  int next_depth_, next_slope_;
+  std::vector<std::uint64_t> tall_;
+  std::vector<std::uint8_t> wanted_, sloped_;
+  int next_depth_, next_row_;
 };
 
 }  // namespace
 
-void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres,
-               std::vector<BitRows>& same) {
+void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres, EdgeMarks& marks) {
   const std::vector<PixelStep> steps = ForwardSteps(radius);
-  same.resize(steps.size());
-  for (BitRows& marks : same) marks.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
+  marks.same.resize(steps.size());
+  for (BitRows& same : marks.same) same.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
+  marks.sure.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
   BitRows dilated;
   if (radius > 1) Dilate(tile, centres, radius - 1, dilated);
   const BitRows& near = radius > 1 ? dilated : centres;
-  const auto has = [&](int y) { return y >= tile.first_row && y < tile.first_row + tile.rows; };
-  const auto wanted = [&](int y, int word) {
-    for (int v = y - 1; v <= y + 1; ++v) {
-      if (has(v) && (near.At(v, word - 1) | near.At(v, word) | near.At(v, word + 1))) return true;
-    }
-    return false;
-  };
-  EdgeRows rows(rules, radius, tile);
+  EdgeRows rows(rules, radius, tile, centres);
   const float crease_cosine = rules.CreaseCosine();
-  std::vector<std::uint64_t> needed_words(steps.size() * tile.words);
+  const std::size_t words = std::size_t(tile.words);
+  std::vector<std::uint64_t> asked(steps.size() * words), creases(asked.size());
   std::vector<EdgePair> pairs;
   const int end = std::min(tile.first_row + tile.rows, rules.guides.height());
-  for (int y = tile.first_row; y < end; ++y) {
-    rows.Reach(std::min(y + radius, end - 1), wanted);
-    if (y < 0) continue;
+  for (int y = std::max(0, tile.first_row); y < end; ++y) {
+    rows.Reach(std::min(y + radius, end - 1));
+    if (!rows.Wanted(y, radius)) continue;
+    rows.calm().Compare(y, end - 1);
     pairs.clear();
+    std::uint64_t* all = marks.sure.Row(y);
+    std::fill(all, all + words, BitRows::kAll);
     for (std::size_t k = 0; k < steps.size(); ++k) {
-      const PixelStep step = steps[k];
-      if (y + step.dy >= end) continue;
-      const BitRows& about = std::max(std::abs(step.dx), step.dy) == 1 ? near : centres;
-      std::uint64_t* needed = needed_words.data() + k * tile.words;
+      const auto [dx, dy] = steps[k];
+      if (y + dy >= end) continue;
+      const BitRows& about = std::max(std::abs(dx), dy) == 1 ? near : centres;
+      std::uint64_t *full = asked.data() + k * words, *crease = creases.data() + k * words, *same = marks.same[k].Row(y);
+      const std::uint64_t *here = about.Row(y), *there = about.Row(y + dy);
+      const std::uint64_t *level = rows.calm().Level(k), *sure = rows.calm().Sure(k);
       std::uint64_t any = 0;
-      for (int w = 0; w < tile.words; ++w) {
-        const int word = tile.first_word + w;
-        needed[w] = word < 0 ? 0 : about.At(y, word) | about.Shifted(y + step.dy, word, step.dx);
-        any |= needed[w];
-      }
+      const auto split = [&](const auto& moved) {
+        for (std::size_t w = 0; w < words; ++w) {
+          const std::uint64_t left = (here[w] | moved(there + w)) & ~sure[w];
+          same[w] = sure[w], all[w] &= sure[w], any |= left;
+          full[w] = left & ~level[w], crease[w] = left & level[w];
+        }
+      };
+      if (dx == 0) split([](const std::uint64_t* at) { return *at; });
+      if (dx > 0) split([dx = dx](const std::uint64_t* at) { return at[0] >> dx | at[1] << (64 - dx); });
+      if (dx < 0) split([dx = dx](const std::uint64_t* at) { return at[0] << -dx | at[-1] >> (64 + dx); });
       if (!any) continue;
-      pairs.push_back({rows.At(y), rows.At(y + step.dy), step.dx, step.dy, rules.guides.width(), crease_cosine,
-                       rules.DepthTolerance(), needed, same[k].Row(y)});
+      if (tile.first_word < 0) full[0] = crease[0] = 0;
+      for (std::size_t w = 0; w < words; ++w) {
+        if (!full[w]) continue;
+        rows.Slopes(y, tile.first_word + int(w), 0, full[w]);
+        rows.Slopes(y + dy, tile.first_word + int(w), dx, full[w]);
+      }
+      pairs.push_back({rows.At(y), rows.At(y + dy), dx, dy, rules.guides.width(), crease_cosine, rules.DepthTolerance(),
+                       full, crease, same});
     }
     if (!pairs.empty()) HWY_DYNAMIC_DISPATCH(TestRow)(pairs.data(), pairs.size(), tile.first_word, tile.words);
   }

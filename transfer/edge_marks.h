@@ -13,13 +13,17 @@ namespace scumble::internal {
 // Half of a window: every step of at most `radius` in x and y that leads to a later pixel in row order.
 std::vector<PixelStep> ForwardSteps(int radius);
 
-// For each of ForwardSteps(radius), marks of the pixels that are the same surface as the one a step further on: both
-// covered, and EdgeTest::SameSurface to the bit. The marks hold where the pixel or that other one is in `centres`, and
-// for steps of one pixel wherever a way from a centre may lead; others say nothing. Slopes are made as rows are come
-// to. `tile` is that of the centres, which stand at least `radius` from its first and last rows, and in all but its
-// first and last words.
-void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres,
-               std::vector<BitRows>& same);
+struct EdgeMarks {
+  // For each of ForwardSteps(radius), the pixels that are the same surface as the one a step further on: both covered,
+  // and EdgeTest::SameSurface to the bit. The marks hold where the pixel or that other one is a centre, and for steps of
+  // one pixel wherever a way from a centre may lead; others say nothing.
+  std::vector<BitRows> same;
+  BitRows sure;  // some of the pixels for which all of these marks hold and are set
+};
+
+// Makes the marks of a tile for windows of radius 1 … 3 around `centres`, which stand at least `radius` from the tile's
+// first and last rows, and in all but its first and last words. The guides must hold depth and object.
+void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres, EdgeMarks& marks);
 
 // Bit i of joined[k]: whether the pixel 64·word + i of that row is joined to the one `ways[k]` from it, as JoinedWindow
 // has it.
