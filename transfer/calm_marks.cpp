@@ -1,5 +1,7 @@
 #include "transfer/calm_marks.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -23,6 +25,7 @@ struct CalmFound {
 };
 
 struct CalmLimits {
+  int radius = 0;
   float bend = 0, spread = 0;
 };
 
@@ -67,38 +70,44 @@ HWY_INLINE std::uint64_t CalmBits(const CalmRow& row, int begin, float most_bend
   return bits;
 }
 
-// Whether all covered normals of 16 pixels are near the middle one.
-HWY_INLINE bool Near(const CalmRow& row, int begin, float spread) {
-  const int middle = begin + kCalmBlock / 2;
-  const F x = hn::Set(kFloat, row.normal[0][middle]), y = hn::Set(kFloat, row.normal[1][middle]),
-          z = hn::Set(kFloat, row.normal[2][middle]), most = hn::Set(kFloat, spread * spread);
-  bool near = true;
-  for (int i = begin; i < begin + kCalmBlock; i += int(hn::Lanes(kFloat))) {
-    const F off_x = hn::Sub(hn::LoadU(kFloat, row.normal[0] + i), x);
-    const F off_y = hn::Sub(hn::LoadU(kFloat, row.normal[1] + i), y);
-    const F off_z = hn::Sub(hn::LoadU(kFloat, row.normal[2] + i), z);
-    const F square = hn::Add(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Mul(off_z, off_z));
-    const F depth = hn::LoadU(kFloat, row.depth + i);
-    near = near && hn::AllTrue(kFloat, hn::Or(hn::Lt(square, most), hn::Ne(depth, depth)));
+// Whether all covered normals of 16 pixels and of `radius` on either side are near the middle one.
+HWY_INLINE bool Near(const CalmRow& row, int begin, int radius, const float* centre, float spread) {
+  const F x = hn::Set(kFloat, centre[0]), y = hn::Set(kFloat, centre[1]), z = hn::Set(kFloat, centre[2]);
+  const F most = hn::Set(kFloat, spread * spread);
+  auto far = hn::Lt(most, most);
+  for (int side = -radius; side <= radius; side += 2 * radius) {
+    for (int i = begin + side; i < begin + side + kCalmBlock; i += int(hn::Lanes(kFloat))) {
+      const F off_x = hn::Sub(hn::LoadU(kFloat, row.normal[0] + i), x);
+      const F off_y = hn::Sub(hn::LoadU(kFloat, row.normal[1] + i), y);
+      const F off_z = hn::Sub(hn::LoadU(kFloat, row.normal[2] + i), z);
+      const F square = hn::Add(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Mul(off_z, off_z));
+      const F depth = hn::LoadU(kFloat, row.depth + i);
+      far = hn::Or(far, hn::And(hn::Not(hn::Lt(square, most)), hn::Eq(depth, depth)));
+    }
   }
-  return near;
+  return hn::AllFalse(kFloat, far);
 }
 
 void CalmWords(const CalmRow& row, const CalmLimits& limits, const std::uint8_t* wanted, int first_word, int words,
                const CalmFound& out) {
   for (int w = 0; w < words; ++w) {
     const int begin = 64 * (first_word + w);
-    if (!wanted[w] || begin < 0 || begin + 65 > row.readable) continue;
+    if (!wanted[w] || begin < 0 || begin + 64 + kCalmBlock > row.readable) continue;
+    const bool ahead = begin + 64 + row.width <= row.readable;
     std::uint64_t calm = 0;
     for (int b = 0; b < 4; ++b) {
       if (!(wanted[w] >> b & 1)) continue;
       const int x = begin + kCalmBlock * b, middle = x + kCalmBlock / 2;
+      if (ahead) {
+        hwy::Prefetch(row.object_below + row.width + x);
+        for (int k = 0; k < 3; ++k) hwy::Prefetch(row.normal[k] + row.width + x);
+      }
       const std::uint64_t bits = CalmBits(row, x, limits.bend);
       if (!bits) continue;
       calm |= bits << kCalmBlock * b;
       const float centre[3] = {row.normal[0][middle], row.normal[1][middle], row.normal[2][middle]};
       if (!(centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2] <= 1.01f)) continue;
-      if (!Near(row, x, limits.spread)) continue;
+      if (!Near(row, x, limits.radius, centre, limits.spread)) continue;
       for (int k = 0; k < 3; ++k) out.centre[k][4 * w + b] = centre[k];
     }
     out.calm[w] = calm;
@@ -120,7 +129,7 @@ void CompareBlocks(const float* const* a, const float* const* b, int words, floa
     for (int w = i / 4; w < std::min(words, i / 4 + 4); ++w, bits >>= 4) {
       // Each of four bits becomes sixteen.
       const std::uint64_t apart = (bits & 1) | (bits & 2) << 15 | (bits & 4) << 30 | (bits & 8) << 45;
-      out[w] = apart * 0xffff;
+      out[w] = (apart << 16) - apart;
     }
   }
 }
@@ -136,8 +145,8 @@ HWY_EXPORT(CompareBlocks);
 
 CalmMarks::CalmMarks(const EdgeRules& rules, int radius, const MarkedTile& tile) : radius_(radius), tile_(tile) {
   bend_ = std::min(0.7f * rules.DepthTolerance() / float(radius * (radius + 1)) - 1e-6f, 1.0f / 64);
-  // Products of two covered normals are above `crease`, at least -1 where normals are of length 1; where neighbouring
-  // blocks share a border their centres are 2L apart at most, c·d ≥ 1 - 2L²: there the test is as wide as it can be.
+  // As wide as it can be where blocks below each other share a normal, so that their middles are 2L apart at most: c·d is
+  // then at least 1 - 2L² for normals of length 1, whose products are never below -1.
   const float crease = std::max(rules.CreaseCosine(), -1.0f);
   spread_ = (std::sqrt(1.0f + 3.0f * std::max(0.0f, 1.0f - crease)) - 1.0f) / 3.0f;
   // Rounding, of products below 4, is far less than the last term.
@@ -145,9 +154,9 @@ CalmMarks::CalmMarks(const EdgeRules& rules, int radius, const MarkedTile& tile)
   for (int k = 0; k <= radius; ++k) runs_[std::size_t(k)].Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
   blocks_.resize(std::size_t(radius + 1));
   for (Blocks& blocks : blocks_) {
-    for (auto& centre : blocks.centre) centre.assign(std::size_t(4 * tile.words + 2 * kPad + 16), 0.0f);
+    for (auto& centre : blocks.centre) centre.assign(std::size_t(4 * tile.words + 16), 0.0f);
   }
-  for (auto& words : alike_) words.resize(std::size_t(tile.words));
+  alike_.resize(std::size_t(tile.words));
   const std::size_t across = std::size_t(2 * radius + 1), words = std::size_t(tile.words);
   box_.resize(across * words);
   level_.resize((across * (radius + 1) - radius - 1) * words);
@@ -163,22 +172,12 @@ void CalmMarks::Add(int y, const CalmRow& row, const std::uint8_t* wanted) {
   if (!(bend_ > 0.0f)) return;
   Blocks& blocks = BlocksOf(y);
   std::uint64_t* calm = runs_[0].Row(y);
-  const CalmFound out{calm, {blocks.centre[0].data() + kPad, blocks.centre[1].data() + kPad, blocks.centre[2].data() + kPad}};
-  HWY_DYNAMIC_DISPATCH(CalmWords)(row, {bend_, spread_}, wanted, tile_.first_word, tile_.words, out);
+  const CalmFound out{calm, {blocks.centre[0].data(), blocks.centre[1].data(), blocks.centre[2].data()}};
+  HWY_DYNAMIC_DISPATCH(CalmWords)(row, {radius_, bend_, spread_}, wanted, tile_.first_word, tile_.words, out);
   for (int k = 1; k <= radius_; ++k) {
     const std::uint64_t* shorter = runs_[std::size_t(k - 1)].Row(y);
     std::uint64_t* run = runs_[std::size_t(k)].Row(y);
     for (int w = 0; w < tile_.words; ++w) run[w] = shorter[w] & (calm[w] >> k | calm[w + 1] << (64 - k));
-  }
-}
-
-void CalmMarks::CompareNormals(int y, int dy) {
-  for (int side = -1; side <= 1; ++side) {
-    const float *a[3], *b[3];
-    for (int k = 0; k < 3; ++k) {
-      a[k] = BlocksOf(y).centre[k].data() + kPad, b[k] = BlocksOf(y + dy).centre[k].data() + kPad + side;
-    }
-    HWY_DYNAMIC_DISPATCH(CompareBlocks)(a, b, tile_.words, least_product_, alike_[side + 1].data());
   }
 }
 
@@ -187,7 +186,9 @@ void CalmMarks::Compare(int y, int last) {
   std::fill(box_.begin(), box_.end(), BitRows::kAll);
   std::uint64_t *level = level_.data(), *sure = sure_.data();
   for (int dy = 0; dy <= std::min(radius_, last - y); ++dy) {
-    CompareNormals(y, dy);
+    const float *here[3], *there[3];
+    for (int k = 0; k < 3; ++k) here[k] = BlocksOf(y).centre[k].data(), there[k] = BlocksOf(y + dy).centre[k].data();
+    HWY_DYNAMIC_DISPATCH(CompareBlocks)(here, there, words, least_product_, alike_.data());
     for (int dx = -radius_; dx <= radius_; ++dx) {
       const int far = std::abs(dx);
       const std::uint64_t* run = runs_[std::size_t(far)].Row(y + dy);
@@ -198,13 +199,7 @@ void CalmMarks::Compare(int y, int last) {
         for (int w = 0; w < words; ++w) box[w] &= run[w];
       }
       if (dy == 0 && dx <= 0) continue;
-      // The pixels from which the step leads to the next block.
-      std::uint64_t leaving = ((std::uint64_t{1} << far) - 1) << (dx < 0 ? 0 : kCalmBlock - far);
-      leaving |= leaving << kCalmBlock, leaving |= leaving << 2 * kCalmBlock;
-      const std::uint64_t *staying = alike_[1].data(), *beside = alike_[dx < 0 ? 0 : 2].data();
-      for (int w = 0; w < words; ++w) {
-        level[w] = box[w], sure[w] = box[w] & ((staying[w] & ~leaving) | (beside[w] & leaving));
-      }
+      for (int w = 0; w < words; ++w) level[w] = box[w], sure[w] = box[w] & alike_[std::size_t(w)];
       level += words, sure += words;
     }
   }

@@ -19,6 +19,7 @@ struct CalmRow {
   const float* object;
   const float* object_below;
   const float* normal[3];
+  std::ptrdiff_t width;   // to the same column of the next row
   std::int64_t readable;  // values of object_below and normal from column 0 to the end of their planes
 };
 
@@ -37,15 +38,16 @@ struct CalmRow {
 //     rounded, by 2^-24 of themselves: 10^-6·m at most.
 //   - Depth must be above 10^-16 / b ≥ 6·10^-15. So where a product of differences underflows, the smaller, below 10^-22,
 //     is nothing beside 10^-6·m.
-// For creases a row is cut into blocks of 16 pixels. Where all covered normals of a block lie within L of its middle one,
-// c, |c|² ≤ 1.01, any two of blocks c and d have a product of at least c·d - L(|c| + |d|) - L².
+// For creases a row is cut into blocks of 16 pixels. Where all covered normals of a block, and of r pixels more on either
+// side, lie within L of its middle one, c, |c|² ≤ 1.01, any of them has a product with any of another such block below, of
+// middle d, of at least c·d - L(|c| + |d|) - L².
 class CalmMarks {
  public:
   static constexpr int kMaxRadius = 3;
   // A forward step: dy rows down, 0 ≤ dy ≤ radius, and dx to the right.
   CalmMarks(const EdgeRules& rules, int radius, const MarkedTile& tile);
 
-  // The next row of the tile, downwards from its first. Bit b of wanted[w]: look at block b of the w-th word; nothing is
+  // The next row of the tile, downwards from its first; not the first or last of the picture. Bit b of wanted[w]: look at block b of the w-th word; nothing is
   // told of others.
   void Add(int y, const CalmRow& row, const std::uint8_t* wanted);
   void AddNothing(int y);
@@ -58,20 +60,17 @@ class CalmMarks {
   const std::uint64_t* Sure(std::size_t k) const { return sure_.data() + k * std::size_t(tile_.words); }
 
  private:
-  static constexpr int kPad = 16;
   struct Blocks {
     std::vector<float> centre[3];  // NaN: normals differ too much
   };
   Blocks& BlocksOf(int y) { return blocks_[std::size_t(y + kMaxRadius + 1) % blocks_.size()]; }
-  void CompareNormals(int y, int dy);
 
   int radius_;
   MarkedTile tile_;
   float bend_, spread_, least_product_;
   std::array<BitRows, kMaxRadius + 1> runs_;  // of k + 1 calm pixels, from this one to the right
-  std::vector<Blocks> blocks_;                // of radius + 1 rows
-  std::vector<std::uint64_t> alike_[3];       // words: normals are like those of the block to the left, below, to the right
-  std::vector<std::uint64_t> box_, level_, sure_;
+  std::vector<Blocks> blocks_;                // of radius + 1 rows, one after the other
+  std::vector<std::uint64_t> alike_, box_, level_, sure_;
 };
 
 }  // namespace scumble::internal

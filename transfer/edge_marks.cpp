@@ -240,27 +240,28 @@ class EdgeRows {
       : rules_(rules),
         radius_(radius),
         tile_(tile),
-        centres_(centres),
         calm_(rules, radius, tile),
         depth_(radius + 3, tile.first_word, tile.words, std::numeric_limits<float>::quiet_NaN()),
         slope_x_(radius + 1, tile.first_word, tile.words, 0.0f),
         slope_y_(radius + 1, tile.first_word, tile.words, 0.0f),
-        tall_(std::size_t(tile.words + 2)),
+        blocks_(std::size_t(tile.rows) * tile.words),
         wanted_(std::size_t(tile.words)),
         sloped_(std::size_t(radius + 1) * tile.words),
         next_depth_(tile.first_row - 1),
-        next_row_(tile.first_row) {}
+        next_row_(tile.first_row) {
+    for (int y = 0; y < tile.rows; ++y) MarkBlocks(centres.Row(tile.first_row + y), y);
+  }
 
   // Depths and calm pixels are there up to row y.
   void Reach(int y) {
     for (; next_row_ <= y; ++next_row_) {
       for (; next_depth_ <= next_row_ + 1; ++next_depth_) MakeDepth(next_depth_);
       std::fill_n(sloped_.begin() + SlopedAt(next_row_), tile_.words, std::uint8_t{0});
-      if (next_row_ >= 0 && next_row_ + 1 < rules_.guides.height() && Wanted(next_row_, radius_)) {
+      if (next_row_ > 0 && next_row_ + 1 < rules_.guides.height() && Want(next_row_, radius_)) {
         const EdgeRow row = At(next_row_), below = At(next_row_ + 1);
         calm_.Add(next_row_,
                   {depth_.Row(next_row_ - 1), row.depth, below.depth, row.object, below.object,
-                   {row.normal[0], row.normal[1], row.normal[2]}, below.readable},
+                   {row.normal[0], row.normal[1], row.normal[2]}, rules_.guides.width(), below.readable},
                   wanted_.data());
       } else {
         calm_.AddNothing(next_row_);
@@ -268,32 +269,6 @@ class EdgeRows {
     }
   }
 
-  // By word of a row, its four blocks of 16 pixels in which, or at most `radius` columns beside which, centres stand at most
-  // `reach` rows away.
-  bool Wanted(int y, int reach) {
-    std::fill(tall_.begin(), tall_.end(), 0);
-    const int first = std::max(tile_.first_row, y - reach), last = std::min(tile_.first_row + tile_.rows - 1, y + reach);
-    for (int v = first; v <= last; ++v) {
-      const std::uint64_t* row = centres_.Row(v);
-      for (int w = 0; w < tile_.words; ++w) tall_[std::size_t(w + 1)] |= row[w];
-    }
-    std::uint8_t any = 0;
-    for (std::size_t w = 0; w < wanted_.size(); ++w) {
-      const std::uint64_t tall = tall_[w + 1];
-      if (!(tall | tall_[w] | tall_[w + 2])) {
-        wanted_[w] = 0;
-        continue;
-      }
-      const std::uint64_t wide =
-          tall | tall << radius_ | tall >> radius_ | tall_[w] >> (64 - radius_) | tall_[w + 2] << (64 - radius_);
-      wanted_[w] = static_cast<std::uint8_t>((wide << 48 != 0) | (wide << 32 >> 48 != 0) << 1 |
-                                             (wide << 16 >> 48 != 0) << 2 | (wide >> 48 != 0) << 3);
-      any |= wanted_[w];
-    }
-    return any != 0;
-  }
-  // Whether any of a word is, by the last call.
-  bool wanted(int w) const { return wanted_[std::size_t(w)] != 0; }
   CalmMarks& calm() { return calm_; }
 
   // Slopes are there for the marked columns of a word moved by dx.
@@ -318,6 +293,29 @@ class EdgeRows {
   }
 
  private:
+  void MarkBlocks(const std::uint64_t* centres, int row) {
+    std::uint8_t* blocks = blocks_.data() + std::size_t(row) * tile_.words;
+    for (int w = 0; w < tile_.words; ++w) {
+      const std::uint64_t here = centres[w];
+      const std::uint64_t wide =
+          here | here << radius_ | here >> radius_ | centres[w - 1] >> (64 - radius_) | centres[w + 1] << (64 - radius_);
+      if (!wide) continue;
+      const auto block = [&](int b) { return unsigned((wide >> 16 * b & 0xffff) != 0) << b; };
+      blocks[w] = static_cast<std::uint8_t>(block(0) | block(1) | block(2) | block(3));
+    }
+  }
+
+  // The same of centres at most `reach` rows away, in wanted_. False: there are none.
+  bool Want(int y, int reach) {
+    std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{0});
+    const int first = std::max(0, y - reach - tile_.first_row), last = std::min(tile_.rows - 1, y + reach - tile_.first_row);
+    for (int v = first; v <= last; ++v) {
+      const std::uint8_t* blocks = blocks_.data() + std::size_t(v) * tile_.words;
+      for (std::size_t w = 0; w < wanted_.size(); ++w) wanted_[w] |= blocks[w];
+    }
+    return std::any_of(wanted_.begin(), wanted_.end(), [](std::uint8_t blocks) { return blocks != 0; });
+  }
+
   std::ptrdiff_t SlopedAt(int y) const { return std::ptrdiff_t(y + radius_ + 1) % (radius_ + 1) * tile_.words; }
 
   void SlopesOf(int y, int word) {
@@ -336,10 +334,10 @@ class EdgeRows {
       depth_.Fill(y, std::numeric_limits<float>::quiet_NaN());
       return;
     }
-    if (!Wanted(y, radius_ + 1)) return;
+    if (!Want(y, radius_ + 1)) return;
     for (int w = 0, end; w < tile_.words; w = end) {
-      for (end = w + 1; wanted(w) && end < tile_.words && wanted(end);) ++end;
-      if (!wanted(w)) continue;
+      for (end = w + 1; wanted_[w] && end < tile_.words && wanted_[end];) ++end;
+      if (!wanted_[w]) continue;
       const int x0 = std::max(0, 64 * (tile_.first_word + w) - 1);
       const int x1 = std::min(guides.width(), 64 * (tile_.first_word + end) + 1);
       if (x0 >= x1) continue;
@@ -353,10 +351,11 @@ class EdgeRows {
   const EdgeRules& rules_;
   int radius_;
   MarkedTile tile_;
-  const BitRows& centres_;
   CalmMarks calm_;
   PassingRows depth_, slope_x_, slope_y_;
-  std::vector<std::uint64_t> tall_;
+  // By row of the tile and word: bits of the four blocks of 16 pixels in which, or at most `radius` columns beside which, a
+  // centre stands.
+  std::vector<std::uint8_t> blocks_;
   std::vector<std::uint8_t> wanted_, sloped_;
   int next_depth_, next_row_;
 };
@@ -379,7 +378,6 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const
   const int end = std::min(tile.first_row + tile.rows, rules.guides.height());
   for (int y = std::max(0, tile.first_row); y < end; ++y) {
     rows.Reach(std::min(y + radius, end - 1));
-    if (!rows.Wanted(y, radius)) continue;
     rows.calm().Compare(y, end - 1);
     pairs.clear();
     std::uint64_t* all = marks.sure.Row(y);
