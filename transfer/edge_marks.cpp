@@ -1,5 +1,7 @@
 #include "transfer/edge_marks.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
@@ -54,13 +56,16 @@ namespace hn = hwy::HWY_NAMESPACE;
 const hn::CappedTag<float, 16> kFloat;
 using F = hn::Vec<hn::CappedTag<float, 16>>;
 
-// Depth where coverage is above 0, NaN elsewhere. One of the two tells coverage.
-void DepthRow(const float* depth, const float* coverage, const std::uint8_t* covered, std::size_t count, float* out) {
+// Depth where coverage is above 0, NaN elsewhere. One of the two tells coverage. What is `below` values further on is wanted
+// next.
+void DepthRow(const float* depth, const float* coverage, const std::uint8_t* covered, std::size_t count, std::size_t below,
+              float* out) {
   const hn::Rebind<std::uint8_t, decltype(kFloat)> byte;
   const hn::RebindToUnsigned<decltype(kFloat)> word;
   const F none = hn::Set(kFloat, std::numeric_limits<float>::quiet_NaN());
   std::size_t i = 0;
   for (; i + hn::Lanes(kFloat) <= count; i += hn::Lanes(kFloat)) {
+    hwy::Prefetch(depth + below + i);
     const auto there =
         covered ? hn::RebindMask(kFloat, hn::Ne(hn::PromoteTo(word, hn::LoadU(byte, covered + i)), hn::Zero(word)))
                 : hn::Gt(hn::LoadU(kFloat, coverage + i), hn::Zero(kFloat));
@@ -96,32 +101,6 @@ HWY_INLINE std::uint64_t BitsOf(const Mask& mask) {
   return unsigned(bytes[0] | bytes[1] << 8) & ((1u << hn::MaxLanes(kFloat)) - 1);
 }
 
-// Object and normal of as many pixels as a vector has, from columns a and b on. Guides of the last and first pixels of the
-// picture would be read beyond their ends, and are copied.
-struct GuidesOfPair {
-  HWY_INLINE GuidesOfPair(const EdgePair& pair, int a, int b)
-      : p{pair.here.object + a, pair.here.normal[0] + a, pair.here.normal[1] + a, pair.here.normal[2] + a},
-        q{pair.there.object + b, pair.there.normal[0] + b, pair.there.normal[1] + b, pair.there.normal[2] + b} {
-    const int lanes = static_cast<int>(hn::Lanes(kFloat));
-    const EdgeRow &here = pair.here, &there = pair.there;
-    if (HWY_LIKELY(a >= -here.before && b >= -there.before && a + lanes <= here.readable && b + lanes <= there.readable)) {
-      return;
-    }
-    for (int k = 0; k < 4; ++k) {
-      p[k] = CopyInside(p[k], -here.before - a, here.readable - a, lanes, copies[k]);
-      q[k] = CopyInside(q[k], -there.before - b, there.readable - b, lanes, copies[4 + k]);
-    }
-  }
-  HWY_INLINE hn::Mask<hn::CappedTag<float, 16>> NoCrease(F crease) const {
-    const auto product = [&](int k) HWY_ATTR { return hn::Mul(hn::LoadU(kFloat, p[k]), hn::LoadU(kFloat, q[k])); };
-    const F along = product(1), across = product(2), forth = product(3);
-    return hn::Gt(hn::Add(hn::Add(along, across), forth), crease);
-  }
-  const float* p[4];
-  const float* q[4];
-  float copies[8][16];
-};
-
 // A word of a row, of which `asked` marks what is asked for: bit i, whether that pixel and the one a step further on are
 // the same surface.
 HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t asked) {
@@ -146,26 +125,51 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
                              hn::Mul(Least(hn::Abs(slope_py), hn::Abs(slope_qy)), far_y));
     const F most = hn::Add(leeway, hn::Mul(tolerance, Least(depth_p, depth_q)));
     auto one = hn::Le(hn::Abs(hn::Sub(hn::Sub(depth_q, depth_p), expected)), most);
-    const GuidesOfPair guides(pair, a, b);
-    one = hn::And(one, hn::Eq(hn::LoadU(kFloat, guides.p[0]), hn::LoadU(kFloat, guides.q[0])));
-    one = hn::And(one, guides.NoCrease(crease));
+    // Guides of the last and first pixels of the picture would be read beyond their ends.
+    const bool inside = a >= -p.before && b >= -q.before && a + lanes <= p.readable && b + lanes <= q.readable;
+    const float* guide_p[4] = {p.object + a, p.normal[0] + a, p.normal[1] + a, p.normal[2] + a};
+    const float* guide_q[4] = {q.object + b, q.normal[0] + b, q.normal[1] + b, q.normal[2] + b};
+    float copies[8][16];
+    if (HWY_UNLIKELY(!inside)) {
+      for (int k = 0; k < 4; ++k) {
+        guide_p[k] = CopyInside(guide_p[k], -p.before - a, p.readable - a, lanes, copies[k]);
+        guide_q[k] = CopyInside(guide_q[k], -q.before - b, q.readable - b, lanes, copies[4 + k]);
+      }
+    }
+    one = hn::And(one, hn::Eq(hn::LoadU(kFloat, guide_p[0]), hn::LoadU(kFloat, guide_q[0])));
+    const auto product = [&](int k) HWY_ATTR {
+      return hn::Mul(hn::LoadU(kFloat, guide_p[k]), hn::LoadU(kFloat, guide_q[k]));
+    };
+    const F along = product(1), across = product(2), forth = product(3);
+    one = hn::And(one, hn::Gt(hn::Add(hn::Add(along, across), forth), crease));
     bits |= BitsOf(one) << i;
   }
   return bits & asked;
 }
 
-// The same, where objects and depths are known to pass.
-HWY_INLINE std::uint64_t TestCreases(const EdgePair& pair, int word, std::uint64_t asked) {
+// The same for all steps of a word, where objects and depths are known to pass. Only calm pixels (calm_marks.h) are asked for,
+// which stand so far from the ends of the guides that vectors do not reach beyond.
+HWY_INLINE void TestCreases(const EdgePair* pairs, std::size_t count, int first_word, int w) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   const std::uint64_t whole = lanes < 64 ? (std::uint64_t{1} << lanes) - 1 : ~std::uint64_t{0};
-  const F crease = hn::Set(kFloat, pair.crease_cosine);
-  std::uint64_t bits = 0;
+  const F crease = hn::Set(kFloat, pairs->crease_cosine);
+  const float* const* here = pairs->here.normal;
+  std::uint64_t asked = 0;
+  for (std::size_t k = 0; k < count; ++k) asked |= pairs[k].creases[w];
   for (int i = 0; i < 64; i += lanes) {
     if (!(asked >> i & whole)) continue;
-    const int a = 64 * word + i;
-    bits |= BitsOf(GuidesOfPair(pair, a, a + pair.dx).NoCrease(crease)) << i;
+    const int a = 64 * (first_word + w) + i;
+    const F x = hn::LoadU(kFloat, here[0] + a), y = hn::LoadU(kFloat, here[1] + a), z = hn::LoadU(kFloat, here[2] + a);
+    for (const EdgePair* pair = pairs; pair != pairs + count; ++pair) {
+      const std::uint64_t bits = pair->creases[w] & whole << i;
+      if (!bits) continue;
+      const float* const* there = pair->there.normal;
+      const int b = a + pair->dx;
+      const F along = hn::Mul(x, hn::LoadU(kFloat, there[0] + b)), across = hn::Mul(y, hn::LoadU(kFloat, there[1] + b));
+      const F forth = hn::Mul(z, hn::LoadU(kFloat, there[2] + b));
+      pair->same[w] |= BitsOf(hn::Gt(hn::Add(hn::Add(along, across), forth), crease)) << i & bits;
+    }
   }
-  return bits & asked;
 }
 
 // All steps of a word before the next word, so that what they read stays in the nearest cache.
@@ -173,8 +177,8 @@ void TestRow(const EdgePair* pairs, std::size_t count, int first_word, int words
   for (int w = 0; w < words; ++w) {
     for (std::size_t k = 0; k < count; ++k) {
       if (pairs[k].asked[w]) pairs[k].same[w] |= TestWord(pairs[k], first_word + w, pairs[k].asked[w]);
-      if (pairs[k].creases[w]) pairs[k].same[w] |= TestCreases(pairs[k], first_word + w, pairs[k].creases[w]);
     }
+    TestCreases(pairs, count, first_word, w);
   }
 }
 
@@ -245,6 +249,7 @@ class EdgeRows {
         slope_x_(radius + 1, tile.first_word, tile.words, 0.0f),
         slope_y_(radius + 1, tile.first_word, tile.words, 0.0f),
         blocks_(std::size_t(tile.rows) * tile.words),
+        busy_(std::size_t(tile.rows)),
         wanted_(std::size_t(tile.words)),
         sloped_(std::size_t(radius + 1) * tile.words),
         next_depth_(tile.first_row - 1),
@@ -270,6 +275,12 @@ class EdgeRows {
   }
 
   CalmMarks& calm() { return calm_; }
+
+  // Whether a centre stands at most `radius` rows away.
+  bool Busy(int y) const {
+    const int first = std::max(0, y - radius_ - tile_.first_row), last = std::min(tile_.rows - 1, y + radius_ - tile_.first_row);
+    return std::any_of(busy_.begin() + first, busy_.begin() + last + 1, [](std::uint8_t busy) { return busy != 0; });
+  }
 
   // Slopes are there for the marked columns of a word moved by dx.
   void Slopes(int y, int word, int dx, std::uint64_t marked) {
@@ -302,6 +313,7 @@ class EdgeRows {
       if (!wide) continue;
       const auto block = [&](int b) { return unsigned((wide >> 16 * b & 0xffff) != 0) << b; };
       blocks[w] = static_cast<std::uint8_t>(block(0) | block(1) | block(2) | block(3));
+      busy_[std::size_t(row)] = 1;
     }
   }
 
@@ -313,7 +325,7 @@ class EdgeRows {
       const std::uint8_t* blocks = blocks_.data() + std::size_t(v) * tile_.words;
       for (std::size_t w = 0; w < wanted_.size(); ++w) wanted_[w] |= blocks[w];
     }
-    return std::any_of(wanted_.begin(), wanted_.end(), [](std::uint8_t blocks) { return blocks != 0; });
+    return std::any_of(busy_.begin() + first, busy_.begin() + last + 1, [](std::uint8_t busy) { return busy != 0; });
   }
 
   std::ptrdiff_t SlopedAt(int y) const { return std::ptrdiff_t(y + radius_ + 1) % (radius_ + 1) * tile_.words; }
@@ -344,7 +356,8 @@ class EdgeRows {
       const std::size_t begin = guides.Index(x0, y);
       HWY_DYNAMIC_DISPATCH(DepthRow)
       (guides.Plane(Layer::kDepth).data() + begin, guides.Plane(Layer::kCoverage).data() + begin,
-       rules_.covered.empty() ? nullptr : rules_.covered.data() + begin, std::size_t(x1 - x0), depth_.Row(y) + x0);
+       rules_.covered.empty() ? nullptr : rules_.covered.data() + begin, std::size_t(x1 - x0),
+       y + 1 < guides.height() ? std::size_t(guides.width()) : 0, depth_.Row(y) + x0);
     }
   }
 
@@ -356,17 +369,40 @@ class EdgeRows {
   // By row of the tile and word: bits of the four blocks of 16 pixels in which, or at most `radius` columns beside which, a
   // centre stands.
   std::vector<std::uint8_t> blocks_;
-  std::vector<std::uint8_t> wanted_, sloped_;
+  std::vector<std::uint8_t> busy_, wanted_, sloped_;
   int next_depth_, next_row_;
 };
 
 }  // namespace
 
-void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres, EdgeMarks& marks) {
+namespace {
+
+// The words of a tile that hold centres, and one more on either side.
+MarkedTile Cropped(const MarkedTile& tile, const BitRows& centres) {
+  int first = tile.words, last = -1;
+  for (int y = tile.first_row; y < tile.first_row + tile.rows; ++y) {
+    const std::uint64_t* row = centres.Row(y);
+    for (int w = 0; w < first; ++w) first = row[w] ? w : first;
+    for (int w = tile.words - 1; w > last; --w) last = row[w] ? w : last;
+  }
+  if (last < 0) return {tile.first_row, tile.rows, tile.first_word, 1};
+  return {tile.first_row, tile.rows, tile.first_word + first - 1, last - first + 3};
+}
+
+}  // namespace
+
+void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& whole_tile, const BitRows& all_centres,
+               EdgeMarks& marks) {
   const std::vector<PixelStep> steps = ForwardSteps(radius);
+  const MarkedTile tile = Cropped(whole_tile, all_centres);
+  BitRows centres;
+  centres.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
+  for (int y = tile.first_row; y < tile.first_row + tile.rows; ++y) {
+    for (int w = 0; w < tile.words; ++w) centres.Row(y)[w] = all_centres.At(y, tile.first_word + w);
+  }
   marks.same.resize(steps.size());
   for (BitRows& same : marks.same) same.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
-  marks.sure.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
+  marks.sure.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, BitRows::kAll);
   BitRows dilated;
   if (radius > 1) Dilate(tile, centres, radius - 1, dilated);
   const BitRows& near = radius > 1 ? dilated : centres;
@@ -378,10 +414,9 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const
   const int end = std::min(tile.first_row + tile.rows, rules.guides.height());
   for (int y = std::max(0, tile.first_row); y < end; ++y) {
     rows.Reach(std::min(y + radius, end - 1));
+    if (!rows.Busy(y)) continue;
     rows.calm().Compare(y, end - 1);
     pairs.clear();
-    std::uint64_t* all = marks.sure.Row(y);
-    std::fill(all, all + words, BitRows::kAll);
     for (std::size_t k = 0; k < steps.size(); ++k) {
       const auto [dx, dy] = steps[k];
       if (y + dy >= end) continue;
@@ -393,7 +428,7 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const
       const auto split = [&](const auto& moved) {
         for (std::size_t w = 0; w < words; ++w) {
           const std::uint64_t left = (here[w] | moved(there + w)) & ~sure[w];
-          same[w] = sure[w], all[w] &= sure[w], any |= left;
+          same[w] = sure[w], any |= left;
           full[w] = left & ~level[w], crease[w] = left & level[w];
         }
       };
@@ -410,7 +445,12 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const
       pairs.push_back({rows.At(y), rows.At(y + dy), dx, dy, rules.guides.width(), crease_cosine, rules.DepthTolerance(),
                        full, crease, same});
     }
-    if (!pairs.empty()) HWY_DYNAMIC_DISPATCH(TestRow)(pairs.data(), pairs.size(), tile.first_word, tile.words);
+    if (pairs.empty()) continue;
+    HWY_DYNAMIC_DISPATCH(TestRow)(pairs.data(), pairs.size(), tile.first_word, tile.words);
+    std::uint64_t* passed = marks.sure.Row(y);
+    for (const EdgePair& pair : pairs) {
+      for (std::size_t w = 0; w < words; ++w) passed[w] &= ~(pair.asked[w] | pair.creases[w]) | pair.same[w];
+    }
   }
 }
 

@@ -18,11 +18,11 @@ struct EdgeMarks {
   // and EdgeTest::SameSurface to the bit. The marks hold where the pixel or that other one is a centre, and for steps of
   // one pixel wherever a way from a centre may lead; others say nothing.
   std::vector<BitRows> same;
-  BitRows sure;  // some of the pixels for which all of these marks hold and are set
+  BitRows sure;  // pixels for which none of these marks that hold is missing
 };
 
-// Makes the marks of a tile for windows of radius 1 … 3 around `centres`, which stand at least `radius` from the tile's
-// first and last rows, and in all but its first and last words. The guides must hold depth and object.
+// Makes the marks for windows of radius 1 … 3 around `centres`, in those words of the tile that have any and one on either
+// side. Centres stand at least `radius` from the tile's first and last rows, and in all but its first and last words. The guides must hold depth and object.
 void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres, EdgeMarks& marks);
 
 // Bit i of joined[k]: whether the pixel 64·word + i of that row is joined to the one `ways[k]` from it, as JoinedWindow
