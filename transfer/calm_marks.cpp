@@ -12,6 +12,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "transfer/float_marks-inl.h"
+
 #ifndef SCUMBLE_CALM_MARKS_ONCE
 #define SCUMBLE_CALM_MARKS_ONCE
 namespace scumble::internal {
@@ -36,36 +38,25 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-const hn::CappedTag<float, 16> kFloat;
-using F = hn::Vec<hn::CappedTag<float, 16>>;
-
-template <class Mask>
-HWY_INLINE std::uint64_t Bits(const Mask& mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(kFloat, mask, bytes);
-  constexpr unsigned kAll = (1u << hn::MaxLanes(kFloat)) - 1;
-  return unsigned(bytes[0] | bytes[1] << 8) & kAll;
-}
-
 // The calm ones of 16 pixels.
 HWY_INLINE std::uint64_t CalmBits(const CalmRow& row, int begin, float most_bend) {
   const F bend = hn::Set(kFloat, most_bend), tiny = hn::Set(kFloat, 1e-16f), share = hn::Set(kFloat, 1.0f / 32);
   std::uint64_t bits = 0;
   for (int i = 0; i < kCalmBlock; i += int(hn::Lanes(kFloat))) {
     const int x = begin + i;
-    const F here = hn::LoadU(kFloat, row.depth + x);
-    const F front_x = hn::Sub(hn::LoadU(kFloat, row.depth + x + 1), here);
-    const F back_x = hn::Sub(here, hn::LoadU(kFloat, row.depth + x - 1));
-    const F front_y = hn::Sub(hn::LoadU(kFloat, row.below + x), here);
+    const F here = hn::LoadU(kFloat, row.here.depth + x);
+    const F front_x = hn::Sub(hn::LoadU(kFloat, row.here.depth + x + 1), here);
+    const F back_x = hn::Sub(here, hn::LoadU(kFloat, row.here.depth + x - 1));
+    const F front_y = hn::Sub(hn::LoadU(kFloat, row.below.depth + x), here);
     const F back_y = hn::Sub(here, hn::LoadU(kFloat, row.above + x));
     // Less, not less or equal: nothing that is NaN or infinite may pass.
     const F most = hn::Sub(hn::Mul(bend, here), tiny);
     auto calm = hn::And(hn::Lt(hn::Abs(hn::Sub(front_x, back_x)), most), hn::Lt(hn::Abs(hn::Sub(front_y, back_y)), most));
     calm = hn::And(calm, hn::Lt(hn::Add(hn::Abs(front_x), hn::Abs(front_y)), hn::Mul(share, here)));
-    const F object = hn::LoadU(kFloat, row.object + x);
-    calm = hn::And(calm, hn::Eq(object, hn::LoadU(kFloat, row.object + x + 1)));
-    calm = hn::And(calm, hn::Eq(object, hn::LoadU(kFloat, row.object_below + x)));
-    bits |= Bits(calm) << i;
+    const F object = hn::LoadU(kFloat, row.here.object + x);
+    calm = hn::And(calm, hn::Eq(object, hn::LoadU(kFloat, row.here.object + x + 1)));
+    calm = hn::And(calm, hn::Eq(object, hn::LoadU(kFloat, row.below.object + x)));
+    bits |= BitsOf(calm) << i;
   }
   return bits;
 }
@@ -77,11 +68,11 @@ HWY_INLINE bool Near(const CalmRow& row, int begin, int radius, const float* cen
   auto far = hn::Lt(most, most);
   for (int side = -radius; side <= radius; side += 2 * radius) {
     for (int i = begin + side; i < begin + side + kCalmBlock; i += int(hn::Lanes(kFloat))) {
-      const F off_x = hn::Sub(hn::LoadU(kFloat, row.normal[0] + i), x);
-      const F off_y = hn::Sub(hn::LoadU(kFloat, row.normal[1] + i), y);
-      const F off_z = hn::Sub(hn::LoadU(kFloat, row.normal[2] + i), z);
+      const F off_x = hn::Sub(hn::LoadU(kFloat, row.here.normal[0] + i), x);
+      const F off_y = hn::Sub(hn::LoadU(kFloat, row.here.normal[1] + i), y);
+      const F off_z = hn::Sub(hn::LoadU(kFloat, row.here.normal[2] + i), z);
       const F square = hn::Add(hn::Add(hn::Mul(off_x, off_x), hn::Mul(off_y, off_y)), hn::Mul(off_z, off_z));
-      const F depth = hn::LoadU(kFloat, row.depth + i);
+      const F depth = hn::LoadU(kFloat, row.here.depth + i);
       far = hn::Or(far, hn::And(hn::Not(hn::Lt(square, most)), hn::Eq(depth, depth)));
     }
   }
@@ -92,20 +83,20 @@ void CalmWords(const CalmRow& row, const CalmLimits& limits, const std::uint8_t*
                const CalmFound& out) {
   for (int w = 0; w < words; ++w) {
     const int begin = 64 * (first_word + w);
-    if (!wanted[w] || begin < 0 || begin + 64 + kCalmBlock > row.readable) continue;
-    const bool ahead = begin + 64 + row.width <= row.readable;
+    if (!wanted[w] || begin < 0 || begin + 64 + kCalmBlock > row.below.readable) continue;
+    const bool ahead = begin + 64 + row.width <= row.below.readable;
     std::uint64_t calm = 0;
     for (int b = 0; b < 4; ++b) {
       if (!(wanted[w] >> b & 1)) continue;
       const int x = begin + kCalmBlock * b, middle = x + kCalmBlock / 2;
       if (ahead) {
-        hwy::Prefetch(row.object_below + row.width + x);
-        for (int k = 0; k < 3; ++k) hwy::Prefetch(row.normal[k] + row.width + x);
+        hwy::Prefetch(row.below.object + row.width + x);
+        for (int k = 0; k < 3; ++k) hwy::Prefetch(row.here.normal[k] + row.width + x);
       }
       const std::uint64_t bits = CalmBits(row, x, limits.bend);
       if (!bits) continue;
       calm |= bits << kCalmBlock * b;
-      const float centre[3] = {row.normal[0][middle], row.normal[1][middle], row.normal[2][middle]};
+      const float centre[3] = {row.here.normal[0][middle], row.here.normal[1][middle], row.here.normal[2][middle]};
       if (!(centre[0] * centre[0] + centre[1] * centre[1] + centre[2] * centre[2] <= 1.01f)) continue;
       if (!Near(row, x, limits.radius, centre, limits.spread)) continue;
       for (int k = 0; k < 3; ++k) out.centre[k][4 * w + b] = centre[k];
@@ -124,7 +115,7 @@ void CompareBlocks(const float* const* a, const float* const* b, int words, floa
       const auto product = [&](int k) HWY_ATTR {
         return hn::Mul(hn::LoadU(kFloat, a[k] + i + j), hn::LoadU(kFloat, b[k] + i + j));
       };
-      bits |= Bits(hn::Gt(hn::Add(hn::Add(product(0), product(1)), product(2)), most)) << j;
+      bits |= BitsOf(hn::Gt(hn::Add(hn::Add(product(0), product(1)), product(2)), most)) << j;
     }
     for (int w = i / 4; w < std::min(words, i / 4 + 4); ++w, bits >>= 4) {
       // Each of four bits becomes sixteen.

@@ -2,25 +2,22 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "transfer/bit_rows.h"
 #include "transfer/chunk_marks.h"
+#include "transfer/edge_row.h"
 #include "transfer/edges.h"
 
 namespace scumble::internal {
 
-// What is looked at of one row of the picture, each from column 0 on. Depths are NaN where nothing is covered.
+// A row of the picture and its neighbours.
 struct CalmRow {
-  const float* above;
-  const float* depth;
-  const float* below;
-  const float* object;
-  const float* object_below;
-  const float* normal[3];
-  std::ptrdiff_t width;   // to the same column of the next row
-  std::int64_t readable;  // values of object_below and normal from column 0 to the end of their planes
+  const float* above;   // depth, as in EdgeRow
+  EdgeRow here, below;  // without slopes
+  std::ptrdiff_t width;
 };
 
 // A pixel is calm where it and its four neighbours are covered, its object is that of the pixels to the right and below,

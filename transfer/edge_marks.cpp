@@ -8,26 +8,18 @@
 #include <limits>
 
 #include "transfer/calm_marks.h"
+#include "transfer/edge_row.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/edge_marks.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "transfer/float_marks-inl.h"
+
 #ifndef SCUMBLE_EDGE_MARKS_ONCE
 #define SCUMBLE_EDGE_MARKS_ONCE
 namespace scumble::internal {
-
-// What the test reads of one row of the picture, each from column 0 on. Depth and slopes are ours and have 64 values
-// more on either side of the tile: depth is NaN where nothing is covered, which neither has a slope nor passes a test.
-struct EdgeRow {
-  const float* depth;
-  const float* slope_x;
-  const float* slope_y;
-  const float* object;
-  const float* normal[3];
-  std::int64_t before, readable;  // values of the guides before column 0, and from it to the end
-};
 
 // Lanes that are within [begin, end) of what `from` points to; 0 for the others.
 inline const float* CopyInside(const float* from, std::int64_t begin, std::int64_t end, int lanes, float* copy) {
@@ -52,9 +44,6 @@ struct EdgePair {
 HWY_BEFORE_NAMESPACE();
 namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-const hn::CappedTag<float, 16> kFloat;
-using F = hn::Vec<hn::CappedTag<float, 16>>;
 
 // Depth where coverage is above 0, NaN elsewhere. One of the two tells coverage. What is `below` values further on is wanted
 // next.
@@ -93,13 +82,6 @@ void SlopeWord(const float* above, const float* here, const float* below, float*
 
 // As std::min has it.
 HWY_INLINE F Least(F a, F b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
-
-template <class Mask>
-HWY_INLINE std::uint64_t BitsOf(const Mask& mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(kFloat, mask, bytes);
-  return unsigned(bytes[0] | bytes[1] << 8) & ((1u << hn::MaxLanes(kFloat)) - 1);
-}
 
 // A word of a row, of which `asked` marks what is asked for: bit i, whether that pixel and the one a step further on are
 // the same surface.
@@ -263,10 +245,7 @@ class EdgeRows {
       for (; next_depth_ <= next_row_ + 1; ++next_depth_) MakeDepth(next_depth_);
       std::fill_n(sloped_.begin() + SlopedAt(next_row_), tile_.words, std::uint8_t{0});
       if (next_row_ > 0 && next_row_ + 1 < rules_.guides.height() && Want(next_row_, radius_)) {
-        const EdgeRow row = At(next_row_), below = At(next_row_ + 1);
-        calm_.Add(next_row_,
-                  {depth_.Row(next_row_ - 1), row.depth, below.depth, row.object, below.object,
-                   {row.normal[0], row.normal[1], row.normal[2]}, rules_.guides.width(), below.readable},
+        calm_.Add(next_row_, {depth_.Row(next_row_ - 1), At(next_row_), At(next_row_ + 1), rules_.guides.width()},
                   wanted_.data());
       } else {
         calm_.AddNothing(next_row_);
