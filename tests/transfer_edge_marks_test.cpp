@@ -25,18 +25,27 @@ float Unit(std::uint64_t seed, int x, int y) { return 2.0f * UnitFloat(Hash(seed
 // 10^from … 10^to, evenly in the exponent.
 float Magnitude(std::uint64_t hash, float from, float to) { return std::pow(10.0f, from + (to - from) * UnitFloat(hash)); }
 
-// A tilted and bent surface with noise, each of any size: depths that bend as much as the test allows, more or less, and
+// A tilted and bent surface with noise or terraces, each of any size: depths that bend as much as the test allows, more or less, and
 // normals that turn as much.
 GuideSet RoughSurface(int width, int height, std::uint64_t seed) {
   constexpr float kScales[] = {1.0f, 10.0f, 1000.0f, 1e-14f, 3e-16f, 1e-30f, 1e-42f, 1e36f};
   const float scale = kScales[seed % 3 ? seed % 2 : Hash(seed, 1) % std::size(kScales)];
-  const float tilt = Magnitude(Hash(seed, 2), -6.0f, -1.0f), bend = Magnitude(Hash(seed, 3), -7.0f, -2.0f);
-  const float noise = seed % 4 == 1 ? 0.0f : Magnitude(Hash(seed, 4), -7.0f, -2.0f);
-  const float turn = Magnitude(Hash(seed, 5), -3.0f, -0.3f), jitter = Magnitude(Hash(seed, 6), -4.0f, 0.0f);
+  // Terraces are flat, and about half as high as the commonest tolerance: two at a corner are as high as it.
+  const bool terraces = seed % 7 == 5;
+  const float tilt = terraces ? 0.0f : Magnitude(Hash(seed, 2), -6.0f, -1.0f);
+  const float bend = terraces ? 0.0f : Magnitude(Hash(seed, 3), -7.0f, -2.0f);
+  const float step = terraces ? 0.002f * (0.3f + 0.3f * UnitFloat(Hash(seed, 12))) : 0.0f;
+  const float noise = seed % 4 == 1 || terraces ? 0.0f : Magnitude(Hash(seed, 4), -7.0f, -2.0f);
+  const float turn = Magnitude(Hash(seed, 5), seed % 7 == 6 ? -1.0f : -3.0f, seed % 7 == 6 ? 0.2f : -0.3f), jitter = Magnitude(Hash(seed, 6), -4.0f, 0.0f);
   const glm::vec3 ahead = AnyDirection(Hash(seed, 7));
   GuideSet guides = MakeGuides(width, height, [&](int x, int y) {
     if (seed % 5 == 2 && Hash(seed, x / 7, y / 4, 8) % 9 == 0) return glm::vec3(0.0f);
     const glm::vec3 off{Unit(seed + 1, x, y), Unit(seed + 2, x, y), Unit(seed + 3, x, y)};
+    if (seed % 7 == 6) {
+      // Rows that lean to either side; the middles of blocks tell nothing of what their pixels do besides.
+      const float angle = (y % 2 ? 1.0f : -1.0f) * 0.5f * turn + (x % 16 == 8 ? 0.0f : 0.2f * Unit(seed + 1, x, y));
+      return glm::vec3(std::sin(angle), 0.0f, std::cos(angle));
+    }
     const glm::vec3 turned{std::sin(turn * x), std::cos(turn * y), std::sin(turn * (x + y))};
     return glm::normalize(ahead + 0.7f * turned + jitter * off) * (1.0f + 0.01f * jitter * Unit(seed + 4, x, y));
   });
@@ -45,7 +54,7 @@ GuideSet RoughSurface(int width, int height, std::uint64_t seed) {
       const std::size_t i = guides.Index(x, y);
       const float u = static_cast<float>(x - width / 2), v = static_cast<float>(y - height / 2);
       guides.Plane(Layer::kDepth)[i] =
-          scale * (1.0f + tilt * (u - 0.6f * v) + bend * (u * u + v * u + 2.0f * v * v) / 40 + noise * Unit(seed, x, y));
+          scale * (1.0f + step * static_cast<float>((x / 3 + y / 3) % 4) + tilt * (u - 0.6f * v) + bend * (u * u + v * u + 2.0f * v * v) / 40 + noise * Unit(seed, x, y));
       const std::uint64_t rare = Hash(seed, x, y, 9) % 400;
       if (seed % 4 == 3 && rare == 0) guides.Plane(Layer::kDepth)[i] = std::numeric_limits<float>::quiet_NaN();
       if (seed % 4 == 3 && rare == 1) guides.Plane(Layer::kDepth)[i] = std::numeric_limits<float>::infinity();
