@@ -38,6 +38,18 @@ struct EdgePair {
   std::uint64_t* same = nullptr;
 };
 
+// What is left to test of a step, by words of a row: pixels that are asked for themselves or for the one `dx` to the right
+// in the row `there`, and for which it is not sure.
+struct EdgeSplit {
+  const std::uint64_t* here;
+  const std::uint64_t* there;  // with a word more on either side
+  const std::uint64_t* level;
+  const std::uint64_t* sure;
+  std::uint64_t* full;
+  std::uint64_t* creases;
+  std::uint64_t* same;
+};
+
 }  // namespace scumble::internal
 #endif
 
@@ -164,6 +176,37 @@ void TestRow(const EdgePair* pairs, std::size_t count, int first_word, int words
   }
 }
 
+// The words moved by dx: bit i is that of column i + dx.
+template <class D>
+HWY_INLINE hn::Vec<D> Moved(D d, const std::uint64_t* at, int dx) {
+  const auto here = hn::LoadU(d, at);
+  if (dx == 0) return here;
+  if (dx > 0) return hn::Or(hn::ShiftRightSame(here, dx), hn::ShiftLeftSame(hn::LoadU(d, at + 1), 64 - dx));
+  return hn::Or(hn::ShiftLeftSame(here, -dx), hn::ShiftRightSame(hn::LoadU(d, at - 1), 64 + dx));
+}
+
+template <class D>
+HWY_INLINE hn::Vec<D> SplitWords(D d, const EdgeSplit& split, std::size_t w, int dx) {
+  const auto sure = hn::LoadU(d, split.sure + w), level = hn::LoadU(d, split.level + w);
+  const auto left = hn::AndNot(sure, hn::Or(hn::LoadU(d, split.here + w), Moved(d, split.there + w, dx)));
+  hn::StoreU(hn::AndNot(level, left), d, split.full + w);
+  hn::StoreU(hn::And(level, left), d, split.creases + w);
+  hn::StoreU(sure, d, split.same + w);
+  return left;
+}
+
+// Marks start as what is sure. True: something is left.
+bool SplitRow(const EdgeSplit& split, std::size_t words, int dx) {
+  const hn::ScalableTag<std::uint64_t> d;
+  const hn::CappedTag<std::uint64_t, 1> single;
+  auto any = hn::Zero(d);
+  std::size_t w = 0;
+  for (; w + hn::Lanes(d) <= words; w += hn::Lanes(d)) any = hn::Or(any, SplitWords(d, split, w, dx));
+  auto last = hn::Zero(single);
+  for (; w < words; ++w) last = hn::Or(last, SplitWords(single, split, w, dx));
+  return hn::GetLane(last) != 0 || !hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+}
+
 }  // namespace scumble::internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -172,6 +215,7 @@ namespace scumble::internal {
 
 HWY_EXPORT(DepthRow);
 HWY_EXPORT(SlopeWord);
+HWY_EXPORT(SplitRow);
 HWY_EXPORT(TestRow);
 
 std::vector<PixelStep> ForwardSteps(int radius) {
@@ -208,13 +252,19 @@ class PassingRows {
 // The marks of all pixels at most `reach` away.
 void Dilate(const MarkedTile& tile, const BitRows& marks, int reach, BitRows& out) {
   out.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
+  std::vector<std::uint64_t> wide(std::size_t(tile.words));
   for (int y = 0; y < tile.rows; ++y) {
-    for (int v = std::max(0, y - reach); v <= std::min(tile.rows - 1, y + reach); ++v) {
-      for (int w = 0; w < tile.words; ++w) {
-        for (int dx = -reach; dx <= reach; ++dx) {
-          out.At(tile.first_row + y, tile.first_word + w) |= marks.Shifted(tile.first_row + v, tile.first_word + w, dx);
-        }
+    const std::uint64_t* row = marks.Row(tile.first_row + y);
+    for (int w = 0; w < tile.words; ++w) {
+      std::uint64_t bits = row[w];
+      for (int dx = 1; dx <= reach; ++dx) {
+        bits |= row[w] << dx | row[w - 1] >> (64 - dx) | row[w] >> dx | row[w + 1] << (64 - dx);
       }
+      wide[std::size_t(w)] = bits;
+    }
+    for (int v = std::max(0, y - reach); v <= std::min(tile.rows - 1, y + reach); ++v) {
+      std::uint64_t* to = out.Row(tile.first_row + v);
+      for (int w = 0; w < tile.words; ++w) to[w] |= wide[std::size_t(w)];
     }
   }
 }
@@ -401,20 +451,8 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& whole_tile,
       if (y + dy >= end) continue;
       const BitRows& about = std::max(std::abs(dx), dy) == 1 ? near : centres;
       std::uint64_t *full = asked.data() + k * words, *crease = creases.data() + k * words, *same = marks.same[k].Row(y);
-      const std::uint64_t *here = about.Row(y), *there = about.Row(y + dy);
-      const std::uint64_t *level = rows.calm().Level(k), *sure = rows.calm().Sure(k);
-      std::uint64_t any = 0;
-      const auto split = [&](const auto& moved) {
-        for (std::size_t w = 0; w < words; ++w) {
-          const std::uint64_t left = (here[w] | moved(there + w)) & ~sure[w];
-          same[w] = sure[w], any |= left;
-          full[w] = left & ~level[w], crease[w] = left & level[w];
-        }
-      };
-      if (dx == 0) split([](const std::uint64_t* at) { return *at; });
-      if (dx > 0) split([dx = dx](const std::uint64_t* at) { return at[0] >> dx | at[1] << (64 - dx); });
-      if (dx < 0) split([dx = dx](const std::uint64_t* at) { return at[0] << -dx | at[-1] >> (64 + dx); });
-      if (!any) continue;
+      const EdgeSplit split{about.Row(y), about.Row(y + dy), rows.calm().Level(k), rows.calm().Sure(k), full, crease, same};
+      if (!HWY_DYNAMIC_DISPATCH(SplitRow)(split, words, dx)) continue;
       if (tile.first_word < 0) full[0] = crease[0] = 0;
       for (std::size_t w = 0; w < words; ++w) {
         if (!full[w]) continue;
