@@ -23,10 +23,12 @@ using internal::PixelStep;
 float Unit(std::uint64_t seed, int x, int y) { return 2.0f * UnitFloat(Hash(seed, x, y)) - 1.0f; }
 
 // 10^from … 10^to, evenly in the exponent.
-float Magnitude(std::uint64_t hash, float from, float to) { return std::pow(10.0f, from + (to - from) * UnitFloat(hash)); }
+float Magnitude(std::uint64_t hash, float from, float to) {
+  return std::pow(10.0f, from + (to - from) * UnitFloat(hash));
+}
 
-// A tilted and bent surface with noise or terraces, each of any size: depths that bend as much as the test allows, more or less, and
-// normals that turn as much.
+// A tilted and bent surface with noise or terraces, each of any size: depths that bend as much as the test allows, more
+// or less, and normals that turn as much.
 GuideSet RoughSurface(int width, int height, std::uint64_t seed) {
   constexpr float kScales[] = {1.0f, 10.0f, 1000.0f, 1e-14f, 3e-16f, 1e-30f, 1e-42f, 1e36f};
   const float scale = kScales[seed % 3 ? seed % 2 : Hash(seed, 1) % std::size(kScales)];
@@ -36,7 +38,8 @@ GuideSet RoughSurface(int width, int height, std::uint64_t seed) {
   const float bend = terraces ? 0.0f : Magnitude(Hash(seed, 3), -7.0f, -2.0f);
   const float step = terraces ? 0.002f * (0.3f + 0.3f * UnitFloat(Hash(seed, 12))) : 0.0f;
   const float noise = seed % 4 == 1 || terraces ? 0.0f : Magnitude(Hash(seed, 4), -7.0f, -2.0f);
-  const float turn = Magnitude(Hash(seed, 5), seed % 7 == 6 ? -1.0f : -3.0f, seed % 7 == 6 ? 0.2f : -0.3f), jitter = Magnitude(Hash(seed, 6), -4.0f, 0.0f);
+  const float turn = Magnitude(Hash(seed, 5), seed % 7 == 6 ? -1.0f : -3.0f, seed % 7 == 6 ? 0.2f : -0.3f),
+              jitter = Magnitude(Hash(seed, 6), -4.0f, 0.0f);
   const glm::vec3 ahead = AnyDirection(Hash(seed, 7));
   GuideSet guides = MakeGuides(width, height, [&](int x, int y) {
     if (seed % 5 == 2 && Hash(seed, x / 7, y / 4, 8) % 9 == 0) return glm::vec3(0.0f);
@@ -54,7 +57,8 @@ GuideSet RoughSurface(int width, int height, std::uint64_t seed) {
       const std::size_t i = guides.Index(x, y);
       const float u = static_cast<float>(x - width / 2), v = static_cast<float>(y - height / 2);
       guides.Plane(Layer::kDepth)[i] =
-          scale * (1.0f + step * static_cast<float>((x / 3 + y / 3) % 4) + tilt * (u - 0.6f * v) + bend * (u * u + v * u + 2.0f * v * v) / 40 + noise * Unit(seed, x, y));
+          scale * (1.0f + step * static_cast<float>((x / 3 + y / 3) % 4) + tilt * (u - 0.6f * v) +
+                   bend * (u * u + v * u + 2.0f * v * v) / 40 + noise * Unit(seed, x, y));
       const std::uint64_t rare = Hash(seed, x, y, 9) % 400;
       if (seed % 4 == 3 && rare == 0) guides.Plane(Layer::kDepth)[i] = std::numeric_limits<float>::quiet_NaN();
       if (seed % 4 == 3 && rare == 1) guides.Plane(Layer::kDepth)[i] = std::numeric_limits<float>::infinity();
@@ -66,7 +70,9 @@ GuideSet RoughSurface(int width, int height, std::uint64_t seed) {
   return guides;
 }
 
-bool Inside(const GuideSet& guides, int x, int y) { return x >= 0 && y >= 0 && x < guides.width() && y < guides.height(); }
+bool Inside(const GuideSet& guides, int x, int y) {
+  return x >= 0 && y >= 0 && x < guides.width() && y < guides.height();
+}
 
 // Whether any centre stands at most `reach` from (x, y), in x and y.
 bool AnyNear(const std::vector<std::uint8_t>& centres, const GuideSet& guides, int x, int y, int reach) {
@@ -79,8 +85,8 @@ bool AnyNear(const std::vector<std::uint8_t>& centres, const GuideSet& guides, i
 }
 
 // Compares all marks that hold with the test.
-void ExpectTested(const GuideSet& guides, const std::vector<std::uint8_t>& centres, double crease, double tolerance, int radius,
-                  const std::string& told) {
+void ExpectTested(const GuideSet& guides, const std::vector<std::uint8_t>& centres, double crease, double tolerance,
+                  int radius, const std::string& told) {
   internal::LateSlopes slopes(guides);
   const internal::EdgeRules rules{guides, slopes, crease, tolerance};
   const internal::EdgeTest test(rules);
@@ -108,8 +114,8 @@ void ExpectTested(const GuideSet& guides, const std::vector<std::uint8_t>& centr
         const bool same = coverage[p] > 0.0f && coverage[q] > 0.0f &&
                           test.SameSurface(test.At(p), test.At(q), steps[k].dx, steps[k].dy);
         ASSERT_EQ(marks.same[k].At(y, x / 64) >> x % 64 & 1, same)
-            << told << ", radius " << radius << ", crease " << crease << ", tolerance " << tolerance << ", pixel " << x << ", "
-            << y << ", step " << steps[k].dx << ", " << steps[k].dy;
+            << told << ", radius " << radius << ", crease " << crease << ", tolerance " << tolerance << ", pixel " << x
+            << ", " << y << ", step " << steps[k].dx << ", " << steps[k].dy;
         ASSERT_TRUE(same || !sure) << told << ", radius " << radius << ", pixel " << x << ", " << y;
       }
     }
@@ -117,7 +123,8 @@ void ExpectTested(const GuideSet& guides, const std::vector<std::uint8_t>& centr
 }
 
 TEST(EdgeMarks, EqualTheTestOnEverySurface) {
-  constexpr double kCreases[] = {60.0, 10.0, 180.0, 120.0, 1.0, 0.0}, kTolerances[] = {0.002, 0.02, 1e-4, 1e-6, 1.0, 0.0};
+  constexpr double kCreases[] = {60.0, 10.0, 180.0, 120.0, 1.0, 0.0},
+                   kTolerances[] = {0.002, 0.02, 1e-4, 1e-6, 1.0, 0.0};
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const int width = seed % 10 == 9 ? 1 + int(seed / 10) : 130 + int(seed % 5), height = 6 + int(seed % 7);
     const GuideSet guides = RoughSurface(width, height, seed);
@@ -155,9 +162,13 @@ Told CalmOf(const GuideSet& guides, const internal::EdgeRules& rules, int radius
   const auto row_at = [&](int row) {
     const std::size_t begin = guides.Index(0, row);
     const auto plane = [&](Layer layer, int channel) { return guides.Plane(layer, channel).data() + begin; };
-    return internal::EdgeRow{depth(row), nullptr, nullptr, plane(Layer::kObject, 0),
+    return internal::EdgeRow{depth(row),
+                             nullptr,
+                             nullptr,
+                             plane(Layer::kObject, 0),
                              {plane(Layer::kNormal, 0), plane(Layer::kNormal, 1), plane(Layer::kNormal, 2)},
-                             std::int64_t(begin), std::int64_t(guides.pixel_count() - begin)};
+                             std::int64_t(begin),
+                             std::int64_t(guides.pixel_count() - begin)};
   };
   const std::vector<std::uint8_t> all(std::size_t(words), 15);
   for (int row = y; row <= y + radius; ++row) {

@@ -51,7 +51,8 @@ HWY_INLINE std::uint64_t CalmBits(const CalmRow& row, int begin, float most_bend
     const F back_y = hn::Sub(here, hn::LoadU(kFloat, row.above + x));
     // Less, not less or equal: nothing that is NaN or infinite may pass.
     const F most = hn::Sub(hn::Mul(bend, here), tiny);
-    auto calm = hn::And(hn::Lt(hn::Abs(hn::Sub(front_x, back_x)), most), hn::Lt(hn::Abs(hn::Sub(front_y, back_y)), most));
+    auto calm =
+        hn::And(hn::Lt(hn::Abs(hn::Sub(front_x, back_x)), most), hn::Lt(hn::Abs(hn::Sub(front_y, back_y)), most));
     calm = hn::And(calm, hn::Lt(hn::Add(hn::Abs(front_x), hn::Abs(front_y)), hn::Mul(share, here)));
     const F object = hn::LoadU(kFloat, row.here.object + x);
     calm = hn::And(calm, hn::Eq(object, hn::LoadU(kFloat, row.here.object + x + 1)));
@@ -136,13 +137,14 @@ HWY_EXPORT(CompareBlocks);
 
 CalmMarks::CalmMarks(const EdgeRules& rules, int radius, const MarkedTile& tile) : radius_(radius), tile_(tile) {
   bend_ = std::min(0.7f * rules.DepthTolerance() / float(radius * (radius + 1)) - 1e-6f, 1.0f / 64);
-  // As wide as it can be where blocks below each other share a normal, so that their middles are 2L apart at most: c·d is
-  // then at least 1 - 2L² for normals of length 1, whose products are never below -1.
+  // As wide as it can be where blocks below each other share a normal, so that their middles are 2L apart at most: c·d
+  // is then at least 1 - 2L² for normals of length 1, whose products are never below -1.
   const float crease = std::max(rules.CreaseCosine(), -1.0f);
   spread_ = (std::sqrt(1.0f + 3.0f * std::max(0.0f, 1.0f - crease)) - 1.0f) / 3.0f;
   // Rounding, of products below 4, is far less than the last term.
   least_product_ = crease + 2.02f * spread_ + spread_ * spread_ + 1e-4f;
-  for (int k = 0; k <= radius; ++k) runs_[std::size_t(k)].Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
+  for (int k = 0; k <= radius; ++k)
+    runs_[std::size_t(k)].Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
   blocks_.resize(std::size_t(radius + 1));
   for (Blocks& blocks : blocks_) {
     for (auto& centre : blocks.centre) centre.assign(std::size_t(4 * tile.words + 16), 0.0f);
@@ -155,7 +157,8 @@ CalmMarks::CalmMarks(const EdgeRules& rules, int radius, const MarkedTile& tile)
 }
 
 void CalmMarks::AddNothing(int y) {
-  for (auto& centre : BlocksOf(y).centre) std::fill(centre.begin(), centre.end(), std::numeric_limits<float>::quiet_NaN());
+  for (auto& centre : BlocksOf(y).centre)
+    std::fill(centre.begin(), centre.end(), std::numeric_limits<float>::quiet_NaN());
 }
 
 void CalmMarks::Add(int y, const CalmRow& row, const std::uint8_t* wanted) {

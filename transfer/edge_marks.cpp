@@ -38,8 +38,8 @@ struct EdgePair {
   std::uint64_t* same = nullptr;
 };
 
-// What is left to test of a step, by words of a row: pixels that are asked for themselves or for the one `dx` to the right
-// in the row `there`, and for which it is not sure.
+// What is left to test of a step, by words of a row: pixels that are asked for themselves or for the one `dx` to the
+// right in the row `there`, and for which it is not sure.
 struct EdgeSplit {
   const std::uint64_t* here;
   const std::uint64_t* there;  // with a word more on either side
@@ -57,10 +57,10 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Depth where coverage is above 0, NaN elsewhere. One of the two tells coverage. What is `below` values further on is wanted
-// next.
-void DepthRow(const float* depth, const float* coverage, const std::uint8_t* covered, std::size_t count, std::size_t below,
-              float* out) {
+// Depth where coverage is above 0, NaN elsewhere. One of the two tells coverage. What is `below` values further on is
+// wanted next.
+void DepthRow(const float* depth, const float* coverage, const std::uint8_t* covered, std::size_t count,
+              std::size_t below, float* out) {
   const hn::Rebind<std::uint8_t, decltype(kFloat)> byte;
   const hn::RebindToUnsigned<decltype(kFloat)> word;
   const F none = hn::Set(kFloat, std::numeric_limits<float>::quiet_NaN());
@@ -95,8 +95,8 @@ void SlopeWord(const float* above, const float* here, const float* below, float*
 // As std::min has it.
 HWY_INLINE F Least(F a, F b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
 
-// A word of a row, of which `asked` marks what is asked for: bit i, whether that pixel and the one a step further on are
-// the same surface.
+// A word of a row, of which `asked` marks what is asked for: bit i, whether that pixel and the one a step further on
+// are the same surface.
 HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t asked) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   const std::uint64_t whole = lanes < 64 ? (std::uint64_t{1} << lanes) - 1 : ~std::uint64_t{0};
@@ -131,9 +131,8 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
       }
     }
     one = hn::And(one, hn::Eq(hn::LoadU(kFloat, guide_p[0]), hn::LoadU(kFloat, guide_q[0])));
-    const auto product = [&](int k) HWY_ATTR {
-      return hn::Mul(hn::LoadU(kFloat, guide_p[k]), hn::LoadU(kFloat, guide_q[k]));
-    };
+    const auto product = [&](int k)
+                             HWY_ATTR { return hn::Mul(hn::LoadU(kFloat, guide_p[k]), hn::LoadU(kFloat, guide_q[k])); };
     const F along = product(1), across = product(2), forth = product(3);
     one = hn::And(one, hn::Gt(hn::Add(hn::Add(along, across), forth), crease));
     bits |= BitsOf(one) << i;
@@ -141,8 +140,8 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
   return bits & asked;
 }
 
-// The same for all steps of a word, where objects and depths are known to pass. Only calm pixels (calm_marks.h) are asked for,
-// which stand so far from the ends of the guides that vectors do not reach beyond.
+// The same for all steps of a word, where objects and depths are known to pass. Only calm pixels (calm_marks.h) are
+// asked for, which stand so far from the ends of the guides that vectors do not reach beyond.
 HWY_INLINE void TestCreases(const EdgePair* pairs, std::size_t count, int first_word, int w) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
   const std::uint64_t whole = lanes < 64 ? (std::uint64_t{1} << lanes) - 1 : ~std::uint64_t{0};
@@ -307,7 +306,8 @@ class EdgeRows {
 
   // Whether a centre stands at most `radius` rows away.
   bool Busy(int y) const {
-    const int first = std::max(0, y - radius_ - tile_.first_row), last = std::min(tile_.rows - 1, y + radius_ - tile_.first_row);
+    const int first = std::max(0, y - radius_ - tile_.first_row),
+              last = std::min(tile_.rows - 1, y + radius_ - tile_.first_row);
     return std::any_of(busy_.begin() + first, busy_.begin() + last + 1, [](std::uint8_t busy) { return busy != 0; });
   }
 
@@ -337,8 +337,8 @@ class EdgeRows {
     std::uint8_t* blocks = blocks_.data() + std::size_t(row) * tile_.words;
     for (int w = 0; w < tile_.words; ++w) {
       const std::uint64_t here = centres[w];
-      const std::uint64_t wide =
-          here | here << radius_ | here >> radius_ | centres[w - 1] >> (64 - radius_) | centres[w + 1] << (64 - radius_);
+      const std::uint64_t wide = here | here << radius_ | here >> radius_ | centres[w - 1] >> (64 - radius_) |
+                                 centres[w + 1] << (64 - radius_);
       if (!wide) continue;
       const auto block = [&](int b) { return unsigned((wide >> 16 * b & 0xffff) != 0) << b; };
       blocks[w] = static_cast<std::uint8_t>(block(0) | block(1) | block(2) | block(3));
@@ -349,7 +349,8 @@ class EdgeRows {
   // The same of centres at most `reach` rows away, in wanted_. False: there are none.
   bool Want(int y, int reach) {
     std::fill(wanted_.begin(), wanted_.end(), std::uint8_t{0});
-    const int first = std::max(0, y - reach - tile_.first_row), last = std::min(tile_.rows - 1, y + reach - tile_.first_row);
+    const int first = std::max(0, y - reach - tile_.first_row),
+              last = std::min(tile_.rows - 1, y + reach - tile_.first_row);
     for (int v = first; v <= last; ++v) {
       const std::uint8_t* blocks = blocks_.data() + std::size_t(v) * tile_.words;
       for (std::size_t w = 0; w < wanted_.size(); ++w) wanted_[w] |= blocks[w];
@@ -395,8 +396,8 @@ class EdgeRows {
   MarkedTile tile_;
   CalmMarks calm_;
   PassingRows depth_, slope_x_, slope_y_;
-  // By row of the tile and word: bits of the four blocks of 16 pixels in which, or at most `radius` columns beside which, a
-  // centre stands.
+  // By row of the tile and word: bits of the four blocks of 16 pixels in which, or at most `radius` columns beside
+  // which, a centre stands.
   std::vector<std::uint8_t> blocks_;
   std::vector<std::uint8_t> busy_, wanted_, sloped_;
   int next_depth_, next_row_;
@@ -450,8 +451,10 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& whole_tile,
       const auto [dx, dy] = steps[k];
       if (y + dy >= end) continue;
       const BitRows& about = std::max(std::abs(dx), dy) == 1 ? near : centres;
-      std::uint64_t *full = asked.data() + k * words, *crease = creases.data() + k * words, *same = marks.same[k].Row(y);
-      const EdgeSplit split{about.Row(y), about.Row(y + dy), rows.calm().Level(k), rows.calm().Sure(k), full, crease, same};
+      std::uint64_t *full = asked.data() + k * words, *crease = creases.data() + k * words,
+                    *same = marks.same[k].Row(y);
+      const EdgeSplit split{about.Row(y), about.Row(y + dy), rows.calm().Level(k), rows.calm().Sure(k), full, crease,
+                            same};
       if (!HWY_DYNAMIC_DISPATCH(SplitRow)(split, words, dx)) continue;
       if (tile.first_word < 0) full[0] = crease[0] = 0;
       for (std::size_t w = 0; w < words; ++w) {
@@ -468,45 +471,6 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& whole_tile,
     for (const EdgePair& pair : pairs) {
       for (std::size_t w = 0; w < words; ++w) passed[w] &= ~(pair.asked[w] | pair.creases[w]) | pair.same[w];
     }
-  }
-}
-
-JoinedWays::JoinedWays(int radius) : radius_(radius) {
-  const auto index = [&](PixelStep at) {
-    for (std::size_t k = 0; k < ways.size(); ++k) {
-      if (ways[k].dx == at.dx && ways[k].dy == at.dy) return static_cast<int>(k);
-    }
-    return -1;
-  };
-  for (int ring = 1; ring <= radius; ++ring) {
-    for (int dy = -ring; dy <= ring; ++dy) {
-      for (int dx = -ring; dx <= ring; ++dx) {
-        if (std::max(std::abs(dx), std::abs(dy)) != ring) continue;
-        const PixelStep before = StepBefore({dx, dy});
-        tests_.push_back({index(before), TestOf(before, {dx, dy}), TestOf({0, 0}, {dx, dy})});
-        ways.push_back({dx, dy});
-      }
-    }
-  }
-}
-
-JoinedWays::Test JoinedWays::TestOf(PixelStep from, PixelStep to) const {
-  if (to.dy < from.dy || (to.dy == from.dy && to.dx < from.dx)) std::swap(from, to);
-  const int dx = to.dx - from.dx, dy = to.dy - from.dy;
-  // The order of ForwardSteps.
-  const int step = dy == 0 ? dx - 1 : radius_ + (dy - 1) * (2 * radius_ + 1) + dx + radius_;
-  return {step, from.dx, from.dy};
-}
-
-void JoinedWays::Join(const std::vector<BitRows>& same, int row, int word, std::span<std::uint64_t> joined) const {
-  std::uint64_t reached[48];
-  const auto passed = [&](const Test& test) {
-    return same[std::size_t(test.step)].Shifted(row + test.dy, word, test.dx);
-  };
-  for (std::size_t k = 0; k < tests_.size(); ++k) {
-    const Way& way = tests_[k];
-    reached[k] = passed(way.step) & (way.before < 0 ? BitRows::kAll : reached[way.before]);
-    joined[k] = reached[k] & passed(way.whole);
   }
 }
 

@@ -5,8 +5,8 @@
 
 namespace scumble::internal {
 
-// Each from column 0 on. Depth and slopes are copies and have 64 values more on either side of a tile: depth is NaN where
-// nothing is covered, which neither has a slope nor passes a test.
+// Each from column 0 on. Depth and slopes are copies and have 64 values more on either side of a tile: depth is NaN
+// where nothing is covered, which neither has a slope nor passes a test.
 struct EdgeRow {
   const float* depth;
   const float* slope_x;

@@ -6,6 +6,7 @@
 #include "transfer/ballot.h"
 #include "transfer/chunk_marks.h"
 #include "transfer/edge_marks.h"
+#include "transfer/joined_ways.h"
 #include "transfer/vote_rows.h"
 
 namespace scumble::internal {
@@ -129,8 +130,8 @@ class VoteTile {
     return whole;
   }
 
-  // Pixels that are joined to all of their windows, as far as is known without looking at every way. Ways end in the last
-  // row of the window, and have no step within it.
+  // Pixels that are joined to all of their windows, as far as is known without looking at every way. Ways end in the
+  // last row of the window, and have no step within it.
   std::uint64_t SureWindows(int y, int word) const {
     const int r = input_.radius;
     std::uint64_t sure = BitRows::kAll;
@@ -140,7 +141,8 @@ class VoteTile {
     return sure;
   }
 
-  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the votes.
+  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the
+  // votes.
   std::uint64_t SureParts(int y, int word, std::uint64_t pixels, int w) {
     const std::span<const std::uint64_t> joined = JoinedAt(w);
     std::uint64_t* votes = votes_.data() + std::size_t(w) * joined.size();

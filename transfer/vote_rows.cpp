@@ -124,8 +124,8 @@ HWY_INLINE hn::Vec<D> SumOfWindow(D d, const VoteRow& row, const std::uint16_t* 
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// The mean of n votes, n at most 49. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32 at
-// most, which is less than 1 / 2n. `rounding` is n in all lanes, `reciprocal` is m.
+// The mean of n votes, n at most 49. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32
+// at most, which is less than 1 / 2n. `rounding` is n in all lanes, `reciprocal` is m.
 template <class V>
 HWY_INLINE void MeanTexel(V sum, V rounding, V reciprocal, std::uint16_t* out) {
   const hn::FixedTag<std::uint32_t, 4> d;
