@@ -1,7 +1,6 @@
 // The edge test for 64 pixels at a time, where votes are held.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "transfer/bit_rows.h"
@@ -13,35 +12,17 @@ namespace scumble::internal {
 // Half of a window: every step of at most `radius` in x and y that leads to a later pixel in row order.
 std::vector<PixelStep> ForwardSteps(int radius);
 
-// For each of ForwardSteps(radius), marks of the pixels that are the same surface as the one a step further on: both
-// covered, and EdgeTest::SameSurface to the bit. The marks hold where the pixel or that other one is in `centres`, and
-// for steps of one pixel wherever a way from a centre may lead; others say nothing. Slopes are made as rows are come
-// to. `tile` is that of the centres, which stand at least `radius` from its first and last rows, and in all but its
-// first and last words.
-void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres,
-               std::vector<BitRows>& same);
-
-// Bit i of joined[k]: whether the pixel 64·word + i of that row is joined to the one `ways[k]` from it, as JoinedWindow
-// has it.
-struct JoinedWays {
-  explicit JoinedWays(int radius);
-  int count() const { return static_cast<int>(ways.size()); }
-  void Join(const std::vector<BitRows>& same, int row, int word, std::span<std::uint64_t> joined) const;
-
-  std::vector<PixelStep> ways;  // all pixels of the window but its centre
-
- private:
-  struct Test {
-    int step;    // of ForwardSteps
-    int dx, dy;  // where the mark stands, from the centre
-  };
-  Test TestOf(PixelStep from, PixelStep to) const;
-  struct Way {
-    int before = -1;  // the way that this one follows; -1: the centre
-    Test step, whole;
-  };
-  int radius_;
-  std::vector<Way> tests_;
+struct EdgeMarks {
+  // For each of ForwardSteps(radius), the pixels that are the same surface as the one a step further on: both covered,
+  // and EdgeTest::SameSurface to the bit. The marks hold where the pixel or that other one is a centre, and for steps
+  // of one pixel wherever a way from a centre may lead; others say nothing.
+  std::vector<BitRows> same;
+  BitRows sure;  // pixels for which none of these marks that hold is missing
 };
+
+// Makes the marks for windows of radius 1 … 3 around `centres`, in those words of the tile that have any and one on
+// either side. Centres stand at least `radius` from the tile's first and last rows, and in all but its first and last
+// words. The guides must hold depth and object.
+void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& tile, const BitRows& centres, EdgeMarks& marks);
 
 }  // namespace scumble::internal

@@ -6,6 +6,7 @@
 #include "transfer/ballot.h"
 #include "transfer/chunk_marks.h"
 #include "transfer/edge_marks.h"
+#include "transfer/joined_ways.h"
 #include "transfer/vote_rows.h"
 
 namespace scumble::internal {
@@ -32,7 +33,7 @@ class VoteTile {
   void Run(Picture& out) {
     if (!MarkChunks(input_.field, input_.active, input_.exemplar, input_.radius, tile_, marks_) || !Split()) return;
     const bool edges = input_.edges && mixed_any_;
-    if (edges) MarkEdges(*input_.edges, input_.radius, tile_, mixed_, same_);
+    if (edges) MarkEdges(*input_.edges, input_.radius, tile_, mixed_, marked_edges_);
     for (int word = first_word_; word < first_word_ + words_; word += kStripWords) {
       VoteStrip(word, std::min(kStripWords, first_word_ + words_ - word), edges, out);
     }
@@ -59,8 +60,12 @@ class VoteTile {
         whole[w] = mixed ? mixed & WholeWindows(y, word) : 0;
         if (edges && mixed) {
           const std::span<std::uint64_t> joined = JoinedAt(w);
-          ways_.Join(same_, y, word, joined);
-          for (const std::uint64_t bits : joined) whole[w] &= bits;
+          if (mixed & ~SureWindows(y, word)) {
+            ways_.Join(marked_edges_.same, y, word, joined);
+            for (const std::uint64_t bits : joined) whole[w] &= bits;
+          } else {
+            std::fill(joined.begin(), joined.end(), BitRows::kAll);
+          }
         }
         parts[w] = mixed & ~whole[w];
         if (parts[w]) parts[w] = SureParts(y, word, parts[w], w);
@@ -125,7 +130,19 @@ class VoteTile {
     return whole;
   }
 
-  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the votes.
+  // Pixels that are joined to all of their windows, as far as is known without looking at every way. Ways end in the
+  // last row of the window, and have no step within it.
+  std::uint64_t SureWindows(int y, int word) const {
+    const int r = input_.radius;
+    std::uint64_t sure = BitRows::kAll;
+    for (int v = y - r; v < y + r; ++v) {
+      for (int dx = -r; dx <= r; ++dx) sure &= marked_edges_.sure.Shifted(v, word, dx);
+    }
+    return sure;
+  }
+
+  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the
+  // votes.
   std::uint64_t SureParts(int y, int word, std::uint64_t pixels, int w) {
     const std::span<const std::uint64_t> joined = JoinedAt(w);
     std::uint64_t* votes = votes_.data() + std::size_t(w) * joined.size();
@@ -170,7 +187,7 @@ class VoteTile {
   ChunkMarks marks_;
   BitRows mixed_;
   bool mixed_any_ = false;
-  std::vector<BitRows> same_;
+  EdgeMarks marked_edges_;
   std::vector<std::uint64_t> joined_, votes_;  // by word and way
 };
 

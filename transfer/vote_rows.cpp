@@ -3,6 +3,7 @@
 #include <hwy/cache_control.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -13,6 +14,22 @@
 #define HWY_TARGET_INCLUDE "transfer/vote_rows.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#ifndef SCUMBLE_VOTE_ROWS_ONCE
+#define SCUMBLE_VOTE_ROWS_ONCE
+namespace scumble::internal {
+
+// For n votes, floor(2^32 / 2n) + 1: for MeanTexel.
+constexpr std::array<std::uint32_t, 50> kMeanReciprocals = [] {
+  std::array<std::uint32_t, 50> reciprocals{};
+  for (std::uint32_t n = 1; n < 50; ++n) {
+    reciprocals[n] = static_cast<std::uint32_t>((std::uint64_t{1} << 32) / (2 * n) + 1);
+  }
+  return reciprocals;
+}();
+
+}  // namespace scumble::internal
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace scumble::internal::HWY_NAMESPACE {
@@ -107,13 +124,8 @@ HWY_INLINE hn::Vec<D> SumOfWindow(D d, const VoteRow& row, const std::uint16_t* 
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// floor(2^32 / 2n) + 1, for MeanTexel.
-HWY_INLINE std::uint32_t MeanReciprocal(std::uint32_t votes) {
-  return static_cast<std::uint32_t>((std::uint64_t{1} << 32) / (2 * votes) + 1);
-}
-
-// The mean of n votes, n at most 49. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32 at
-// most, which is less than 1 / 2n. `rounding` is n in all lanes, `reciprocal` is m.
+// The mean of n votes, n at most 49. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32
+// at most, which is less than 1 / 2n. `rounding` is n in all lanes, `reciprocal` is m.
 template <class V>
 HWY_INLINE void MeanTexel(V sum, V rounding, V reciprocal, std::uint16_t* out) {
   const hn::FixedTag<std::uint32_t, 4> d;
@@ -132,7 +144,7 @@ void MeanRowOf(const VoteRow& row, const SourceRows& sources, std::uint64_t* mar
 #if HWY_TARGET != HWY_SCALAR
   constexpr std::uint32_t kVotes = (2 * kRadius + 1) * (2 * kRadius + 1);
   const hn::FixedTag<std::uint32_t, 4> d;
-  const auto reciprocal = hn::Set(d, MeanReciprocal(kVotes));
+  const auto reciprocal = hn::Set(d, kMeanReciprocals[kVotes]);
   const auto rounding = hn::Set(d, kVotes);
   const std::int32_t* rows[2 * kRadius + 1];
   const std::uint16_t* texels[2 * kRadius + 1];
@@ -177,8 +189,6 @@ void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const Pixe
 #if HWY_TARGET != HWY_SCALAR
   const hn::FixedTag<std::uint32_t, 4> d;
   const hn::Rebind<std::uint16_t, decltype(d)> narrow;
-  std::uint32_t reciprocals[50] = {};
-  for (std::uint32_t n = 1; n <= ways.size() + 1; ++n) reciprocals[n] = MeanReciprocal(n);
   const std::int32_t* places[48];  // of each way, from the pixel at column `begin` on
   std::ptrdiff_t steps[48];        // of each way, in the exemplar
   for (std::size_t k = 0; k < ways.size(); ++k) {
@@ -186,6 +196,7 @@ void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const Pixe
     steps[k] = ways[k].dy * std::ptrdiff_t(row.texels.width) + ways[k].dx;
   }
   const std::int32_t* own = sources.Row(row.y);
+  const bool one = row.texels.count == 1;
   for (int w = 0; w < row.words; ++w, votes += ways.size()) {
     std::uint64_t refused = 0;
     for (std::uint64_t left = marked[w]; left; left &= left - 1) {
@@ -194,7 +205,8 @@ void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const Pixe
       std::uint64_t voting = 0;
       for (std::size_t k = 0; k < ways.size(); ++k) voting |= (votes[k] >> i & 1) << k;
       const auto texel = [&](std::size_t from, std::ptrdiff_t place) HWY_ATTR {
-        return hn::PromoteTo(d, hn::LoadU(narrow, row.texels.picture[row.field.exemplar[from]] + 4 * place));
+        const std::uint16_t* picture = one ? row.texels.picture[0] : row.texels.picture[row.field.exemplar[from]];
+        return hn::PromoteTo(d, hn::LoadU(narrow, picture + 4 * place));
       };
       const std::uint32_t count = 1 + static_cast<std::uint32_t>(std::popcount(voting));
       auto sum = texel(q, own[column]);
@@ -203,7 +215,7 @@ void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const Pixe
         const std::ptrdiff_t from = std::ptrdiff_t(q) + ways[k].dy * std::ptrdiff_t(row.field.width) + ways[k].dx;
         sum = hn::Add(sum, texel(std::size_t(from), places[k][column] - steps[k]));
       }
-      MeanTexel(sum, hn::Set(d, count), hn::Set(d, reciprocals[count]), row.out + 4 * std::size_t(p));
+      MeanTexel(sum, hn::Set(d, count), hn::Set(d, kMeanReciprocals[count]), row.out + 4 * std::size_t(p));
       refused |= hn::ExtractLane(sum, 3) == count * 65535 ? 0 : left & (0 - left);
     }
     marked[w] = refused;
