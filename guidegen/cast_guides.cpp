@@ -1,5 +1,6 @@
 #include "guidegen/cast_guides.h"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -16,6 +17,7 @@
 #include "guidegen/path_layers.h"
 #include "guidegen/progress_gate.h"
 #include "guidegen/tile_caster.h"
+#include "guidegen/tile_store.h"
 #include "image/stopwatch.h"
 
 namespace scumble {
@@ -37,19 +39,22 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
   std::atomic<std::size_t> coverage{0};
   std::atomic<std::size_t> shadow{0};
   tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
-  tbb::parallel_for(std::size_t(0), columns * rows, [&](std::size_t i) {
-    if (gate.cancelled()) return;
-    Tile tile;
-    tile.x0 = int(i % columns) * kTileSide;
-    tile.y0 = int(i / columns) * kTileSide;
-    tile.width = std::min(kTileSide, options.width - tile.x0);
-    tile.height = std::min(kTileSide, options.height - tile.y0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, columns * rows), [&](const auto& range) {
+    TileCaster::Scratch& own = scratch.local();
     RayCounts cast;
-    caster.Cast(tile, scratch.local(), cast, pixels ? &(*pixels)[i] : nullptr);
+    for (std::size_t i = range.begin(); i != range.end() && !gate.cancelled(); ++i) {
+      Tile tile;
+      tile.x0 = int(i % columns) * kTileSide;
+      tile.y0 = int(i / columns) * kTileSide;
+      tile.width = std::min(kTileSide, options.width - tile.x0);
+      tile.height = std::min(kTileSide, options.height - tile.y0);
+      caster.Cast(tile, own, cast, pixels ? &(*pixels)[i] : nullptr);
+      gate.TileDone();
+    }
+    PublishTiles();
     primary += cast.primary;
     coverage += cast.coverage;
     shadow += cast.shadow;
-    gate.TileDone();
   });
   counts = {primary, coverage, shadow, 0};
   return !gate.cancelled();

@@ -23,8 +23,6 @@ void StreamTile(int rows, const float* values, float* to, std::size_t stride) {
       hn::Stream(hn::Load(d, values + TilePixel(column, row)), d, to + column);
     }
   }
-  // Streamed values are not ordered with what the thread writes next unless it is said.
-  hwy::FlushStream();
 }
 
 }  // namespace HWY_NAMESPACE
@@ -58,6 +56,8 @@ void StoreTile(const Tile& tile, const std::array<float, kTilePixels>& values, f
     }
   }
 }
+
+void PublishTiles() { hwy::FlushStream(); }
 
 void FillTile(const Tile& tile, float value, float* plane, std::size_t stride) {
   for (int row = 0; row < tile.height; ++row) {
