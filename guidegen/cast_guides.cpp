@@ -1,14 +1,17 @@
 #include "guidegen/cast_guides.h"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "guidegen/embree_scene.h"
@@ -16,6 +19,7 @@
 #include "guidegen/path_layers.h"
 #include "guidegen/progress_gate.h"
 #include "guidegen/tile_caster.h"
+#include "guidegen/tile_store.h"
 #include "image/stopwatch.h"
 
 namespace scumble {
@@ -29,27 +33,39 @@ constexpr double kCastShare = 0.05;
 // False where the caller asked to stop. Covered pixels are listed by tile where `pixels` is given.
 bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double end, RayCounts& counts,
                std::vector<std::vector<PathPixel>>* pixels) {
-  const std::size_t columns = (options.width + kTileSide - 1) / kTileSide;
-  const std::size_t rows = (options.height + kTileSide - 1) / kTileSide;
-  ProgressGate gate(options.progress, columns * rows, 0.0, end);
+  const std::size_t columns = std::size_t(options.width + kTileSide - 1) / kTileSide;
+  const std::size_t rows = std::size_t(options.height + kTileSide - 1) / kTileSide;
+  const std::size_t strips = (columns + kStripTiles - 1) / kStripTiles;  // in a row
+  ProgressGate gate(options.progress, strips * rows, 0.0, end);
   if (pixels) pixels->resize(columns * rows);
   std::atomic<std::size_t> primary{0};
   std::atomic<std::size_t> coverage{0};
   std::atomic<std::size_t> shadow{0};
   tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
-  tbb::parallel_for(std::size_t(0), columns * rows, [&](std::size_t i) {
-    if (gate.cancelled()) return;
-    Tile tile;
-    tile.x0 = int(i % columns) * kTileSide;
-    tile.y0 = int(i / columns) * kTileSide;
-    tile.width = std::min(kTileSide, options.width - tile.x0);
-    tile.height = std::min(kTileSide, options.height - tile.y0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, strips * rows), [&](const auto& range) {
+    TileCaster::Scratch& own = scratch.local();
     RayCounts cast;
-    caster.Cast(tile, scratch.local(), cast, pixels ? &(*pixels)[i] : nullptr);
+    for (std::size_t i = range.begin(); i != range.end() && !gate.cancelled(); ++i) {
+      const std::size_t row = i / strips;
+      const std::size_t first = i % strips * kStripTiles;
+      const std::size_t count = std::min<std::size_t>(kStripTiles, columns - first);
+      std::array<Tile, kStripTiles> tiles;
+      for (std::size_t k = 0; k < count; ++k) {
+        Tile& tile = tiles[k];
+        tile.x0 = int(first + k) * kTileSide;
+        tile.y0 = int(row) * kTileSide;
+        tile.width = std::min(kTileSide, options.width - tile.x0);
+        tile.height = std::min(kTileSide, options.height - tile.y0);
+      }
+      const auto lists =
+          pixels ? std::span(*pixels).subspan(row * columns + first, count) : std::span<std::vector<PathPixel>>();
+      caster.Cast(std::span(tiles).first(count), own, cast, lists);
+      gate.TileDone();
+    }
+    PublishTiles();
     primary += cast.primary;
     coverage += cast.coverage;
     shadow += cast.shadow;
-    gate.TileDone();
   });
   counts = {primary, coverage, shadow, 0};
   return !gate.cancelled();

@@ -150,15 +150,6 @@ PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const P
   return object;
 }
 
-Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive) {
-  const glm::uvec3& corners = object.mesh->triangles[primitive];
-  const glm::dmat3 linear(object.view_from_object);
-  const glm::dvec3 origin(object.view_from_object[3]);
-  Triangle triangle;
-  for (int i = 0; i < 3; ++i) triangle.corner[i] = linear * glm::dvec3(object.mesh->positions[corners[i]]) + origin;
-  return triangle;
-}
-
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
                               const ViewRay& ray) {
   return object.mesh ? FindTrianglePoint(object, primitive, barycentric, ray) : FindSpherePoint(object, ray);

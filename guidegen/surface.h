@@ -33,7 +33,14 @@ PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const P
 struct Triangle {
   glm::dvec3 corner[3];
 };
-Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive);
+inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive) {
+  const glm::uvec3& corners = object.mesh->triangles[primitive];
+  const glm::dmat3 linear(object.view_from_object);
+  const glm::dvec3 origin(object.view_from_object[3]);
+  Triangle triangle;
+  for (int i = 0; i < 3; ++i) triangle.corner[i] = linear * glm::dvec3(object.mesh->positions[corners[i]]) + origin;
+  return triangle;
+}
 
 struct SurfacePoint {
   glm::dvec3 position{0.0};         // view space

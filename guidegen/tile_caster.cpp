@@ -162,25 +162,28 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
       planes_.others.push_back({guides.Plane(info.layer, i).data(), BackgroundValue(info.layer)});
     }
   }
+  // Through moves one of the two only: which one tells the kind of the camera.
+  const auto moved = [&](double x, double y) {
+    const ViewRay ray = view.camera.Through(x, y);
+    return view.camera.orthographic() ? ray.origin : ray.direction;
+  };
+  for (int x = 0; x < guides.width() + kTileSide; ++x) across_.push_back(moved(x + 0.5, 0.5).x);
+  for (int y = 0; y < guides.height() + kTileSide; ++y) up_.push_back(moved(0.5, y + 0.5).y);
+
   lit_ = (planes_.luminance || planes_.shadow) && !lights_.empty();
   points_ = lit_ || planes_.position[0] || planes_.pref[0] || planes_.albedo[0] || planes_.motion[0] ||
             options.normal_frame == NormalFrame::kEye;
 }
 
 TileCaster::Scratch::Scratch(const TileCaster& caster)
-    : triangles(caster.scene_.objects(), caster.object_records_), lit(caster.lit_ ? kTilePixels : 0) {}
+    : triangles(caster.scene_.objects(), caster.object_records_, caster.points_), tiles(kStripTiles) {
+  for (OfTile& tile : tiles) tile.lit.resize(caster.lit_ ? kTilePixels : 0);
+}
 
 void TileCaster::PlaceRays(const Tile& tile, TileRays& rays) const {
-  // Through moves one of the two only: which one tells the kind of the camera.
   rays.orthographic = view_.camera.orthographic();
-  const auto moved = [&](double x, double y) {
-    const ViewRay ray = view_.camera.Through(x, y);
-    return rays.orthographic ? ray.origin : ray.direction;
-  };
-  for (int i = 0; i < kTileSide; ++i) {
-    rays.across[std::size_t(i)] = moved(tile.x0 + i + 0.5, 0.5).x;
-    rays.up[std::size_t(i)] = moved(0.5, tile.y0 + i + 0.5).y;
-  }
+  std::copy_n(across_.begin() + tile.x0, kTileSide, rays.across.begin());
+  std::copy_n(up_.begin() + tile.y0, kTileSide, rays.up.begin());
 }
 
 // A square is a packet of 16 rays or two of 8.
@@ -190,23 +193,32 @@ void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, TileHits& h
   constexpr int kRows = kRays / kSquareSide;
   CastContext context(true);
   Packet packet = {};
+  alignas(64) int valid[kRays];
+  // Of the packets in a column and in a row of them.
+  alignas(64) std::array<std::array<float, kRays>, kTileSquares> across;
+  alignas(64) std::array<std::array<float, kRays>, kTileSide / kRows> up;
   for (int lane = 0; lane < kRays; ++lane) {
     SetLane(packet.ray, lane, SeenBy(view_.camera, ViewRay()));
+    valid[lane] = -1;
+    for (int i = 0; i < kTileSquares; ++i) {
+      across[std::size_t(i)][std::size_t(lane)] = float(rays.across[std::size_t(i * kSquareSide + lane % kSquareSide)]);
+    }
+    for (int i = 0; i < kTileSide / kRows; ++i) {
+      up[std::size_t(i)][std::size_t(lane)] = float(rays.up[std::size_t(i * kRows + lane / kSquareSide)]);
+    }
   }
+  const bool whole = tile.width == kTileSide && tile.height == kTileSide;
   const float far = float(view_.camera.far_depth());
-  float* across = rays.orthographic ? packet.ray.org_x : packet.ray.dir_x;
-  float* up = rays.orthographic ? packet.ray.org_y : packet.ray.dir_y;
-  alignas(64) int valid[kRays];
+  float* const packet_across = rays.orthographic ? packet.ray.org_x : packet.ray.dir_x;
+  float* const packet_up = rays.orthographic ? packet.ray.org_y : packet.ray.dir_y;
   for (int row = 0; row < tile.height; row += kRows) {
+    std::copy_n(up[std::size_t(row / kRows)].data(), kRays, packet_up);
     for (int column = 0; column < tile.width; column += kSquareSide) {
-      for (int lane = 0; lane < kRays; ++lane) {
-        const int x = column + lane % kSquareSide;
-        const int y = row + lane / kSquareSide;
-        valid[lane] = x < tile.width && y < tile.height ? -1 : 0;
-        across[lane] = float(rays.across[std::size_t(x)]);
-        up[lane] = float(rays.up[std::size_t(y)]);
-        packet.ray.tfar[lane] = far;
-        packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+      std::copy_n(across[std::size_t(column / kSquareSide)].data(), kRays, packet_across);
+      std::fill_n(packet.ray.tfar, kRays, far);
+      std::fill_n(packet.hit.geomID, kRays, RTC_INVALID_GEOMETRY_ID);
+      for (int lane = 0; !whole && lane < kRays; ++lane) {
+        valid[lane] = column + lane % kSquareSide < tile.width && row + lane / kSquareSide < tile.height ? -1 : 0;
       }
       scumble::Cast(valid, scene_.handle(), &context.embree, packet);
       const std::size_t first = std::size_t(TilePixel(column, row));
@@ -268,7 +280,7 @@ std::array<TileCaster::Samples, kTilePixels> TileCaster::CastSubsamples(const Ti
 
 // Looks for a surface at the covered subsamples, nearest first, and returns how many rays that took. The nearest nearly
 // always has it; a ray that grazes an edge may be blocked in one packet and pass alone.
-std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel, Scratch& scratch) const {
+std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel, TileScratch& scratch) const {
   const CameraRays& camera = view_.camera;
   std::size_t cast = 0;
   for (std::size_t rank = 0; rank < offsets_.size(); ++rank) {
@@ -295,7 +307,7 @@ std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel,
 
 // Fills the coverage, and gives pixels whose centre misses what their nearest covered subsample sees. A pixel whose
 // centre is hit counts as one subsample at least, so that nothing thin is lost between them.
-void TileCaster::Cover(const Tile& tile, Scratch& scratch, RayCounts& counts) const {
+void TileCaster::Cover(const Tile& tile, TileScratch& scratch, RayCounts& counts) const {
   const std::size_t per_pixel = offsets_.size();
   if (per_pixel == 1) {
     for (std::size_t pixel = 0; pixel < kTilePixels; ++pixel) {
@@ -333,7 +345,7 @@ glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec
 }
 
 // What no vector can tell: spheres, normal maps, degenerate triangles, rays that do not go through a pixel's centre.
-void TileCaster::WritePlain(int pixel, const glm::dvec2& at, Scratch& scratch) const {
+void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const {
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];
   const ViewRay ray = view_.camera.Through(at.x, at.y);
@@ -345,7 +357,7 @@ void TileCaster::WritePlain(int pixel, const glm::dvec2& at, Scratch& scratch) c
   if (points_) scratch.points.Set(pixel, point);
 }
 
-void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, Scratch& scratch) const {
+void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, TileScratch& scratch) const {
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];
   const std::size_t index = Index(tile, pixel);
@@ -412,25 +424,32 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
   });
 }
 
-void TileCaster::WriteWhole(const Tile& tile, const Scratch& scratch) const {
-  const auto store = [&](const std::array<float, kTilePixels>& values, float* plane) {
-    StoreTile(tile, values, plane, width_, past_caches_);
+void TileCaster::WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const {
+  const auto store = [&](float* plane, const auto& values_of) {
+    std::array<const float*, kStripTiles> values;
+    for (std::size_t i = 0; i < tiles.size(); ++i) values[i] = values_of(scratch.tiles[i]).data();
+    StoreTiles(tiles, values, plane, width_, past_caches_);
   };
-  store(scratch.coverage, planes_.coverage);
-  store(scratch.guides.depth, planes_.depth);
-  store(scratch.guides.object, planes_.object);
-  store(scratch.guides.material, planes_.material);
-  for (std::size_t i = 0; i < 3; ++i) store(scratch.guides.normal[i], planes_.normal[i]);
+  store(
+      planes_.coverage, [](const TileScratch& tile) -> const auto& { return tile.coverage; });
+  store(
+      planes_.depth, [](const TileScratch& tile) -> const auto& { return tile.guides.depth; });
+  store(
+      planes_.object, [](const TileScratch& tile) -> const auto& { return tile.guides.object; });
+  store(
+      planes_.material, [](const TileScratch& tile) -> const auto& { return tile.guides.material; });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    store(
+        planes_.normal[axis], [&](const TileScratch& tile) -> const auto& { return tile.guides.normal[axis]; });
+  }
 }
 
-void TileCaster::Cast(const Tile& tile, Scratch& scratch, RayCounts& counts, std::vector<PathPixel>* pixels) const {
+void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, RayCounts& counts,
+                      std::vector<PathPixel>* pixels) const {
   const TileHits& hits = scratch.hits;
   scratch.moved.clear();
-  PlaceRays(tile, scratch.rays);
-  CastCentres(tile, scratch.rays, scratch.hits);
-  counts.primary += std::size_t(tile.width) * tile.height;
   Cover(tile, scratch, counts);
-  FindTileSurface(hits, scratch.rays, scratch.triangles, scratch.guides, points_ ? &scratch.points : nullptr);
+  FindTileSurface(hits, scratch.rays, triangles, scratch.guides, points_ ? &scratch.points : nullptr);
   for (int i = 0; i < scratch.guides.left_over_count; ++i) {
     const int pixel = scratch.guides.left_over[std::size_t(i)];
     WritePlain(pixel, Centre(tile, pixel), scratch);
@@ -456,7 +475,20 @@ void TileCaster::Cast(const Tile& tile, Scratch& scratch, RayCounts& counts, std
   }
   // Where nothing shines, luminance and shadow keep their background value, which is 0.
   if (lit_) Light(tile, hits, scratch.lit, counts);
-  WriteWhole(tile, scratch);
+}
+
+void TileCaster::Cast(std::span<const Tile> tiles, Scratch& scratch, RayCounts& counts,
+                      std::span<std::vector<PathPixel>> pixels) const {
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    TileScratch& own = scratch.tiles[i];
+    PlaceRays(tiles[i], own.rays);
+    CastCentres(tiles[i], own.rays, own.hits);
+    counts.primary += std::size_t(tiles[i].width) * tiles[i].height;
+  }
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    Fill(tiles[i], scratch.triangles, scratch.tiles[i], counts, pixels.empty() ? nullptr : &pixels[i]);
+  }
+  WriteWhole(tiles, scratch);
 }
 
 }  // namespace scumble

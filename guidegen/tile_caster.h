@@ -4,6 +4,7 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "guidegen/cast_guides.h"
@@ -37,23 +38,30 @@ class TileCaster {
       int pixel;
       glm::dvec2 at;
     };
+    struct OfTile {
+      TileHits hits;
+      TileRays rays;
+      alignas(64) std::array<float, kTilePixels> coverage;
+      TileGuides guides;
+      TilePoints points;
+      std::vector<SurfacePoint> lit;
+      std::vector<Moved> moved;
+    };
     TriangleCache triangles;
-    TileHits hits;
-    alignas(64) std::array<float, kTilePixels> coverage;
-    TileRays rays;
-    TileGuides guides;
-    TilePoints points;
-    std::vector<SurfacePoint> lit;
-    std::vector<Moved> moved;
+    std::vector<OfTile> tiles;
   };
 
-  // Adds what was cast to `counts`, and to `pixels`, unless null, the covered ones for their light paths.
-  void Cast(const Tile& tile, Scratch& scratch, RayCounts& counts, std::vector<PathPixel>* pixels = nullptr) const;
+  // Casts 1 to kStripTiles tiles that stand side by side from the left to the right. Adds what was cast to `counts`,
+  // and to pixels[i], unless there are none, the covered pixels of tile i for their light paths. Other threads see what
+  // was written after PublishTiles().
+  void Cast(std::span<const Tile> tiles, Scratch& scratch, RayCounts& counts,
+            std::span<std::vector<PathPixel>> pixels = {}) const;
 
  private:
   using Samples = std::bitset<kMaxAa * kMaxAa>;  // by rank: nearest the pixel's centre first
   using Mask = std::bitset<kTilePixels>;
   using Moved = Scratch::Moved;
+  using TileScratch = Scratch::OfTile;
 
   struct Offset {
     double x;
@@ -85,13 +93,15 @@ class TileCaster {
   void CastPackets(const Tile& tile, const TileRays& rays, TileHits& hits) const;
   Mask FindWhole(const Tile& tile, const TileHits& hits) const;
   std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
-  std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, Scratch& scratch) const;
-  void Cover(const Tile& tile, Scratch& scratch, RayCounts& counts) const;
+  std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, TileScratch& scratch) const;
+  void Cover(const Tile& tile, TileScratch& scratch, RayCounts& counts) const;
   // How far the place that was hit moves in the picture until the next frame, pixels; 0 where it is not seen then.
   glm::dvec2 MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const;
-  void WritePlain(int pixel, const glm::dvec2& at, Scratch& scratch) const;
-  void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, Scratch& scratch) const;
-  void WriteWhole(const Tile& tile, const Scratch& scratch) const;
+  void WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const;
+  void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, TileScratch& scratch) const;
+  void WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const;
+  void Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, RayCounts& counts,
+            std::vector<PathPixel>* pixels) const;
   void Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points, RayCounts& counts) const;
   glm::dvec2 Centre(const Tile& tile, int pixel) const {
     return {tile.x0 + TileColumn(pixel) + 0.5, tile.y0 + TileRow(pixel) + 0.5};
@@ -108,6 +118,8 @@ class TileCaster {
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
   std::vector<Offset> offsets_;  // of subsamples, by rank
+  std::vector<double> across_;   // of the rays through centres, as TileRays has it, by the picture's column
+  std::vector<double> up_;       // and by its row; a tile's more of both than there are
   Planes planes_;
   bool lit_ = false;     // luminance or shadow, and something shines
   bool points_ = false;  // whether any layer asks for more than a tile's own guides

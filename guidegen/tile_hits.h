@@ -18,6 +18,9 @@ struct Tile {
   int height = 0;
 };
 
+// Tiles that are worked on together, side by side: planes are written in pieces as long as all of them are wide.
+inline constexpr int kStripTiles = 4;
+
 // Squares of 4 × 4 pixels one after the other, row by row inside and out: a square is a packet of rays, and its halves
 // fill vectors without a shuffle.
 inline constexpr int kSquareSide = 4;

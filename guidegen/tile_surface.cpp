@@ -130,6 +130,7 @@ class TileWork {
   TileWork(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides, TilePoints* points)
       : hits_(hits), rays_(rays), triangles_(triangles), guides_(guides), points_(points) {
     guides_.left_over_count = 0;
+    triangles_.Begin();
     for (std::size_t i = 0; i < kTilePixels; ++i) keys_[i] = std::uint64_t(hits.object[i]) << 32 | hits.primitive[i];
   }
 
@@ -237,8 +238,10 @@ class TileWork {
       return hn::Add(hn::Sub(corner, hn::Mul(first, v)), hn::Mul(second, w));
     };
     const D z = mix(triangles.corner.z, triangles.first_edge.z, triangles.second_edge.z);
-    const auto back = hn::Gt(hn::Mul(along, objects.winding), zero);
-    const D side = hn::IfThenElse(back, hn::Set(d, -1.0), hn::Set(d, 1.0));
+    // Products with 1 or −1 are signs, for less.
+    const D minus = hn::Set(d, -0.0);
+    const auto back = hn::Gt(hn::Xor(along, hn::And(objects.winding, minus)), zero);
+    const D side = hn::IfThenElseZero(back, minus);
 
     // ObjectNormal and its way into view space.
     const F fv = hn::DemoteTo(f, v);
@@ -252,7 +255,7 @@ class TileWork {
     const auto usable = hn::Gt(Dot(normal, normal), hn::Set(d, kShortestNormal * kShortestNormal));
     const auto turn = [&](D a, D b, D c) {
       const D turned = hn::Add(hn::Add(hn::Mul(a, normal.x), hn::Mul(b, normal.y)), hn::Mul(c, normal.z));
-      return hn::Mul(turned, side);
+      return hn::Xor(turned, side);
     };
     const D3 shading = {turn(objects.column[0].x, objects.column[1].x, objects.column[2].x),
                         turn(objects.column[0].y, objects.column[1].y, objects.column[2].y),
@@ -284,7 +287,7 @@ class TileWork {
       const D3 position = {mix(triangles.corner.x, triangles.first_edge.x, triangles.second_edge.x),
                            mix(triangles.corner.y, triangles.first_edge.y, triangles.second_edge.y), z};
       StorePoint(position, points_->position, pixel);
-      const D sign = hn::Mul(objects.winding, side);
+      const D sign = hn::Xor(objects.winding, side);
       StorePoint(
           {hn::Mul(triangles.facing.x, sign), hn::Mul(triangles.facing.y, sign), hn::Mul(triangles.facing.z, sign)},
           points_->facing, pixel);

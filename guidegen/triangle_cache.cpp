@@ -1,6 +1,7 @@
 #include "guidegen/triangle_cache.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace scumble {
 namespace {
@@ -28,14 +29,10 @@ std::vector<ObjectRecord> MakeObjectRecords(std::span<const PlacedObject> object
   return records;
 }
 
-TriangleCache::TriangleCache(std::span<const PlacedObject> objects, std::span<const ObjectRecord> records)
-    : objects_(objects), object_records_(records), records_(kSize) {
-  for (TriangleRecord& record : records_) record.object = ~0u;
-}
+TriangleCache::TriangleCache(std::span<const PlacedObject> objects, std::span<const ObjectRecord> records, bool points)
+    : objects_(objects), object_records_(records), slots_(kSize), records_(kSize), points_(points) {}
 
 void TriangleCache::Fill(std::uint32_t object, std::uint32_t primitive, TriangleRecord& record) const {
-  record.object = object;
-  record.primitive = primitive;
   record.regular = object_records_[object].interpolates;
   if (!record.regular) return;
   const Mesh& mesh = *objects_[object].mesh;
@@ -45,16 +42,17 @@ void TriangleCache::Fill(std::uint32_t object, std::uint32_t primitive, Triangle
   Put(triangle.corner[0] - triangle.corner[1], record.first_edge);
   Put(triangle.corner[2] - triangle.corner[0], record.second_edge);
   Put(area, record.area);
-  glm::dvec3 facing = area;
-  record.regular = MakeUnit(facing);
-  Put(facing, record.facing);
-  record.largest_coordinate = 0.0;
-  for (const glm::dvec3& corner : triangle.corner) {
-    record.largest_coordinate = std::max(record.largest_coordinate, LargestCoordinate(corner));
-  }
+  const double squared = glm::dot(area, area);
+  record.regular = squared > kLeastPlainSquare && squared < kLargestPlainSquare;
   for (int corner = 0; corner < 3; ++corner) {
     const glm::vec3 normal = mesh.normals[mesh.triangles[primitive][corner]];
     for (int axis = 0; axis < 3; ++axis) record.normal[3 * corner + axis] = normal[axis];
+  }
+  if (!points_ || !record.regular) return;
+  Put(area * (1.0 / std::sqrt(squared)), record.facing);
+  record.largest_coordinate = 0.0;
+  for (const glm::dvec3& corner : triangle.corner) {
+    record.largest_coordinate = std::max(record.largest_coordinate, LargestCoordinate(corner));
   }
 }
 

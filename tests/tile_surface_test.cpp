@@ -95,9 +95,9 @@ void ExpectPlainPixel(const Case& scene, int pixel, const TileGuides& guides, co
 // Returns how many pixels were left to the plain code.
 int ExpectPlain(const Case& scene) {
   const std::vector<ObjectRecord> records = MakeObjectRecords(scene.objects);
-  TriangleCache triangles(scene.objects, records);
   int left_over = 0;
   for (const bool with_points : {false, true}) {
+    TriangleCache triangles(scene.objects, records, with_points);
     TileGuides guides;
     TilePoints points;
     FindTileSurface(scene.hits, scene.rays, triangles, guides, with_points ? &points : nullptr);
@@ -231,14 +231,33 @@ TEST(TileSurface, SpheresAndMeshesWithoutNormalsAreLeftOver) {
 TEST(TileSurface, TheCacheForgetsWithoutHarm) {
   const Case scene = RandomCase(1, false, 1, 0.0);
   const std::vector<ObjectRecord> records = MakeObjectRecords(scene.objects);
-  TriangleCache used(scene.objects, records);
+  TriangleCache used(scene.objects, records, false);
   for (std::uint32_t i = 0; i < 5000; ++i) {
+    if (i % TriangleCache::kMost == 0) used.Begin();
     const std::uint32_t primitive = i * 7919u % 700u;
     const TriangleRecord& record = used.Find(0, primitive);
     const Triangle triangle = ViewTriangle(scene.objects[0], primitive);
-    EXPECT_EQ(record.object, 0u);
-    EXPECT_EQ(record.primitive, primitive);
     for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(record.corner[axis], triangle.corner[0][axis]);
+  }
+}
+
+// Triangles whose places in the cache are the same ones, as many as may be asked for at once.
+TEST(TileSurface, TheCacheKeepsWhatWasFoundSinceItBegan) {
+  const Case scene = RandomCase(2, false, 1, 0.0);
+  const std::vector<ObjectRecord> records = MakeObjectRecords(scene.objects);
+  TriangleCache cache(scene.objects, records, false);
+  for (int round = 0; round < 3; ++round) {
+    cache.Begin();
+    std::vector<std::pair<std::uint32_t, const TriangleRecord*>> found;
+    for (std::uint32_t i = 0; i < TriangleCache::kMost; ++i) {
+      const std::uint32_t primitive = i % 2 ? 512u + i / 2 : i / 2;
+      found.push_back({primitive, &cache.Find(0, primitive)});
+    }
+    for (const auto& [primitive, record] : found) {
+      EXPECT_EQ(record, &cache.Find(0, primitive));
+      const Triangle triangle = ViewTriangle(scene.objects[0], primitive);
+      for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(record->corner[axis], triangle.corner[0][axis]) << primitive;
+    }
   }
 }
 
@@ -255,23 +274,36 @@ TEST(TileSurface, PixelsOfATileAreItsSquaresInOrder) {
   for (const int count : met) EXPECT_EQ(count, 1);
 }
 
-// Every width and place of a tile, and rows that begin on a line of the cache and elsewhere.
-TEST(TileStore, WritesTheTileAndNothingElse) {
-  std::array<float, kTilePixels> values;
-  for (int i = 0; i < kTilePixels; ++i) values[i] = float(i + 1);
+// Every width and place of tiles, one to all of a strip, and rows that begin on a line of the cache and elsewhere.
+TEST(TileStore, WritesTheTilesAndNothingElse) {
+  std::array<std::array<float, kTilePixels>, kStripTiles> values;
+  for (int i = 0; i < kStripTiles * kTilePixels; ++i) values[i / kTilePixels][i % kTilePixels] = float(i + 1);
   OnEveryInstructionSet([&] {
-    for (const std::size_t stride : {std::size_t(48), std::size_t(37), std::size_t(64)}) {
-      for (const Tile tile : {Tile{16, 16, 16, 16}, Tile{16, 0, 16, 5}, Tile{32, 16, 5, 16}, Tile{0, 32, 1, 1}}) {
-        for (const bool past_caches : {false, true}) {
-          std::vector<float, PlaneAllocator<float>> plane(stride * 64, -1.0f);
-          StoreTile(tile, values, plane.data(), stride, past_caches);
-          for (int y = 0; y < 64; ++y) {
-            for (int x = 0; x < int(stride); ++x) {
-              const int column = x - tile.x0, row = y - tile.y0;
-              const bool inside = column >= 0 && column < tile.width && row >= 0 && row < tile.height;
-              ASSERT_EQ(plane[std::size_t(y) * stride + std::size_t(x)],
-                        inside ? values[TilePixel(column, row)] : -1.0f)
-                  << x << ", " << y;
+    for (const std::size_t stride : {std::size_t(80), std::size_t(91), std::size_t(128)}) {
+      for (const Tile first : {Tile{16, 16, 16, 16}, Tile{16, 0, 16, 5}, Tile{32, 16, 5, 16}, Tile{0, 32, 1, 1}}) {
+        for (int count = 1; count <= (first.width < kTileSide || first.x0 > 16 ? 1 : kStripTiles); ++count) {
+          for (const bool past_caches : {false, true}) {
+            // The last of several is narrow.
+            std::vector<Tile> tiles;
+            std::vector<const float*> each;
+            for (int i = 0; i < count; ++i) {
+              tiles.push_back({first.x0 + i * kTileSide, first.y0, first.width, first.height});
+              each.push_back(values[i].data());
+            }
+            if (count > 1) tiles.back().width = 7;
+            std::vector<float, PlaneAllocator<float>> plane(stride * 64, -1.0f);
+            StoreTiles(tiles, each, plane.data(), stride, past_caches);
+            PublishTiles();
+            for (int y = 0; y < 64; ++y) {
+              for (int x = 0; x < int(stride); ++x) {
+                float expected = -1.0f;
+                for (int i = 0; i < count; ++i) {
+                  const int column = x - tiles[i].x0, row = y - tiles[i].y0;
+                  const bool inside = column >= 0 && column < tiles[i].width && row >= 0 && row < tiles[i].height;
+                  if (inside) expected = values[i][TilePixel(column, row)];
+                }
+                ASSERT_EQ(plane[std::size_t(y) * stride + std::size_t(x)], expected) << x << ", " << y;
+              }
             }
           }
         }
