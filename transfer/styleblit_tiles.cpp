@@ -97,20 +97,22 @@ class TileMatcher {
   explicit TileMatcher(const TileJob& job)
       : input_(job.input),
         rows_(job.exemplar),
+        wanted_(job.wanted.data()),
+        map_(job.map),
         tile_x_(job.tile_x),
-        tile_y_(job.tile_y),
+        scratch_(job.scratch),
         levels_(job.scratch.levels),
         field_(job.field),
         squares_(input_.test.metric() == ThresholdMetric::kL2),
         light_counts_(!input_.luminance.empty() && input_.illumination.weight() > 0.0f) {
-    const int x0 = tile_x_ * kTileWidth, y0 = tile_y_ * kTileHeight;
-    tile_ = {x0, y0, std::min(field_.width, x0 + kTileWidth), std::min(field_.height, y0 + kTileHeight)};
+    const int x0 = tile_x_ * kTileWidth;
+    tile_ = {x0, std::max(job.y0, input_.region.y0), std::min(field_.width, x0 + kTileWidth),
+             std::min(job.y1, input_.region.y1)};
     blocks_ = (tile_.x1 - tile_.x0 + kBlock - 1) / kBlock;
   }
 
   void Match() {
-    const int end = std::min(tile_.y1, input_.region.y1);
-    for (int y = std::max(tile_.y0, input_.region.y0); y < end; ++y) MatchRow(y);
+    for (int y = tile_.y0; y < tile_.y1; ++y) MatchRow(y);
   }
 
  private:
@@ -125,7 +127,7 @@ class TileMatcher {
     const std::size_t i = field_.Index(tile_.x0, y);
     int open = ReadRow(y, i);
     if (open == 0) return;
-    if (!begun_) Begin();
+    if (!scratch_.begun) Begin();
     for (TileSeeds& seeds : levels_) {
       if (open == 0) break;
       groups_ = 0;
@@ -149,7 +151,7 @@ class TileMatcher {
 
   // In a tile where nothing is wanted there is nothing to make ready.
   void Begin() {
-    begun_ = true;
+    scratch_.begun = true;
     levels_.resize(static_cast<std::size_t>(std::max(0, input_.levels - input_.least_level)));
     int level = input_.levels;
     for (TileSeeds& seeds : levels_) seeds.Reset(input_, --level, tile_.x0);
@@ -160,7 +162,7 @@ class TileMatcher {
     Row& row = row_;
     row.x = tile_.x0, row.y = y;
     const int width = tile_.x1 - tile_.x0;
-    const std::uint8_t* const wanted = (input_.wanted.empty() ? input_.active : input_.wanted).data() + i;
+    const std::uint8_t* const wanted = wanted_ + i;
     int open = 0;
     for (int block = 0; block < blocks_; ++block) {
       const int lanes = std::min(kBlock, width - block * kBlock);
@@ -173,8 +175,9 @@ class TileMatcher {
       open += bits != 0;
     }
     if (open == 0) return 0;
-    for (int c = 0; c < 3; ++c) row.normal[c] = Values(input_.guides.Plane(Layer::kNormal, c).data() + i, c);
-    row.light = input_.luminance.empty() ? nullptr : Values(input_.luminance.data() + i, 3);
+    const std::size_t pixel = input_.guides.Index(tile_.x0, y);
+    for (int c = 0; c < 3; ++c) row.normal[c] = Values(input_.guides.Plane(Layer::kNormal, c).data() + pixel, c);
+    row.light = input_.luminance.empty() ? nullptr : Values(input_.luminance.data() + pixel, 3);
     if (!field_.moved.empty()) std::fill_n(row.moved, width, glm::vec3(0.0f));
     return open;
   }
@@ -226,8 +229,8 @@ class TileMatcher {
   }
 
   void GroupBySpread(TileSeeds& seeds, int open) {
-    if (input_.seed_map) {
-      GroupByMap(seeds, input_.seed_map->Of(tile_x_, tile_y_, seeds.level()), open);
+    if (map_) {
+      GroupByMap(seeds, map_->Of(tile_x_, row_.y / kTileHeight, seeds.level()), open);
       return;
     }
     constexpr bool kPairs = hn::MaxLanes(kPairWords) == 2 * kBlock;
@@ -275,7 +278,7 @@ class TileMatcher {
   }
 
   void GroupByMap(TileSeeds& seeds, TileMap& map, int open) {
-    const int level = seeds.level(), cell_row = row_.y >> level, y = row_.y - tile_.y0;
+    const int level = seeds.level(), cell_row = row_.y >> level, y = row_.y % kTileHeight;
     const int above[] = {seeds.FirstOf(cell_row - 1), seeds.FirstOf(cell_row), seeds.FirstOf(cell_row + 1)};
     int seed_of_cell[9];
     for (int cell = 0; cell < 9; ++cell) seed_of_cell[cell] = above[cell / 3] + cell % 3 - 1;
@@ -495,9 +498,11 @@ class TileMatcher {
 
   const MatchInput& input_;
   const ExemplarRows rows_;
-  const int tile_x_, tile_y_;
-  Region tile_;
-  bool begun_ = false;
+  const std::uint8_t* const wanted_;
+  SeedMap* const map_;
+  const int tile_x_;
+  Region tile_;  // what of it is matched
+  TileScratch& scratch_;
   std::vector<TileSeeds>& levels_;
   SourceField& field_;
   const bool squares_, light_counts_;
@@ -508,7 +513,7 @@ class TileMatcher {
   Group group_[kTileWidth];
 };
 
-void MatchTile(const TileJob& job) { TileMatcher(job).Match(); }
+void MatchTileRows(const TileJob& job) { TileMatcher(job).Match(); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace scumble::internal
@@ -517,7 +522,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace scumble::internal {
 
-HWY_EXPORT(MatchTile);
+HWY_EXPORT(MatchTileRows);
+
+void MatchTile(const TileJob& job) { HWY_DYNAMIC_DISPATCH(MatchTileRows)(job); }
 
 void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Offer& taken) {
   const PixelPosition p = choice.p;
@@ -541,10 +548,14 @@ bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgres
   const int first_row = region.y0 / kTileHeight, rows = (region.y1 - 1) / kTileHeight + 1 - first_row;
   tbb::enumerable_thread_specific<TileScratch> scratches;
   const ExemplarRows exemplar = input.exemplar.Rows();
+  const std::span<const std::uint8_t> wanted = input.wanted.empty() ? input.active : input.wanted;
   tbb::parallel_for(tbb::blocked_range<int>(0, rows * columns, 1), [&](const auto& range) {
     for (int t = range.begin(); t != range.end() && !progress.cancelled(); ++t) {
       const int row = first_row + t / columns;
-      HWY_DYNAMIC_DISPATCH(MatchTile)({input, exemplar, first_column + t % columns, row, scratches.local(), field});
+      TileScratch& scratch = scratches.local();
+      scratch.begun = false;
+      MatchTile({input, exemplar, first_column + t % columns, row * kTileHeight, (row + 1) * kTileHeight, input.seed_map,
+                 wanted, scratch, field});
       if (t % columns != 0) continue;
       progress.Finished(std::min(region.y1, (row + 1) * kTileHeight) - std::max(region.y0, row * kTileHeight));
     }

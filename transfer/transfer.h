@@ -79,6 +79,7 @@ struct TransferOptions {
                                     // made, which hold nothing finer
   const Picture* over = nullptr;    // composited underneath instead of the paper; the guides' size
   std::optional<Region> region;     // only these pixels of the result are made; empty: all
+  bool keep_field = false;          // TransferScratch::field and `active` are wanted afterwards; costs some time
   Progress progress;
 };
 
@@ -91,8 +92,8 @@ struct StageTimes {
 
 // Memory that a sequence keeps from frame to frame, and what there is to look at after a transfer.
 struct TransferScratch {
-  SourceField field;
-  std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints
+  SourceField field;                 // empty where TransferOptions::keep_field did not ask for it and it was not needed
+  std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints; empty likewise
   StageTimes times;
   internal::SeedMaps seed_maps;  // frozen jitter's
 };
