@@ -4,12 +4,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <memory>
 #include <mutex>
 #include <vector>
 
 #include "image/stopwatch.h"
-#include "transfer/styleblit_tiles.h"
 
 namespace scumble::internal {
 namespace {
@@ -70,15 +68,22 @@ struct SharedStyle {
 // One thread's share.
 class Band {
  public:
-  Band(const FrameInput& frame, std::span<const SharedStyle> styles, Picture& out)
-      : frame_(frame), styles_(styles), out_(out), columns_((frame.guides.width() + kTileWidth - 1) / kTileWidth) {
+  Band(const FrameInput& frame, std::span<const SharedStyle> styles, BandMemory& memory, Picture& out)
+      : frame_(frame),
+        styles_(styles),
+        out_(out),
+        columns_((frame.guides.width() + kTileWidth - 1) / kTileWidth),
+        memory_(memory),
+        field_(memory.field) {
     for (const SharedStyle& shared : styles_) radius_ = std::max(radius_, shared.style.radius);
     const int width = frame.guides.width(), height = frame.guides.height();
     const int rows = std::min(height, kStep + 2 * radius_);
     field_.ResizeRows(width, height, rows);
-    active_.resize(std::size_t(rows) * width);
-    pieces_.resize(styles_.size());
-    seeds_.resize(styles_.size() * columns_);
+    memory.covered.resize(std::size_t(rows) * width);
+    if (frame.map) memory.active.assign(std::size_t(rows) * width, 0);
+    memory.words.assign(std::size_t(width + 63) / 64, 0);
+    memory.pieces.resize(styles_.size());
+    if (memory.seeds.size() < styles_.size() * columns_) memory.seeds.resize(styles_.size() * columns_);
   }
 
   // Rows of the region, as long as there are any for this worker.
@@ -99,8 +104,8 @@ class Band {
  private:
   // A stretch of rows.
   void Begin(int y) {
-    for (std::vector<Region>& pieces : pieces_) pieces.clear();
-    for (TileScratch& seeds : seeds_) seeds.begun = false;
+    for (std::vector<Region>& pieces : memory_.pieces) pieces.clear();
+    for (TileScratch& seeds : memory_.seeds) seeds.begun = false;
     field_.first_row = end_ = std::max(0, y - radius_);
     own_ = {frame_.region.x0, y, frame_.region.x1, y};
   }
@@ -111,83 +116,96 @@ class Band {
     end_ = std::min(field_.height, y1 + radius_);
     Start(begin);
     for (std::size_t s = 0; s < styles_.size(); ++s) {
-      if (!pieces_[s].empty()) PaintStyle(static_cast<int>(s), begin, {own_.x0, y0, own_.x1, y1});
+      if (!memory_.pieces[s].empty()) PaintStyle(static_cast<int>(s), begin, {own_.x0, y0, own_.x1, y1});
     }
   }
 
-  ActiveRows Active() { return {active_.data(), field_.width, field_.first_row}; }
+  ActiveRows Covered() const { return {memory_.covered.data(), field_.width, field_.first_row}; }
+  ActiveRows Active() const { return {memory_.active.data(), field_.width, field_.first_row}; }
+  const std::vector<Region>& PiecesOf(int s) const { return memory_.pieces[static_cast<std::size_t>(s)]; }
 
   // Rows above y are not needed any more.
   void Forget(int y) {
     const std::ptrdiff_t from = std::ptrdiff_t(field_.Index(0, y)), to = std::ptrdiff_t(field_.Index(0, end_));
     if (from > 0) {
       const auto move = [&](auto& plane) { std::copy(plane.begin() + from, plane.begin() + to, plane.begin()); };
-      move(field_.x), move(field_.y), move(field_.level), move(field_.exemplar), move(active_);
+      move(field_.x), move(field_.y), move(field_.level), move(field_.exemplar), move(memory_.covered);
     }
     field_.first_row = y;
-    for (std::vector<Region>& pieces : pieces_) std::erase_if(pieces, [&](const Region& piece) { return piece.y1 <= y; });
+    for (std::vector<Region>& pieces : memory_.pieces) {
+      std::erase_if(pieces, [&](const Region& piece) { return piece.y1 <= y; });
+      for (Region& piece : pieces) piece.y0 = std::max(piece.y0, y);
+    }
   }
 
   // Rows from `begin` on.
   void Start(int begin) {
-    rows_.tiles.clear();
+    StartedRows& rows = memory_.rows;
+    rows.tiles.clear(), rows.soft = false;
     const FrameInput cleared{frame_.guides, frame_.map, frame_.styles, own_};  // other rows are other threads'
-    StartRows(cleared, begin, end_, Active(), out_, rows_);
-    soft_ = soft_ || rows_.soft;
-    for (const auto& [style, tile] : rows_.tiles) pieces_[style].push_back(tile);
+    StartRows(cleared, begin, end_, Covered(), out_, rows);
+    soft_ = soft_ || rows.soft;
+    for (const auto& [style, tile] : rows.tiles) memory_.pieces[style].push_back(tile);
     shares_.start += watch_.Lap();
   }
 
   // Matches a style's pixels from row `begin` on, and votes on those of `painted`.
   void PaintStyle(int s, int begin, const Region& painted) {
-    const SharedStyle& shared = styles_[static_cast<std::size_t>(s)];
     if (frame_.map) {
-      for (const Region& piece : Held(s)) ActivateTile(frame_, s, piece, Active());
+      for (const Region& piece : PiecesOf(s)) ActivateTile(frame_, s, piece, Covered(), Active());
     }
-    Match(s, begin);
+    const std::span<const std::uint8_t> active = frame_.map ? memory_.active : memory_.covered;
+    Match(s, begin, active);
     shares_.match += watch_.Lap();
-    VoteInput votes{field_, active_, shared.style.match.exemplar, shared.style.radius,
-                    shared.style.edges ? &*shared.style.edges : nullptr, painted};
-    const ColorizeInput tint{frame_.guides, active_, shared.style.tint, field_.first_row};
-    if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { ColorizeRow(tint, y, x0, x1, out_); };
-    int left = painted.x1, right = painted.x0;
-    for (const Region& piece : pieces_[static_cast<std::size_t>(s)]) {
-      left = std::min(left, piece.x0), right = std::max(right, piece.x1);
-    }
-    votes.region.x0 = std::max(left, painted.x0), votes.region.x1 = std::min(right, painted.x1);
-    if (!votes.region.empty()) shared.votes.Vote(votes, out_);
+    Vote(s, painted, active);
     if (frame_.map) {
-      for (const Region& piece : Held(s)) DeactivateTile(piece, Active());
+      for (const Region& piece : PiecesOf(s)) DeactivateTile(piece, Active());
     }
     shares_.vote += watch_.Lap();
   }
 
-  // The parts of a style's pieces in the rows that are held.
-  const std::vector<Region>& Held(int s) {
-    held_ = pieces_[static_cast<std::size_t>(s)];
-    for (Region& piece : held_) piece.y0 = std::max(piece.y0, field_.first_row);
-    return held_;
-  }
-
-  void Match(int s, int begin) {
-    const BandStyle& style = styles_[static_cast<std::size_t>(s)].style;
-    int last = -1;
-    for (const Region& piece : pieces_[static_cast<std::size_t>(s)]) {  // in columns from the left, as they were found
-      const int column = piece.x0 / kTileWidth;
-      if (piece.y1 <= begin || column == last) continue;
-      last = column;
+  void Match(int s, int begin, std::span<const std::uint8_t> active) {
+    SeedMap* const map = styles_[static_cast<std::size_t>(s)].style.match.seed_map;
+    const std::vector<Region>& pieces = PiecesOf(s);
+    // New ones come last, from the left to the right.
+    auto piece = std::ranges::find_if(pieces, [&](const Region& one) { return one.y1 > begin; });
+    while (piece != pieces.end()) {
+      const int x0 = piece->x0, end = (x0 / kTileWidth + 1) * kTileWidth;
+      int x1 = x0;
+      for (; piece != pieces.end() && piece->x0 < end; ++piece) x1 = piece->x1;
       // Rows that another thread matches too are not looked up: both might write what they learn.
-      MatchRows(s, column, begin, std::min(end_, own_.y0), nullptr);
-      MatchRows(s, column, std::max(begin, own_.y0), std::min(end_, own_.y1), style.match.seed_map);
-      MatchRows(s, column, std::max(begin, own_.y1), end_, nullptr);
+      MatchRows(s, {x0, begin, x1, std::min(end_, own_.y0)}, active, nullptr);
+      MatchRows(s, {x0, std::max(begin, own_.y0), x1, std::min(end_, own_.y1)}, active, map);
+      MatchRows(s, {x0, std::max(begin, own_.y1), x1, end_}, active, nullptr);
     }
   }
 
-  void MatchRows(int s, int column, int y0, int y1, SeedMap* map) {
-    if (y0 >= y1) return;
+  void MatchRows(int s, const Region& part, std::span<const std::uint8_t> active, SeedMap* map) {
+    if (part.empty()) return;
     const SharedStyle& shared = styles_[static_cast<std::size_t>(s)];
-    MatchTile({shared.style.match, shared.exemplar, column, y0, y1, map, active_,
-               seeds_[static_cast<std::size_t>(s) * columns_ + column], field_});
+    const int column = part.x0 / kTileWidth;
+    MatchTile({shared.style.match, shared.exemplar, column, part.x0, part.x1, part.y0, part.y1, map, active,
+               memory_.seeds[static_cast<std::size_t>(s) * columns_ + column], field_});
+  }
+
+  void Vote(int s, const Region& painted, std::span<const std::uint8_t> active) {
+    const SharedStyle& shared = styles_[static_cast<std::size_t>(s)];
+    VoteInput votes{field_, active, shared.style.match.exemplar, shared.style.radius,
+                    shared.style.edges ? &*shared.style.edges : nullptr, painted};
+    const ColorizeInput tint{frame_.guides, active, shared.style.tint, field_.first_row};
+    if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { ColorizeRow(tint, y, x0, x1, out_); };
+    std::vector<std::uint8_t>& words = memory_.words;  // that have pixels of the style
+    for (const Region& piece : PiecesOf(s)) words[static_cast<std::size_t>(piece.x0 / 64)] = 1;
+    constexpr std::ptrdiff_t kGap = 2;  // so few words between two others are looked at too
+    for (auto from = std::ranges::find(words, 1); from != words.end();) {
+      auto to = from + 1, next = std::find(to, words.end(), 1);
+      while (next != words.end() && next - to <= kGap) to = next + 1, next = std::find(to, words.end(), 1);
+      votes.region.x0 = std::max(painted.x0, 64 * static_cast<int>(from - words.begin()));
+      votes.region.x1 = std::min(painted.x1, 64 * static_cast<int>(to - words.begin()));
+      if (!votes.region.empty()) shared.votes.Vote(votes, out_);
+      from = next;
+    }
+    std::ranges::fill(words, 0);
   }
 
   const FrameInput& frame_;
@@ -196,13 +214,9 @@ class Band {
   const int columns_;  // of tiles
   int radius_ = 0;     // the largest
   Region own_;         // rows that no other thread paints
-  SourceField field_;  // of the rows at hand, from its first_row to end_
+  BandMemory& memory_;
+  SourceField& field_;  // of the rows at hand, from its first_row to end_
   int end_ = 0;
-  std::vector<std::uint8_t> active_;  // by the field's index; with a map 0 but for the style at work
-  StartedRows rows_;
-  std::vector<std::vector<Region>> pieces_;  // by style, where the rows at hand have pixels of it
-  std::vector<Region> held_;
-  std::vector<TileScratch> seeds_;  // by style and column of tiles
   bool soft_ = false;
   Stopwatch watch_;
   BandShares shares_;
@@ -210,7 +224,8 @@ class Band {
 
 }  // namespace
 
-BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, Picture& out, RowProgress& progress) {
+BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, std::vector<BandMemory>& memory,
+                        Picture& out, RowProgress& progress) {
   const int width = frame.guides.width(), height = frame.guides.height();
   if (out.width != width || out.height != height) out = Picture(width, height);
   std::vector<SharedStyle> shared;
@@ -220,17 +235,18 @@ BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styl
   }
   const int workers = tbb::this_task_arena::max_concurrency();
   RowShares shares(frame.region.y0, std::max(frame.region.y0, frame.region.y1), workers);
-  std::vector<std::unique_ptr<Band>> bands(static_cast<std::size_t>(workers));
+  std::vector<std::optional<Band>> bands(static_cast<std::size_t>(workers));
+  if (memory.size() < bands.size()) memory.resize(bands.size());
   const auto paint = [&](int worker) {
-    std::unique_ptr<Band>& band = bands[static_cast<std::size_t>(worker)];
-    band = std::make_unique<Band>(frame, shared, out);
+    std::optional<Band>& band = bands[static_cast<std::size_t>(worker)];
+    band.emplace(frame, shared, memory[static_cast<std::size_t>(worker)], out);
     band->Paint(shares, worker, progress);
   };
   tbb::parallel_for(0, workers, paint, tbb::simple_partitioner());
   BandResult result;
   result.finished = !progress.cancelled();
   BandShares& sum = result.shares;
-  for (const std::unique_ptr<Band>& band : bands) {
+  for (const std::optional<Band>& band : bands) {
     if (!band) continue;
     result.softly_covered = result.softly_covered || band->soft();
     sum.start += band->shares().start, sum.match += band->shares().match, sum.vote += band->shares().vote;

@@ -8,8 +8,10 @@
 // match depends on guides and seeds alone, so the bytes are the same.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "image/picture.h"
 #include "transfer/colorize.h"
@@ -18,6 +20,7 @@
 #include "transfer/match.h"
 #include "transfer/parallel.h"
 #include "transfer/small_vote.h"
+#include "transfer/styleblit_tiles.h"
 
 namespace scumble::internal {
 
@@ -40,8 +43,20 @@ struct BandResult {
   BandShares shares;
 };
 
+// What one thread works in; kept from frame to frame.
+struct BandMemory {
+  SourceField field;                  // of the rows at hand
+  std::vector<std::uint8_t> covered;  // by the field's index: coverage is above 0
+  std::vector<std::uint8_t> active;   // with a map: where the style at work paints, else 0
+  StartedRows rows;
+  std::vector<std::vector<Region>> pieces;  // by style, where the rows at hand have pixels of it
+  std::vector<std::uint8_t> words;          // 64 columns each: whether the style at work is there
+  std::vector<TileScratch> seeds;           // by style and column of tiles
+};
+
 // StartFrame, MatchStyleBlit, Vote and ColorizeRow for all styles, with the same bytes in the frame's region of `out`. The
-// styles are those that the frame's map names, by index. Runs in the caller's arena.
-BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, Picture& out, RowProgress& progress);
+// styles are those that the frame's map names, by index; `memory` is by thread, as many as it takes. Runs in the caller's arena.
+BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styles, std::vector<BandMemory>& memory,
+                        Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

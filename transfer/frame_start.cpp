@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "image/check.h"
 
@@ -18,42 +19,57 @@ Region Around(const Region& a, const Region& b) {
   return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
+bool FourAre(const std::uint16_t* styles, std::uint16_t style) {
+  std::uint64_t four;
+  std::memcpy(&four, styles, sizeof four);
+  return four == style * 0x0001000100010001ull;
+}
+
 class Starter {
  public:
-  // `field`: null where no field is kept.
-  Starter(const FrameInput& input, SourceField* field, const ActiveRows& active, Picture& out)
+  // `field`: null where no field is kept. `covered` becomes 1 where coverage is above 0; null: nobody asks.
+  Starter(const FrameInput& input, SourceField* field, const ActiveRows* covered, Picture& out)
       : input_(input),
         width_(input.guides.width()),
         coverage_(input.guides.Plane(Layer::kCoverage)),
         field_(field),
-        active_(active),
+        covered_(covered),
         out_(out) {}
 
   void Start(int y0, int y1, StartedRows& rows) {
-    for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
-      const int x1 = std::min(width_, x0 + kTileWidth);
-      const Region tile{x0, y0, x1, y1};
-      const std::size_t known = rows.tiles.size();
-      int covered = 0;
-      for (int y = y0; y < y1; ++y) {
-        const int painted = input_.map ? ReadMap(y, known, tile, rows) : Cover(x0, x1, y);
-        Clear(x0, x1, y, painted);
-        covered += painted;
-        rows.soft = rows.soft || (painted > 0 && Soft(x0, x1, y));
+    if (input_.map) {
+      for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
+        const std::size_t known = rows.tiles.size();
+        for (int y = y0; y < y1; ++y) ReadMap(y, known, {x0, y0, std::min(width_, x0 + kTileWidth), y1}, rows);
       }
-      if (!input_.map && covered > 0) rows.tiles.push_back({std::uint16_t{0}, tile});
+      return;
+    }
+    std::vector<std::uint8_t> any(static_cast<std::size_t>((width_ + kTileWidth - 1) / kTileWidth));
+    for (int y = y0; y < y1; ++y) {
+      for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
+        const int x1 = std::min(width_, x0 + kTileWidth), painted = Cover(x0, x1, y, covered_->At(x0, y));
+        Finish(x0, x1, y, painted, rows);
+        any[std::size_t(x0 / kTileWidth)] |= painted > 0;
+      }
+    }
+    for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
+      if (any[std::size_t(x0 / kTileWidth)]) rows.tiles.push_back({0, {x0, y0, std::min(width_, x0 + kTileWidth), y1}});
     }
   }
 
  private:
-  // The pixels that are covered; marks them.
-  int Cover(int x0, int x1, int y) {
+  // How many pixels are covered; marks them.
+  int Cover(int x0, int x1, int y, std::uint8_t* covered) const {
     const float* coverage = coverage_.data() + input_.guides.Index(x0, y);
-    std::uint8_t* active = active_.At(x0, y);
     int count = 0;
-    for (int i = 0; i < x1 - x0; ++i) active[i] = coverage[i] > 0.0f;
-    for (int i = 0; i < x1 - x0; ++i) count += active[i];
+    for (int i = 0; i < x1 - x0; ++i) covered[i] = coverage[i] > 0.0f;
+    for (int i = 0; i < x1 - x0; ++i) count += covered[i];
     return count;
+  }
+
+  void Finish(int x0, int x1, int y, int painted, StartedRows& rows) {
+    Clear(x0, x1, y, painted);
+    rows.soft = rows.soft || (painted > 0 && Soft(x0, x1, y));
   }
 
   bool Soft(int x0, int x1, int y) const {
@@ -63,28 +79,39 @@ class Starter {
     return soft != 0;
   }
 
-  // The pixels that some style paints; notes which and where.
-  int ReadMap(int y, std::size_t known, const Region& tile, StartedRows& rows) {
+  // Finds the pixels that some style paints, notes which and where.
+  void ReadMap(int y, std::size_t known, const Region& tile, StartedRows& rows) {
     const int x0 = tile.x0, x1 = tile.x1;
-    const std::size_t begin = input_.guides.Index(x0, y);
-    std::fill_n(active_.At(x0, y), x1 - x0, std::uint8_t{0});
-    const float* coverage = coverage_.data() + begin;
-    const std::uint16_t* style = input_.map->style.data() + begin;
+    std::uint8_t here_covered[kTileWidth];
+    std::uint8_t* const covered = covered_ ? covered_->At(x0, y) : here_covered;
+    int painted = 0;
+    if (Cover(x0, x1, y, covered) > 0) painted = CountPainted(y, known, tile, covered, rows);
+    Finish(x0, x1, y, painted, rows);
+  }
+
+  int CountPainted(int y, std::size_t known, const Region& tile, const std::uint8_t* covered, StartedRows& rows) {
+    const int x0 = tile.x0, x1 = tile.x1;
+    const std::uint16_t* style = input_.map->style.data() + input_.guides.Index(x0, y);
     int count = 0;
     for (int i = 0; i < x1 - x0;) {
       const std::uint16_t here = style[i];
       int end = i + 1;
+      while (end + 4 <= x1 - x0 && FourAre(style + end, here)) end += 4;
       while (end < x1 - x0 && style[end] == here) ++end;
       const int first = i;
       i = end;
       if (here == StyleMap::kLeave || here == StyleMap::kCatch) continue;
-      int from = first, to = end;
-      while (from < to && !(coverage[from] > 0.0f)) ++from;
-      while (to > from && !(coverage[to - 1] > 0.0f)) --to;
-      if (from == to) continue;
-      for (int k = from; k < to; ++k) count += coverage[k] > 0.0f;
+      int own = 0;
+      for (int k = first; k < end; ++k) own += covered[k];
+      if (own == 0) continue;
+      count += own;
       SCUMBLE_CHECK(here < input_.styles);
-      if (!rows.extents.empty()) rows.extents[here] = Around(rows.extents[here], {x0 + from, y, x0 + to, y + 1});
+      if (!rows.extents.empty()) {
+        int from = first, to = end;
+        while (!covered[from]) ++from;
+        while (!covered[to - 1]) --to;
+        rows.extents[here] = Around(rows.extents[here], {x0 + from, y, x0 + to, y + 1});
+      }
       const auto listed = [&](const auto& one) { return one.first == here; };
       if (std::none_of(rows.tiles.begin() + std::ptrdiff_t(known), rows.tiles.end(), listed)) {
         rows.tiles.push_back({here, tile});
@@ -113,14 +140,14 @@ class Starter {
   const int width_;
   std::span<const float> coverage_;
   SourceField* field_;
-  ActiveRows active_;
+  const ActiveRows* covered_;
   Picture& out_;
 };
 
 }  // namespace
 
-void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& active, Picture& out, StartedRows& rows) {
-  Starter(input, nullptr, active, out).Start(y0, y1, rows);
+void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& covered, Picture& out, StartedRows& rows) {
+  Starter(input, nullptr, &covered, out).Start(y0, y1, rows);
 }
 
 FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out) {
@@ -134,7 +161,9 @@ FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<s
     StartedRows& rows = bands[std::size_t(b)];
     if (input.map) rows.extents.resize(input.styles);
     const int y0 = b * kTileHeight, y1 = std::min(height, y0 + kTileHeight);
-    Starter(input, &field, {active.data(), width}, out).Start(y0, y1, rows);
+    const ActiveRows all{active.data(), width};
+    if (input.map) std::fill_n(all.At(0, y0), std::size_t(y1 - y0) * width, std::uint8_t{0});
+    Starter(input, &field, input.map ? nullptr : &all, out).Start(y0, y1, rows);
   });
   FrameStart start;
   for (const StartedRows& band : bands) start.softly_covered = start.softly_covered || band.soft;
@@ -151,16 +180,13 @@ FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<s
   return start;
 }
 
-void ActivateTile(const FrameInput& input, int style, const Region& tile, const ActiveRows& active) {
-  const float* coverage = input.guides.Plane(Layer::kCoverage).data();
+void ActivateTile(const FrameInput& input, int style, const Region& tile, const ActiveRows& covered,
+                  const ActiveRows& active) {
   for (int y = tile.y0; y < tile.y1; ++y) {
-    const std::size_t begin = input.guides.Index(tile.x0, y);
-    const float* covered = coverage + begin;
-    const std::uint16_t* painter = input.map->style.data() + begin;
+    const std::uint16_t* painter = input.map->style.data() + input.guides.Index(tile.x0, y);
+    const std::uint8_t* some = covered.At(tile.x0, y);
     std::uint8_t* out = active.At(tile.x0, y);
-    for (int i = 0; i < tile.x1 - tile.x0; ++i) {
-      out[i] = static_cast<std::uint8_t>((covered[i] > 0.0f) & (painter[i] == style));
-    }
+    for (int i = 0; i < tile.x1 - tile.x0; ++i) out[i] = some[i] & static_cast<std::uint8_t>(painter[i] == style);
   }
 }
 
@@ -169,9 +195,19 @@ void DeactivateTile(const Region& tile, const ActiveRows& active) {
 }
 
 void Activate(const FrameInput& input, int style, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active) {
-  const ActiveRows rows{active.data(), input.guides.width()};
+  const auto coverage = input.guides.Plane(Layer::kCoverage);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size(), 16), [&](const auto& some) {
-    for (std::size_t t = some.begin(); t != some.end(); ++t) ActivateTile(input, style, tiles[t], rows);
+    for (std::size_t t = some.begin(); t != some.end(); ++t) {
+      for (int y = tiles[t].y0; y < tiles[t].y1; ++y) {
+        const std::size_t begin = input.guides.Index(tiles[t].x0, y);
+        const float* covered = coverage.data() + begin;
+        const std::uint16_t* painter = input.map->style.data() + begin;
+        std::uint8_t* out = active.data() + begin;
+        for (int i = 0; i < tiles[t].x1 - tiles[t].x0; ++i) {
+          out[i] = static_cast<std::uint8_t>((covered[i] > 0.0f) & (painter[i] == style));
+        }
+      }
+    }
   });
 }
 

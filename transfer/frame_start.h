@@ -22,7 +22,7 @@ struct FrameInput {
 struct FrameStart {
   std::vector<Region> extents;             // the rectangle around each style's covered pixels
   std::vector<std::vector<Region>> tiles;  // by style, with a map only: small rectangles that hold all its pixels
-  bool softly_covered = false;             // somewhere in the region coverage is between 0 and 1
+  bool softly_covered = false;             // somewhere that is painted coverage is between 0 and 1
 };
 
 // A plane of bytes by pixel that says who is painted, of all rows of the picture or of some.
@@ -48,18 +48,18 @@ void Activate(const FrameInput& input, int style, const std::vector<Region>& til
 void Deactivate(const FrameInput& input, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
 
 
-// The same of some rows alone, by one thread, without a field: what StartFrame says of `active` and `out` holds for these
-// rows, `out` having its size.
+// The same of some rows alone, by one thread, without a field: what StartFrame says of `out` holds for these rows, `out`
+// having its size, and `covered` is 1 where coverage is above 0. Adds to `rows`.
 struct StartedRows {
   std::vector<Region> extents;                           // by style, of those that there is room for
   std::vector<std::pair<std::uint16_t, Region>> tiles;  // styles, without a map 0, and where in these rows they are
-  bool soft = false;  // somewhere coverage is between 0 and 1
+  bool soft = false;                                     // somewhere that is painted coverage is between 0 and 1
 };
-// Adds to `rows`.
-void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& active, Picture& out, StartedRows& rows);
+void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& covered, Picture& out, StartedRows& rows);
 
-// With a map, in these rows.
-void ActivateTile(const FrameInput& input, int style, const Region& tile, const ActiveRows& active);
+// With a map: `active` tells the covered pixels of a style in a tile, or none any more.
+void ActivateTile(const FrameInput& input, int style, const Region& tile, const ActiveRows& covered,
+                  const ActiveRows& active);
 void DeactivateTile(const Region& tile, const ActiveRows& active);
 
 }  // namespace scumble::internal

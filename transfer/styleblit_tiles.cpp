@@ -109,6 +109,8 @@ class TileMatcher {
     tile_ = {x0, std::max(job.y0, input_.region.y0), std::min(field_.width, x0 + kTileWidth),
              std::min(job.y1, input_.region.y1)};
     blocks_ = (tile_.x1 - tile_.x0 + kBlock - 1) / kBlock;
+    first_block_ = (std::max(job.x0, x0) - x0) / kBlock;
+    end_block_ = std::min(blocks_, (job.x1 - x0 + kBlock - 1) / kBlock);
   }
 
   void Match() {
@@ -146,7 +148,7 @@ class TileMatcher {
         TakeOwn(open_[k] * kBlock + std::countr_zero(left));
       }
     }
-    for (int block = 0; block < blocks_; ++block) Store(block, i + std::size_t(block) * kBlock);
+    for (int block = first_block_; block < end_block_; ++block) Store(block, i + std::size_t(block) * kBlock);
   }
 
   // In a tile where nothing is wanted there is nothing to make ready.
@@ -164,7 +166,7 @@ class TileMatcher {
     const int width = tile_.x1 - tile_.x0;
     const std::uint8_t* const wanted = wanted_ + i;
     int open = 0;
-    for (int block = 0; block < blocks_; ++block) {
+    for (int block = first_block_; block < end_block_; ++block) {
       const int lanes = std::min(kBlock, width - block * kBlock);
       const std::uint8_t* const bytes = wanted + block * kBlock;
       const int x = row.x + block * kBlock;
@@ -506,7 +508,7 @@ class TileMatcher {
   std::vector<TileSeeds>& levels_;
   SourceField& field_;
   const bool squares_, light_counts_;
-  int blocks_ = 0;
+  int blocks_, first_block_, end_block_;  // all of a row, and those that are looked at
   Row row_;
   int open_[Row::kBlocks + 1];  // blocks with pixels that are not settled
   int groups_ = 0;
@@ -554,8 +556,9 @@ bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgres
       const int row = first_row + t / columns;
       TileScratch& scratch = scratches.local();
       scratch.begun = false;
-      MatchTile({input, exemplar, first_column + t % columns, row * kTileHeight, (row + 1) * kTileHeight, input.seed_map,
-                 wanted, scratch, field});
+      const int column = first_column + t % columns;
+      MatchTile({input, exemplar, column, column * kTileWidth, (column + 1) * kTileWidth, row * kTileHeight,
+                 (row + 1) * kTileHeight, input.seed_map, wanted, scratch, field});
       if (t % columns != 0) continue;
       progress.Finished(std::min(region.y1, (row + 1) * kTileHeight) - std::max(region.y0, row * kTileHeight));
     }

@@ -141,7 +141,7 @@ class Run {
       if (IsEdgeAware(style)) part.edges.emplace(EdgesOf(style, {}));
     }
     internal::RowProgress progress(options_.progress, 0.0, 1.0 - kComposeShare, std::max(1, region_.y1 - region_.y0));
-    const internal::BandResult result = internal::PaintByBands(frame_, parts, out_, progress);
+    const internal::BandResult result = internal::PaintByBands(frame_, parts, scratch_.bands, out_, progress);
     if (!result.finished) return CancelledError();
     start_.softly_covered = result.softly_covered;
     const double ms = watch.Lap();
@@ -331,6 +331,11 @@ Status TransferAll(std::span<const PreparedStyle* const> styles, const StyleMap*
 }
 
 }  // namespace
+
+TransferScratch::TransferScratch() = default;
+TransferScratch::~TransferScratch() = default;
+TransferScratch::TransferScratch(TransferScratch&&) = default;
+TransferScratch& TransferScratch::operator=(TransferScratch&&) = default;
 
 Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
                 TransferScratch& scratch, Picture& out) {
