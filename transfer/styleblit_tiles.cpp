@@ -486,6 +486,8 @@ class TileMatcher {
       std::memcpy(field_.x.data() + i, row_.source_x + from, kBlock * sizeof row_.source_x[0]);
       std::memcpy(field_.y.data() + i, row_.source_y + from, kBlock * sizeof row_.source_y[0]);
       StoreHow(row_.how + from, field_.level.data() + i, field_.exemplar.data() + i);
+    } else if (lanes != 0 && from + kBlock <= tile_.x1 - tile_.x0) {
+      StoreLanes(from, lanes, i);
     } else {
       for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left), place = from + lane;
@@ -495,6 +497,23 @@ class TileMatcher {
     if (field_.moved.empty()) return;
     for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
       field_.moved[i + std::countr_zero(left)] = row_.moved[from + std::countr_zero(left)];
+    }
+  }
+
+  // The same of some lanes; the others are of this tile too.
+  HWY_INLINE void StoreLanes(int from, std::uint32_t lanes, std::size_t i) const {
+    std::int8_t level[kBlock];
+    std::uint8_t exemplar[kBlock];
+    StoreHow(row_.how + from, level, exemplar);
+    for (int k = 0; k < kBlock; k += static_cast<int>(hn::Lanes(kShorts))) {
+      const auto mask = MaskFrom(kShorts, lanes >> k);
+      StoreSome(kShorts, mask, hn::LoadU(kShorts, row_.source_x + from + k), field_.x.data() + i + k);
+      StoreSome(kShorts, mask, hn::LoadU(kShorts, row_.source_y + from + k), field_.y.data() + i + k);
+    }
+    for (int k = 0; k < kBlock; k += static_cast<int>(hn::Lanes(kBytes))) {
+      const hn::RebindToSigned<decltype(kBytes)> levels;
+      StoreSome(levels, MaskFrom(levels, lanes >> k), hn::LoadU(levels, level + k), field_.level.data() + i + k);
+      StoreSome(kBytes, MaskFrom(kBytes, lanes >> k), hn::LoadU(kBytes, exemplar + k), field_.exemplar.data() + i + k);
     }
   }
 
