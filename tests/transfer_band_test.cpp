@@ -196,32 +196,19 @@ TEST(Bands, OneStyleThatNeedsTheFieldBringsItForAll) {
   }
 }
 
-TEST(Bands, ProgressGoesOnAndCanStop) {
+TEST(Bands, StagesTakeTime) {
   const GuideSet guides = RandomGuides(120, 200, Cover::kHoles, 3);
   const auto prepared = Prepare(StyleOf(0, 1, 4), 200);
   ASSERT_TRUE(prepared.ok());
-  for (const int threads : {1, 3}) {
-    TransferOptions options;
-    options.threads = threads;
-    double last = 0.0;
-    int calls = 0;
-    options.progress = [&](double share) {
-      EXPECT_GE(share, last);
-      last = share, ++calls;
-      return true;
-    };
-    TransferScratch scratch;
-    Picture out;
-    ASSERT_TRUE(Transfer(*prepared, guides, options, scratch, out).ok());
-    EXPECT_DOUBLE_EQ(last, 1.0);
-    EXPECT_GT(calls, 4);
-    EXPECT_GT(scratch.times.match_ms, 0.0);
-    EXPECT_GT(scratch.times.vote_ms, 0.0);
-    options.progress = [&](double share) { return share < 0.3; };
-    const Status stopped = Transfer(*prepared, guides, options, scratch, out);
-    ASSERT_FALSE(stopped.ok());
-    EXPECT_EQ(stopped.error().kind, ErrorKind::kCancelled);
-  }
+  TransferScratch scratch;
+  Picture out;
+  int calls = 0;
+  TransferOptions options;
+  options.progress = [&calls](double) { return ++calls > 0; };
+  ASSERT_TRUE(Transfer(*prepared, guides, options, scratch, out).ok());
+  EXPECT_GE(calls, 200 / 24) << "of rows that are done together";
+  EXPECT_GT(scratch.times.match_ms, 0.0);
+  EXPECT_GT(scratch.times.vote_ms, 0.0);
 }
 
 }  // namespace

@@ -24,6 +24,9 @@
 
 namespace scumble::internal {
 
+// Every thread keeps seeds for every style, some 100 kB for each 512 columns of the picture.
+inline constexpr std::size_t kMostBandStyles = 16;
+
 // How one style is matched by StyleBlit and voted on.
 struct BandStyle {
   MatchInput match;  // with `covered` instead of `active`, and the frame's region grown by the radius; without a GuideSpace

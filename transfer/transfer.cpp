@@ -119,7 +119,8 @@ class Run {
  private:
   // Whether nothing but the votes needs the sources, and only those of a few rows at a time.
   bool GoesByBands(std::span<const PreparedStyle* const> styles) const {
-    return !options_.keep_field && options_.match_step <= 1 && std::ranges::all_of(styles, [](const PreparedStyle* style) {
+    return !options_.keep_field && options_.match_step <= 1 && styles.size() <= internal::kMostBandStyles &&
+           std::ranges::all_of(styles, [](const PreparedStyle* style) {
       const TransferSettings& settings = style->settings;
       return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 && !style->space &&
              style->tones.empty() && style->rims.empty() && style->blend_radius <= internal::kSmallRadius;
