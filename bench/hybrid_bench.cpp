@@ -28,7 +28,9 @@ Painted Paint(Style style, const GuideSet& guides) {
   const PreparedStyle prepared = OrStop(Prepare(style, guides.height()));
   TransferScratch scratch;
   Painted painted;
-  OrStop(Transfer(prepared, guides, {}, scratch, painted.picture));
+  TransferOptions options;
+  options.keep_field = true;
+  OrStop(Transfer(prepared, guides, options, scratch, painted.picture));
   painted.field = std::move(scratch.field);
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {

@@ -154,7 +154,10 @@ void MeasureFrame(const Frame& frame, const PerformanceOptions& options, Report&
   Engine one(PlainStyle(), height, 1), two(PlainStyle(), height, 2), renewed(Renewed(PlainStyle()), height, 1);
   YardstickRun yardstick(frame, one);
   CheckSamePictures(frame, yardstick, one, two, renewed);
+  one.options.keep_field = true;
+  one.Paint(frame);
   const double coherence = CoherencePercent(frame.guides, one.field().x, one.field().y);
+  one.options.keep_field = false;
   const double yardstick_coherence = CoherencePercent(frame.guides, yardstick.sources());
 
   PlainCopy copy(frame);

@@ -35,7 +35,7 @@ class Engine {
   TransferOptions options;
   const PreparedStyle& prepared() const { return styles_.front(); }
   const Picture& picture() const { return picture_; }
-  const SourceField& field() const { return scratch_.field; }
+  const SourceField& field() const { return scratch_.field; }  // where the options keep it
   const StageTimes& stages() const { return scratch_.times; }  // of the last frame
 
  private:

@@ -101,6 +101,7 @@ void Measure(const std::string& scene, const std::string& style_name) {
       TransferOptions options;
       options.threads = 1;
       options.match_step = way.step;
+      options.keep_field = true;
       OrStop(Transfer(prepared, *way.guides, options, scratch, picture));
       way.match_ms.push_back(scratch.times.match_ms);
       way.field = scratch.field;

@@ -47,7 +47,9 @@ Figures Measure(Style style, double variety, const GuideSet& guides, const std::
   if (!prepared) return std::fprintf(stderr, "%s\n", prepared.error().message.c_str()), Figures{};
   TransferScratch scratch;
   Picture picture;
-  if (const Status done = Transfer(*prepared, guides, {}, scratch, picture); !done) {
+  TransferOptions options;
+  options.keep_field = true;
+  if (const Status done = Transfer(*prepared, guides, options, scratch, picture); !done) {
     return std::fprintf(stderr, "%s\n", done.error().message.c_str()), Figures{};
   }
   if (!keep.empty()) {

@@ -411,6 +411,7 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   transfer.threads = globals.threads;
   transfer.match_step = options.upsample;
   transfer.over = over;
+  transfer.keep_field = globals.json || FindExplanation(options.show);
   TransferScratch& scratch = memory.scratch;
   Picture picture;
   std::vector<double> match, vote, compose;

@@ -385,6 +385,36 @@ TEST(StyleMap, ObjectsGoBeforeMaterialsAndBothBeforeTheDefault) {
   EXPECT_EQ(map.style, (std::vector<std::uint16_t>{5, 6, 7}));
 }
 
+// Against a look-up for each pixel, in more pixels than one thread takes at once.
+TEST(StyleMap, EveryPixelIsLookedUp) {
+  GuideSet guides(401, 331);
+  for (const Layer layer : {Layer::kObject, Layer::kMaterial}) guides.Add(layer);
+  StyleAssignment assignment{{{0, 3}, {2, 5}, {7, 9}}, {{0, 4}, {1, 8}, {9, 2}}, 6};
+  RankedAssignment ranked{{{1, {0, 11}}, {2, {2, 12}}}, {{3, {1, 13}}, {0, {2, 14}}}};
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    guides.Plane(Layer::kObject)[i] = static_cast<float>(Hash(i / 5, 1) % 9);
+    guides.Plane(Layer::kMaterial)[i] = Hash(i, 2) % 50 == 0 ? std::nanf("") : static_cast<float>(Hash(i / 3, 3) % 10) - 1.0f;
+  }
+  StyleMap map = MapStyles(guides, assignment);
+  const StyleMap before = map;
+  std::size_t pixels[3] = {}, expected[3] = {};
+  AssignStyles(guides, ranked, map, pixels);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+    const float material = guides.Plane(Layer::kMaterial)[i];
+    const auto o = static_cast<std::uint32_t>(guides.Plane(Layer::kObject)[i]);
+    const std::uint32_t m = material > 0.0f ? static_cast<std::uint32_t>(material) : 0;
+    const std::uint16_t style = assignment.of_object.contains(o)     ? assignment.of_object[o]
+                                : assignment.of_material.contains(m) ? assignment.of_material[m]
+                                                                     : assignment.otherwise;
+    ASSERT_EQ(before.style[i], style) << i;
+    const RankedStyle* best = ranked.of_object.contains(o) ? &ranked.of_object[o] : nullptr;
+    if (ranked.of_material.contains(m) && (!best || ranked.of_material[m].rank > best->rank)) best = &ranked.of_material[m];
+    if (best) ++expected[best->rank];
+    ASSERT_EQ(map.style[i], best ? best->style : style) << i;
+  }
+  for (int rank = 0; rank < 3; ++rank) EXPECT_EQ(pixels[rank], expected[rank]);
+}
+
 TEST(StyleMap, ThousandsOfObjectsWithAStyleEach) {
   const int size = 256, cell = 4;  // 4096 objects
   GuideSet guides = LitHills(size, size);

@@ -103,9 +103,15 @@ inline Transferred MustTransfer(const Style& style, const GuideSet& guides, Tran
   EXPECT_TRUE(prepared.ok()) << (prepared.ok() ? "" : prepared.error().message);
   Transferred result;
   TransferScratch scratch;
+  options.keep_field = true;
   const Status done = Transfer(*prepared, guides, options, scratch, result.picture);
   EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().message);
   result.field = std::move(scratch.field);
+  // The other way to paint, which keeps no field, is held against this one in passing.
+  options.keep_field = false;
+  Picture without;
+  EXPECT_TRUE(Transfer(*prepared, guides, options, scratch, without).ok());
+  EXPECT_EQ(without.rgba, result.picture.rgba);
   return result;
 }
 

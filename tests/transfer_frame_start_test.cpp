@@ -65,6 +65,7 @@ TEST(FrameStart, NothingOfTheFrameBeforeIsLeft) {
         for (const bool mapped : {false, true}) {
           TransferOptions options;
           options.over = background;
+          options.keep_field = true;
           const auto run = [&](TransferScratch& scratch, Picture& out) {
             const Status done = mapped ? Transfer(styles, map, guides, options, scratch, out)
                                        : Transfer(prepared[0], guides, options, scratch, out);

@@ -34,6 +34,7 @@ void ExpectSame(const GuideSet& guides, Style style, std::int64_t frame = 0, std
   ASSERT_TRUE(prepared.ok());
   TransferOptions options;
   options.frame = frame, options.seed = seed;
+  options.keep_field = true;
   TransferScratch scratch;
   Picture picture;
   ASSERT_TRUE(Transfer(*prepared, guides, options, scratch, picture).ok());

@@ -100,7 +100,8 @@ void ForEachRun(std::span<const std::uint8_t> active, const Run& run) {
 void ColorizeRow(const ColorizeInput& input, int y, int x0, int x1, Picture& picture) {
   if (x1 <= x0) return;
   const std::size_t row = input.guides.Index(x0, y);
-  ForEachRun(input.active.subspan(row, std::size_t(x1 - x0)), [&](std::size_t from, std::size_t to) {
+  const std::size_t begin = input.guides.Index(x0, y - input.first_row);
+  ForEachRun(input.active.subspan(begin, std::size_t(x1 - x0)), [&](std::size_t from, std::size_t to) {
     const float* albedo[3];
     for (int c = 0; c < 3; ++c) albedo[c] = input.guides.Plane(Layer::kAlbedo, c).data() + row + from;
     std::uint16_t* texels = picture.At(x0, y) + 4 * from;

@@ -37,6 +37,7 @@ struct ColorizeInput {
   const GuideSet& guides;                // with albedo
   std::span<const std::uint8_t> active;  // 1: a pixel that this style paints
   Tint tint;
+  int first_row = 0;  // that `active` begins with
 };
 
 // Tints the active ones of the pixels x0 … x1 - 1 of a row in place. Rows and pieces of rows are independent of each other.

@@ -27,7 +27,9 @@ struct PixelGuide {
 // What a match looks at. `field` has the picture's size already.
 struct MatchInput {
   const GuideSet& guides;
-  std::span<const std::uint8_t> active;  // 1: a pixel that this style paints
+  // 1: a pixel that this style paints. Empty where there is no such plane: then `covered` says it, and Paints alone must be
+  // asked.
+  std::span<const std::uint8_t> active;
   const PreparedExemplar& exemplar;
   const Illumination& illumination;
   std::span<const float> luminance;  // exposed; empty where the illumination is not active
@@ -42,7 +44,17 @@ struct MatchInput {
   const GuideSpace* space = nullptr;  // null: normals alone are matched by, each counting 1
   float brightness = 1.0f;            // of the scene's radiance in that space
   SeedMap* seed_map = nullptr;        // of these seeds and the picture's size; null: nothing is kept
+  // Pixels of coverage above 0 that this style paints; without painters it paints all.
+  struct Covered {
+    std::span<const float> coverage;
+    std::span<const std::uint16_t> painters;  // by pixel, as a StyleMap has them
+    int style = 0;
+  } covered = {};
 
+  bool Paints(std::size_t i) const {
+    if (!active.empty()) return active[i] != 0;
+    return covered.coverage[i] > 0.0f && (covered.painters.empty() || covered.painters[i] == covered.style);
+  }
   bool Wants(std::size_t i) const { return wanted.empty() ? active[i] != 0 : wanted[i] != 0; }
   float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }
 

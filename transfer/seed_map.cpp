@@ -6,15 +6,20 @@ namespace scumble::internal {
 
 static_assert(kTileWidth % kBlock == 0 && kTileWidth / kBlock <= 32);
 
-SeedMap::SeedMap(int width, int height) : columns_((width + kTileWidth - 1) / kTileWidth) {
-  const int rows = (height + kTileHeight - 1) / kTileHeight;
-  tiles_.resize(std::size_t(columns_) * rows * kMaxSpreadLevel);
+SeedMap::SeedMap(int width, int height)
+    : columns_((width + kTileWidth - 1) / kTileWidth),
+      tiles_(std::size_t(columns_) * ((height + kTileHeight - 1) / kTileHeight) * kMaxSpreadLevel) {}
+
+SeedMap::~SeedMap() {
+  for (const std::atomic<TileMap*>& tile : tiles_) delete tile.load();
 }
 
 TileMap& SeedMap::Of(int tile_x, int tile_y, int level) {
-  std::unique_ptr<TileMap>& map = tiles_[(std::size_t(tile_y) * columns_ + tile_x) * kMaxSpreadLevel + level - 1];
-  if (!map) map = std::make_unique_for_overwrite<TileMap>();
-  return *map;
+  std::atomic<TileMap*>& tile = tiles_[(std::size_t(tile_y) * columns_ + tile_x) * kMaxSpreadLevel + level - 1];
+  TileMap* map = tile.load(std::memory_order_acquire);
+  if (map) return *map;
+  auto made = std::make_unique_for_overwrite<TileMap>();
+  return tile.compare_exchange_strong(map, made.get()) ? *made.release() : *map;
 }
 
 void SeedMaps::BeginFrame() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -30,18 +31,21 @@ struct TileMap {
   std::array<std::array<Block, kTileWidth / kBlock>, kTileHeight> blocks;
 };
 
-// Memory is taken tile by tile and level by level as they are needed: 1.13 bytes a pixel and level. Different tiles may
-// be used by different threads.
+// Memory is taken tile by tile and level by level as they are needed: 1.13 bytes a pixel and level. Different rows may be
+// used by different threads, those of one tile too.
 class SeedMap {
  public:
   SeedMap(int width, int height);
+  ~SeedMap();
+  SeedMap(const SeedMap&) = delete;
+  SeedMap& operator=(const SeedMap&) = delete;
 
   // Levels 1 … kMaxSpreadLevel.
   TileMap& Of(int tile_x, int tile_y, int level);
 
  private:
   int columns_;
-  std::vector<std::unique_ptr<TileMap>> tiles_;
+  std::vector<std::atomic<TileMap*>> tiles_;  // owned
 };
 
 // The maps of a sequence. One is made when the same seeds are asked for in a second frame: where jitter is renewed with

@@ -193,21 +193,27 @@ class VoteTile {
 
 }  // namespace
 
+void SmallVotes::Vote(const VoteInput& input, Picture& out) const {
+  const Region& region = input.region;
+  for (int x0 = region.x0, x1; x0 < region.x1; x0 = x1) {
+    x1 = std::min(region.x1, 64 * (x0 / 64 + kTileWords));
+    VoteTile(input, texels_, ways_, {x0, region.y0, x1, region.y1}).Run(out);
+  }
+}
+
 bool VoteSmall(const VoteInput& input, Picture& out, RowProgress& progress) {
   const Region& region = input.region;
   if (region.empty()) return !progress.cancelled();
-  const TexelPlanes texels(input.exemplar);
-  const JoinedWays ways(input.radius);
+  const SmallVotes votes(input.exemplar, input.radius);
   tbb::parallel_for(tbb::blocked_range<int>(0, (region.y1 - region.y0 + kTileRows - 1) / kTileRows),
                     [&](const auto& bands) {
                       for (int band = bands.begin(); band != bands.end(); ++band) {
                         if (progress.cancelled()) return;
-                        const int y0 = region.y0 + band * kTileRows, y1 = std::min(region.y1, y0 + kTileRows);
-                        for (int x0 = region.x0, x1; x0 < region.x1; x0 = x1) {
-                          x1 = std::min(region.x1, 64 * (x0 / 64 + kTileWords));
-                          VoteTile(input, texels, ways, {x0, y0, x1, y1}).Run(out);
-                        }
-                        progress.Finished(y1 - y0);
+                        VoteInput rows = input;
+                        rows.region.y0 = region.y0 + band * kTileRows;
+                        rows.region.y1 = std::min(region.y1, rows.region.y0 + kTileRows);
+                        votes.Vote(rows, out);
+                        progress.Finished(rows.region.y1 - rows.region.y0);
                       }
                     });
   return !progress.cancelled();

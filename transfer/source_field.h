@@ -15,7 +15,8 @@ struct SourceField {
   static constexpr std::int8_t kNoSource = -1;
 
   int width = 0;
-  int height = 0;
+  int height = 0;     // of the picture
+  int first_row = 0;  // that is held; a field that is never there as a whole (band_transfer.h) holds some rows only
   std::vector<std::int16_t> x;
   std::vector<std::int16_t> y;
   std::vector<std::int8_t> level;
@@ -23,14 +24,16 @@ struct SourceField {
   std::vector<glm::vec3> moved;  // by what each seed moved its source's guide (variety); empty where nobody asks
 
   // The size alone: values are what they were or anything, and nothing is moved.
-  void Resize(int new_width, int new_height) {
-    width = new_width, height = new_height;
-    const std::size_t count = std::size_t(width) * height;
+  void Resize(int new_width, int new_height) { ResizeRows(new_width, new_height, new_height); }
+  // The same with room for some rows only, from row 0 on.
+  void ResizeRows(int new_width, int new_height, int rows) {
+    width = new_width, height = new_height, first_row = 0;
+    const std::size_t count = std::size_t(width) * rows;
     x.resize(count), y.resize(count), level.resize(count), exemplar.resize(count);
     moved.clear();
   }
   void Reset(int new_width, int new_height) {
-    width = new_width, height = new_height;
+    width = new_width, height = new_height, first_row = 0;
     const std::size_t count = std::size_t(width) * height;
     x.assign(count, 0), y.assign(count, 0), level.assign(count, kNoSource), exemplar.assign(count, 0);
     moved.clear();
@@ -39,7 +42,7 @@ struct SourceField {
     x[i] = static_cast<std::int16_t>(source_x), y[i] = static_cast<std::int16_t>(source_y);
     exemplar[i] = static_cast<std::uint8_t>(source_exemplar), level[i] = static_cast<std::int8_t>(settled);
   }
-  std::size_t Index(int px, int py) const { return std::size_t(py) * width + px; }
+  std::size_t Index(int px, int py) const { return std::size_t(py - first_row) * width + px; }
 };
 
 }  // namespace scumble

@@ -97,20 +97,24 @@ class TileMatcher {
   explicit TileMatcher(const TileJob& job)
       : input_(job.input),
         rows_(job.exemplar),
+        wanted_(job.wanted.data()),
+        map_(job.map),
         tile_x_(job.tile_x),
-        tile_y_(job.tile_y),
+        scratch_(job.scratch),
         levels_(job.scratch.levels),
         field_(job.field),
         squares_(input_.test.metric() == ThresholdMetric::kL2),
         light_counts_(!input_.luminance.empty() && input_.illumination.weight() > 0.0f) {
-    const int x0 = tile_x_ * kTileWidth, y0 = tile_y_ * kTileHeight;
-    tile_ = {x0, y0, std::min(field_.width, x0 + kTileWidth), std::min(field_.height, y0 + kTileHeight)};
+    const int x0 = tile_x_ * kTileWidth;
+    tile_ = {x0, std::max(job.y0, input_.region.y0), std::min(field_.width, x0 + kTileWidth),
+             std::min(job.y1, input_.region.y1)};
     blocks_ = (tile_.x1 - tile_.x0 + kBlock - 1) / kBlock;
+    first_block_ = (std::max(job.x0, x0) - x0) / kBlock;
+    end_block_ = std::min(blocks_, (job.x1 - x0 + kBlock - 1) / kBlock);
   }
 
   void Match() {
-    const int end = std::min(tile_.y1, input_.region.y1);
-    for (int y = std::max(tile_.y0, input_.region.y0); y < end; ++y) MatchRow(y);
+    for (int y = tile_.y0; y < tile_.y1; ++y) MatchRow(y);
   }
 
  private:
@@ -125,7 +129,7 @@ class TileMatcher {
     const std::size_t i = field_.Index(tile_.x0, y);
     int open = ReadRow(y, i);
     if (open == 0) return;
-    if (!begun_) Begin();
+    if (!scratch_.begun) Begin();
     for (TileSeeds& seeds : levels_) {
       if (open == 0) break;
       groups_ = 0;
@@ -144,12 +148,12 @@ class TileMatcher {
         TakeOwn(open_[k] * kBlock + std::countr_zero(left));
       }
     }
-    for (int block = 0; block < blocks_; ++block) Store(block, i + std::size_t(block) * kBlock);
+    for (int block = first_block_; block < end_block_; ++block) Store(block, i + std::size_t(block) * kBlock);
   }
 
   // In a tile where nothing is wanted there is nothing to make ready.
   void Begin() {
-    begun_ = true;
+    scratch_.begun = true;
     levels_.resize(static_cast<std::size_t>(std::max(0, input_.levels - input_.least_level)));
     int level = input_.levels;
     for (TileSeeds& seeds : levels_) seeds.Reset(input_, --level, tile_.x0);
@@ -160,9 +164,9 @@ class TileMatcher {
     Row& row = row_;
     row.x = tile_.x0, row.y = y;
     const int width = tile_.x1 - tile_.x0;
-    const std::uint8_t* const wanted = (input_.wanted.empty() ? input_.active : input_.wanted).data() + i;
+    const std::uint8_t* const wanted = wanted_ + i;
     int open = 0;
-    for (int block = 0; block < blocks_; ++block) {
+    for (int block = first_block_; block < end_block_; ++block) {
       const int lanes = std::min(kBlock, width - block * kBlock);
       const std::uint8_t* const bytes = wanted + block * kBlock;
       const int x = row.x + block * kBlock;
@@ -173,8 +177,9 @@ class TileMatcher {
       open += bits != 0;
     }
     if (open == 0) return 0;
-    for (int c = 0; c < 3; ++c) row.normal[c] = Values(input_.guides.Plane(Layer::kNormal, c).data() + i, c);
-    row.light = input_.luminance.empty() ? nullptr : Values(input_.luminance.data() + i, 3);
+    const std::size_t pixel = input_.guides.Index(tile_.x0, y);
+    for (int c = 0; c < 3; ++c) row.normal[c] = Values(input_.guides.Plane(Layer::kNormal, c).data() + pixel, c);
+    row.light = input_.luminance.empty() ? nullptr : Values(input_.luminance.data() + pixel, 3);
     if (!field_.moved.empty()) std::fill_n(row.moved, width, glm::vec3(0.0f));
     return open;
   }
@@ -226,8 +231,8 @@ class TileMatcher {
   }
 
   void GroupBySpread(TileSeeds& seeds, int open) {
-    if (input_.seed_map) {
-      GroupByMap(seeds, input_.seed_map->Of(tile_x_, tile_y_, seeds.level()), open);
+    if (map_) {
+      GroupByMap(seeds, map_->Of(tile_x_, row_.y / kTileHeight, seeds.level()), open);
       return;
     }
     constexpr bool kPairs = hn::MaxLanes(kPairWords) == 2 * kBlock;
@@ -275,7 +280,7 @@ class TileMatcher {
   }
 
   void GroupByMap(TileSeeds& seeds, TileMap& map, int open) {
-    const int level = seeds.level(), cell_row = row_.y >> level, y = row_.y - tile_.y0;
+    const int level = seeds.level(), cell_row = row_.y >> level, y = row_.y % kTileHeight;
     const int above[] = {seeds.FirstOf(cell_row - 1), seeds.FirstOf(cell_row), seeds.FirstOf(cell_row + 1)};
     int seed_of_cell[9];
     for (int cell = 0; cell < 9; ++cell) seed_of_cell[cell] = above[cell / 3] + cell % 3 - 1;
@@ -481,6 +486,8 @@ class TileMatcher {
       std::memcpy(field_.x.data() + i, row_.source_x + from, kBlock * sizeof row_.source_x[0]);
       std::memcpy(field_.y.data() + i, row_.source_y + from, kBlock * sizeof row_.source_y[0]);
       StoreHow(row_.how + from, field_.level.data() + i, field_.exemplar.data() + i);
+    } else if (lanes != 0 && from + kBlock <= tile_.x1 - tile_.x0) {
+      StoreLanes(from, lanes, i);
     } else {
       for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
         const int lane = std::countr_zero(left), place = from + lane;
@@ -493,22 +500,41 @@ class TileMatcher {
     }
   }
 
+  // The same of some lanes; the others are of this tile too.
+  HWY_INLINE void StoreLanes(int from, std::uint32_t lanes, std::size_t i) const {
+    std::int8_t level[kBlock];
+    std::uint8_t exemplar[kBlock];
+    StoreHow(row_.how + from, level, exemplar);
+    for (int k = 0; k < kBlock; k += static_cast<int>(hn::Lanes(kShorts))) {
+      const auto mask = MaskFrom(kShorts, lanes >> k);
+      StoreSome(kShorts, mask, hn::LoadU(kShorts, row_.source_x + from + k), field_.x.data() + i + k);
+      StoreSome(kShorts, mask, hn::LoadU(kShorts, row_.source_y + from + k), field_.y.data() + i + k);
+    }
+    for (int k = 0; k < kBlock; k += static_cast<int>(hn::Lanes(kBytes))) {
+      const hn::RebindToSigned<decltype(kBytes)> levels;
+      StoreSome(levels, MaskFrom(levels, lanes >> k), hn::LoadU(levels, level + k), field_.level.data() + i + k);
+      StoreSome(kBytes, MaskFrom(kBytes, lanes >> k), hn::LoadU(kBytes, exemplar + k), field_.exemplar.data() + i + k);
+    }
+  }
+
   const MatchInput& input_;
   const ExemplarRows rows_;
-  const int tile_x_, tile_y_;
-  Region tile_;
-  bool begun_ = false;
+  const std::uint8_t* const wanted_;
+  SeedMap* const map_;
+  const int tile_x_;
+  Region tile_;  // what of it is matched
+  TileScratch& scratch_;
   std::vector<TileSeeds>& levels_;
   SourceField& field_;
   const bool squares_, light_counts_;
-  int blocks_ = 0;
+  int blocks_, first_block_, end_block_;  // all of a row, and those that are looked at
   Row row_;
   int open_[Row::kBlocks + 1];  // blocks with pixels that are not settled
   int groups_ = 0;
   Group group_[kTileWidth];
 };
 
-void MatchTile(const TileJob& job) { TileMatcher(job).Match(); }
+void MatchTileRows(const TileJob& job) { TileMatcher(job).Match(); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace scumble::internal
@@ -517,7 +543,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace scumble::internal {
 
-HWY_EXPORT(MatchTile);
+HWY_EXPORT(MatchTileRows);
+
+void MatchTile(const TileJob& job) { HWY_DYNAMIC_DISPATCH(MatchTileRows)(job); }
 
 void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Offer& taken) {
   const PixelPosition p = choice.p;
@@ -541,10 +569,15 @@ bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgres
   const int first_row = region.y0 / kTileHeight, rows = (region.y1 - 1) / kTileHeight + 1 - first_row;
   tbb::enumerable_thread_specific<TileScratch> scratches;
   const ExemplarRows exemplar = input.exemplar.Rows();
+  const std::span<const std::uint8_t> wanted = input.wanted.empty() ? input.active : input.wanted;
   tbb::parallel_for(tbb::blocked_range<int>(0, rows * columns, 1), [&](const auto& range) {
     for (int t = range.begin(); t != range.end() && !progress.cancelled(); ++t) {
       const int row = first_row + t / columns;
-      HWY_DYNAMIC_DISPATCH(MatchTile)({input, exemplar, first_column + t % columns, row, scratches.local(), field});
+      TileScratch& scratch = scratches.local();
+      scratch.begun = false;
+      const int column = first_column + t % columns;
+      MatchTile({input, exemplar, column, column * kTileWidth, (column + 1) * kTileWidth, row * kTileHeight,
+                 (row + 1) * kTileHeight, input.seed_map, wanted, scratch, field});
       if (t % columns != 0) continue;
       progress.Finished(std::min(region.y1, (row + 1) * kTileHeight) - std::max(region.y0, row * kTileHeight));
     }

@@ -8,18 +8,27 @@
 
 namespace scumble::internal {
 
-// Memory of one thread, kept from tile to tile.
+// Seeds of one column of tiles, for one thread. A pass over other rows than those that follow begins them anew.
 struct TileScratch {
   std::vector<TileSeeds> levels;  // from coarse to fine
+  bool begun = false;
 };
 
+// A piece of the picture, as wide as a tile.
 struct TileJob {
   const MatchInput& input;
   ExemplarRows exemplar;
-  int tile_x, tile_y;  // which tile: its corner stands at (tile_x · kTileWidth, tile_y · kTileHeight)
+  int tile_x;            // pixels from tile_x · kTileWidth on
+  int x0, x1;            // columns of the tile that are looked at
+  int y0, y1;            // rows, none above those that `scratch` was used for
+  SeedMap* map;          // null: nothing is looked up or kept
+  std::span<const std::uint8_t> wanted;  // by the field's index, 1: pixels to be matched
   TileScratch& scratch;
   SourceField& field;
 };
+
+// Matches the pixels of the job that are wanted and in the input's region.
+void MatchTile(const TileJob& job);
 
 // What a pixel of the tile takes where its nearest seed s offers paint that it accepts and stands on a flat surface: near
 // the border of two such seeds, that of the other if it suits better. `taken` comes with what s offers.

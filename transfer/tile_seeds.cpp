@@ -87,7 +87,7 @@ void TileSeeds::Fill(int index, TileOffer& offer) {
   const PixelPosition q = Position(index);
   if (q.x < 0 || q.y < 0 || q.x >= input_->guides.width() || q.y >= input_->guides.height()) return;
   const std::size_t i = input_->guides.Index(q.x, q.y);
-  if (!input_->active[i]) return;
+  if (!input_->Paints(i)) return;
   PixelGuide guide;
   guide.normal = {normal_[0][i], normal_[1][i], normal_[2][i]};
   guide.light = input_->LuminanceAt(i);

@@ -1,12 +1,16 @@
 #include "transfer/transfer.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "image/check.h"
 #include "image/exact_math.h"
 #include "image/stopwatch.h"
+#include "transfer/band_transfer.h"
 #include "transfer/colorize.h"
 #include "transfer/compose.h"
 #include "transfer/frame_start.h"
@@ -71,30 +75,21 @@ class Run {
         region_(options.region ? options.region->GrownBy(0, guides.width(), guides.height())
                                : Region{0, 0, guides.width(), guides.height()}),
         frame_{guides, map, styles, region_} {
-    Stopwatch watch;
     scratch.times = {};
     scratch.seed_maps.BeginFrame();
-    start_ = internal::StartFrame(frame_, scratch.field, scratch.active, out);
-    scratch.times.compose_ms += watch.Lap();
   }
 
-  Status Paint(const PreparedStyle& style, int index, double from, double to) {
-    const Region& extent = start_.extents[std::size_t(index)];
-    Region painted = Intersection(region_, extent);
-    int reach = style.blend_radius;  // the pixels around whose sources decide what is painted
-    // A painted edge may stand in the region while its object does not.
-    for (const RimPaint& rim : style.rims) reach = std::max(reach, internal::EdgeReach(rim.band()));
-    const Region near = Intersection(extent, region_.GrownBy(reach, guides_.width(), guides_.height()));
-    if (painted.empty() && (style.rims.empty() || near.empty())) return Ok();
-    if (painted.empty()) painted = {};
-    // Chunks of the brute force depend on every pixel above them, so it always runs over all of them.
-    const Region matched = style.settings.method == Method::kBruteForce ? extent : near;
-    if (!map_) return MatchAndVote(style, matched, painted, from, to);
-    const std::vector<Region>& tiles = start_.tiles[std::size_t(index)];
-    internal::Activate(frame_, index, tiles, scratch_.active);
-    const Status done = MatchAndVote(style, matched, painted, from, to);
-    internal::Deactivate(frame_, tiles, scratch_.active);
-    return done;
+  Status PaintAll(std::span<const PreparedStyle* const> styles) {
+    if (GoesByBands(styles)) return PaintByBands(styles);
+    Stopwatch watch;
+    start_ = internal::StartFrame(frame_, scratch_.field, scratch_.active, out_);
+    scratch_.times.compose_ms += watch.Lap();
+    const double share = (1.0 - kComposeShare) / static_cast<double>(styles.size());
+    for (std::size_t s = 0; s < styles.size(); ++s) {
+      const double from = share * static_cast<double>(s);
+      SCUMBLE_RETURN_IF_ERROR(Paint(*styles[s], static_cast<int>(s), from, from + share));
+    }
+    return Ok();
   }
 
   Status Finish(std::span<const PreparedStyle* const> styles) {
@@ -122,6 +117,58 @@ class Run {
   }
 
  private:
+  // Whether nothing but the votes needs the sources, and only those of a few rows at a time.
+  bool GoesByBands(std::span<const PreparedStyle* const> styles) const {
+    return !options_.keep_field && options_.match_step <= 1 && styles.size() <= internal::kMostBandStyles &&
+           std::ranges::all_of(styles, [](const PreparedStyle* style) {
+      const TransferSettings& settings = style->settings;
+      return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 && !style->space &&
+             style->tones.empty() && style->rims.empty() && style->blend_radius <= internal::kSmallRadius;
+    });
+  }
+
+  Status PaintByBands(std::span<const PreparedStyle* const> styles) {
+    scratch_.field.Resize(0, 0), scratch_.active.clear();
+    Stopwatch watch;
+    std::vector<internal::BandStyle> parts;
+    for (std::size_t s = 0; s < styles.size(); ++s) {
+      const PreparedStyle& style = *styles[s];
+      const Region matched = region_.GrownBy(style.blend_radius, guides_.width(), guides_.height());
+      internal::BandStyle& part = parts.emplace_back(InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style));
+      part.match.active = {};
+      part.match.covered = {guides_.Plane(Layer::kCoverage),
+                            map_ ? std::span<const std::uint16_t>(map_->style) : std::span<const std::uint16_t>(),
+                            static_cast<int>(s)};
+      if (IsEdgeAware(style)) part.edges.emplace(EdgesOf(style, {}));
+    }
+    internal::RowProgress progress(options_.progress, 0.0, 1.0 - kComposeShare, std::max(1, region_.y1 - region_.y0));
+    const internal::BandResult result = internal::PaintByBands(frame_, parts, scratch_.bands, out_, progress);
+    if (!result.finished) return CancelledError();
+    start_.softly_covered = result.softly_covered;
+    const double ms = watch.Lap();
+    scratch_.times = {ms * result.shares.match, ms * result.shares.vote, ms * result.shares.start};
+    return Ok();
+  }
+
+  Status Paint(const PreparedStyle& style, int index, double from, double to) {
+    const Region& extent = start_.extents[std::size_t(index)];
+    Region painted = Intersection(region_, extent);
+    int reach = style.blend_radius;  // the pixels around whose sources decide what is painted
+    // A painted edge may stand in the region while its object does not.
+    for (const RimPaint& rim : style.rims) reach = std::max(reach, internal::EdgeReach(rim.band()));
+    const Region near = Intersection(extent, region_.GrownBy(reach, guides_.width(), guides_.height()));
+    if (painted.empty() && (style.rims.empty() || near.empty())) return Ok();
+    if (painted.empty()) painted = {};
+    // Chunks of the brute force depend on every pixel above them, so it always runs over all of them.
+    const Region matched = style.settings.method == Method::kBruteForce ? extent : near;
+    if (!map_) return MatchAndVote(style, matched, painted, from, to);
+    const std::vector<Region>& tiles = start_.tiles[std::size_t(index)];
+    internal::Activate(frame_, index, tiles, scratch_.active);
+    const Status done = MatchAndVote(style, matched, painted, from, to);
+    internal::Deactivate(frame_, tiles, scratch_.active);
+    return done;
+  }
+
   static Region Intersection(const Region& a, const Region& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
   }
@@ -160,13 +207,20 @@ class Run {
     const float factor = static_cast<float>(Exp2(options_.exposure));
     if (factor == 1.0f) return plane;
     if (luminance_.empty()) {
-      luminance_.assign(plane.begin(), plane.end());
-      for (float& value : luminance_) value *= factor;
+      luminance_.resize(plane.size());
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, plane.size(), 1 << 16), [&](const auto& part) {
+        for (std::size_t i = part.begin(); i != part.end(); ++i) luminance_[i] = plane[i] * factor;
+      });
     }
     return luminance_;
   }
 
-  Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from, double to) {
+  static bool IsEdgeAware(const PreparedStyle& style) { return style.settings.edge_aware && style.blend_radius > 0; }
+  internal::EdgeRules EdgesOf(const PreparedStyle& style, std::span<const std::uint8_t> covered) {
+    return {guides_, slopes_, style.settings.crease, style.settings.depth_tolerance, covered};
+  }
+
+  internal::MatchInput InputOf(const PreparedStyle& style, const Region& matched) {
     const TransferSettings& settings = style.settings;
     internal::MatchInput input{
         guides_,
@@ -183,6 +237,12 @@ class Run {
     input.space = style.space.get();
     input.brightness = static_cast<float>(Exp2(options_.exposure));
     input.seed_map = scratch_.seed_maps.For(input.seeds, guides_.width(), guides_.height());
+    return input;
+  }
+
+  Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from, double to) {
+    const TransferSettings& settings = style.settings;
+    const internal::MatchInput input = InputOf(style, matched);
     Stopwatch watch;
     const auto part = [&](double share) { return from + (to - from) * share; };
     const int step = std::max(settings.match_step, options_.match_step);
@@ -191,13 +251,11 @@ class Run {
     if (!done) return done;
     scratch_.times.match_ms += watch.Lap();
 
-    const internal::EdgeRules edges{guides_, slopes_, settings.crease, settings.depth_tolerance,
-                                    map_ ? std::span<const std::uint8_t>() : scratch_.active};
-    const bool edge_aware = settings.edge_aware && style.blend_radius > 0;
+    const internal::EdgeRules edges = EdgesOf(style, map_ ? std::span<const std::uint8_t>() : scratch_.active);
     const int rows = painted.y1 - painted.y0;
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(1.0), rows);
     internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
-                              edge_aware ? &edges : nullptr, painted};
+                              IsEdgeAware(style) ? &edges : nullptr, painted};
     const internal::ColorizeInput tint{guides_, scratch_.active, TintOf(style)};
     if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { internal::ColorizeRow(tint, y, x0, x1, out_); };
     if (style.tones.empty()) {
@@ -262,11 +320,7 @@ class Run {
 Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
                        const TransferOptions& options, TransferScratch& scratch, Picture& out) {
   Run run(map, styles.size(), guides, options, scratch, out);
-  const double share = (1.0 - kComposeShare) / static_cast<double>(styles.size());
-  for (std::size_t s = 0; s < styles.size(); ++s) {
-    const double from = share * static_cast<double>(s);
-    SCUMBLE_RETURN_IF_ERROR(run.Paint(*styles[s], static_cast<int>(s), from, from + share));
-  }
+  SCUMBLE_RETURN_IF_ERROR(run.PaintAll(styles));
   return run.Finish(styles);
 }
 
@@ -278,6 +332,11 @@ Status TransferAll(std::span<const PreparedStyle* const> styles, const StyleMap*
 }
 
 }  // namespace
+
+TransferScratch::TransferScratch() = default;
+TransferScratch::~TransferScratch() = default;
+TransferScratch::TransferScratch(TransferScratch&&) = default;
+TransferScratch& TransferScratch::operator=(TransferScratch&&) = default;
 
 Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
                 TransferScratch& scratch, Picture& out) {

@@ -28,6 +28,10 @@
 
 namespace scumble {
 
+namespace internal {
+struct BandMemory;
+}
+
 // A style made ready for outputs of one height. Immutable; any number of threads may use it at once.
 struct PreparedStyle {
   TransferSettings settings;
@@ -79,6 +83,7 @@ struct TransferOptions {
                                     // made, which hold nothing finer
   const Picture* over = nullptr;    // composited underneath instead of the paper; the guides' size
   std::optional<Region> region;     // only these pixels of the result are made; empty: all
+  bool keep_field = false;          // TransferScratch::field and `active` are wanted afterwards; costs some time
   Progress progress;
 };
 
@@ -91,10 +96,16 @@ struct StageTimes {
 
 // Memory that a sequence keeps from frame to frame, and what there is to look at after a transfer.
 struct TransferScratch {
-  SourceField field;
-  std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints
+  TransferScratch();
+  ~TransferScratch();
+  TransferScratch(TransferScratch&&);
+  TransferScratch& operator=(TransferScratch&&);
+
+  SourceField field;                 // empty where TransferOptions::keep_field did not ask for it and it was not needed
+  std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints; empty likewise
   StageTimes times;
   internal::SeedMaps seed_maps;  // frozen jitter's
+  std::vector<internal::BandMemory> bands;  // by thread
 };
 
 // Stylises one frame into `out` (resized to the guides; straight alpha = coverage × paint). The guides must hold

@@ -26,7 +26,7 @@ bool IsFlat(const MatchInput& input, PixelPosition at, int reach) {
     const int x = at.x + dx, y = at.y + dy;
     if (x < 0 || y < 0 || x >= guides.width() || y >= guides.height()) continue;
     const std::size_t there = guides.Index(x, y);
-    if (!input.active[there] || object[there] != object[here]) return false;
+    if (!input.Paints(there) || object[there] != object[here]) return false;
     const glm::vec3 other = guides.Vec3(Layer::kNormal, there);
     if (!(normal.x * other.x + normal.y * other.y + normal.z * other.z > kFlatCosine)) return false;
   }
