@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transfer/edge_marks.h"
+#include "transfer/joined_ways.h"
 #include "transfer/vote.h"
 #include "transfer/vote_rows.h"
 
