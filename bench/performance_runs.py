@@ -46,32 +46,28 @@ def size_of(options):
 
 
 def stylize(options, scene, arguments, output, most_repeats=100):
-    """Runs of the command line; the first one warms the disk's cache and does not count."""
+    """Runs of the command line; the first one warms the disk's cache and does not count. Not with --json, which counts what a
+    plain run need not know."""
     command = [options.build / "scumble", "stylize", "scenes/%s.glb" % scene, "--style", STYLE, "--size", size_of(options),
-               "--png-level", 1, "--threads", 2, "--quiet", "--json", "-o", options.scratch / output] + arguments
+               "--png-level", 1, "--threads", 2, "--quiet", "-o", options.scratch / output] + arguments
     repeats = 1 if options.smoke else min(options.repeats, most_repeats)
     runs = [timed(command) for _ in range(repeats + 1)][1:]
-    return [seconds for seconds, _, _ in runs], [peak for _, peak, _ in runs], [json.loads(text) for _, _, text in runs]
-
-
-def knows_timing(options):
-    """Whether this program can tell its start and its libraries from the rest: stylize --timing."""
-    return "--timing" in timed([options.build / "scumble", "stylize", "--help"])[2]
+    return [seconds for seconds, _, _ in runs], [peak for _, peak, _ in runs], [text for _, _, text in runs]
 
 
 def stages(reports):
-    """Median milliseconds, on the wall, of each stage that the program reports itself."""
+    """Median milliseconds, on the wall, of each line of the tables of --timing."""
     def of(report):
-        if "timing" in report:
-            return {stage["stage"]: stage["wall_ms"] for stage in report["timing"] if stage["stage"] != "total"}
-        return {name: spread["median"] for name, spread in report.get("ms", {}).items()}
+        lines = [line.split() for line in report.split("wall ms", 1)[1].splitlines()[1:]]
+        return {words[0]: float(words[1]) for words in lines if words and words[0] != "total"}
     return {name: statistics.median(of(report)[name] for report in reports) for name in of(reports[0])}
 
 
 def measure_process(options):
-    seconds, peaks, reports = stylize(options, "suzanne", ["--timing"] if knows_timing(options) else [], "picture.png")
-    pixels = reports[0]["width"] * reports[0]["height"]
-    frame = "suzanne %d×%d, style oil" % (reports[0]["width"], reports[0]["height"])
+    seconds, peaks, reports = stylize(options, "suzanne", ["--timing"], "picture.png")
+    width, height = map(int, size_of(options).split("x"))
+    pixels = width * height
+    frame = "suzanne %d×%d, style oil" % (width, height)
     where = stages(reports)
     where["the rest"] = 1000.0 * statistics.median(seconds) - sum(where.values())
     return {"figures": [

@@ -32,7 +32,7 @@ constexpr int kExitVersion = 5;  // of our scripts
 constexpr const char* kErrorMark = "scumble: error: ";
 
 // What a signal handler may touch.
-constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU};
 std::atomic<pid_t> running_group = 0;
 std::atomic<int> caught_signal = 0;
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free);

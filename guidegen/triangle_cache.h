@@ -74,7 +74,7 @@ class TriangleCache {
   std::span<const ObjectRecord> object_records_;
   std::vector<Slot> slots_;
   std::vector<TriangleRecord> records_;
-  std::uint64_t now_ = 0;
+  std::uint64_t now_ = 1;
   bool points_;
 };
 

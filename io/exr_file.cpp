@@ -141,6 +141,8 @@ Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrIma
       file.writePixels(image.height);
     }
     return bytes.Take();
+  } catch (const std::bad_alloc&) {
+    throw;  // not the file's fault
   } catch (const std::exception& failure) {
     return OutputError("cannot write " + name + ": " + failure.what());
   }
@@ -171,6 +173,8 @@ std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
       part.readPixels(window.min.y, window.max.y);
     }
     return header;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     return std::nullopt;
   }

@@ -24,7 +24,8 @@
 
 namespace scumble::internal {
 
-// Every thread keeps seeds for every style, some 100 kB for each 512 columns of the picture.
+// Every thread keeps seeds for every style, so many bytes for each kTileWidth columns of the picture.
+inline constexpr std::size_t kBandSeedBytes = 100'000;
 inline constexpr std::size_t kMostBandStyles = 16;
 
 // How one style is matched by StyleBlit and voted on.

@@ -1,7 +1,8 @@
 // StyleBlit (Sýkora et al. 2019, section 3.2), sixteen pixels at a time. The same decisions as styleblit.cpp, and the same
 // bytes; that file says what is decided, this one how it is done fast:
 //
-//   - The picture is cut into tiles, each matched by one thread from its own seeds (tile_seeds.h): nothing is shared.
+//   - The picture is cut into columns of tiles. A thread goes down its rows of one, or of all of them (band_transfer.h), with seeds
+//     of its own (tile_seeds.h).
 //   - A block of sixteen pixels of one row goes through the levels from coarse to fine, until all of them are settled. Its
 //     nearest seeds are found by vector code that compares the nine candidates of each pixel (fine levels), or come from
 //     the runs of pixels that share one (coarse levels).

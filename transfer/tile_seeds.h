@@ -1,4 +1,4 @@
-// Seeds for the fast form of StyleBlit (styleblit_tiles.cpp): those that the pixels of one tile can be near to, on one
+// Seeds for the fast form of StyleBlit (styleblit_tiles.cpp): those that the pixels of one column of tiles can be near to, on one
 // level. Rows of cells are made when a pixel first asks for them and are forgotten when others need the room; a seed's
 // offer is made when a pixel first asks for it. Most seeds of fine levels are never asked.
 #pragma once

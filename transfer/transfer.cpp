@@ -28,6 +28,9 @@ constexpr std::size_t kBruteForcePixels = 1 << 20;
 // Around a seed so many pixels must be flat before `variety` gives it freedom, at the reference height.
 constexpr int kFlatReach = 16;
 
+// What threads may keep in seeds; see SeedsOfBandsFit.
+constexpr std::size_t kLeastSeedBytes = 64 << 20, kSeedBytesOfAPixel = 16;
+
 // Where the time of one style goes, as shares of it.
 constexpr double kMatchShare = 0.6;  // the rest is for votes, with their tint
 constexpr double kComposeShare = 0.1;  // of the whole
@@ -118,8 +121,16 @@ class Run {
 
  private:
   // Whether nothing but the votes needs the sources, and only those of a few rows at a time.
+  // Seeds of many styles for many threads are not worth more memory than the field that is saved.
+  bool SeedsOfBandsFit(std::size_t styles) const {
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    const std::size_t columns = static_cast<std::size_t>(guides_.width()) / internal::kTileWidth + 1;
+    return styles <= internal::kMostBandStyles && threads * styles * columns * internal::kBandSeedBytes <=
+                                                      std::max(kLeastSeedBytes, kSeedBytesOfAPixel * guides_.pixel_count());
+  }
+
   bool GoesByBands(std::span<const PreparedStyle* const> styles) const {
-    return !options_.keep_field && options_.match_step <= 1 && styles.size() <= internal::kMostBandStyles &&
+    return !options_.keep_field && options_.match_step <= 1 && SeedsOfBandsFit(styles.size()) &&
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
       const TransferSettings& settings = style->settings;
       return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 && !style->space &&
