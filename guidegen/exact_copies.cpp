@@ -32,8 +32,8 @@ bool IsSameShape(const Mesh& a, const Mesh& b) {
 }
 
 bool Covers(const PlacedObject& over, const PlacedObject& under) {
-  const bool seen_from_behind = over.material->double_sided ||
-                                (!under.material->double_sided && over.winding == under.winding);
+  const bool seen_from_behind =
+      over.material->double_sided || (!under.material->double_sided && over.winding == under.winding);
   return seen_from_behind && !MayHaveHoles(*over.material) && IsSameShape(*over.mesh, *under.mesh);
 }
 
@@ -49,8 +49,7 @@ std::vector<bool> FindCoveredCopies(std::span<const PlacedObject> objects) {
     // A NaN is not in order with anything.
     if (std::any_of(key.begin(), key.end(), [](double value) { return !(value == value); })) continue;
     std::vector<const PlacedObject*>& here = seen[key];
-    covered[i] =
-        std::any_of(here.begin(), here.end(), [&](const PlacedObject* over) { return Covers(*over, object); });
+    covered[i] = std::any_of(here.begin(), here.end(), [&](const PlacedObject* over) { return Covers(*over, object); });
     if (!covered[i]) here.push_back(&object);
   }
   return covered;

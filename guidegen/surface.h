@@ -57,9 +57,9 @@ struct SurfacePoint {
 };
 
 // Embree's hit is a float's worth of the truth; this meets the same surface again in double. `barycentric` are
-// Embree's, used where the triangle is seen edge on. A sliver that the exact ray misses is met where it comes nearest. The point always lies on the surface. A back face has both
-// normals flipped, as Cycles does. A shading normal that is zero or NaN gives way to the geometric one; a triangle
-// without area faces the eye.
+// Embree's, used where the triangle is seen edge on. A sliver that the exact ray misses is met where it comes nearest.
+// The point always lies on the surface. A back face has both normals flipped, as Cycles does. A shading normal that is
+// zero or NaN gives way to the geometric one; a triangle without area faces the eye.
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
                               const ViewRay& ray);
 

@@ -31,7 +31,8 @@ struct ExactRay {
 inline ExactRay PixelRay(const Camera& camera, int width, int height, double x, double y) {
   const glm::dvec3 right(camera.world_from_camera[0]), up(camera.world_from_camera[1]);
   const double half = camera.orthographic ? camera.ymag : std::tan(glm::radians(camera.yfov_degrees / 2.0));
-  const glm::dvec3 aside = right * (half * (2.0 * (x + 0.5) - width) / height) + up * (half * (1.0 - 2.0 * (y + 0.5) / height));
+  const glm::dvec3 aside =
+      right * (half * (2.0 * (x + 0.5) - width) / height) + up * (half * (1.0 - 2.0 * (y + 0.5) / height));
   ExactRay ray{glm::dvec3(0.0), -glm::dvec3(camera.world_from_camera[2])};
   (camera.orthographic ? ray.origin : ray.direction) += aside;
   return ray;
@@ -116,9 +117,9 @@ struct ExactCount {
   int covered = 0;    // of those decided
 };
 
-// The guides' coverage, depth, object and position against the plain caster. A depth is the truth rounded to float once,
-// half a unit of 2^-23, plus what double leaves: 2^-49 of the farthest corner over the cosine. Where float may choose
-// the surface, what is shown must still lie on the pixel's ray, to float's sight.
+// The guides' coverage, depth, object and position against the plain caster. A depth is the truth rounded to float
+// once, half a unit of 2^-23, plus what double leaves: 2^-49 of the farthest corner over the cosine. Where float may
+// choose the surface, what is shown must still lie on the pixel's ray, to float's sight.
 inline ExactCount ExpectExact(const Scene& scene, const Camera& camera, const GuideSet& guides) {
   std::vector<std::string> names;
   for (const Instance& instance : scene.instances) names.push_back(instance.object);

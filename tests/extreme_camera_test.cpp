@@ -17,8 +17,8 @@ namespace {
 
 constexpr float kNoDepth = std::numeric_limits<float>::infinity();
 constexpr int kRings = 96;
-// A facet of BallMesh spans half a degree's worth of rings both ways, so its diagonal sees half a step times √2 from the
-// middle: no place of it lies deeper under the unit sphere than this.
+// A facet of BallMesh spans half a degree's worth of rings both ways, so its diagonal sees half a step times √2 from
+// the middle: no place of it lies deeper under the unit sphere than this.
 const double kInset = 1.0 - std::cos(glm::pi<double>() / kRings / std::sqrt(2.0));
 
 // A ball of radius 1 about `centre`, seen along one ray: how far the ray passes from the centre, and where it enters
@@ -37,8 +37,8 @@ struct SphereView {
 
 // The normals of a ball against the sphere's. On a ball of radius 1 the interpolated normal is the facet's place, made
 // a unit: what a ray sees at the radius r has the angle asin(b / r) to the ray, b being how far the ray passes from the
-// centre, while the sphere itself has asin(b). Facets have r between 1 − inset and 1. To that come 4 roundings to float:
-// of the vertices, their normals, the weights and the result, each of 2^-24 in three coordinates.
+// centre, while the sphere itself has asin(b). Facets have r between 1 − inset and 1. To that come 4 roundings to
+// float: of the vertices, their normals, the weights and the result, each of 2^-24 in three coordinates.
 int ExpectBall(const GuideSet& guides, const Camera& camera, const glm::dvec3& centre, bool from_inside) {
   const glm::dmat3 view_from_world(guides.camera->view_from_world);
   constexpr double kRounding = 4.0 * 1.7320508 / (1 << 24);
@@ -89,8 +89,9 @@ TEST(FieldOfView, ABallHasTheSpheresNormalsFromATenthOfADegreeTo175) {
   }
 }
 
-// A wall across the view has one depth and one normal in every pixel, however wide the lens; where it is seen grows with
-// the tangent. In the eye's own frame its normal is the mirror image of the direction to the eye, and never beyond.
+// A wall across the view has one depth and one normal in every pixel, however wide the lens; where it is seen grows
+// with the tangent. In the eye's own frame its normal is the mirror image of the direction to the eye, and never
+// beyond.
 TEST(FieldOfView, AWallHasOneDepthAndOneNormalUpTo1799Tenths) {
   for (const double degrees : {1e-3, 0.1, 30.0, 90.0, 150.0, 175.0, 179.0, 179.9}) {
     SCOPED_TRACE(degrees);
@@ -185,8 +186,8 @@ TEST(Orthographic, AThousandKilometresOfAMetreWideThing) {
 
 // --- Near and far planes ------------------------------------------------------------------------------------------
 
-// A plane that cuts a face leaves exactly the pixels whose depth by the formula lies behind it, but for float's rounding
-// of the two depths: 2^-22 of them. What is cut away shows what is behind it.
+// A plane that cuts a face leaves exactly the pixels whose depth by the formula lies behind it, but for float's
+// rounding of the two depths: 2^-22 of them. What is cut away shows what is behind it.
 TEST(NearPlane, CutsThroughAFaceWhereTheFormulaSays) {
   for (const bool orthographic : {false, true}) {
     for (const double lean : {0.2, 0.8, 1.4}) {
@@ -234,8 +235,8 @@ TEST(NearPlane, CutsThroughAFaceWhereTheFormulaSays) {
 // From any place inside a ball every ray meets its inside once, with the normal turned towards the eye; the sphere in
 // closed form says where. Backs that are culled leave nothing.
 TEST(Inside, ABallSeenFromWithinIsTheSphereTurnedInward) {
-  for (const glm::dvec3 eye : {glm::dvec3(0.0), glm::dvec3(0.5, 0.2, -0.3), glm::dvec3(0.0, 0.0, 0.9),
-                               glm::dvec3(0.57, 0.57, 0.57)}) {
+  for (const glm::dvec3 eye :
+       {glm::dvec3(0.0), glm::dvec3(0.5, 0.2, -0.3), glm::dvec3(0.0, 0.0, 0.9), glm::dvec3(0.57, 0.57, 0.57)}) {
     for (const double degrees : {20.0, 90.0, 175.0}) {
       const glm::dvec3 target = eye + glm::dvec3(0.3, 0.1, -1.0);
       const Camera camera = LookingAt(eye, target, degrees);
@@ -254,7 +255,8 @@ TEST(Inside, AMicrometreFromAWallAndOnIt) {
   const Scene scene = SceneOf(CubeMesh());
   for (const double gap : {1e-3, 1e-6}) {
     for (const double degrees : {60.0, 150.0}) {
-      const ExactCount count = ExpectExactGuides(scene, LookingAt({1.0 - gap, 0.1, 0.2}, {-0.3, 0.2, -0.4}, degrees), 40, 40);
+      const ExactCount count =
+          ExpectExactGuides(scene, LookingAt({1.0 - gap, 0.1, 0.2}, {-0.3, 0.2, -0.4}, degrees), 40, 40);
       EXPECT_EQ(count.covered, count.decided);
       EXPECT_GT(count.covered, 1500);
       // With the wall right before the eye.

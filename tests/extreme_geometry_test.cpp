@@ -76,7 +76,8 @@ class ExtremePlace : public LoaderTest {
     const int position = gltf.Floats(corners, 3);
     const int index = gltf.Indices({0, 1, 2, 0, 2, 3});
     const int mesh = gltf.Mesh({{{"attributes", {{"POSITION", position}}}, {"indices", index}}});
-    const int lens = gltf.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.0}}}});
+    const int lens =
+        gltf.Append("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.0}}}});
     const int thing = gltf.Append("nodes", {{"name", "thing"},
                                             {"mesh", mesh},
                                             {"translation", {0.0625, -0.125, 0.25}},
@@ -123,8 +124,8 @@ TEST_F(ExtremePlace, NodesTenThousandKilometresAwayLoseNothing) {
   }
 }
 
-// The same quad with the distance in its vertices: glTF has only floats for those, so the file itself holds whole metres
-// and the quad has become another shape. That shape is shown exactly.
+// The same quad with the distance in its vertices: glTF has only floats for those, so the file itself holds whole
+// metres and the quad has become another shape. That shape is shown exactly.
 TEST_F(ExtremePlace, VerticesTenThousandKilometresAwayAreTheFilesWholeMetres) {
   std::vector<float> corners = kQuad;
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = 1.4f * corners[i] + (i % 3 == 2 ? 0.0f : 1e7f);
@@ -138,11 +139,38 @@ TEST_F(ExtremePlace, VerticesTenThousandKilometresAwayAreTheFilesWholeMetres) {
   EXPECT_LT(count.undecided, 80);
 }
 
+// A surveyor's scan: a file may hold doubles, and a wall 2 m wide at 5e6 m is then as good as one at 0. A float would
+// have moved its corners by up to a quarter of a metre. Near 0 nothing changes: the object stands at 0.
+TEST_F(ExtremePlace, ScansInDoublesFarFromTheOriginKeepTheirDigits) {
+  const auto scan_at = [&](double x, double y, const std::string& type) {
+    std::string text = "ply\nformat ascii 1.0\nelement vertex 4\n";
+    for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
+    text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const glm::dvec2 corner : {glm::dvec2(-0.95, -1.05), {1.05, -1.05}, {1.05, 0.95}, {-0.95, 0.95}}) {
+      text += std::to_string(x + corner.x) + " " + std::to_string(y + corner.y) + " 0.25\n";
+    }
+    return LoadScene(Write("scan.ply", text + "4 0 1 2 3\n"));
+  };
+  const auto far = scan_at(5e6, -3e6, "double");
+  ASSERT_TRUE(far) << far.error().message;
+  EXPECT_EQ(glm::dvec3(far->instances[0].world_from_object[3]), glm::dvec3(5e6, -3e6, 0.0));
+  EXPECT_EQ(far->meshes[0].positions[2], glm::vec3(1.05f, 0.95f, 0.25f));
+  EXPECT_GT(ExpectExactGuides(*far, LookingAt({5e6 + 1, -3e6, 4}, {5e6, -3e6, 0}), 30, 30).covered, 300);
+  const auto floats = scan_at(5e6, -3e6, "float");
+  ASSERT_TRUE(floats);
+  EXPECT_EQ(floats->instances[0].world_from_object, glm::dmat4(1.0));
+  EXPECT_EQ(floats->meshes[0].positions[2], glm::vec3(5000001.0f, -2999999.0f, 0.25f));
+  const auto near_by = scan_at(3.0, 2.0, "double");
+  ASSERT_TRUE(near_by);
+  EXPECT_EQ(near_by->instances[0].world_from_object, glm::dmat4(1.0));
+  EXPECT_EQ(near_by->meshes[0].positions[2], glm::vec3(4.05f, 2.95f, 0.25f));
+}
+
 // --- Triangles that are hardly any --------------------------------------------------------------------------------
 
-// A triangle 2 m long and 2 m / aspect high, at random before the eye. Rays are aimed at it and, by float's blur, beside
-// it. Where it is met, what is shown lies on the ray, and the normal is the triangle's own: it comes from corners in
-// double, whose step of 1e-15 m is to 2e-8 m as 1 to 2e7.
+// A triangle 2 m long and 2 m / aspect high, at random before the eye. Rays are aimed at it and, by float's blur,
+// beside it. Where it is met, what is shown lies on the ray, and the normal is the triangle's own: it comes from
+// corners in double, whose step of 1e-15 m is to 2e-8 m as 1 to 2e7.
 TEST(Slivers, OfAnyAspectAreShownWhereTheRayPassesThem) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> spread(-1.0, 1.0);
@@ -196,8 +224,8 @@ TEST(Slivers, LeaveNoCracks) {
     // The slivers' line runs through the middle of the picture, along its rows where nothing is turned.
     const Camera camera = LookingAt(glm::dvec3(placed[3]) + glm::dvec3(0, 0, 6), glm::dvec3(placed[3]), 12.0);
     const GuideSet guides = Render(scene, camera, Sized(201, 201)).guides;
-    const glm::dvec3 normal = glm::dmat3(guides.camera->view_from_world) * glm::dmat3(placed) *
-                              glm::normalize(glm::dvec3(-0.3, 0.0, 1.0));
+    const glm::dvec3 normal =
+        glm::dmat3(guides.camera->view_from_world) * glm::dmat3(placed) * glm::normalize(glm::dvec3(-0.3, 0.0, 1.0));
     // What the outline covers, as one piece.
     Scene whole = scene;
     whole.meshes[0].triangles = {{0, 1, 9}, {0, 9, 8}};
@@ -205,7 +233,8 @@ TEST(Slivers, LeaveNoCracks) {
     for (int pixel = 0; pixel < 201 * 201; ++pixel) {
       const ExactRay ray = PixelRay(camera, 201, 201, pixel % 201, pixel / 201);
       const ExactHit hit = MeetExactly(whole, camera, ray);
-      const glm::dvec3 at = glm::transpose(glm::dmat3(placed)) * (ray.At(hit.depth) + glm::dvec3(camera.world_from_camera[3]) - glm::dvec3(placed[3]));
+      const glm::dvec3 at = glm::transpose(glm::dmat3(placed)) *
+                            (ray.At(hit.depth) + glm::dvec3(camera.world_from_camera[3]) - glm::dvec3(placed[3]));
       if (hit.instance < 0 || std::max(std::abs(at.x), std::abs(at.y)) > 0.99) continue;
       ++covered;
       ASSERT_EQ(guides.Plane(Layer::kCoverage)[pixel], 1.0f) << "pixel " << pixel << ", turn " << turn;
@@ -215,8 +244,8 @@ TEST(Slivers, LeaveNoCracks) {
   }
 }
 
-// Points and lines have no area, so no ray meets them but by rounding: all pixels whose ray stays clear of them show the
-// wall behind, and the others what lies on their ray.
+// Points and lines have no area, so no ray meets them but by rounding: all pixels whose ray stays clear of them show
+// the wall behind, and the others what lies on their ray.
 TEST(NoArea, HidesNothing) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> spread(-1.0f, 1.0f);
@@ -318,9 +347,11 @@ TEST(OnePlace, SurfacesInOnePlaneHaveItsDepthAndAreTheSameForAnyThreads) {
         ASSERT_EQ(one.guides.Plane(Layer::kCoverage)[i] == 1.0f, hit.instance >= 0);
         if (hit.instance < 0) continue;
         const double depth = glm::dot(normal, glm::dvec3(0, 0, -3)) / glm::dot(normal, ray.direction);
-        // Each rotation is rounded by some 2^-52 of a metre: leaning, that is as much more depth as the cosine is small.
+        // Each rotation is rounded by some 2^-52 of a metre: leaning, that is as much more depth as the cosine is
+        // small.
         ASSERT_NEAR(one.guides.Plane(Layer::kDepth)[i], depth, std::ldexp(depth, -24) + 0x1p-48 / hit.facing);
-        ASSERT_LE(glm::distance(glm::dvec3(one.guides.Vec3(Layer::kNormal, i)), normal * (normal.z < 0 ? -1.0 : 1.0)), 2e-7);
+        ASSERT_LE(glm::distance(glm::dvec3(one.guides.Vec3(Layer::kNormal, i)), normal * (normal.z < 0 ? -1.0 : 1.0)),
+                  2e-7);
       }
     }
   }
@@ -333,7 +364,8 @@ TEST(OnePlace, TheNearerOfTwoPlanesIsSeenOnceTheyAreFartherApartThanFloatsBlur) 
     for (const double lean : {0.0, 0.5, 1.0}) {
       const double farthest = distance * 1.5;
       const double gap = 1.01 * farthest * kFloatSight;
-      const glm::dmat4 plane = glm::scale(glm::rotate(glm::dmat4(1.0), lean, glm::dvec3(0, 1, 0)), glm::dvec3(distance / 4));
+      const glm::dmat4 plane =
+          glm::scale(glm::rotate(glm::dmat4(1.0), lean, glm::dvec3(0, 1, 0)), glm::dvec3(distance / 4));
       Scene scene = SceneOf(QuadMesh(), plane);
       const glm::dvec3 towards = glm::dvec3(glm::normalize(plane[2])) * gap;
       scene.instances.push_back({"nearer", 0, Moved(towards.x, towards.y, towards.z) * plane});
@@ -383,7 +415,8 @@ TEST_F(ExtremePlace, LoadersKeepTheDirectionOfTinyNormalsAndReplaceThoseWithoutO
   GltfBuilder gltf;
   const int position = gltf.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 0, 6, 5, 0, 5, 6, 0}, 3);
   const int normal = gltf.Floats({0, 1e-30f, 0, 0, 1e-45f, 0, 3e38f, 3e38f, 0,  //
-                                  0, 0, 0, kNaN, 0, 1, kInfinity, 0, 0}, 3);
+                                  0, 0, 0, kNaN, 0, 1, kInfinity, 0, 0},
+                                 3);
   const int index = gltf.Indices({0, 1, 2, 3, 4, 5});
   const int mesh = gltf.Mesh({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", index}}});
   gltf.Root({{"name", "Tri"}, {"mesh", mesh}});
