@@ -357,6 +357,32 @@ TEST(OnePlace, SurfacesInOnePlaneHaveItsDepthAndAreTheSameForAnyThreads) {
   }
 }
 
+// Twice the same triangles in one mesh, once with leaning normals: one object whoever wins, its depth is theirs, and a
+// pixel shows one of the two normals, never a mixture, the same one on any number of threads.
+TEST(OnePlace, TrianglesThatAMeshHoldsTwiceAreOneSurface) {
+  Scene scene = SceneOf(QuadMesh());
+  Mesh& mesh = scene.meshes[0];
+  const glm::vec3 leaning(0.6f, 0.0f, 0.8f);
+  for (unsigned i = 0; i < 4; ++i) {
+    mesh.positions.push_back(glm::vec3(mesh.positions[i]));
+    mesh.normals.push_back(leaning);
+    mesh.uvs[0].push_back(glm::vec2(mesh.uvs[0][i]));
+  }
+  mesh.triangles.insert(mesh.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+  GuidegenOptions options = Sized(40, 40);
+  options.threads = 1;
+  const auto one = Render(scene, FlatCamera(3.0, 1.0), options);
+  for (std::size_t i = 0; i < 1600; ++i) {
+    EXPECT_EQ(one.guides.Plane(Layer::kDepth)[i], 3.0f);
+    const glm::vec3 normal = one.guides.Vec3(Layer::kNormal, i);
+    EXPECT_TRUE(normal == glm::vec3(0, 0, 1) || glm::distance(normal, leaning) < 2e-7f);
+  }
+  for (const int threads : {2, 3, 7}) {
+    options.threads = threads;
+    EXPECT_TRUE(SameBytes(one.guides, Render(scene, FlatCamera(3.0, 1.0), options).guides)) << threads << " threads";
+  }
+}
+
 // Two planes, one a little before the other. The nearer one is seen in every pixel as soon as the gap along the ray is
 // larger than float's blur of a depth; the gaps tried are just above that.
 TEST(OnePlace, TheNearerOfTwoPlanesIsSeenOnceTheyAreFartherApartThanFloatsBlur) {
