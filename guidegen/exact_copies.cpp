@@ -1,54 +1,50 @@
 #include "guidegen/exact_copies.h"
 
 #include <algorithm>
-#include <array>
-#include <map>
+#include <bit>
+#include <cstdint>
+#include <unordered_map>
 
 #include "guidegen/bsdf.h"
+#include "image/hash.h"
 
 namespace scumble {
 namespace {
 
-// The matrix, how much there is, and the first and last place of it: what tells nearly all shapes apart.
-using Key = std::array<double, 24>;
-
-Key KeyOf(const PlacedObject& object) {
+// Of the matrix, of how much there is, and of the first and last place: what tells nearly all objects apart.
+std::uint64_t HashOf(const PlacedObject& object) {
   const Mesh& mesh = *object.mesh;
-  Key key;
-  auto at = key.begin();
+  std::uint64_t hash = Hash(mesh.positions.size(), mesh.triangles.size());
+  const auto add = [&](double value) { hash = HashOn(hash, std::bit_cast<std::uint64_t>(value + 0.0)); };  // −0 is 0
   for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) *at++ = object.view_from_object[column][row];
+    for (int row = 0; row < 3; ++row) add(object.view_from_object[column][row]);
   }
-  *at++ = double(mesh.positions.size());
-  *at++ = double(mesh.triangles.size());
   for (const glm::vec3& place : {mesh.positions.front(), mesh.positions.back()}) {
-    for (int axis = 0; axis < 3; ++axis) *at++ = double(place[axis]);
+    for (int axis = 0; axis < 3; ++axis) add(double(place[axis]));
   }
-  return key;
+  return hash;
 }
 
-bool IsSameShape(const Mesh& a, const Mesh& b) {
-  return &a == &b || (a.positions == b.positions && a.triangles == b.triangles);
+bool IsCopy(const PlacedObject& a, const PlacedObject& b) {
+  if (a.view_from_object != b.view_from_object) return false;
+  return a.mesh == b.mesh || (a.mesh->positions == b.mesh->positions && a.mesh->triangles == b.mesh->triangles);
 }
 
 bool Covers(const PlacedObject& over, const PlacedObject& under) {
   const bool seen_from_behind =
       over.material->double_sided || (!under.material->double_sided && over.winding == under.winding);
-  return seen_from_behind && !MayHaveHoles(*over.material) && IsSameShape(*over.mesh, *under.mesh);
+  return seen_from_behind && !MayHaveHoles(*over.material) && IsCopy(over, under);
 }
 
 }  // namespace
 
 std::vector<bool> FindCoveredCopies(std::span<const PlacedObject> objects) {
   std::vector<bool> covered(objects.size(), false);
-  std::map<Key, std::vector<const PlacedObject*>> seen;
+  std::unordered_map<std::uint64_t, std::vector<const PlacedObject*>> seen;
   for (std::size_t i = objects.size(); i-- > 0;) {
     const PlacedObject& object = objects[i];
     if (!object.mesh || object.mesh->triangles.empty() || MayEmit(*object.material)) continue;
-    const Key key = KeyOf(object);
-    // A NaN is not in order with anything.
-    if (std::any_of(key.begin(), key.end(), [](double value) { return !(value == value); })) continue;
-    std::vector<const PlacedObject*>& here = seen[key];
+    std::vector<const PlacedObject*>& here = seen[HashOf(object)];
     covered[i] = std::any_of(here.begin(), here.end(), [&](const PlacedObject* over) { return Covers(*over, object); });
     if (!covered[i]) here.push_back(&object);
   }
