@@ -6,6 +6,7 @@
 #include <array>
 
 #include "guidegen/bsdf.h"
+#include "guidegen/exact_copies.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -166,9 +167,10 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
 
 Status EmbreeScene::Commit(bool keep_emitters) {
   scene_.reset(NewScene(device_.get()));
+  const std::vector<bool> covered = FindCoveredCopies(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
-    if (object.mesh && object.mesh->triangles.empty()) continue;
+    if (covered[i] || (object.mesh && object.mesh->triangles.empty())) continue;
     RTCGeometry geometry = object.mesh ? MakeMesh(device_.get(), object) : MakeSphere(device_.get(), object);
     rtcSetGeometryUserData(geometry, &object);
     rtcCommitGeometry(geometry);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -168,6 +169,23 @@ class Values {
   std::size_t at_ = 0;
 };
 
+// The place that positions are stored relative to, so that floats can hold them: the middle of the whole, in whole
+// metres, where it is so far from 0 that floats would lose four bits or more of the shape; else 0.
+glm::dvec3 OriginOf(const std::vector<glm::dvec3>& places) {
+  if (places.empty()) return glm::dvec3(0.0);
+  glm::dvec3 low = places[0], high = places[0];
+  for (const glm::dvec3& place : places) {
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  const glm::dvec3 size = high - low;
+  constexpr double kFar = 16.0;
+  const glm::dvec3 middle = glm::round(0.5 * low + 0.5 * high);
+  const glm::dvec3 away = glm::abs(middle);
+  const bool far = std::max({away.x, away.y, away.z}) > kFar * std::max({size.x, size.y, size.z});
+  return far ? middle : glm::dvec3(0.0);
+}
+
 class PlyLoader {
  public:
   explicit PlyLoader(const std::filesystem::path& path) : path_(path), file_(path.string()) {}
@@ -306,8 +324,11 @@ class PlyLoader {
     if (!has[kX] || !has[kY] || !has[kZ]) return Bad("its vertices have no x, y and z");
     const bool normals = has[kNx] && has[kNy] && has[kNz], colors = has[kRed] && has[kGreen] && has[kBlue];
     const bool uvs = has[kU] && has[kV];
+    const bool doubles = HasDoublePlaces(element);
+    std::vector<glm::dvec3> places;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       float v[kSkip + 1] = {};
+      glm::dvec3 place(0.0);
       v[kAlpha] = 1.0f;
       for (std::size_t p = 0; p < roles.size(); ++p) {
         const Property& property = element.properties[p];
@@ -320,16 +341,27 @@ class PlyLoader {
         if (roles[p] >= kRed && roles[p] <= kAlpha && property.type == PlyType::kUint8) value /= 255.0;
         if (roles[p] >= kRed && roles[p] <= kAlpha && property.type == PlyType::kUint16) value /= 65535.0;
         v[roles[p]] = static_cast<float>(value);
+        if (roles[p] <= kZ) place[roles[p]] = value;
       }
       const glm::vec3 position(v[kX], v[kY], v[kZ]);
       if (!IsFinite(position))
         return Bad("vertex " + std::to_string(i) + " is NaN or infinite; expected finite numbers");
       mesh_.positions.push_back(position);
+      if (doubles) places.push_back(place);
       if (normals) mesh_.normals.emplace_back(v[kNx], v[kNy], v[kNz]);
       if (uvs) mesh_.uvs[0].push_back(Uv(v[kU], v[kV]));
       if (colors) mesh_.colors.push_back(Color(v[kRed], v[kGreen], v[kBlue], v[kAlpha]));
     }
+    origin_ = OriginOf(places);
+    if (origin_ == glm::dvec3(0.0)) return Ok();
+    for (std::size_t i = 0; i < places.size(); ++i) mesh_.positions[i] = glm::vec3(places[i] - origin_);
     return Ok();
+  }
+
+  static bool HasDoublePlaces(const Element& element) {
+    return std::any_of(element.properties.begin(), element.properties.end(), [](const Property& property) {
+      return !property.list_count && RoleOf(property.name) <= kZ && property.type == PlyType::kFloat64;
+    });
   }
 
   static glm::vec2 Uv(float u, float v) {
@@ -396,7 +428,7 @@ class PlyLoader {
     if (!mesh_.triangles.empty()) {
       if (FillNormals(mesh_) > 0) warnings_.Add("normals without a direction were computed anew", "");
       scene.meshes.push_back(std::move(mesh_));
-      scene.instances.push_back({path_.stem().string(), 0, glm::dmat4(1.0)});
+      scene.instances.push_back({path_.stem().string(), 0, glm::translate(glm::dmat4(1.0), origin_)});
     }
     warnings_.MoveTo(scene.warnings);
     return scene;
@@ -406,6 +438,7 @@ class PlyLoader {
   const std::string file_;
   Header header_;
   Mesh mesh_;
+  glm::dvec3 origin_{0.0};
   GeometryBudget budget_;
   WarningCounter warnings_;
   std::vector<glm::uvec3> cuts_;

@@ -4,7 +4,9 @@
 // Read: positions, normals, colours (sRGB-encoded, as scanners and MeshLab write them), texture coordinates (s t, u v
 // or texture_u texture_v; v turned over), faces of any number of corners. Other elements and properties are skipped. A
 // cloud of points without faces is a scene without geometry. The object is named after the file. Its surface is
-// Lambert, in the file's colours or in Blender's grey of 0.8.
+// Lambert, in the file's colours or in Blender's grey of 0.8. Positions of type double that lie far from 0, as
+// surveyors' do, keep their digits: the object then stands at the middle of its shape instead of at 0, and its rest
+// positions are relative to that.
 #pragma once
 
 #include <filesystem>

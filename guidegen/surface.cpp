@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace scumble {
 namespace {
@@ -18,14 +19,40 @@ auto Interpolate(const std::vector<T>& values, const glm::uvec3& triangle, const
   return a * (1.0f - v - w) + b * v + c * w;
 }
 
+// The barycentrics of the place on a triangle's edges that the ray's line passes at the least distance.
+glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray) {
+  const double along = glm::dot(ray.direction, ray.direction);
+  const auto across = [&](const glm::dvec3& v) { return v - ray.direction * (glm::dot(v, ray.direction) / along); };
+  constexpr glm::dvec2 kCorners[] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+  glm::dvec2 nearest(0.0);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    const glm::dvec3 from = across(triangle.corner[i] - ray.origin);
+    const glm::dvec3 edge = across(triangle.corner[next] - triangle.corner[i]);
+    const double length = glm::dot(edge, edge);
+    const double share = length > 0.0 ? glm::clamp(-glm::dot(from, edge) / length, 0.0, 1.0) : 0.0;
+    const glm::dvec3 miss = from + edge * share;
+    const double distance = glm::dot(miss, miss);
+    if (!(distance < least)) continue;
+    least = distance;
+    nearest = glm::mix(kCorners[i], kCorners[next], share);
+  }
+  return nearest;
+}
+
 // Möller & Trumbore 1997, in double; `area` is the cross product of the triangle's edges. Rays that just miss the
-// triangle, because Embree sees it with its corners rounded to float, meet its nearest edge.
+// triangle, because Embree sees it with its corners rounded to float, meet its nearest edge. By how much they miss is
+// told in barycentrics, where a sliver's height is 1 however small it is: a micrometre may seem to be a thousand
+// slivers away, so there the nearest edge is looked for in space.
 glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray,
                         const glm::dvec2& fallback) {
   const glm::dvec3 moment = glm::cross(ray.origin - triangle.corner[0], ray.direction);
   const double scale = -1.0 / glm::dot(area, ray.direction);
   glm::dvec2 result(glm::dot(triangle.corner[2] - triangle.corner[0], moment) * scale,
                     glm::dot(triangle.corner[0] - triangle.corner[1], moment) * scale);
+  const bool inside = result.x >= 0.0 && result.y >= 0.0 && result.x + result.y <= 1.0;  // false for NaN
+  if (!inside && IsSliver(triangle, area)) return NearestOnEdges(triangle, ray);
   if (!std::isfinite(result.x + result.y)) result = fallback;
   result = glm::max(result, glm::dvec2(0.0));
   const double sum = result.x + result.y;
@@ -148,6 +175,15 @@ PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const P
       object.winding *
       glm::dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
   return object;
+}
+
+bool IsSliver(const Triangle& triangle, const glm::dvec3& area) {
+  double longest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 edge = triangle.corner[(i + 1) % 3] - triangle.corner[i];
+    longest = std::max(longest, glm::dot(edge, edge));
+  }
+  return !(glm::dot(area, area) * (kSliver * kSliver) >= longest * longest);
 }
 
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,

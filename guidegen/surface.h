@@ -42,6 +42,11 @@ inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive
   return triangle;
 }
 
+// Whether a triangle is more than kSliver times as long as it is high, or has no area; `area` is the cross product of
+// its edges. Up to there a point that is clamped in barycentrics is off by no more than kSliver float roundings.
+inline constexpr double kSliver = 1024.0;
+bool IsSliver(const Triangle& triangle, const glm::dvec3& area);
+
 struct SurfacePoint {
   glm::dvec3 position{0.0};         // view space
   glm::dvec3 facing{0.0};           // unit geometric normal on the viewer's side
@@ -52,9 +57,9 @@ struct SurfacePoint {
 };
 
 // Embree's hit is a float's worth of the truth; this meets the same surface again in double. `barycentric` are
-// Embree's, used where the triangle is too thin to be met. The point always lies on the surface. A back face has both
-// normals flipped, as Cycles does. A shading normal that is zero or NaN gives way to the geometric one; a triangle
-// without area faces the eye.
+// Embree's, used where the triangle is seen edge on. A sliver that the exact ray misses is met where it comes nearest.
+// The point always lies on the surface. A back face has both normals flipped, as Cycles does. A shading normal that is
+// zero or NaN gives way to the geometric one; a triangle without area faces the eye.
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
                               const ViewRay& ray);
 

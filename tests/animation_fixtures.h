@@ -12,7 +12,7 @@
 namespace scumble {
 
 using nlohmann::json;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 inline const float kHalf = std::sqrt(0.5f);
 inline constexpr double kFloatError = 1e-6;

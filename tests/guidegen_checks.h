@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -21,6 +22,20 @@ inline GuidegenResult TakeValid(Expected<GuidegenResult> result) {
 
 inline GuidegenResult Render(const Scene& scene, const Camera& camera, const GuidegenOptions& options) {
   return TakeValid(RenderGuides(scene, camera, options));
+}
+
+// Whether two renders hold the same layers, bit by bit.
+inline bool SameBytes(const GuideSet& a, const GuideSet& b) {
+  if (!(a.layers() == b.layers())) return false;
+  for (const LayerInfo& info : AllLayers()) {
+    if (!a.Has(info.layer)) continue;
+    for (int i = 0; i < ChannelCount(info.layer); ++i) {
+      const auto p = a.Plane(info.layer, i);
+      const auto q = b.Plane(info.layer, i);
+      if (p.size() != q.size() || std::memcmp(p.data(), q.data(), p.size_bytes()) != 0) return false;
+    }
+  }
+  return true;
 }
 
 inline void ExpectBackground(const GuideSet& guides, std::size_t i) {
