@@ -83,7 +83,8 @@ struct Spot {
   int image = 0, x = 0, y = 0;
 };
 
-// Appends the pixels of a mask that count along a Z-order curve, so that neighbours in the list are neighbours in the picture.
+// Appends the pixels of a mask that count along a Z-order curve, so that neighbours in the list are neighbours in the
+// picture.
 template <class Counts>
 class ZOrder {
  public:
@@ -177,7 +178,8 @@ Sample Choose(const std::vector<Spot>& all, std::size_t samples, std::uint64_t s
   return sample;
 }
 
-// The mean over all spots from those of the sample: two of each stratum, drawn without replacement [Cochran 1977, §5.5].
+// The mean over all spots from those of the sample: two of each stratum, drawn without replacement [Cochran 1977,
+// §5.5].
 template <class Value>
 Estimate MeanOf(const Sample& sample, const std::vector<EnergySample>& samples, const Value& value) {
   Estimate estimate;
@@ -198,7 +200,8 @@ Estimate MeanOf(const Sample& sample, const std::vector<EnergySample>& samples, 
   return estimate;
 }
 
-// Where the pixels around (x, y) took their paint, moved back by their distance: in the middle of a copy all of them agree.
+// Where the pixels around (x, y) took their paint, moved back by their distance: in the middle of a copy all of them
+// agree.
 std::vector<PatchSearch::Place> Guesses(const PatchPlanes& target, const SourcePlanes* sources, int x, int y) {
   std::vector<PatchSearch::Place> guesses;
   if (!sources) return guesses;
@@ -236,8 +239,8 @@ Status CheckInputs(const EnergyTarget& target, const Guides& guides, std::span<c
   SCUMBLE_RETURN_IF_ERROR(CheckSizes("the target", target.picture, guides, target.coverage.size()));
   if (exemplars.empty()) return InputError("there is no exemplar: the energy is a distance from one");
   if (guides.size() > kMostGuides) {
-    return InputError("there are " + std::to_string(guides.size()) + " guides: expected " + std::to_string(kMostGuides) +
-                      " at most, normals counting three");
+    return InputError("there are " + std::to_string(guides.size()) + " guides: expected " +
+                      std::to_string(kMostGuides) + " at most, normals counting three");
   }
   for (std::size_t e = 0; e < exemplars.size(); ++e) {
     const std::string name = "exemplar " + std::to_string(e);
@@ -292,9 +295,10 @@ Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const
   std::vector<PatchPlanes> planes;
   for (std::size_t e = 0; e < exemplars.size(); ++e) {
     const EnergyExemplar& exemplar = exemplars[e];
-    SCUMBLE_ASSIGN(PatchPlanes own, MakePlanes("exemplar " + std::to_string(e), *exemplar.picture,
-                                               AllGuides(exemplar.normal, exemplar.more_guides),
-                                               [&](std::size_t i) { return exemplar.usable[i] != 0; }, largest));
+    SCUMBLE_ASSIGN(PatchPlanes own, MakePlanes(
+                                        "exemplar " + std::to_string(e), *exemplar.picture,
+                                        AllGuides(exemplar.normal, exemplar.more_guides),
+                                        [&](std::size_t i) { return exemplar.usable[i] != 0; }, largest));
     planes.push_back(std::move(own));
   }
   const std::vector<Spot> all = SpotsOf(wanted);
@@ -340,7 +344,8 @@ Expected<double> MeanSourceDegrees(const EnergyTarget& target, std::span<const E
     if (!sources.covered[i] || !(target.coverage[i] >= least_coverage)) continue;
     const std::size_t e = sources.exemplar.empty() ? 0 : sources.exemplar[i];
     const int x = sources.source_x[i], y = sources.source_y[i];
-    if (e >= exemplars.size() || x < 0 || y < 0 || x >= exemplars[e].picture->width || y >= exemplars[e].picture->height) {
+    if (e >= exemplars.size() || x < 0 || y < 0 || x >= exemplars[e].picture->width ||
+        y >= exemplars[e].picture->height) {
       return InputError("the source of pixel " + Place(i, target.picture->width) + " is (" + std::to_string(x) + ", " +
                         std::to_string(y) + ") of exemplar " + std::to_string(e) +
                         ", which has no such place: the exemplars must be those of the transfer, at its size");

@@ -33,7 +33,8 @@ struct Rec709 {
 
   Rec709() {
     white = FromChromaticity(0.3127, 0.3290);
-    const glm::dmat3 primaries(FromChromaticity(0.64, 0.33), FromChromaticity(0.30, 0.60), FromChromaticity(0.15, 0.06));
+    const glm::dmat3 primaries(FromChromaticity(0.64, 0.33), FromChromaticity(0.30, 0.60),
+                               FromChromaticity(0.15, 0.06));
     const glm::dvec3 luminances = glm::inverse(primaries) * white;
     for (int c = 0; c < 3; ++c) xyz_from_rgb[c] = primaries[c] * luminances[c];
     rgb_from_xyz = glm::inverse(xyz_from_rgb);
@@ -120,8 +121,8 @@ Weights Balanced(Weights weights) {
 }
 
 struct Filters {
-  Weights y, cx;           // contrast sensitivity: luminance, red–green
-  Weights cz[2];           // blue–yellow is the sum of two Gaussians
+  Weights y, cx;              // contrast sensitivity: luminance, red–green
+  Weights cz[2];              // blue–yellow is the sum of two Gaussians
   Weights blur, edge, point;  // features: a Gaussian and its first two derivatives
 
   explicit Filters(double pixels_per_degree) {
@@ -201,8 +202,7 @@ struct Seen {
         points(colors.width, colors.height) {
     Plane y(colors.width, colors.height), cx = y, cz = y, bright = y;
     for (std::size_t i = 0; i < y.values.size(); ++i) {
-      const glm::dvec3 opponent =
-          OpponentFromLinear({colors.planes[0][i], colors.planes[1][i], colors.planes[2][i]});
+      const glm::dvec3 opponent = OpponentFromLinear({colors.planes[0][i], colors.planes[1][i], colors.planes[2][i]});
       y.values[i] = static_cast<float>(opponent.x), cx.values[i] = static_cast<float>(opponent.y);
       cz.values[i] = static_cast<float>(opponent.z), bright.values[i] = static_cast<float>((opponent.x + 16.0) / 116.0);
     }
@@ -271,8 +271,8 @@ double RootMeanSquare(const LinearColors& a, const LinearColors& b) {
 
 Status CheckInputs(int width, int height, int test_width, int test_height, const FlipOptions& options) {
   if (width != test_width || height != test_height) {
-    return InputError("the reference is " + std::to_string(width) + "×" + std::to_string(height) + ", the other picture " +
-                      std::to_string(test_width) + "×" + std::to_string(test_height) +
+    return InputError("the reference is " + std::to_string(width) + "×" + std::to_string(height) +
+                      ", the other picture " + std::to_string(test_width) + "×" + std::to_string(test_height) +
                       ": FLIP compares pictures of one size");
   }
   if (width == 0 || height == 0) return InputError("the pictures are empty: FLIP compares at least one pixel");

@@ -1,10 +1,12 @@
 // LDR-FLIP: how visible the difference of two pictures is to someone who flips between them.
 //
-// P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild: FLIP: A Difference Evaluator for
-// Alternating Images, HPG 2020. Both pictures are blurred as the eye's contrast sensitivity blurs them (section 4.1),
-// compared in Hunt-adjusted L*a*b* by the HyAB distance (4.1.2 and 4.1.3), and that difference is raised where one has
-// an edge or a point that the other lacks (4.2 and 4.3). The constants are the paper's: q_c 0.7, p_c 0.4, p_t 0.95, q_f 0.5,
-// w 0.082°; its contrast sensitivity functions; white and primaries of sRGB. Borders are continued by their last pixel.
+// P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild: FLIP: A Difference Evaluator
+// for Alternating Images, HPG 2020. Its colour pipeline: both pictures are blurred as the eye's contrast sensitivity
+// blurs them, compared in Hunt-adjusted L*a*b* by the HyAB distance, and errors are spread over 0 … 1. Its feature
+// pipeline: that is raised where one picture has an edge or a point that the other lacks. The constants are the
+// paper's: q_c 0.7, p_c 0.4, p_t 0.95, q_f 0.5, w 0.082°, its contrast sensitivity functions, primaries and white of
+// sRGB; luminance is divided by 116 as the authors' errata have it. Borders are continued by their last pixel, as in
+// their code. Of a whole map they recommend the mean.
 #pragma once
 
 #include <array>
@@ -28,7 +30,7 @@ struct FlipOptions {
 };
 
 struct FlipReport {
-  double mean = 0.0;       // of the map
+  double mean = 0.0;  // of the map
   double max = 0.0;
   double rms = 0.0;        // root mean square of the differences of R, G and B, as they were given
   std::vector<float> map;  // 0 … 1 by pixel, rows from the top
@@ -41,12 +43,13 @@ struct LinearColors {
   std::array<std::vector<float>, 3> planes;  // width × height each
 };
 
-// Transparent paint lies on white, in the encoding, where `rms` is taken as well (0 … 1). Order matters only to the last
-// bits of rounding: it is symmetric by formula. Errors: sizes differ, or nothing to compare (kInput), pixels per degree out
-// of range (kUsage). O(pixels · pixels per degree), about 70 bytes a pixel.
+// Transparent paint lies on white, in the encoding, where `rms` is taken as well (0 … 1). Order matters only to the
+// last bits of rounding: it is symmetric by formula. Errors: sizes differ, or nothing to compare (kInput), pixels per
+// degree out of range (kUsage). O(pixels · pixels per degree), about 70 bytes a pixel.
 Expected<FlipReport> MeasureFlip(const Picture& reference, const Picture& test, const FlipOptions& options = {});
 
 // The same of linear colours; `rms` is of the clamped linear values.
-Expected<FlipReport> MeasureFlip(const LinearColors& reference, const LinearColors& test, const FlipOptions& options = {});
+Expected<FlipReport> MeasureFlip(const LinearColors& reference, const LinearColors& test,
+                                 const FlipOptions& options = {});
 
 }  // namespace scumble

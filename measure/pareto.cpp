@@ -15,8 +15,8 @@ std::vector<std::size_t> ParetoFront(std::span<const TradePoint> points) {
   });
   std::vector<std::size_t> front;
   for (const std::size_t i : order) {
-    const bool is_equal = !front.empty() && points[front.back()].time == points[i].time &&
-                          points[front.back()].error == points[i].error;
+    const bool is_equal =
+        !front.empty() && points[front.back()].time == points[i].time && points[front.back()].error == points[i].error;
     if (front.empty() || is_equal || points[i].error < points[front.back()].error) front.push_back(i);
   }
   return front;

@@ -56,11 +56,11 @@ PatchSearch::PatchSearch(std::span<const PatchPlanes> exemplars, double guide_we
   SCUMBLE_CHECK(!exemplars.empty() && exemplars[0].planes.size() >= std::size_t(kPatchColors));
   SCUMBLE_CHECK(guide_weight >= 0.0 && std::isfinite(guide_weight));
   guides_ = exemplars[0].planes.size() - kPatchColors;
-  // Values are at most `scale`, and a patch has n of them. A number is at most 5 · scale (a pattern's length is 1 and a plane
-  // of a patch has 25 places), or √n · scale where it is the length of what is left; both are rounded to float, their
-  // difference is, and that less the slack: up to 6 · √n · scale · 2⁻²⁴. The square of that length is a sum of n squares
-  // less others, in doubles: off by at most 4 · n · (n · scale²) · 2⁻⁵³, and its root by the root of that, as the square
-  // may be 0. That happens on both sides.
+  // Values are at most `scale`, and a patch has n of them. A number is at most 5 · scale (a pattern's length is 1 and a
+  // plane of a patch has 25 places), or √n · scale where it is the length of what is left; both are rounded to float,
+  // their difference is, and that less the slack: up to 6 · √n · scale · 2⁻²⁴. The square of that length is a sum of n
+  // squares less others, in doubles: off by at most 4 · n · (n · scale²) · 2⁻⁵³, and its root by the root of that, as
+  // the square may be 0. That happens on both sides.
   const double scale = std::max(1.0, std::sqrt(guide_weight) * largest_guide);
   const double n = kPatchPlaces * kPatchColors;
   slack_ = static_cast<float>(scale * (8.0 * std::sqrt(n) * 0x1.0p-24 + 2.0 * 2.0 * n * 0x1.0p-26));
@@ -133,8 +133,8 @@ void PatchSearch::AddTile(Level& level, int exemplar, int tile_x, int tile_y) co
   }
 }
 
-// color(c, dx, dy) is the patch and guide(g) its middle. Colours are projected on all patterns, then come the guides and the
-// length of what is left of the colours.
+// color(c, dx, dy) is the patch and guide(g) its middle. Colours are projected on all patterns, then come the guides
+// and the length of what is left of the colours.
 template <class Color, class Guide>
 void PatchSearch::Project(const Level& level, const Color& color, const Guide& guide, float* numbers) const {
   const int r = level.radius;
@@ -152,7 +152,8 @@ void PatchSearch::Project(const Level& level, const Color& color, const Guide& g
       double sum = 0.0;
       n = 0;
       for (int dy = 0; dy <= 2 * r; ++dy) {
-        for (int dx = 0; dx <= 2 * r; ++dx) sum += pattern.across[std::size_t(dx)] * pattern.down[std::size_t(dy)] * patch[n++];
+        for (int dx = 0; dx <= 2 * r; ++dx)
+          sum += pattern.across[std::size_t(dx)] * pattern.down[std::size_t(dy)] * patch[n++];
       }
       *numbers++ = static_cast<float>(sum);
       left -= sum * sum;
@@ -193,8 +194,8 @@ bool PatchSearch::Fits(const PatchPlanes& exemplar, const PatchQuery& query, int
   return true;
 }
 
-// Sums only grow, in floating point too, so a part of one that exceeds the best ends it. Colours are whole numbers below
-// 2^39 together: exact in any order.
+// Sums only grow, in floating point too, so a part of one that exceeds the best ends it. Colours are whole numbers
+// below 2^39 together: exact in any order.
 void PatchSearch::Try(const PatchQuery& query, const Place& place, Best& best) const {
   const PatchPlanes& exemplar = exemplars_[std::size_t(place.exemplar)];
   const std::ptrdiff_t middle = exemplar.Index(place.x, place.y), stride = exemplar.stride();
@@ -247,24 +248,27 @@ PatchMatch PatchSearch::Nearest(const PatchQuery& query, std::span<const Place> 
     if (Fits(exemplars_[std::size_t(guess.exemplar)], query, guess.x, guess.y)) Try(query, guess, best);
   }
   const Level& level = levels_[std::size_t(query.core)];
-  // The middle (2 · core + 1)² places of the query, which all count: their distance is a lower bound of the whole one, the
-  // more so as that is scaled up where some do not.
+  // The middle (2 · core + 1)² places of the query, which all count: their distance is a lower bound of the whole one,
+  // the more so as that is scaled up where some do not.
   std::vector<std::size_t> at(std::size_t(2 * kPatchRadius + 1) * (2 * kPatchRadius + 1));
   for (std::size_t i = 0; i < query.offsets.size(); ++i) {
-    at[std::size_t((query.offsets[i].y + kPatchRadius) * (2 * kPatchRadius + 1) + query.offsets[i].x + kPatchRadius)] = i;
+    at[std::size_t((query.offsets[i].y + kPatchRadius) * (2 * kPatchRadius + 1) + query.offsets[i].x + kPatchRadius)] =
+        i;
   }
   std::vector<float> wanted(std::size_t(level.numbers));
   const auto color = [&](std::size_t c, int dx, int dy) {
     return query.colors[c][at[std::size_t((dy + kPatchRadius) * (2 * kPatchRadius + 1) + dx + kPatchRadius)]];
   };
-  Project(level, color, [&](std::size_t g) { return query.guides[g]; }, wanted.data());
+  Project(
+      level, color, [&](std::size_t g) { return query.guides[g]; }, wanted.data());
 
   std::vector<float> bounds(level.tiles, 0.0f);
   for (int k = 0; k < level.numbers; ++k) {
     const float* low = level.low.data() + std::size_t(k) * level.tiles;
     const float* high = level.high.data() + std::size_t(k) * level.tiles;
     for (std::size_t tile = 0; tile < level.tiles; ++tile) {
-      const float d = std::max(std::max(low[tile] - wanted[std::size_t(k)], wanted[std::size_t(k)] - high[tile]) - slack_, 0.0f);
+      const float d =
+          std::max(std::max(low[tile] - wanted[std::size_t(k)], wanted[std::size_t(k)] - high[tile]) - slack_, 0.0f);
       bounds[tile] += d * d;
     }
   }

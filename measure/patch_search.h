@@ -1,12 +1,12 @@
 // The exact nearest patch of an exemplar, without looking at all of them.
 //
-// Positions are kept in tiles of 8 × 8 with a few numbers each that bound distances from below: projections of the patch
-// onto orthonormal patterns, whose differences add up to no more than the patches' own squared distance, and the length of
-// what the projections leave, which by the triangle inequality may be added; the guides of the middle stand for themselves. A
-// tile's box of these numbers bounds all of
-// its positions. Tiles are visited by rising bound until that exceeds the best distance found: branch and bound [Fukunaga &
-// Narendra 1975], with projections as in [Hel-Or & Hel-Or 2005]. All bounds are lowered by what rounding could have
-// raised them, so that what comes out is the minimum over all positions, to the bit.
+// Positions are kept in tiles of 8 × 8 with a few numbers each that bound distances from below: projections of the
+// patch onto orthonormal patterns, whose differences add up to no more than the patches' own squared distance, and the
+// length of what the projections leave, which by the triangle inequality may be added; the guides of the middle stand
+// for themselves. A tile's box of these numbers bounds all of its positions. Tiles are visited by rising bound until
+// that exceeds the best distance found: branch and bound [Fukunaga & Narendra 1975], with projections as in [Hel-Or &
+// Hel-Or 2005]. All bounds are lowered by what rounding could have raised them, so that what comes out is the minimum
+// over all positions, to the bit.
 #pragma once
 
 #include <array>
@@ -21,7 +21,8 @@ inline constexpr int kPatchRadius = 2;
 inline constexpr int kPatchPlaces = 25;
 inline constexpr int kPatchColors = 3;
 
-// Planes with a margin of kPatchRadius on every side, where the mask is 0: the colours first, 0 … 65535, then the guides.
+// Planes with a margin of kPatchRadius on every side, where the mask is 0: the colours first, 0 … 65535, then the
+// guides.
 struct PatchPlanes {
   int width = 0;
   int height = 0;
@@ -41,8 +42,8 @@ struct PatchQuery {
   std::vector<Offset> offsets;                          // that count, in row order
   std::array<std::vector<float>, kPatchColors> colors;  // one for each offset
   std::vector<float> guides;                            // of the middle
-  int core = 0;          // the largest radius, at most the search's, whose places all count
-  double whole = 1.0;    // 25 / offsets, by which colour counts
+  int core = 0;        // the largest radius, at most the search's, whose places all count
+  double whole = 1.0;  // 25 / offsets, by which colour counts
 };
 
 struct PatchMatch {
@@ -53,11 +54,12 @@ struct PatchMatch {
 
 class PatchSearch {
  public:
-  // `exemplars` must outlive the search and have alike many planes. `guide_weight` is at least 0. `largest_guide` bounds
-  // the absolute values of the guides of exemplars and targets.
+  // `exemplars` must outlive the search and have alike many planes. `guide_weight` is at least 0. `largest_guide`
+  // bounds the absolute values of the guides of exemplars and targets.
   PatchSearch(std::span<const PatchPlanes> exemplars, double guide_weight, double largest_guide);
 
-  // 2, 1 or 0: the largest for which some exemplar has a position all round which everything is usable; −1: none is usable.
+  // 2, 1 or 0: the largest for which some exemplar has a position all round which everything is usable; −1: none is
+  // usable.
   int radius() const { return radius_; }
 
   // Pixel (x, y) of the target must be in its mask.
@@ -84,10 +86,10 @@ class PatchSearch {
     std::vector<Pattern> patterns;  // the first is flat
     int numbers = 0;                // of each position
     std::size_t tiles = 0;
-    std::vector<std::array<std::int32_t, 3>> places;   // by tile: exemplar, y, x
-    std::vector<std::size_t> first;                    // by tile: into places; one more at the end
-    std::vector<float> values;                         // by tile, number, place
-    std::vector<float> low, high;                      // by number, tile
+    std::vector<std::array<std::int32_t, 3>> places;  // by tile: exemplar, y, x
+    std::vector<std::size_t> first;                   // by tile: into places; one more at the end
+    std::vector<float> values;                        // by tile, number, place
+    std::vector<float> low, high;                     // by number, tile
   };
   struct Best;
 

@@ -16,10 +16,13 @@ struct Found {
   int exemplar = -1, x = -1, y = -1;
 };
 
-bool Inside(const Picture& picture, int x, int y) { return x >= 0 && y >= 0 && x < picture.width && y < picture.height; }
+bool Inside(const Picture& picture, int x, int y) {
+  return x >= 0 && y >= 0 && x < picture.width && y < picture.height;
+}
 
 // The header's formula word by word; `reach` is half the patch's side.
-Found Plain(const EnergyScene& target, const std::vector<EnergyScene>& exemplars, int x, int y, double lambda, int reach) {
+Found Plain(const EnergyScene& target, const std::vector<EnergyScene>& exemplars, int x, int y, double lambda,
+            int reach) {
   Found found;
   for (std::size_t e = 0; e < exemplars.size(); ++e) {
     const EnergyScene& exemplar = exemplars[e];
@@ -28,7 +31,8 @@ Found Plain(const EnergyScene& target, const std::vector<EnergyScene>& exemplars
       int places = 0;
       for (int dy = -reach; dy <= reach; ++dy) {
         for (int dx = -reach; dx <= reach; ++dx) {
-          if (!Inside(target.picture, x + dx, y + dy) || target.coverage[target.Index(x + dx, y + dy)] < 0.999f) continue;
+          if (!Inside(target.picture, x + dx, y + dy) || target.coverage[target.Index(x + dx, y + dy)] < 0.999f)
+            continue;
           if (!Inside(exemplar.picture, u + dx, v + dy) || !exemplar.usable[exemplar.Index(u + dx, v + dy)]) return;
           for (int c = 0; c < 3; ++c) {
             const double d = (target.picture.At(x + dx, y + dy)[c] - exemplar.picture.At(u + dx, v + dy)[c]) / 65535.0;
@@ -118,8 +122,8 @@ void ExpectMissing(const EnergyScene& target, const std::vector<EnergyScene>& ex
   EXPECT_EQ(report.both.mean, report.energy.mean + report.missing.mean);
 }
 
-// Every pixel's nearest patch, with and without guesses, must be the plain loop's. The two add up in another order: at most
-// 200 terms, whose rounding is below 200 · 2⁻⁵³ of the sum.
+// Every pixel's nearest patch, with and without guesses, must be the plain loop's. The two add up in another order: at
+// most 200 terms, whose rounding is below 200 · 2⁻⁵³ of the sum.
 void ExpectExact(const EnergyScene& target, const std::vector<EnergyScene>& exemplars, double lambda, int side,
                  const SourcePlanes* guesses = nullptr) {
   std::vector<EnergyExemplar> views;
@@ -162,12 +166,14 @@ TEST(EnergyExact, CutPatchesAndPositionsThatDoNotFit) {
 }
 
 TEST(EnergyExact, SeveralExemplarsOfSeveralSizesWithMoreGuides) {
-  ExpectExact(Chance(5, 14, 12, 0.7, 0.05, 2), {Chance(6, 21, 18, 0.7, 0.01, 2), Chance(7, 30, 16, 0.7, 0.0, 2)}, 1.0, 5);
+  ExpectExact(Chance(5, 14, 12, 0.7, 0.05, 2), {Chance(6, 21, 18, 0.7, 0.01, 2), Chance(7, 30, 16, 0.7, 0.0, 2)}, 1.0,
+              5);
 }
 
 TEST(EnergyExact, WhatIsMissing) {
   ExpectMissing(Chance(1, 19, 14, 0.8, 0.0, 0), {Chance(2, 13, 12, 0.8, 0.0, 0)}, 10.0, 5);
-  ExpectMissing(Chance(5, 17, 12, 0.7, 0.02, 1), {Chance(6, 9, 11, 0.7, 0.05, 1), Chance(7, 8, 7, 0.7, 0.0, 1)}, 1.0, 5);
+  ExpectMissing(Chance(5, 17, 12, 0.7, 0.02, 1), {Chance(6, 9, 11, 0.7, 0.05, 1), Chance(7, 8, 7, 0.7, 0.0, 1)}, 1.0,
+                5);
   ExpectMissing(Chance(8, 3, 9, 0.7, 0.0, 0), {Chance(9, 10, 11, 0.7, 0.0, 0)}, 1.0, 3);
 }
 

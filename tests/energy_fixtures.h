@@ -78,7 +78,8 @@ inline EnergyReport MustMeasure(const EnergyTarget& target, std::span<const Ener
   return report.ok() ? *report : EnergyReport{};
 }
 
-inline EnergyReport MustMeasure(const EnergyScene& target, const EnergyScene& exemplar, const EnergyOptions& options = {}) {
+inline EnergyReport MustMeasure(const EnergyScene& target, const EnergyScene& exemplar,
+                                const EnergyOptions& options = {}) {
   const EnergyExemplar one = exemplar.Exemplar();
   return MustMeasure(target.Target(), {&one, 1}, options);
 }

@@ -41,13 +41,15 @@ TEST(Energy, APictureThatIsTheExemplarScoresNothing) {
   }
 }
 
-// One colour each, one normal each: all patches are equally far, and sums of colours count as 25 terms wherever the patch is
-// cut. The normals are 0.6 apart in x: that is not what the scene asks for.
+// One colour each, one normal each: all patches are equally far, and sums of colours count as 25 terms wherever the
+// patch is cut. The normals are 0.6 apart in x: that is not what the scene asks for.
 TEST(Energy, FlatColoursAndNormalsAsTheyFollowByHand) {
   EnergyScene target(12, 9), exemplar(20, 20);
-  target.Paint([](int, int) { return std::array<int, 3>{13107, 0, 65535}; });    // 0.2, 0, 1
+  target.Paint([](int, int) { return std::array<int, 3>{13107, 0, 65535}; });       // 0.2, 0, 1
   exemplar.Paint([](int, int) { return std::array<int, 3>{39321, 6553, 65535}; });  // 0.6, 6553/65535, 1
-  exemplar.ForEach([&](int x, int y) { exemplar.SetNormal(x, y, {0.6f, 0.0f, 0.8f}); });  // 36.87 degrees from (0, 0, 1)
+  exemplar.ForEach([&](int x, int y) {
+    exemplar.SetNormal(x, y, {0.6f, 0.0f, 0.8f});
+  });  // 36.87 degrees from (0, 0, 1)
   const EnergyReport report = MustMeasure(target, exemplar, All(3.0));
   const double color = 25.0 * (0.4 * 0.4 + std::pow(6553.0 / 65535.0, 2));
   const double x = 0.6f, z = 1.0 - double(0.8f), guide = x * x + z * z;  // in exact numbers 0.4
@@ -88,8 +90,8 @@ TEST(Energy, AStraightCopyPaysForItsGuidesAlone) {
   EXPECT_NEAR(MustMeasure(target, exemplar, All(0.1)).energy.mean, 0.1 * own, 1e-12 * own);
 }
 
-// One wrong pixel stands in the 25 patches around it, each of which it makes worse by its squared error: the mean over 900
-// pixels is 25 · d² / 900.
+// One wrong pixel stands in the 25 patches around it, each of which it makes worse by its squared error: the mean over
+// 900 pixels is 25 · d² / 900.
 TEST(Energy, OneWrongPixelCosts25TimesItsSquareOverAll) {
   EnergyScene exemplar(30, 30);
   exemplar.Paint([](int x, int y) { return NoiseColor(3, x, y); });
@@ -102,15 +104,16 @@ TEST(Energy, OneWrongPixelCosts25TimesItsSquareOverAll) {
   EXPECT_NEAR(report.missing.mean, 25.0 * d * d / 900.0, 1e-12) << "the 25 patches of the exemplar that it spoils";
 }
 
-// Half of the exemplar is copied, and the other half of it is nowhere: what there is costs nothing, and what there is not is
-// what is missing.
+// Half of the exemplar is copied, and the other half of it is nowhere: what there is costs nothing, and what there is
+// not is what is missing.
 TEST(Energy, WhatThePictureLacksIsMissing) {
   EnergyScene exemplar(40, 20), target(20, 20);
   exemplar.Paint([](int x, int y) { return x < 20 ? NoiseColor(3, x, y) : std::array<int, 3>{65535, 65535, 65535}; });
   target.picture = Picture(20, 20);
   target.Paint([](int x, int y) { return NoiseColor(3, x, y); });
   EXPECT_EQ(MustMeasure(target, exemplar, All()).energy.mean, 0.0);
-  EXPECT_GT(MustMeasure(target, exemplar, All()).missing.mean, 0.5 * 25.0 * 3.0 * 0.1) << "half is white: far from noise";
+  EXPECT_GT(MustMeasure(target, exemplar, All()).missing.mean, 0.5 * 25.0 * 3.0 * 0.1)
+      << "half is white: far from noise";
   EXPECT_EQ(MustMeasure(exemplar, target, All()).missing.mean, 0.0) << "all of the half is in the whole";
 }
 
@@ -130,7 +133,8 @@ TEST(Energy, SeveralExemplarsNeverCostMoreThanOne) {
   EXPECT_NEAR(report.energy.mean, expected, 1e-12 * expected);
 }
 
-// Paint under a pixel that is partly covered is mixed with what lies behind, so it is not looked at, by itself or by others.
+// Paint under a pixel that is partly covered is mixed with what lies behind, so it is not looked at, by itself or by
+// others.
 TEST(Energy, PixelsThatAreNotFullyCoveredDoNotCount) {
   EnergyScene exemplar = Ball(32);
   exemplar.Paint([](int x, int y) { return NoiseColor(7, x, y); });
@@ -168,9 +172,9 @@ EnergyScene Smooth() {
 }
 
 // The expectation of the estimate is the mean itself, and that of its squared error the squared standard error. Over 60
-// seeds the mean estimate has 1/√60 of the error of one; beyond 4 of those one run in 16,000 would fall by chance, and the
-// seeds are fixed. Of the mean square of 60 normal errors the standard deviation is √(2/60) = 0.18 of it, and that of
-// the estimated ones is less; 0.4 … 1.8 leaves three of those and what errors that are not quite normal add.
+// seeds the mean estimate has 1/√60 of the error of one; beyond 4 of those one run in 16,000 would fall by chance, and
+// the seeds are fixed. Of the mean square of 60 normal errors the standard deviation is √(2/60) = 0.18 of it, and that
+// of the estimated ones is less; 0.4 … 1.8 leaves three of those and what errors that are not quite normal add.
 TEST(Energy, SamplesEstimateTheMeanAndTheirOwnError) {
   const EnergyScene target = Patchy(), exemplar = Smooth();
   const EnergyReport all = MustMeasure(target, exemplar, All());
@@ -298,9 +302,9 @@ TEST(Energy, LitSphereOnTheExemplarsOwnSphereScoresNothing) {
   EXPECT_GT(larger.report.both.mean, 0.1);
 }
 
-// Chunks keep strokes at the cost of guides, single pixels the other way round; and the one figure tells them apart although
-// the sources' own normals are further off in chunks. Noise is worse than both, and so is one colour, near as it is to some
-// patch of any paint: that is what the direction back is for.
+// Chunks keep strokes at the cost of guides, single pixels the other way round; and the one figure tells them apart
+// although the sources' own normals are further off in chunks. Noise is worse than both, and so is one colour, near as
+// it is to some patch of any paint: that is what the direction back is for.
 TEST(Energy, ChunksBeatSinglePixelsAndBothBeatNoiseAndFlatness) {
   const GuideSet hills = HillGuides(160, 140);
   const auto single = [&](std::optional<Picture> instead = {}) {
@@ -316,7 +320,8 @@ TEST(Energy, ChunksBeatSinglePixelsAndBothBeatNoiseAndFlatness) {
     RecordProperty(name, std::to_string(m.report.energy.mean) + " + " + std::to_string(m.report.missing.mean));
     return m.report.both.mean;
   };
-  const double of_chunks = record("chunks", chunks), of_oracle = record("oracle", oracle), of_pixels = record("pixels", pixels);
+  const double of_chunks = record("chunks", chunks), of_oracle = record("oracle", oracle),
+               of_pixels = record("pixels", pixels);
   EXPECT_LT(of_chunks, of_pixels);
   EXPECT_LT(of_oracle, of_pixels);
   EXPECT_LT(of_pixels, record("noise", single(noise)));
@@ -344,14 +349,16 @@ TEST(Energy, RefusesWhatItCannotMeasure) {
   }
   EnergyScene wrong = scene;
   wrong.coverage.pop_back();
-  ExpectRefusal(measure(wrong.Target(), exemplar), ErrorKind::kInput, "the target's picture is 8×6, its guides are not");
+  ExpectRefusal(measure(wrong.Target(), exemplar), ErrorKind::kInput,
+                "the target's picture is 8×6, its guides are not");
   EnergyScene bare = scene;
   bare.usable.assign(bare.usable.size(), 0);
   ExpectRefusal(measure(scene.Target(), bare.Exemplar()), ErrorKind::kInput, "no exemplar has a usable pixel");
   EnergyScene broken = scene;
   broken.SetNormal(3, 2, glm::vec3(std::nanf(""), 0, 1));
   ExpectRefusal(measure(broken.Target(), exemplar), ErrorKind::kInput, "the target has a guide of nan at (3, 2)");
-  ExpectRefusal(measure(scene.Target(), broken.Exemplar()), ErrorKind::kInput, "exemplar 0 has a guide of nan at (3, 2)");
+  ExpectRefusal(measure(scene.Target(), broken.Exemplar()), ErrorKind::kInput,
+                "exemplar 0 has a guide of nan at (3, 2)");
   EnergyScene more = scene;
   more.more.assign(1, std::vector<float>(48, 0.0f));
   ExpectRefusal(measure(more.Target(), exemplar), ErrorKind::kInput, "exemplar 0 has 3 guides, the target 4");
@@ -360,7 +367,8 @@ TEST(Energy, RefusesWhatItCannotMeasure) {
   const SourcePlanes sources{9, 6, {}, {}, {}, {}};
   EnergyOptions options;
   options.sources = &sources;
-  ExpectRefusal(measure(scene.Target(), exemplar, options), ErrorKind::kInput, "the sources are 9×6, the picture is 8×6");
+  ExpectRefusal(measure(scene.Target(), exemplar, options), ErrorKind::kInput,
+                "the sources are 9×6, the picture is 8×6");
 }
 
 TEST(Energy, SourceDegreesAreTheMeanAngleOrARefusal) {

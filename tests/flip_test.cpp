@@ -19,9 +19,9 @@ namespace {
 
 using Color = std::array<double, 3>;
 
-// Planes are floats. In Lab, whose values are below 250, that is an error below 2e-5; q_c = 0.7 makes at most 5e-4 of it and
-// the scale p_t / (p_c c_max) = 0.058 at most 3e-5. In features, 1e-7 and with q_f = 0.5 at most 3e-4 in an exponent;
-// the derivative of e^x by x is at most 1/e for e in [0, 1] (of −e ln e), so at most 1.2e-4.
+// Planes are floats. In Lab, whose values are below 250, that is an error below 2e-5; q_c = 0.7 makes at most 5e-4 of
+// it and the scale p_t / (p_c c_max) = 0.058 at most 3e-5. In features, 1e-7 and with q_f = 0.5 at most 3e-4 in an
+// exponent; the derivative of e^x by x is at most 1/e for e in [0, 1] (of −e ln e), so at most 1.2e-4.
 constexpr double kRounding = 1.5e-4;
 
 LinearColors Linear(int width, int height, const std::function<Color(int x, int y)>& color) {
@@ -145,8 +145,10 @@ double Feature(const LinearColors& image, int x, int y, double ppd, bool is_poin
   const double positive = SumOver(radius, along, 1), negative = SumOver(radius, along, -1);
   const auto balanced = [&](int t, int other) { return along(t, other) / (along(t, other) > 0 ? positive : negative); };
   const auto level = [](const Color& rgb) { return (Opponent(rgb)[0] + 16) / 116; };
-  const double across = Convolved(image, x, y, radius, [&](int dx, int dy) { return balanced(dx, dy); }, level);
-  const double down = Convolved(image, x, y, radius, [&](int dx, int dy) { return balanced(dy, dx); }, level);
+  const double across = Convolved(
+      image, x, y, radius, [&](int dx, int dy) { return balanced(dx, dy); }, level);
+  const double down = Convolved(
+      image, x, y, radius, [&](int dx, int dy) { return balanced(dy, dx); }, level);
   return std::hypot(across, down);
 }
 
@@ -184,7 +186,8 @@ TEST(Flip, IsThePapersFormulaOnFeatures) {
   for (const LinearColors* other : {&dot, &line, &step}) {
     const FlipReport report = Must(plain, *other, {.pixels_per_degree = 30.0});
     for (const auto& [x, y] : {std::pair{10, 10}, {9, 10}, {12, 8}, {0, 0}, {20, 9}}) {
-      EXPECT_NEAR(report.map[std::size_t(y * 21 + x)], PlainFlip(plain, *other, x, y, 30.0), kRounding) << x << ", " << y;
+      EXPECT_NEAR(report.map[std::size_t(y * 21 + x)], PlainFlip(plain, *other, x, y, 30.0), kRounding)
+          << x << ", " << y;
     }
   }
 }
@@ -197,10 +200,10 @@ TEST(Flip, EqualPicturesScoreNothingAtAll) {
   EXPECT_EQ(report.rms, 0.0);
 }
 
-// Flat pictures have no features, and a blur does nothing to them: what is left is the colour metric. Published L*a*b* of the
-// primaries of sRGB under D65: green (87.735, −86.183, 83.179), blue (32.297, 79.188, −107.860). Hunt-adjusted: (87.735,
-// −75.612, 72.977) and (32.297, 25.575, −34.836), so HyAB is 55.438 + √(101.187² + 107.813²) = 203.299 and c_max = 203.299^0.7 =
-// 41.275. Of black and white HyAB is 100.
+// Flat pictures have no features, and a blur does nothing to them: what is left is the colour metric. Published L*a*b*
+// of the primaries of sRGB under D65: green (87.735, −86.183, 83.179), blue (32.297, 79.188, −107.860). Hunt-adjusted:
+// (87.735, −75.612, 72.977) and (32.297, 25.575, −34.836), so HyAB is 55.438 + √(101.187² + 107.813²) = 203.299 and
+// c_max = 203.299^0.7 = 41.275. Of black and white HyAB is 100.
 TEST(Flip, FlatColoursAsTheyFollowByHand) {
   EXPECT_NEAR(Must(Flat({0, 1, 0}), Flat({0, 0, 1})).mean, 1.0, kRounding) << "the pair that c_max is of";
   const double largest = std::pow(203.299, 0.7), black_white = std::pow(100.0, 0.7);
@@ -209,10 +212,11 @@ TEST(Flip, FlatColoursAsTheyFollowByHand) {
   EXPECT_NEAR(expected, 0.9674, 5e-5);
   EXPECT_NEAR(Must(Flat({0, 0, 0}), Flat({1, 1, 1})).mean, expected, kRounding);
   // L* of linear 0.18 is 116 · 0.18^(1/3) − 16 = 49.496, of 0.2 it is 51.837: 2.341 apart, on the lower branch.
-  EXPECT_NEAR(Must(Flat({0.18, 0.18, 0.18}), Flat({0.2, 0.2, 0.2})).mean,
-              0.95 * std::pow(2.341, 0.7) / (0.4 * largest), kRounding);
+  EXPECT_NEAR(Must(Flat({0.18, 0.18, 0.18}), Flat({0.2, 0.2, 0.2})).mean, 0.95 * std::pow(2.341, 0.7) / (0.4 * largest),
+              kRounding);
   // Red is (53.241, 80.092, 67.203), cyan (91.113, −48.088, −14.131), each times L/100 in a and b.
-  const double hyab = 91.113 - 53.241 + std::hypot(0.53241 * 80.092 + 0.91113 * 48.088, 0.53241 * 67.203 + 0.91113 * 14.131);
+  const double hyab =
+      91.113 - 53.241 + std::hypot(0.53241 * 80.092 + 0.91113 * 48.088, 0.53241 * 67.203 + 0.91113 * 14.131);
   EXPECT_NEAR(Must(Flat({1, 0, 0}), Flat({0, 1, 1})).mean,
               0.95 + 0.05 * (std::pow(hyab, 0.7) - 0.4 * largest) / (0.6 * largest), kRounding);
 }
@@ -223,8 +227,8 @@ TEST(Flip, PixelsPerDegreeAreThePublishedOnes) {
   EXPECT_NEAR(FlipOptions().pixels_per_degree, 67.02, 0.001);
 }
 
-// One changed pixel is seen as far as the wider of the filters reaches, and no further: ⌈3 √(0.04 / (2 π²)) · 67.02⌉ = ⌈9.051⌉ =
-// 10 pixels for colours, ⌈3 · 0.5 · 0.082 · 67.02⌉ = ⌈8.243⌉ = 9 for features.
+// One changed pixel is seen as far as the wider of the filters reaches, and no further: ⌈3 √(0.04 / (2 π²)) · 67.02⌉ =
+// ⌈9.051⌉ = 10 pixels for colours, ⌈3 · 0.5 · 0.082 · 67.02⌉ = ⌈8.243⌉ = 9 for features.
 TEST(Flip, FiltersReachAsFarAsPublished) {
   const auto dot = [](double blue) {
     return Linear(41, 41, [=](int x, int y) { return Color{0.3, 0.3, x == 20 && y == 20 ? blue : 0.3}; });
@@ -239,7 +243,8 @@ TEST(Flip, FiltersReachAsFarAsPublished) {
   }
 }
 
-// Nothing in the formula tells reference and test apart, nor left and right, nor rows and columns. The order of sums does.
+// Nothing in the formula tells reference and test apart, nor left and right, nor rows and columns. The order of sums
+// does.
 TEST(Flip, IsSymmetric) {
   const LinearColors a = Chance(5, 26, 19), b = Chance(6, 26, 19);
   const FlipReport report = Must(a, b);
@@ -250,7 +255,8 @@ TEST(Flip, IsSymmetric) {
       return Color{in.planes[0][i], in.planes[1][i], in.planes[2][i]};
     });
   };
-  const FlipReport mirrored = Must(turned(a, false), turned(b, false)), transposed = Must(turned(a, true), turned(b, true));
+  const FlipReport mirrored = Must(turned(a, false), turned(b, false)),
+                   transposed = Must(turned(a, true), turned(b, true));
   for (int y = 0; y < 19; ++y) {
     for (int x = 0; x < 26; ++x) {
       EXPECT_NEAR(mirrored.map[std::size_t(y * 26 + 25 - x)], report.map[std::size_t(y * 26 + x)], kRounding);
@@ -288,7 +294,8 @@ TEST(Flip, PicturesAreDecodedAndLieOnWhite) {
 TEST(Flip, ValuesThatAreNoColoursAreClamped) {
   const float nan = std::nanf(""), inf = std::numeric_limits<float>::infinity();
   EXPECT_EQ(Must(Flat({nan, -1e30f, inf}), Flat({0, 0, 1})).max, 0.0);
-  for (const float value : Must(Flat({nan, inf, -inf}), Chance(9, 24, 24)).map) EXPECT_TRUE(value >= 0.0f && value <= 1.0f);
+  for (const float value : Must(Flat({nan, inf, -inf}), Chance(9, 24, 24)).map)
+    EXPECT_TRUE(value >= 0.0f && value <= 1.0f);
 }
 
 TEST(Flip, OnePixelAndOneRowAreEnough) {
