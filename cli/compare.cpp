@@ -13,6 +13,7 @@
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 #include "measure/flicker.h"
+#include "measure/flip.h"
 #include "measure/heat_map.h"
 
 namespace scumble {
@@ -25,6 +26,8 @@ struct CompareVerb {
   std::string heat_map;
   std::string motion;
   std::string motion_next;
+  bool flip = false;
+  FlipOptions flip_options;
 };
 
 // The guides that flicker is measured along; what is not there is not looked at.
@@ -56,8 +59,7 @@ Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
   if (!verb.motion_next.empty()) {
     SCUMBLE_ASSIGN(next, ReadMotionGuides(verb.motion_next, {}));
   }
-  SCUMBLE_ASSIGN(const FlickerReport report,
-                 MeasureFlicker(a, b, guides, verb.motion_next.empty() ? nullptr : &next));
+  SCUMBLE_ASSIGN(const FlickerReport report, MeasureFlicker(a, b, guides, verb.motion_next.empty() ? nullptr : &next));
   if (!verb.heat_map.empty()) {
     const Picture map = ValueHeatMap(report.changes, guides.width(), guides.height(), kMostFlicker);
     SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map));
@@ -76,8 +78,29 @@ Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
   return ExitCode::kOk;
 }
 
+Expected<ExitCode> RunFlip(const CompareVerb& verb, const Globals& globals) {
+  SCUMBLE_ASSIGN(const Picture a, ReadPicture(verb.a));
+  SCUMBLE_ASSIGN(const Picture b, ReadPicture(verb.b));
+  FlipOptions options = verb.flip_options;
+  options.threads = globals.threads;
+  SCUMBLE_ASSIGN(const FlipReport report, MeasureFlip(a, b, options));
+  if (!verb.heat_map.empty()) {
+    SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, ValueHeatMap(report.map, a.width, a.height, 1.0)));
+    Say(globals, verb.heat_map + ": yellow is a FLIP of 1");
+  }
+  const nlohmann::ordered_json json = {{"a", verb.a},         {"b", verb.b},
+                                       {"flip", report.mean}, {"flip_max", report.max},
+                                       {"rms", report.rms},   {"pixels_per_degree", options.pixels_per_degree}};
+  Print(globals.json ? JsonText(json)
+                     : fmt::format("FLIP mean {:.6f}, most {:.6f}, at {:.2f} pixels per degree\n"
+                                   "RMS  {:.6f} of 1\n",
+                                   report.mean, report.max, options.pixels_per_degree, report.rms));
+  return ExitCode::kOk;
+}
+
 Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckHeatMap(verb));
+  if (verb.flip) return RunFlip(verb, globals);
   if (!verb.motion.empty()) return RunFlicker(verb, globals);
   SCUMBLE_ASSIGN(const ChannelImage a, ReadChannels(verb.a));
   SCUMBLE_ASSIGN(const ChannelImage b, ReadChannels(verb.b));
@@ -104,6 +127,15 @@ void AddThresholds(CLI::App& sub, const std::string& name, DifferenceThresholds&
   add("hard" + name, thresholds.hard, "no value may differ by more than this, whatever the percentage");
 }
 
+// Another measure looks at none of the options that thresholds and layers are set by, nor at those of a third one.
+void ExcludeOthers(CLI::App& sub, CLI::Option* measure, const std::string& own) {
+  for (const CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name();
+    if (!name.starts_with("--") || name.starts_with(own) || name == "--help" || name == "--heat-map") continue;
+    measure->excludes(sub.get_option(name));
+  }
+}
+
 }  // namespace
 
 void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
@@ -125,19 +157,24 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
                   "picture of the differences to write: dark where equal, yellow where most")
       ->type_name("FILE");
   CLI::Option* motion =
-      sub->add_option("--motion", verb->motion,
-                      "guides of the first picture's frame, with layer motion: measure how the colours of what stays in "
-                      "sight change on the way to the second picture, the next frame, and nothing else")
+      sub->add_option(
+             "--motion", verb->motion,
+             "guides of the first picture's frame, with layer motion: measure how the colours of what stays in "
+             "sight change on the way to the second picture, the next frame, and nothing else")
           ->type_name("FILE");
-  sub->add_option("--motion-next", verb->motion_next, "guides of the second picture's frame: what is hidden there is left out")
+  sub->add_option("--motion-next", verb->motion_next,
+                  "guides of the second picture's frame: what is hidden there is left out")
       ->type_name("FILE")
       ->needs(motion);
-  for (const CLI::Option* option : sub->get_options()) {
-    const std::string name = option->get_name();
-    if (name.starts_with("--") && !name.starts_with("--motion") && name != "--help" && name != "--heat-map") {
-      motion->excludes(sub->get_option(name));
-    }
-  }
+  CLI::Option* flip = sub->add_flag("--flip", verb->flip,
+                                    "how visible the difference of two pictures is to who flips between them, 0 to 1 "
+                                    "(FLIP, Andersson et al. 2020), and nothing else");
+  sub->add_option("--flip-ppd", verb->flip_options.pixels_per_degree,
+                  "pixels of the display in one degree of sight; 67 is 4K, 0.7 m wide and 0.7 m away")
+      ->type_name("N")
+      ->needs(flip)
+      ->capture_default_str();
+  ExcludeOthers(*sub, motion, "--motion"), ExcludeOthers(*sub, flip, "--flip");
   sub->footer("Thresholds are idiff's, which may be written with one dash: -fail 0.01 -failpercent 1.\n\n" +
               app.get_footer());
   AddGlobalOptions(*sub, globals);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "measure/on_white.h"
+
 namespace scumble {
 namespace {
 
@@ -14,11 +16,9 @@ using Color = std::array<double, 3>;
 constexpr float kCovered = 0.999f;
 constexpr double kDepthChange = 0.05;
 
-Color OnWhite(const Picture& picture, int x, int y) {
-  const std::uint16_t* texel = picture.At(x, y);
-  const double alpha = texel[3] / 65535.0;
-  Color color;
-  for (int c = 0; c < 3; ++c) color[std::size_t(c)] = 255.0 * (texel[c] / 65535.0 * alpha + 1.0 - alpha);
+Color In255OnWhite(const Picture& picture, int x, int y) {
+  Color color = OnWhite(picture, x, y);
+  for (double& value : color) value *= 255.0;
   return color;
 }
 
@@ -61,7 +61,7 @@ class Flicker {
           ++report.hidden;
           continue;
         }
-        const Color from = OnWhite(a_, x, y);
+        const Color from = In255OnWhite(a_, x, y);
         const double change = MeanDifference(from, Moved(target));
         report.changes[guides_.Index(x, y)] = static_cast<float>(change);
         sum += change;
@@ -139,7 +139,7 @@ class Flicker {
     for (int dy = 0; dy < 2; ++dy) {
       for (int dx = 0; dx < 2; ++dx) {
         const double weight = target.Weight(dx, dy);
-        if (weight > 0.0) Add(sum, weight, OnWhite(b_, target.x + dx, target.y + dy));
+        if (weight > 0.0) Add(sum, weight, In255OnWhite(b_, target.x + dx, target.y + dy));
       }
     }
     return sum;
@@ -152,7 +152,7 @@ class Flicker {
     Color sum{};
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        Add(sum, across[std::size_t(dx + 1)] * down[std::size_t(dy + 1)], OnWhite(a_, x + dx, y + dy));
+        Add(sum, across[std::size_t(dx + 1)] * down[std::size_t(dy + 1)], In255OnWhite(a_, x + dx, y + dy));
       }
     }
     return sum;

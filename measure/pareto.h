@@ -1,0 +1,22 @@
+// Which settings are worth choosing: those that nothing else beats in time and error at once.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace scumble {
+
+// Both in any unit, less being better.
+struct TradePoint {
+  double time = 0.0;
+  double error = 0.0;
+};
+
+// The places in `points` of the Pareto front, by rising time. One point beats another if it is worse in neither and
+// better in one. Points that are equal in both do not beat each other: all are on the front if one is, in the order
+// given. So the errors along the front fall strictly from each time to the next longer one. A point with a NaN was not
+// measured: it is never on the front and beats nobody. Infinities are numbers like others. O(n log n).
+std::vector<std::size_t> ParetoFront(std::span<const TradePoint> points);
+
+}  // namespace scumble
