@@ -144,7 +144,15 @@ LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
 }
 
 glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {
-  return point.position + point.facing * (point.largest_coordinate * kRoundingPerCoordinate);
+  // Seen flatter than this (about half a degree), the way back would have to be too long for the height it gains.
+  constexpr double kLeastCosine = 0.01;
+  const double height = point.largest_coordinate * kRoundingPerCoordinate;
+  const double length = glm::length(point.clear_way);
+  if (!(length > 0.0)) return point.position + point.facing * height;
+  const glm::dvec3 way = point.clear_way / length;
+  const double cosine = glm::dot(point.facing, way);
+  const double back = std::min(height / std::max(cosine, kLeastCosine), length);
+  return point.position + way * back + point.facing * (height - back * cosine);
 }
 
 }  // namespace scumble

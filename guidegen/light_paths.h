@@ -84,7 +84,7 @@ class LightPathTracer {
   };
 
   Vertex MakeVertex(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric, const ViewRay& ray,
-                    double least_alpha) const;
+                    bool is_clear, double least_alpha) const;
   Lobes LobesAt(const Vertex& vertex, const PathState& state, bool last) const;
   void Add(const PathState& state, const glm::dvec3& light, PathSums& sums) const;
   bool IsBlocked(const Vertex& vertex, const LightDraw& draw, RayCounts& rays) const;
@@ -109,6 +109,7 @@ class LightPathTracer {
   const View& view_;
   const PathFollower& follower_;
   const int max_bounces_;
+  const bool clear_to_eye_;
   const LightSet lights_;
 };
 

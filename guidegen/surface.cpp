@@ -77,7 +77,8 @@ glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, 
   if (!HasNormalMap(object) || !(glm::dot(normal, normal) > kShortestNormal * kShortestNormal)) return normal;
 
   const TextureUse& use = object.material->normal_texture;
-  const glm::vec4 texel = SampleRaw(*FindTexture(object, use), use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
+  const glm::vec4 texel =
+      SampleRaw(*FindTexture(object, use), use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
   const glm::dvec3 bend = glm::dvec3(texel) * 2.0 - 1.0;
   const glm::dvec4 tangent4 = Interpolate(mesh.tangents, triangle, barycentric);
   const glm::dvec3 unit = glm::normalize(normal);
@@ -184,6 +185,11 @@ bool IsSliver(const Triangle& triangle, const glm::dvec3& area) {
     longest = std::max(longest, glm::dot(edge, edge));
   }
   return !(glm::dot(area, area) * (kSliver * kSliver) >= longest * longest);
+}
+
+bool AllDoubleSided(std::span<const PlacedObject> objects) {
+  return std::all_of(objects.begin(), objects.end(),
+                     [](const PlacedObject& object) { return object.material->double_sided; });
 }
 
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,

@@ -54,6 +54,9 @@ struct SurfacePoint {
   glm::dvec3 rest_position{0.0};    // object space
   glm::dvec2 barycentric{0.0};      // weights of the second and third corner
   double largest_coordinate = 0.0;  // of the point and its triangle: what float rounding errors are relative to
+  // A way from the point that nothing is in: back along the ray that met it, as far as the ray came. 0: none is known.
+  // Whoever casts the rays fills it in.
+  glm::dvec3 clear_way{0.0};
 };
 
 // Embree's hit is a float's worth of the truth; this meets the same surface again in double. `barycentric` are
@@ -90,6 +93,9 @@ std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const Texture
                                        glm::dvec2 barycentric);
 std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
                                             glm::dvec2 barycentric);
+
+// Whether no object is single-sided: rays of light, which meet backs as well, then pass wherever camera rays pass.
+bool AllDoubleSided(std::span<const PlacedObject> objects);
 
 // Whether rays pass here: alpha masks, and blending taken for a mask at one half.
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);

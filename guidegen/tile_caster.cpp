@@ -131,7 +131,8 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
       width_(guides.width()),
       past_caches_(guides.pixel_count() > kCachedPixels),
       lights_(view.lights, LitObjects(scene, guides), view.world_radiance),
-      object_records_(MakeObjectRecords(scene.objects())) {
+      object_records_(MakeObjectRecords(scene.objects())),
+      clear_ways_(AllDoubleSided(scene.objects())) {
   const int n = options.aa;
   std::vector<std::array<int, 3>> ranked;  // squared distance in half subsamples, row, column
   for (int row = 0; row < n; ++row) {
@@ -380,7 +381,9 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
     const glm::dvec2 motion = MotionOf(hits, pixel, point.barycentric);
     for (int i = 0; i < 2; ++i) planes_.motion[i][index] = float(motion[i]);
   }
-  if (lit_) scratch.lit[pixel] = point;
+  if (!lit_) return;
+  scratch.lit[pixel] = point;
+  if (clear_ways_) scratch.lit[pixel].clear_way = view_.camera.Through(at.x, at.y).origin - point.position;
 }
 
 void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points,

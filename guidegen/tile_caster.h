@@ -117,6 +117,7 @@ class TileCaster {
   bool past_caches_;
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
+  const bool clear_ways_;        // whether what a camera ray passes is empty for rays of light, too
   std::vector<Offset> offsets_;  // of subsamples, by rank
   std::vector<double> across_;   // of the rays through centres, as TileRays has it, by the picture's column
   std::vector<double> up_;       // and by its row; a tile's more of both than there are

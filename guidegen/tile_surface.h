@@ -28,7 +28,7 @@ struct TilePoints {
   alignas(64) std::array<std::array<double, kTilePixels>, 3> normal;
   alignas(64) std::array<double, kTilePixels> largest_coordinate;
 
-  SurfacePoint At(int pixel) const;  // without the rest position
+  SurfacePoint At(int pixel) const;  // without rest position and clear way
   void Set(int pixel, const SurfacePoint& point);
 };
 

@@ -1,0 +1,409 @@
+// Where rays of light start: surfaces do not shade themselves, and no light comes through closed walls, at any scale,
+// place, size of triangle and angle of light. The truth needs no ray: what is convex shades no lit part of itself, and
+// what is closed is dark inside.
+//
+// A ray is decided in float. Its origin lies 16 u C above the surface, u = 2^-24 and C the largest coordinate before
+// the camera; why that is enough is derived beside kRoundingPerCoordinate. Lights stand 2e-6 radians or more above what
+// they graze: below 2^-20 a float's direction need not tell which side it is on. Over slivers, whose float normals are
+// the worse the longer they are, it is 1e-5.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "guidegen/bsdf.h"
+#include "guidegen/direct_light.h"
+#include "image/hash.h"
+#include "tests/exact_rays.h"
+#include "tests/light_path_scenes.h"
+
+namespace scumble::testing {
+namespace {
+
+constexpr double kScales[] = {1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5};  // m
+constexpr double kPlaces[] = {0.0, 1.0, 1e3, 1e7};                              // m from the world's origin
+constexpr int kStages = 36;                                                     // every scale at every place
+const LayerSet kLight = {Layer::kLuminance, Layer::kShadow};
+
+double Chance(int a, int b) { return UnitFloat(Hash(std::uint64_t(a), std::uint64_t(b))); }
+
+glm::dvec3 AnyDirection(int seed) {
+  const double z = 2.0 * Chance(seed, 1) - 1.0, angle = 2.0 * kPi * Chance(seed, 2), ring = std::sqrt(1.0 - z * z);
+  return {ring * std::cos(angle), ring * std::sin(angle), z};
+}
+
+// Every triangle with corners and a normal of its own; those without area are left out.
+Mesh Faceted(const Mesh& mesh) {
+  Mesh result;
+  for (const glm::uvec3& triangle : mesh.triangles) {
+    glm::dvec3 c[3];
+    for (int k = 0; k < 3; ++k) c[k] = mesh.positions[triangle[k]];
+    const glm::dvec3 area = glm::cross(c[1] - c[0], c[2] - c[0]);
+    if (!(glm::length(area) > 0.0)) continue;
+    const unsigned first = unsigned(result.positions.size());
+    for (const glm::dvec3& corner : c) {
+      result.positions.push_back(corner);
+      result.normals.push_back(glm::normalize(area));
+    }
+    result.triangles.push_back({first, first + 1, first + 2});
+  }
+  return result;
+}
+
+// The square of QuadMesh, cut so that its triangles are the smaller the nearer they are to its middle: sides from 1 to
+// 4^-`power` of it.
+Mesh GradedSquare(int power) {
+  constexpr int kCuts = 16;
+  const auto at = [&](int i) {
+    const double t = 2.0 * i / kCuts - 1.0;
+    return float(std::copysign(std::pow(std::abs(t), power), t));
+  };
+  Mesh mesh;
+  for (int row = 0; row <= kCuts; ++row) {
+    for (int column = 0; column <= kCuts; ++column) mesh.positions.push_back({at(column), at(row), 0});
+  }
+  for (unsigned row = 0; row < kCuts; ++row) {
+    for (unsigned column = 0; column < kCuts; ++column) {
+      const unsigned a = row * (kCuts + 1) + column, b = a + kCuts + 1;
+      mesh.triangles.push_back({a, a + 1, b + 1});
+      mesh.triangles.push_back({a, b + 1, b});
+    }
+  }
+  return Faceted(mesh);
+}
+
+// Two triangles back to back, each `aspect` times as long as high, its third corner near the middle of its long edge.
+Mesh FlatCaps(float aspect) {
+  Mesh mesh;
+  mesh.positions = {{-1, 0, 0}, {1, 0, 0}, {0.1f, 2.0f / aspect, 0}, {0.1f, -2.0f / aspect, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 1}};
+  return Faceted(mesh);
+}
+
+// Two hundred needles from one corner, each 40,000 times as long as wide.
+Mesh Needles() {
+  Mesh mesh;
+  mesh.positions = {{0, -1, 0}};
+  for (int i = 0; i <= 200; ++i) mesh.positions.push_back({0.01f * (float(i) / 200.0f - 0.5f), 1, 0});
+  for (unsigned i = 1; i <= 200; ++i) mesh.triangles.push_back({0, i + 1, i});
+  return Faceted(mesh);
+}
+
+Mesh Tetrahedron() {
+  Mesh mesh;
+  mesh.positions = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  return Faceted(mesh);
+}
+
+// A closed tent lying on its side: two of its walls meet at `degrees`.
+Mesh Tent(double degrees) {
+  const float high = float(2.0 * std::tan(glm::radians(0.5 * degrees)));
+  Mesh mesh;
+  for (const float z : {-1.0f, 1.0f}) {
+    for (const glm::vec3 corner : {glm::vec3(-1, 0, z), {1, -high, z}, {1, high, z}}) mesh.positions.push_back(corner);
+  }
+  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return Faceted(mesh);
+}
+
+// A cube in a slightly larger one.
+Mesh ThinWalls(float thickness) {
+  Mesh mesh = CubeMesh();
+  const Mesh outer = CubeMesh();
+  const unsigned first = unsigned(mesh.positions.size());
+  for (const glm::vec3& position : outer.positions) mesh.positions.push_back(position * (1.0f + thickness));
+  mesh.normals.insert(mesh.normals.end(), outer.normals.begin(), outer.normals.end());
+  for (const glm::uvec3& triangle : outer.triangles) mesh.triangles.push_back(triangle + first);
+  return mesh;
+}
+
+// On one thread: for thousands of small pictures, waking more takes longer than they save.
+GuidegenOptions SmallPicture() {
+  GuidegenOptions options = Sized(40, 40, kLight);
+  options.threads = 1;
+  return options;
+}
+
+Light SunFrom(const glm::dvec3& direction) {
+  glm::dvec3 x, y;
+  MakeFrame(direction, x, y);
+  Light sun = Above(LightType::kSun, 0.0, 1.0);
+  for (int row = 0; row < 3; ++row) {
+    sun.world_from_light[0][row] = x[row];
+    sun.world_from_light[1][row] = y[row];
+    sun.world_from_light[2][row] = direction[row];
+  }
+  return sun;
+}
+
+glm::dmat4 Placed(double scale, const glm::dvec3& place, int turn) {
+  const glm::dmat4 turned =
+      glm::rotate(glm::translate(glm::dmat4(1.0), place), 6.0 * Chance(turn, 9), AnyDirection(turn + 100));
+  return glm::scale(turned, glm::dvec3(scale));
+}
+
+glm::dvec3 At(const glm::dmat4& matrix, const glm::dvec3& local) { return glm::dvec3(matrix * glm::dvec4(local, 1.0)); }
+
+struct Named {
+  const char* name;
+  Mesh mesh;
+  double lowest_sun = 2e-6;  // radians
+};
+
+std::vector<Named> ConvexThings() {
+  return {{"ball of 8 rings", Faceted(BallMesh(8))},
+          {"ball of 64 rings", Faceted(BallMesh(64))},
+          {"smooth ball", BallMesh(64)},
+          {"cube", CubeMesh()},
+          {"tetrahedron", Tetrahedron()},
+          {"square", QuadMesh()},
+          {"square, graded", GradedSquare(4), 1e-5},
+          {"caps 100", FlatCaps(100.0f), 1e-5},
+          {"caps 1000", FlatCaps(1000.0f), 1e-5},
+          {"needles", Needles(), 1e-5}};
+}
+
+struct Stage {
+  Scene scene;
+  Camera camera;
+};
+
+// A thing, suns all about and grazing its XY plane, two lamps; a camera `distance` scales away.
+Stage LitFromOutside(const Named& thing, double scale, double place, double distance, int turn) {
+  const glm::dvec3 middle = AnyDirection(77) * place;
+  const glm::dmat4 matrix = Placed(scale, middle, turn);
+  Stage stage{SceneOf(thing.mesh, matrix), {}};
+  const glm::dvec3 up = glm::normalize(glm::dvec3(matrix[2]));
+  glm::dvec3 x, y;
+  MakeFrame(up, x, y);
+  for (int i = 0; i < 4; ++i) stage.scene.lights.push_back(SunFrom(AnyDirection(1000 * turn + i)));
+  for (const double elevation : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, thing.lowest_sun}) {
+    const double azimuth = 2.0 * kPi * Chance(turn, int(1.0 / elevation));
+    const glm::dvec3 along = x * std::cos(azimuth) + y * std::sin(azimuth);
+    stage.scene.lights.push_back(SunFrom(along * std::cos(elevation) + up * std::sin(elevation)));
+  }
+  for (const double away : {3.0, 20.0}) {
+    const glm::dvec3 lamp = middle + AnyDirection(31 * turn + int(away)) * (away * scale);
+    stage.scene.lights.push_back(PointLight(lamp, scale * scale));
+  }
+  const glm::dvec3 view =
+      glm::normalize(up * (0.1 + Chance(turn, 4)) + x * (Chance(turn, 5) - 0.5) + y * (Chance(turn, 6) - 0.5));
+  stage.camera = LookingAt(middle + view * (distance * scale), middle, glm::degrees(2.0 * std::atan(1.3 / distance)));
+  return stage;
+}
+
+struct Count {
+  std::size_t rays = 0;   // towards lights
+  std::size_t wrong = 0;  // pixels
+
+  void Add(const GuidegenResult& result, Layer layer) {
+    rays += result.rays.shadow;
+    for (const float value : result.guides.Plane(layer)) wrong += value != 0.0f;
+  }
+};
+
+// Expected: not one. A light above a convex thing's facet has nothing in its way, so `shadow` is 0 to the last bit:
+// both of its sums hold the same terms in the same order.
+TEST(SelfShadow, ConvexThingsDoNotShadeThemselves) {
+  std::size_t rays = 0;
+  for (const Named& thing : ConvexThings()) {
+    for (const double distance : {3.0, 100.0}) {
+      Count count;
+      for (int turn = 0; turn < kStages; ++turn) {
+        const double scale = kScales[turn % 9];
+        Stage stage = LitFromOutside(thing, scale, kPlaces[turn % 4], distance, turn);
+        count.Add(Render(stage.scene, stage.camera, SmallPicture()), Layer::kShadow);
+        stage.camera.orthographic = true;
+        stage.camera.ymag = 1.3 * scale;
+        count.Add(Render(stage.scene, stage.camera, SmallPicture()), Layer::kShadow);
+      }
+      EXPECT_EQ(count.wrong, 0u) << thing.name << " from " << distance << " sizes, " << count.rays << " rays";
+      rays += count.rays;
+    }
+  }
+  EXPECT_GT(rays, 4'000'000u);
+  RecordProperty("rays", std::to_string(rays));
+}
+
+// From so far that a float's step is a visible part of the thing, the picture's own silhouettes are float's to choose;
+// a false shadow is one where the plain caster in double is sure which facet is seen. Expected: none of those.
+TEST(SelfShadow, FromAfarOnlySilhouettesAreUndecided) {
+  std::size_t rays = 0, undecided = 0;
+  for (const Named& thing : {Named{"cube", CubeMesh()}, Named{"tetrahedron", Tetrahedron()}}) {
+    for (const double distance : {1e4, 1e5}) {
+      for (const double scale : {1e-3, 1.0, 1e3}) {
+        for (const int turn : {0, 1, 2}) {
+          Stage stage = LitFromOutside(thing, scale, 1e3, distance, turn);
+          stage.camera.orthographic = true;
+          stage.camera.ymag = 1.3 * scale;
+          const auto result = Render(stage.scene, stage.camera, Sized(48, 48, kLight));
+          rays += result.rays.shadow;
+          for (int y = 0; y < 48; ++y) {
+            for (int x = 0; x < 48; ++x) {
+              if (result.guides.Plane(Layer::kShadow)[result.guides.Index(x, y)] == 0.0f) continue;
+              const ExactRay ray = PixelRay(stage.camera, 48, 48, x, y);
+              EXPECT_TRUE(MeetExactly(stage.scene, stage.camera, ray).Undecided()) << x << ", " << y;
+              ++undecided;
+            }
+          }
+        }
+      }
+    }
+  }
+  RecordProperty("rays", std::to_string(rays));
+  RecordProperty("undecided", std::to_string(undecided));
+}
+
+std::vector<Named> ClosedThings() {
+  return {{"cube", CubeMesh()},
+          {"walls of 0.1", ThinWalls(0.1f)},
+          {"walls of 1e-5", ThinWalls(1e-5f)},
+          {"ball", Faceted(BallMesh(64))},
+          {"smooth ball", BallMesh(64)},
+          {"tetrahedron", Tetrahedron()},
+          {"tent of 20 degrees", Tent(20.0)},
+          {"tent of 2 degrees", Tent(2.0)}};
+}
+
+// An eye inside a closed thing looks at one of its corners from near and from afar, down to a tenth of a degree.
+Stage SeenFromInside(const Mesh& mesh, double scale, double place, int turn, double share, double degrees) {
+  const glm::dvec3 middle = AnyDirection(77) * place;
+  const glm::dmat4 matrix = Placed(scale, middle, turn);
+  Stage stage{SceneOf(mesh, matrix), {}};
+  for (int i = 0; i < 6; ++i) stage.scene.lights.push_back(SunFrom(AnyDirection(1000 * turn + i)));
+  for (const double away : {4.0, 20.0}) {
+    const glm::dvec3 lamp = middle + AnyDirection(31 * turn + int(away)) * (away * scale);
+    stage.scene.lights.push_back(PointLight(lamp, scale * scale));
+  }
+  const glm::dvec3 corner(mesh.positions[std::size_t(turn) * 5 % mesh.positions.size()]);
+  stage.camera = LookingAt(At(matrix, corner * share), At(matrix, corner), degrees);
+  return stage;
+}
+
+// Expected: not one lit pixel. Every way out crosses a wall.
+TEST(LightLeaks, ClosedThingsAreDarkInside) {
+  std::size_t rays = 0;
+  for (const Named& thing : ClosedThings()) {
+    Count count;
+    for (int turn = 0; turn < kStages; ++turn) {
+      for (const double degrees : {100.0, 5.0, 0.1}) {
+        const double share = turn % 2 == 0 ? 0.0 : 0.9;
+        const Stage stage = SeenFromInside(thing.mesh, kScales[turn % 9], kPlaces[turn % 4], turn, share, degrees);
+        count.Add(Render(stage.scene, stage.camera, SmallPicture()), Layer::kLuminance);
+      }
+    }
+    EXPECT_EQ(count.wrong, 0u) << thing.name << ", " << count.rays << " rays";
+    rays += count.rays;
+  }
+  EXPECT_GT(rays, 4'000'000u);
+  RecordProperty("rays", std::to_string(rays));
+}
+
+// The same for paths: what reflects goes on from where it met, however flat it came in.
+TEST(LightLeaks, NoPathFindsAWayOut) {
+  std::size_t rays = 0;
+  for (const Named& thing : ClosedThings()) {
+    for (const double scale : {1e-3, 1.0, 1e5}) {
+      for (const int turn : {1, 2}) {
+        Stage stage = SeenFromInside(thing.mesh, scale, 1e7, turn, 0.5, 60.0);
+        stage.scene.materials[0] = Painted(Bsdf::kMetallicRoughness, 0.9f, 0.3f);
+        stage.scene.world_radiance = glm::vec3(1.0f);
+        const auto result = Render(stage.scene, stage.camera, Paths(24, {Layer::kLpeFull}, 8));
+        rays += result.rays.shadow + result.rays.bounce;
+        std::size_t lit = 0;
+        for (const float value : result.guides.Plane(Layer::kLpeFull, 1)) lit += value != 0.0f;
+        EXPECT_EQ(lit, 0u) << thing.name << ", " << scale << " m";
+      }
+    }
+  }
+  RecordProperty("rays", std::to_string(rays));
+}
+
+// A box whose near walls are cut away for the viewer still keeps the light out. Here the way back to the eye may lead
+// through a wall, so rays start straight above the surface. Expected: no lit pixel that float can tell from one in the
+// next wall: from 100 sizes away, none at all; beyond, none farther than float's sight from a second wall.
+TEST(LightLeaks, CutAwayWallsKeepTheLightOut) {
+  Mesh inward = CubeMesh();
+  for (glm::uvec3& triangle : inward.triangles) std::swap(triangle.y, triangle.z);
+  for (glm::vec3& normal : inward.normals) normal = -normal;
+  for (const double distance : {3.0, 10.0, 100.0, 1e4, 1e6}) {
+    std::size_t rays = 0, lit = 0;
+    for (int turn = 0; turn < kStages; ++turn) {
+      const double scale = kScales[turn % 9];
+      const glm::dmat4 matrix = Placed(scale, glm::dvec3(0.0), turn);
+      Stage stage = SeenFromInside(inward, scale, 0.0, turn, 0.5, 60.0);
+      stage.scene.materials[0].double_sided = false;
+      stage.camera = LookingAt(AnyDirection(turn + 7) * (distance * scale), glm::dvec3(0.0),
+                               glm::degrees(2.0 * std::atan(1.6 / distance)));
+      LayerSet layers = kLight;
+      const auto result = Render(stage.scene, stage.camera, Sized(64, 64, layers.Add(Layer::kPosition)));
+      rays += result.rays.shadow;
+      for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
+        if (result.guides.Plane(Layer::kLuminance)[i] == 0.0f) continue;
+        ++lit;
+        const glm::dvec3 local = At(glm::inverse(matrix), glm::dvec3(result.guides.Vec3(Layer::kPosition, i)));
+        double off[3];
+        for (int axis = 0; axis < 3; ++axis) off[axis] = std::abs(1.0 - std::abs(local[axis]));
+        std::sort(off, off + 3);
+        EXPECT_LE(off[1], (distance + 2.0) * kFloatSight + 1e-6);
+      }
+    }
+    if (distance <= 100.0) {
+      EXPECT_EQ(lit, 0u) << distance;
+    }
+    RecordProperty("lit_from_" + std::to_string(int(distance)), std::to_string(lit) + " by " + std::to_string(rays));
+  }
+}
+
+// What the counts above would say if nothing cast a shadow, or everything did.
+TEST(LightLeaks, AnOpenBoxIsLitAndALidClosesIt) {
+  Mesh open = CubeMesh();
+  open.triangles.resize(open.triangles.size() - 2);  // the wall at +Z is the last
+  for (const double scale : kScales) {
+    for (const bool lid : {false, true}) {
+      Scene scene = SceneOf(open, glm::scale(glm::dmat4(1.0), glm::dvec3(scale)));
+      if (lid) AddObject(scene, "lid", QuadMesh(), glm::scale(Moved(0, 0, scale), glm::dvec3(scale)));
+      scene.lights = {SunFrom({0, 0, 1})};
+      const Camera camera = LookingAt({0, -0.5 * scale, 0}, {0, 0, -scale}, 30.0);
+      const auto result = Render(scene, camera, Sized(16, 16, kLight));
+      for (std::size_t i = 0; i < 256; ++i) {
+        EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], lid ? 1.0f : 0.0f);
+        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], lid ? 0.0 : 1.0 / kPi, 1e-7);
+      }
+    }
+  }
+}
+
+// Height above the plane, by its definition, to double's rounding of the coordinates themselves.
+TEST(ShadowRayOrigin, StandsAtItsHeightOnTheClearWay) {
+  for (const double coordinate : {1e-3, 1.0, 1e7}) {
+    SurfacePoint point;
+    point.position = glm::dvec3(0.3, -0.2, -0.9) * coordinate;
+    point.facing = glm::normalize(glm::dvec3(1, 2, 3));
+    point.largest_coordinate = coordinate;
+    const double height = coordinate * kRoundingPerCoordinate, rounding = std::ldexp(coordinate, -50);
+    const auto up = [&] { return glm::dot(ShadowRayOrigin(point) - point.position, point.facing); };
+    EXPECT_NEAR(up(), height, rounding);
+    glm::dvec3 x, y;
+    MakeFrame(point.facing, x, y);
+    for (const double cosine : {1.0, 0.5, 0.02}) {
+      const glm::dvec3 way = point.facing * cosine + x * std::sqrt(1.0 - cosine * cosine);
+      point.clear_way = way * (2.0 * coordinate);
+      EXPECT_NEAR(up(), height, rounding) << cosine;
+      const glm::dvec3 moved = ShadowRayOrigin(point) - point.position;
+      EXPECT_LE(glm::length(moved - way * (height / cosine)), 2.0 * rounding) << cosine;
+    }
+    // Flatter, and with less room than that: at the same height still, never past where the ray came from.
+    point.clear_way = x * coordinate;
+    EXPECT_NEAR(up(), height, rounding);
+    point.clear_way = point.facing * (0.25 * height);
+    EXPECT_NEAR(up(), height, rounding);
+  }
+}
+
+}  // namespace
+}  // namespace scumble::testing
