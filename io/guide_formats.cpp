@@ -54,7 +54,7 @@ void FindManifests(const OIIO::ImageSpec& spec, FileContents& contents) {
 Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
   FileContents contents;
   contents.spec = input.spec(0);
-  int named = 0;
+  std::vector<std::string> names;
   for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
     const OIIO::ImageSpec spec = input.spec(subimage);
     SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
@@ -63,7 +63,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     }
     for (int c = 0; c < spec.nchannels; ++c) {
       const std::string& channel = spec.channelnames[c];
-      if (++named <= 40) contents.all_names += (contents.all_names.empty() ? "" : ", ") + channel;
+      names.push_back(channel);
       contents.has_half = contents.has_half || spec.channelformat(c) == OIIO::TypeDesc::HALF;
       if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
       if (auto matte = ParseMatteChannel(channel)) {
@@ -74,7 +74,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
     }
     FindManifests(spec, contents);
   }
-  if (named > 40) contents.all_names += ", …";
+  contents.all_names = internal::ListOfChannels(names);
   if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
   if (!contents.spec.get_string_attribute("scumble:generator").empty()) contents.from_blender = false;
   OIIO::ImageSpec window = contents.spec;

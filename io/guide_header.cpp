@@ -1,5 +1,6 @@
 #include "io/guide_header.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -65,6 +66,13 @@ std::optional<glm::dmat4> MatrixFromText(const std::string& text) {
     }
   }
   return matrix;
+}
+
+std::string ListOfChannels(const std::vector<std::string>& names) {
+  constexpr std::size_t kListed = 40;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(names.size(), kListed); ++i) list += (i ? ", " : "") + names[i];
+  return names.size() > kListed ? list + ", …" : list;
 }
 
 void TakeHeader(const std::map<std::string, std::string>& texts, GuideSet& guides) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "image/guides.h"
 
@@ -18,6 +19,9 @@ std::map<std::uint32_t, std::string> NamesFromText(const std::string& text);
 // 16 numbers, column by column, with the 17 digits that keep a double exact.
 std::string MatrixToText(const glm::dmat4& matrix);
 std::optional<glm::dmat4> MatrixFromText(const std::string& text);
+
+// "R, G, B": for people, so of very many channels the first ones.
+std::string ListOfChannels(const std::vector<std::string>& names);
 
 // What a header's texts that begin with "scumble:" say, names, camera and attributes, put into `guides`.
 void TakeHeader(const std::map<std::string, std::string>& texts, GuideSet& guides);

@@ -53,9 +53,7 @@ std::string NamesOf(const ExrHeader& header) {
     return std::pair(name.substr(0, dot), color == std::string::npos ? name.substr(dot) : std::to_string(color));
   };
   std::stable_sort(names.begin(), names.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
-  return all;
+  return ListOfChannels(names);
 }
 
 }  // namespace

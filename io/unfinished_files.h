@@ -8,9 +8,9 @@
 namespace scumble {
 
 // Removes the temporary files of all writes under way. Nothing is begun from then on: a thread that would make another
-// temporary file waits for the end of the process instead, and one that would give a file its name does so whole or not at all. For handlers of signals that end it:
-// calls nothing but what is safe there, and waits no longer than a second for a file that another thread is just
-// making.
+// temporary file waits for the end of the process instead, and one that would give a file its name does so whole or not
+// at all. For handlers of signals that end it: calls nothing but what is safe there, and waits no longer than a second
+// for a file that another thread is just making.
 void RemoveUnfinishedFiles();
 
 namespace internal {
