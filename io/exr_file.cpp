@@ -19,6 +19,7 @@
 #include <exception>
 #include <list>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 
@@ -57,8 +58,15 @@ void SetThreads() {
   static int last = -1;
   const std::lock_guard lock(mutex);
   const int threads = IoThreads() == 0 ? static_cast<int>(std::thread::hardware_concurrency()) : IoThreads();
-  if (threads != last) Imf::setGlobalThreadCount(threads == 1 ? 0 : threads);
+  if (threads == last) return;
   last = threads;
+  try {
+    // One first: where the system refuses any, the library's pool may be left alone, but not while others run in it.
+    Imf::setGlobalThreadCount(threads == 1 ? 0 : 1);
+    if (threads > 1) Imf::setGlobalThreadCount(threads);
+  } catch (const std::system_error&) {
+    // No more threads are to be had: those that there are do it all.
+  }
 }
 
 Imf::Compression CompressionOf(const std::string& name) {
@@ -141,6 +149,8 @@ Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrIma
       file.writePixels(image.height);
     }
     return bytes.Take();
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& failure) {
     return OutputError("cannot write " + name + ": " + failure.what());
   }
@@ -171,6 +181,8 @@ std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
       part.readPixels(window.min.y, window.max.y);
     }
     return header;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception&) {
     return std::nullopt;
   }
