@@ -160,7 +160,11 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
       isa_ = candidate.name;
       return Ok();
     }
-    if (rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) return MemoryError("there is no memory for Embree");
+    // Not the next instruction set then: its guides would be others. Want of threads is an unknown error to Embree.
+    const RTCError error = rtcGetDeviceError(nullptr);
+    if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN) {
+      return MemoryError("Embree finds too little memory or no thread: allow more, or take fewer threads, as --threads 1");
+    }
   }
   if (!known) {
     return UsageError("isa \"" + isa + "\" is unknown: expected one of sse2, sse4.2, avx, avx2, avx512");

@@ -70,7 +70,7 @@ def main():
             # Memory that a thread's heap takes at once makes more of it fail where less went well: the end is where
             # sixteen runs have gone well, and half as much again is allowed.
             kilobytes = least
-            while well < 16 and kilobytes < 1500 * MB:
+            while well < 16 and kilobytes < 3000 * MB:
                 faults.clean(folder / "out")
                 code, said = program.run(*arguments, preexec_fn=limits_for(kilobytes))
                 where = f"{verb} within {kilobytes} kB: exit code {code}: {said.strip()[-400:]}"
@@ -85,7 +85,7 @@ def main():
                     failures.check("please report" not in said, where)
                     failures.check(all(whole.get(name) == content for name, content in made.items()),
                                    where + " left " + ", ".join(made))
-                kilobytes += step if well < 4 else 8 * step
+                kilobytes += step if well < 4 else 4 * step
             failures.check(well >= 16, f"{verb}: never went well within {kilobytes} kB")
             print(f"{verb}: well from about {kilobytes // MB} MB", flush=True)
         print(f"{runs} runs, {refused} refused for want of memory or threads; the program loads within {least} kB")
