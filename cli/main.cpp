@@ -9,7 +9,6 @@
 #include <exception>
 #include <iterator>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "cli/command.h"
 #include "cli/ending_signals.h"
 #include "cli/help_format.h"
+#include "cli/last_words.h"
 #include "image/check.h"
 #include "io/library.h"
 
@@ -33,6 +33,7 @@ ExitCode ExitCodeFor(ErrorKind kind) {
     case ErrorKind::kUnavailable:
       return ExitCode::kNotBuiltIn;
     case ErrorKind::kCancelled:
+    case ErrorKind::kMemory:
       return ExitCode::kInternal;
   }
   return ExitCode::kInternal;
@@ -141,12 +142,9 @@ int main(int argc, char** argv) {
   try {
     scumble::OccupyStandardStreams();
     scumble::CleanUpOnSignals();
+    scumble::TellOfWhatNobodyCatches();
     return scumble::Run(argc, argv);
-  } catch (const std::bad_alloc&) {
-    std::fputs("scumble: error: out of memory; ask for a smaller picture\n", stderr);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "scumble: internal error: %s; please report it with the command that led here\n",
-                 error.what());
+  } catch (...) {
+    return scumble::TellOf(std::current_exception());
   }
-  return static_cast<int>(scumble::ExitCode::kInternal);
 }

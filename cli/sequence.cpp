@@ -122,7 +122,7 @@ std::string WithoutNumber(const std::string& reason, int frame) {
 Expected<bool> CanKeep(const Sequence& sequence, const SequenceWork& work, int frame, const Globals& globals) {
   const std::string output = sequence.output.At(frame);
   const Status whole = work.check(frame, output);
-  if (!whole && whole.error().kind == ErrorKind::kUnavailable) return whole.error();
+  if (!whole && whole.error().kind != ErrorKind::kInput) return whole.error();
   std::error_code failed;
   if (!whole && std::filesystem::exists(output, failed)) Say(globals, whole.error().message + ": made again");
   return whole.ok();

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <array>
+#include <stdexcept>
 
 #include "guidegen/bsdf.h"
 #include "guidegen/exact_copies.h"
@@ -43,7 +44,9 @@ bool MachineHas(const std::string& isa) {
 // The packet width that an instruction set promises must be there: a build of Embree without it falls back silently.
 RTCDevice OpenIfSupported(const IsaInfo& isa) {
   if (!MachineHas(isa.name)) return nullptr;
-  RTCDevice device = rtcNewDevice(("isa=" + std::string(isa.name)).c_str());
+  // No cache for surfaces that Embree would divide: there are none, it is 128 MB of addresses, and a device that finds no
+  // room for it never lets go of its own lock.
+  RTCDevice device = rtcNewDevice(("isa=" + std::string(isa.name) + ",tessellation_cache_size=0").c_str());
   if (device && rtcGetDeviceProperty(device, isa.native_packets) == 0) {
     rtcReleaseDevice(device);
     return nullptr;
@@ -148,6 +151,7 @@ Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, cons
 }
 
 Status EmbreeScene::OpenDevice(const std::string& isa) {
+  rtcGetDeviceError(nullptr);  // what an earlier device left behind on this thread
   bool known = isa.empty();
   for (const IsaInfo& candidate : kIsas) {
     if (!isa.empty() && isa != candidate.name) continue;
@@ -156,6 +160,11 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
     if (device_) {
       isa_ = candidate.name;
       return Ok();
+    }
+    // Not the next instruction set then: its guides would be others. Want of threads is an unknown error to Embree.
+    const RTCError error = rtcGetDeviceError(nullptr);
+    if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN) {
+      return MemoryError("Embree finds too little memory or no thread: allow more, or take fewer threads, as --threads 1");
     }
   }
   if (!known) {
@@ -166,6 +175,14 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
 }
 
 Status EmbreeScene::Commit(bool keep_emitters) {
+  std::string reason;  // the first of a row is the root of the others
+  rtcSetDeviceErrorFunction(
+      device_.get(),
+      [](void* kept, RTCError, const char* text) {
+        std::string& first = *static_cast<std::string*>(kept);
+        if (first.empty() && text) first = text;
+      },
+      &reason);
   scene_.reset(NewScene(device_.get()));
   const std::vector<bool> covered = FindCoveredCopies(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
@@ -183,12 +200,14 @@ Status EmbreeScene::Commit(bool keep_emitters) {
   }
   rtcCommitScene(scene_.get());
   if (emitters_) rtcCommitScene(emitters_.get());
+  rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
   const RTCError error = rtcGetDeviceError(device_.get());
+  if (error == RTC_ERROR_NONE) return Ok();
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
-    return InputError("the scene does not fit into memory: give it fewer triangles or instances");
+    return MemoryError("the scene does not fit into memory: give it fewer triangles or instances");
   }
-  SCUMBLE_CHECK_EQ(int(error), int(RTC_ERROR_NONE));
-  return Ok();
+  // Whatever else ends its tasks, as want of threads, it tells in words alone.
+  throw std::runtime_error(reason);
 }
 
 }  // namespace scumble

@@ -137,8 +137,9 @@ class TextureLoader {
     }
     // The decoder goes by the ending of the name.
     const std::string name = file_ + ": image " + std::to_string(source) + *ending;
-    SCUMBLE_ASSIGN(Picture picture, DecodePicture(std::as_bytes(encoded), name));
-    scene_.textures.push_back(std::move(picture));
+    auto picture = DecodePicture(std::as_bytes(encoded), name);
+    if (!picture) return Error{picture.error().kind, picture.error().message + " (" + label + ")"};
+    scene_.textures.push_back(*std::move(picture));
     const int index = static_cast<int>(scene_.textures.size()) - 1;
     loaded_[source] = index;
     return index;

@@ -143,7 +143,7 @@ Status RunTinygltf(const std::string& file, std::string folder, std::span<const 
                                       folder);
     }
   } catch (const std::bad_alloc&) {
-    return InputError(file + " asks for more memory than there is: simplify the scene");
+    return MemoryError(file + " asks for more memory than there is: simplify the scene");
   } catch (const std::exception& e) {
     ok = false;
     errors = e.what();

@@ -108,7 +108,7 @@ class ObjLoader {
       ok = tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning, &error, &stream, &library,
                             /*triangulate=*/false, /*default_vcols_fallback=*/false);
     } catch (const std::bad_alloc&) {
-      return InputError(file_ + " asks for more memory than there is: simplify the scene");
+      return MemoryError(file_ + " asks for more memory than there is: simplify the scene");
     } catch (const std::exception& e) {
       error = e.what();
     }

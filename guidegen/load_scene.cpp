@@ -54,7 +54,7 @@ auto WithinMemory(const std::filesystem::path& path, Load load) -> decltype(load
   try {
     return load();
   } catch (const std::bad_alloc&) {
-    return InputError(path.string() + " asks for more memory than there is: simplify the scene");
+    return MemoryError(path.string() + " asks for more memory than there is: simplify the scene");
   } catch (const std::length_error&) {
     return InputError(path.string() + " asks for more memory than there is: simplify the scene");
   }

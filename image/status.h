@@ -15,6 +15,7 @@ enum class ErrorKind {
   kOutput,       // something could not be written
   kUnavailable,  // understood, but not built into this version
   kCancelled,    // the caller's progress callback asked to stop
+  kMemory,       // the machine, or a limit such as ulimit's, gives no more memory or threads
 };
 
 // `message` is one sentence or two: the file, what was found, what was expected, and how to mend it.
@@ -27,6 +28,7 @@ inline Error UsageError(std::string message) { return {ErrorKind::kUsage, std::m
 inline Error InputError(std::string message) { return {ErrorKind::kInput, std::move(message)}; }
 inline Error OutputError(std::string message) { return {ErrorKind::kOutput, std::move(message)}; }
 inline Error UnavailableError(std::string message) { return {ErrorKind::kUnavailable, std::move(message)}; }
+inline Error MemoryError(std::string message) { return {ErrorKind::kMemory, std::move(message)}; }
 inline Error CancelledError() { return {ErrorKind::kCancelled, "cancelled"}; }
 
 // Either a value or an Error. Test it with `if (!result)` before taking the value.

@@ -19,6 +19,7 @@
 #include <exception>
 #include <list>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 
@@ -57,8 +58,16 @@ void SetThreads() {
   static int last = -1;
   const std::lock_guard lock(mutex);
   const int threads = IoThreads() == 0 ? static_cast<int>(std::thread::hardware_concurrency()) : IoThreads();
-  if (threads != last) Imf::setGlobalThreadCount(threads == 1 ? 0 : threads);
+  if (threads == last) return;
   last = threads;
+  try {
+    // One first: where the system refuses any, the library's pool may be left alone, but not while others run in it.
+    Imf::setGlobalThreadCount(threads == 1 ? 0 : 1);
+    if (threads > 1) Imf::setGlobalThreadCount(threads);
+  } catch (const std::system_error&) {
+    // Its pool takes work all the same, and forgets it where it has no thread: a file without pixels, and no error.
+    throw;
+  }
 }
 
 Imf::Compression CompressionOf(const std::string& name) {
@@ -123,8 +132,10 @@ Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrIma
   SetThreads();
   try {
     MemoryOutput bytes(name);
+    std::size_t first_chunk = 0;
     {
       Imf::OutputFile file(bytes, HeaderOf(image));
+      first_chunk = bytes.tellp();
       Imf::FrameBuffer buffer;
       std::list<std::vector<Imath::half>> rounded;
       const std::size_t width = static_cast<std::size_t>(image.width);
@@ -140,9 +151,18 @@ Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrIma
       file.setFrameBuffer(buffer);
       file.writePixels(image.height);
     }
-    return bytes.Take();
+    // The library is silent about rows that its threads had no memory for: their places, before the first chunk, are 0.
+    std::vector<std::byte> encoded = bytes.Take();
+    const std::size_t rows = image.compression == "zip" ? 16 : image.compression == "piz" ? 32 : 1;
+    const std::size_t chunks = (static_cast<std::size_t>(image.height) + rows - 1) / rows;
+    for (std::size_t i = 1; i <= chunks; ++i) {
+      std::uint64_t place = 0;
+      std::memcpy(&place, encoded.data() + first_chunk - i * sizeof place, sizeof place);
+      if (place == 0) throw std::bad_alloc();
+    }
+    return encoded;
   } catch (const std::bad_alloc&) {
-    throw;  // not the file's fault
+    throw;
   } catch (const std::exception& failure) {
     return OutputError("cannot write " + name + ": " + failure.what());
   }

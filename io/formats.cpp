@@ -1,10 +1,15 @@
 #include "io/formats.h"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <iterator>
+#include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -36,11 +41,33 @@ Error Unusable(const std::string& module, const std::string& what) {
                           ": build or install scumble again, with all of its files");
 }
 
+// The loader's own words for what the system refused it.
+bool IsForWantOfMemory(std::string_view reason) {
+  constexpr std::string_view kWords[] = {"failed to map segment", "cannot map zero-fill pages", "annot allocate memory",
+                                         "cannot create", "cannot change memory protections"};
+  return std::any_of(std::begin(kWords), std::end(kWords),
+                     [&](std::string_view words) { return reason.find(words) != std::string_view::npos; });
+}
+
+// More than the module and its libraries take with Debian's OpenImageIO: 655 MB. Of addresses, not of memory.
+constexpr std::size_t kModuleAddresses = std::size_t(768) << 20;
+
+// Whether so many bytes of addresses are to be had, under a limit such as ulimit's.
+bool HasAddresses(std::size_t bytes) {
+  void* const start = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (start == MAP_FAILED) return false;
+  ::munmap(start, bytes);
+  return true;
+}
+
 Expected<const Formats*> LoadFrom(const fs::path& path) {
+  // Its libraries' own beginnings crash or wait for ever where memory ends among them, so it is asked for before.
+  if (!HasAddresses(kModuleAddresses)) throw std::bad_alloc();
   // What the module's libraries define stays out of everybody else's way.
   void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (!module) {
     const char* const reason = ::dlerror();
+    if (reason && IsForWantOfMemory(reason)) throw std::bad_alloc();
     return Unusable(path.string(), "cannot be loaded (" + std::string(reason ? reason : "no reason is given") + ")");
   }
   const auto* const found = static_cast<const Formats*>(::dlsym(module, "scumble_formats_" SCUMBLE_MODULE_VERSION));

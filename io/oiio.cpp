@@ -1,6 +1,10 @@
 #include "io/oiio.h"
 
+#include <unistd.h>
+
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 
 #include "image/guides.h"
 #include "io/atomic_file.h"
@@ -62,6 +66,7 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   // A pipe would be waited for without end, and the readers seek.
   if (!std::filesystem::is_regular_file(status))
     return InputError("cannot read " + path.string() + ": it is no regular file");
+  if (::access(path.c_str(), R_OK) != 0) return InputError("cannot read " + path.string() + ": " + std::strerror(errno));
   if (std::filesystem::file_size(path, failed) == 0) {
     return InputError("cannot read " + path.string() + ": the file is empty");
   }

@@ -4,12 +4,17 @@
 #include <pthread.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <utility>
+
+#include "io/leftover_files.h"
 
 namespace scumble {
 namespace {
@@ -66,10 +71,19 @@ void RemoveUnfinishedFiles() {
 namespace internal {
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) {
+  RemoveLeftoversOnce(target.parent_path());
   constexpr std::size_t kMaxStem = 200;
   const std::string stem = target.filename().string().substr(0, kMaxStem);
-  name_ = (target.parent_path() / ("." + stem + ".XXXXXX.tmp")).string();
-  constexpr int kSuffixLength = 4;
+  const std::string wanted =
+      (target.parent_path() / ("." + stem + "." + KernelMark() + "-XXXXXX" + std::string(kLeftoverSuffix))).string();
+  // Another run, that took it for a leftover before it was locked, has it then: a new one is made.
+  constexpr int kMostTries = 100;
+  for (int i = 0; i < kMostTries && !Make(wanted); ++i) {
+  }
+}
+
+bool UnfinishedFile::Make(const std::string& wanted) {
+  name_ = wanted;
   int failure = 0;
   bool must_wait = false;
   {
@@ -77,7 +91,7 @@ UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) {
     ++being_made;  // before the flag is looked at, as the handler sets the flag before it looks at the count
     must_wait = is_ending;
     if (!must_wait) {
-      descriptor_ = ::mkostemps(name_.data(), kSuffixLength, O_CLOEXEC);
+      descriptor_ = ::mkostemps(name_.data(), static_cast<int>(kLeftoverSuffix.size()), O_CLOEXEC);
       failure = errno;
       is_there_ = descriptor_ >= 0;
       if (is_there_) place_ = TakePlace(name_.c_str());
@@ -85,15 +99,33 @@ UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) {
     --being_made;
   }
   if (must_wait) WaitForTheEnd();
+  if (descriptor_ >= 0 && !Hold()) {
+    Forget();
+    ::close(std::exchange(descriptor_, -1));
+    return false;
+  }
   errno = failure;
+  return true;
 }
 
-UnfinishedFile::~UnfinishedFile() {
+bool UnfinishedFile::Hold() {
+  lock_ = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+  if (lock_ < 0) return true;
+  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;  // others: no locks on that file system
+  struct stat file;
+  return ::fstat(lock_, &file) != 0 || file.st_nlink > 0;
+}
+
+void UnfinishedFile::Forget() {
   const char* name = name_.c_str();
   if (place_ && !place_->compare_exchange_strong(name, nullptr)) WaitForTheEnd();  // the handler is reading the name
+  place_ = nullptr;
   if (is_there_) ::unlink(name_.c_str());
+  is_there_ = false;
+  if (lock_ >= 0) ::close(std::exchange(lock_, -1));
 }
 
+UnfinishedFile::~UnfinishedFile() { Forget(); }
 int UnfinishedFile::Finish(const std::filesystem::path& target) {
   if (::rename(name_.c_str(), target.c_str()) == 0) {
     is_there_ = false;

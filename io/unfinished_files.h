@@ -19,8 +19,9 @@ namespace internal {
 class UnfinishedFile {
  public:
   // Makes a new file that nobody else has beside `target`: hidden, with a random name, short enough where the target's
-  // own name is as long as a name may be. descriptor() is -1 where it cannot, and errno says why; otherwise the
-  // caller's to close.
+  // own name is as long as a name may be, and locked as long as this lives. descriptor() is -1 where it cannot, and
+  // errno says why; otherwise the caller's to close. The first in a folder takes away what killed runs left there
+  // (io/leftover_files.h).
   explicit UnfinishedFile(const std::filesystem::path& target);
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
@@ -32,8 +33,13 @@ class UnfinishedFile {
   int Finish(const std::filesystem::path& target);
 
  private:
+  bool Make(const std::string& wanted);  // false: once more
+  bool Hold();
+  void Forget();
+
   std::string name_;
   int descriptor_ = -1;
+  int lock_ = -1;                              // the same file: its lock lasts when the caller has closed the other
   std::atomic<const char*>* place_ = nullptr;  // where RemoveUnfinishedFiles finds the name; null where all are taken
   bool is_there_ = false;
 };

@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""Kills the program at random moments while it writes sequences, a hundred times, and looks at what is left: every file
+under a final name holds the very bytes of a run that nobody killed, and `--resume` makes the rest, with the same bytes,
+and takes away the temporary file that a killed run could not. Then signals that a program may answer, which leave no
+temporary file at all; and runs at the same time in one folder, of which some are killed.
+
+The moments are drawn from a seeded generator, in shares of the time that whole runs take here and now from their first
+file to their end.
+
+Usage: faults_killed.py PROGRAM SOURCE [KILLS]
+"""
+import os
+import pathlib
+import random
+import signal
+import statistics
+import sys
+import time
+
+import faults
+
+FRAMES = 12
+
+
+class Verb:
+    """A sequence, what it must be, and how long it takes."""
+
+    def __init__(self, program, name, arguments, failures):
+        self.program, self.name, self.failures = program, name, failures
+        self.folder = program.folder / name
+        self.arguments = [*arguments, "--frames", f"1-{FRAMES}", "-o", name + "/f.####" + name[-4:]]
+        self.seconds = []  # from the first file on, of the last whole runs
+        for _ in range(3):
+            self.whole_run()
+        self.whole = faults.contents(self.folder)
+        failures.check(len(self.whole) == FRAMES, f"{name}: {list(self.whole)}")
+
+    def begin(self):
+        """Starts a run, and waits for its first file, temporary or not, or its end."""
+        process = self.program.start(*self.arguments)
+        while process.poll() is None and not os.listdir(self.folder):
+            time.sleep(0.0005)
+        return process
+
+    def whole_run(self):
+        faults.clean(self.folder)
+        process = self.begin()
+        start = time.monotonic()
+        _, said = process.communicate()
+        self.seconds = self.seconds[-8:] + [time.monotonic() - start]
+        self.failures.check(process.returncode == 0, f"{self.name}: {process.returncode}: {said}")
+
+    def resume(self):
+        code, said = self.program.run(*self.arguments, "--resume")
+        self.failures.check(code == 0, f"{self.name} --resume: {code}: {said}")
+
+    def stop(self, share, how):
+        """Stops a run after that share of the time in which it writes; whether it was still running."""
+        process = self.begin()
+        time.sleep(share * statistics.median(self.seconds))
+        process.send_signal(how)
+        process.communicate()
+        return process.returncode == -how
+
+    def check_left(self, where):
+        """Whole files under final names; how many there are, and how many temporary ones."""
+        temporary = faults.leftovers(self.folder)
+        made = faults.contents(self.folder, ignored=temporary)
+        for name, content in made.items():
+            self.failures.check(self.whole.get(name) == content, f"{where}: {name} is not whole, {len(content)} bytes")
+        return len(made), len(temporary)
+
+    def check_whole(self, where):
+        self.failures.check(faults.contents(self.folder) == self.whole,
+                            f"{where}: differs from a whole run: {sorted(os.listdir(self.folder))}")
+
+
+def kill_many(verbs, chance, kills):
+    running = between = with_leftover = 0
+    for i in range(kills):
+        verb = verbs[i % len(verbs)]
+        where = f"kill {i} of {verb.name}"
+        faults.clean(verb.folder)
+        was_running = verb.stop(chance.random(), signal.SIGKILL)
+        made, temporary = verb.check_left(where)
+        running += was_running
+        between += was_running and 0 < made + temporary and made < FRAMES
+        with_leftover += temporary > 0
+        verb.failures.check(temporary <= 2, f"{where}: {temporary} temporary files")
+        verb.resume()
+        verb.check_whole(where + ", resumed")
+        if i % 10 == 9:
+            verb.whole_run()  # the machine's pace may have changed
+    print(f"{kills} kills: {running} met a running program, {between} of them between its first file and its last; "
+          f"{with_leftover} left a temporary file", flush=True)
+    # Uniform moments in the median time from the first file to the end: half of all runs take longer, and of the others
+    # most moments come before their end. A quarter is what no pace of the machine should spoil.
+    verbs[0].failures.check(between >= kills // 4, f"only {between} of {kills} kills were among the files")
+    return with_leftover
+
+
+def end_politely(verbs, chance, times):
+    for i in range(times):
+        verb, how = verbs[i % len(verbs)], (signal.SIGTERM, signal.SIGINT)[i // len(verbs) % 2]
+        faults.clean(verb.folder)
+        verb.stop(chance.random(), how)
+        _, temporary = verb.check_left(f"{how.name} {i}")
+        verb.failures.check(temporary == 0, f"{how.name} {i} of {verb.name} left {faults.leftovers(verb.folder)}")
+
+
+def run_together(verb, chance, times):
+    """Three runs write the same files at once, and one of them is killed: the others do not notice."""
+    for i in range(times):
+        faults.clean(verb.folder)
+        runs = [verb.program.start(*verb.arguments) for _ in range(3)]
+        time.sleep(chance.random() * statistics.median(verb.seconds))
+        runs[0].kill()
+        for place, process in enumerate(runs):
+            _, said = process.communicate()
+            verb.failures.check(place == 0 or process.returncode == 0, f"beside others: {process.returncode}: {said}")
+        verb.program.run(*verb.arguments, "--resume")  # what the killed one left may have been locked when they looked
+        verb.check_whole(f"three at once, round {i}")
+
+
+def main():
+    path, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    kills = int(sys.argv[3]) if len(sys.argv) > 3 else 100
+    failures = faults.Failures()
+    with faults.temporary_folder() as name:
+        program = faults.Program(path, name)
+        faults.write_style(program.folder / "style")
+        scene = source / "scenes" / "ball.glb"
+        code, said = program.run("guidegen", scene, "--size", 40, "-o", "guides.exr")
+        failures.check(code == 0, said)
+        verbs = [Verb(program, "guides_f.exr", ["guidegen", scene, "--size", 40], failures),
+                 Verb(program, "transfer.png", ["transfer", "guides.exr", "--style", "style"], failures),
+                 Verb(program, "stylize.exr", ["stylize", scene, "--style", "style", "--size", 40], failures)]
+        chance = random.Random(20)
+        kill_many(verbs, chance, kills)
+        end_politely(verbs, chance, 12)
+        run_together(verbs[0], chance, 4)
+    failures.end()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,96 @@
+#!/usr/bin/python3
+"""Runs verbs under `ulimit -v`, from the least that lets the system load the program up to where all goes well, and
+finely spaced between, so that memory ends in every stage. Each run must end by itself: well and with the very bytes of
+a run without a limit, or with exit code 6, a sentence, and no file. Never by a signal, never with a wrong reason.
+
+Usage: faults_memory.py PROGRAM SOURCE [STEP_KB [VERB…]], of those listed below; left out: all
+"""
+import pathlib
+import resource
+import sys
+
+import faults
+
+MB = 1024  # in kB, as ulimit counts
+
+
+def limits_for(kilobytes):
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (kilobytes * 1024, kilobytes * 1024))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    return limit
+
+
+def first_loaded(program):
+    """The least memory, to 1 MB, with which the loader can start the program at all."""
+    low, high = 1 * MB, 1024 * MB
+    while high - low > 1 * MB:
+        middle = (low + high) // 2
+        code, said = program.run("--version", preexec_fn=limits_for(middle))
+        if code == 0 or code == 6:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+def main():
+    path, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    step = int(sys.argv[3]) if len(sys.argv) > 3 else 6007  # kB; no multiple of a page, so that runs differ
+    failures = faults.Failures()
+    with faults.temporary_folder() as name:
+        folder = pathlib.Path(name)
+        program = faults.Program(path, folder)
+        faults.write_style(folder / "style")
+        textured = faults.textured_scene(folder / "scene")
+        scene = source / "scenes" / "suzanne.glb"
+        code, said = program.run("guidegen", scene, "--size", 128, "-o", "g.exr")
+        failures.check(code == 0, said)
+        verbs = {
+            "guidegen": ["guidegen", scene, "--size", 96, "-o", "out/g.exr"],
+            "guidegen, all threads asked for": ["guidegen", textured, "--size", 64, "--threads", 8, "-o", "out/g.exr"],
+            "guidegen, light paths": ["guidegen", scene, "--size", 48, "--layers", "luminance,lpe.full", "--samples", 4,
+                                      "-o", "out/g.exr"],
+            "transfer to PNG": ["transfer", "g.exr", "--style", "style", "-o", "out/p.png"],
+            "transfer to EXR": ["transfer", "g.exr", "--style", "style", "--threads", 1, "-o", "out/p.exr"],
+            "transfer to JPEG": ["transfer", "g.exr", "--style", "style", "-o", "out/p.jpg"],
+            "a sequence": ["guidegen", scene, "--size", 48, "--frames", "1-3", "-o", "out/g.#.exr"],
+            "stylize": ["stylize", scene, "--style", source / "exemplars" / "charcoal", "--size", 96, "-o", "out/p.png"],
+            "sphere": ["sphere", "--size", 96, "-o", "out"],
+        }
+        least = first_loaded(program)
+        runs = refused = 0
+        for verb in sys.argv[4:] or verbs:
+            arguments = verbs[verb]
+            faults.clean(folder / "out")
+            code, said = program.run(*arguments)
+            failures.check(code == 0, f"{verb}: without a limit: {code}: {said}")
+            whole = faults.contents(folder / "out")
+            well = 0
+            # Memory that a thread's heap takes at once makes more of it fail where less went well: the end is where
+            # sixteen runs have gone well, and half as much again is allowed.
+            kilobytes = least
+            while well < 16 and kilobytes < 3000 * MB:
+                faults.clean(folder / "out")
+                code, said = program.run(*arguments, preexec_fn=limits_for(kilobytes))
+                where = f"{verb} within {kilobytes} kB: exit code {code}: {said.strip()[-400:]}"
+                made = faults.contents(folder / "out")
+                runs += 1
+                if code == 0:
+                    failures.check(made == whole, where + " and other bytes than without a limit")
+                    well += 1
+                else:
+                    refused += 1
+                    failures.check(code == 6 and faults.error_in(said), where)
+                    failures.check("please report" not in said, where)
+                    failures.check(all(whole.get(name) == content for name, content in made.items()),
+                                   where + " left " + ", ".join(made))
+                kilobytes += step if well < 4 else 4 * step
+            failures.check(well >= 16, f"{verb}: never went well within {kilobytes} kB")
+            print(f"{verb}: well from about {kilobytes // MB} MB", flush=True)
+        print(f"{runs} runs, {refused} refused for want of memory or threads; the program loads within {least} kB")
+    failures.end()
+
+
+if __name__ == "__main__":
+    main()
