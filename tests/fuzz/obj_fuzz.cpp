@@ -2,10 +2,5 @@
 #include "tests/fuzz/scene_checks.h"
 
 namespace scumble::fuzz {
-namespace {
-
-void Run(Bytes input) { LoadFrom("scene.obj", input); }
-
-}  // namespace
-SCUMBLE_FUZZ_TARGET(obj, Run)
+SCUMBLE_FUZZ_TARGET(obj, LoadObj)
 }  // namespace scumble::fuzz

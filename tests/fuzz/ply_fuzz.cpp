@@ -2,10 +2,5 @@
 #include "tests/fuzz/scene_checks.h"
 
 namespace scumble::fuzz {
-namespace {
-
-void Run(Bytes input) { LoadFrom("scene.ply", input); }
-
-}  // namespace
-SCUMBLE_FUZZ_TARGET(ply, Run)
+SCUMBLE_FUZZ_TARGET(ply, LoadPly)
 }  // namespace scumble::fuzz

@@ -30,4 +30,7 @@ inline void LoadFrom(const std::string& name, Bytes input) {
   CheckRefusal(PrepareView(*scene, "", std::nullopt, 1.5, true));
 }
 
+inline void LoadObj(Bytes input) { LoadFrom("scene.obj", input); }
+inline void LoadPly(Bytes input) { LoadFrom("scene.ply", input); }
+
 }  // namespace scumble::fuzz
