@@ -1,6 +1,6 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo test test-asan bench bench-cycles exemplars traits scenes gallery format clean
+.PHONY: help build demo test test-asan test-tsan fuzz bench bench-cycles exemplars traits scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -27,6 +27,18 @@ test-asan: ## unit tests under AddressSanitizer and UndefinedBehaviorSanitizer, 
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)
 	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -L unit
+
+test-tsan: ## unit tests under ThreadSanitizer, in build-tsan/
+	@.ci/install test
+	@cmake --preset tsan
+	@cmake --build build-tsan -j $(JOBS)
+	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -L unit
+
+fuzz: ## libFuzzer (clang) on everything that reads other people's files, 60 s each; FUZZ="600 gltf" 600 s of one
+	@.ci/install fuzz
+	@cmake --preset fuzz
+	@cmake --build build-fuzz --target fuzzers -j $(JOBS)
+	@.ci/fuzz $(FUZZ)
 
 bench: ## measure speed against its targets, one table (docs/performance.md); BENCH=flicker runs another bench
 	@.ci/install test
@@ -64,4 +76,4 @@ format: ## clang-format every C++ file
 	@git ls-files '*.h' '*.cpp' | xargs clang-format -i
 
 clean: ## remove what was built and written
-	@rm -rf build build-asan out
+	@rm -rf build build-asan build-tsan build-fuzz out

@@ -7,43 +7,18 @@
 #include <cerrno>
 #include <cstdio>
 #include <exception>
-#include <iterator>
 #include <memory>
 #include <sstream>
-#include <string_view>
-#include <vector>
 
 #include "cli/command.h"
 #include "cli/ending_signals.h"
 #include "cli/help_format.h"
 #include "cli/last_words.h"
+#include "cli/verbs.h"
 #include "image/check.h"
 #include "io/library.h"
 
 namespace scumble {
-
-ExitCode ExitCodeFor(ErrorKind kind) {
-  switch (kind) {
-    case ErrorKind::kUsage:
-      return ExitCode::kUsage;
-    case ErrorKind::kInput:
-      return ExitCode::kInput;
-    case ErrorKind::kOutput:
-      return ExitCode::kOutput;
-    case ErrorKind::kUnavailable:
-      return ExitCode::kNotBuiltIn;
-    case ErrorKind::kCancelled:
-    case ErrorKind::kMemory:
-      return ExitCode::kInternal;
-  }
-  return ExitCode::kInternal;
-}
-
-void Say(const Globals& globals, const std::string& line) {
-  if (!globals.quiet) std::fprintf(stderr, "%s\n", line.c_str());
-}
-void Warn(const std::string& line) { std::fprintf(stderr, "scumble: warning: %s\n", line.c_str()); }
-void Print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 
 namespace {
 
@@ -52,20 +27,6 @@ int Code(ExitCode code) { return static_cast<int>(code); }
 constexpr const char* kExitCodes =
     "Exit codes: 0 ok · 1 compared and differs · 2 usage · 3 unreadable or invalid input · 4 cannot write ·\n"
     "            5 not built in · 6 internal error\n";
-
-// idiff writes its long options with one dash; people paste them.
-std::vector<std::string> ReadArguments(int argc, char** argv) {
-  constexpr std::string_view kIdiffOptions[] = {"-fail",        "-failrelative", "-failpercent",
-                                                "-hardfail",    "-warn",         "-warnrelative",
-                                                "-warnpercent", "-hardwarn",     "-allowfailures"};
-  std::vector<std::string> arguments;
-  for (int i = argc - 1; i >= 1; --i) {  // CLI11 takes them last first
-    const bool idiff =
-        std::find(std::begin(kIdiffOptions), std::end(kIdiffOptions), argv[i]) != std::end(kIdiffOptions);
-    arguments.push_back(idiff ? std::string("-") + argv[i] : argv[i]);
-  }
-  return arguments;
-}
 
 int Fail(const Error& error) {
   std::fprintf(stderr, "scumble: error: %s\n", error.message.c_str());
@@ -81,31 +42,6 @@ void OccupyStandardStreams() {
   }
 }
 
-// Prints the help of the verb of that name, or of the whole program.
-Expected<ExitCode> RunHelpVerb(const CLI::App& app, const std::string& name) {
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (verb->get_name() == name) return Print(verb->help(app.get_name())), ExitCode::kOk;
-  }
-  if (!name.empty()) return UsageError("there is no verb '" + name + "'; scumble help lists them");
-  return Print(app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal)), ExitCode::kOk;
-}
-
-void AddVerbs(CLI::App& app, Globals& globals, Action& chosen) {
-  AddSphereVerb(app, globals, chosen);
-  AddGuidegenVerb(app, globals, chosen);
-  AddTransferVerb(app, globals, chosen);
-  AddStylizeVerb(app, globals, chosen);
-  AddCompareVerb(app, globals, chosen);
-  AddCrosscheckVerb(app, globals, chosen);
-  AddInfoVerb(app, globals, chosen);
-  AddStylesVerb(app, globals, chosen);
-  auto topic = std::make_shared<std::string>();
-  CLI::App* help = app.add_subcommand("help", "this text, or a verb's: scumble help stylize");
-  help->add_option("verb", *topic, "the verb to explain")->type_name("VERB");
-  help->callback([&app, &chosen, topic] { chosen = [&app, topic] { return RunHelpVerb(app, *topic); }; });
-  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
-}
-
 int Run(int argc, char** argv) {
   CLI::App app("Scumble: paint a sphere, stylise a scene.", "scumble");
   app.formatter(std::make_shared<HelpFormat>());
@@ -117,7 +53,7 @@ int Run(int argc, char** argv) {
   Action chosen;
   AddVerbs(app, globals, chosen);
   try {
-    app.parse(ReadArguments(argc, argv));
+    app.parse(ArgumentsLastFirst({argv + 1, argv + std::max(argc, 1)}));
   } catch (const CLI::Success& asked) {  // --help, --version
     std::ostringstream text;
     app.exit(asked, text, text);

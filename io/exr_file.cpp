@@ -26,6 +26,7 @@
 #include "image/guides.h"
 #include "io/formats.h"
 #include "io/guide_storage.h"
+#include "io/whole_exr.h"
 
 namespace scumble::internal {
 namespace {
@@ -112,7 +113,8 @@ std::optional<ExrHeader> PlainHeader(const Imf::Header& header) {
   }
   for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
     const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
-    if (text) plain.texts[attribute.name()] = text->value();
+    const std::string value = text ? text->value().c_str() : "";  // up to a NUL, and empty ones left out, as by the module
+    if (!value.empty()) plain.texts[attribute.name()] = value;
   }
   return plain;
 }
@@ -172,6 +174,7 @@ std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
                                       const std::function<std::optional<PlaneFor>(const ExrHeader&)>& look) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;  // a pipe would be waited for without end
+  if (!CheckExrPromises(path)) return std::nullopt;
   SetThreads();
   try {
     Imf::MultiPartInputFile file(path.c_str());

@@ -9,6 +9,7 @@
 #include "image/guides.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
+#include "io/whole_exr.h"
 #include "io/whole_png.h"
 
 namespace scumble {
@@ -75,6 +76,7 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
                       "scumble stylize and scumble guidegen take scenes");
   }
   if (auto whole = CheckIfPng(path); !whole) return whole.error();
+  if (auto kept = CheckExrPromises(path); !kept) return kept.error();
   const OIIO::ImageSpec config = StraightAlpha();
   auto input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) return InputError("cannot read " + path.string() + ": " + LibraryReason(OIIO::geterror(), path.string()));
@@ -84,6 +86,7 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
   const auto bytes = std::as_bytes(std::span(proxy.buffer().data(), proxy.buffer().size()));
   if (IsPng(bytes)) SCUMBLE_RETURN_IF_ERROR(CheckPngIsWhole(bytes, name));
+  SCUMBLE_RETURN_IF_ERROR(CheckExrPromises(bytes, name));
   // The readers look for the proxy in the configuration, and forget one that is only passed as an argument.
   OIIO::ImageSpec config = StraightAlpha();
   void* pointer = &proxy;

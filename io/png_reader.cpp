@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -27,6 +28,15 @@ void Take(png_structp png, png_bytep out, std::size_t count) {
 }
 [[noreturn]] void Fail(png_structp png, png_const_charp) { png_longjmp(png, 1); }
 void Ignore(png_structp, png_const_charp) {}
+
+// A row, or a text or a profile beside the picture. libpng believes what a chunk says of its length, and its own limit
+// only makes it warn.
+png_voidp Allocate(png_structp png, png_alloc_size_t bytes) {
+  constexpr png_alloc_size_t kMost = png_alloc_size_t(1) << 24;
+  if (bytes > kMost) png_error(png, "too large");
+  return std::malloc(bytes);
+}
+void Free(png_structp, png_voidp memory) { std::free(memory); }
 
 // Whether a text says nothing of colours or of which side is up; the picture library would heed what it says.
 bool IsHarmless(const png_text& text) {
@@ -111,7 +121,7 @@ std::uint16_t From16(const std::vector<png_byte>& samples, std::size_t i) {
 }
 
 bool Begin(Source& source, Reading& reading, Picture& picture) {
-  reading.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, Fail, Ignore);
+  reading.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, nullptr, Fail, Ignore, nullptr, Allocate, Free);
   if (!reading.png) return false;
   reading.info = png_create_info_struct(reading.png);
   if (!reading.info) return false;
@@ -132,8 +142,10 @@ std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes) {
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = samples.data() + row_bytes * y;
   if (!ReadRows(reading, rows.data())) return std::nullopt;
   picture.rgba.resize(std::size_t(4) * std::size_t(picture.width) * std::size_t(picture.height));
-  if (reading.bits == 8) Spread(samples, reading.channels, From8, picture);
-  else Spread(samples, reading.channels, From16, picture);
+  if (reading.bits == 8)
+    Spread(samples, reading.channels, From8, picture);
+  else
+    Spread(samples, reading.channels, From16, picture);
   return picture;
 }
 

@@ -23,18 +23,29 @@ std::uint32_t Number(std::span<const std::byte> bytes) {
   return number;
 }
 
+// Whether so many bytes of Deflate, which writes at least 2 bits for a run of 258, can unpack to the picture's pixels. A
+// reader takes the memory for those first.
+bool CanHold(std::uint64_t packed, const PngHeader& header) {
+  constexpr std::uint64_t kMostDeflated = 1032;
+  // Divided first, because the product may not fit: the sides are below 2³².
+  const std::uint64_t pixels = std::uint64_t(header.width) * header.height;
+  return pixels / 8 / kMostDeflated * static_cast<std::uint64_t>(header.bits * header.channels) <= packed;
+}
+
 }  // namespace
 
 std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes) {
   // Length, type, width, height, bits; the rest is the reader's.
-  constexpr std::size_t kType = 12, kWidth = 16, kHeight = 20, kBits = 24;
+  constexpr std::size_t kType = 12, kWidth = 16, kHeight = 20, kBits = 24, kColors = 25;
   constexpr std::array<unsigned char, 4> kFirst = {'I', 'H', 'D', 'R'};
   if (!IsPng(bytes) || bytes.size() < kPngHeaderBytes ||
       !std::equal(kFirst.begin(), kFirst.end(), bytes.begin() + kType,
                   [](unsigned char a, std::byte b) { return a == std::to_integer<unsigned char>(b); })) {
     return std::nullopt;
   }
-  return PngHeader{Number(bytes.subspan(kWidth)), Number(bytes.subspan(kHeight)), std::to_integer<int>(bytes[kBits])};
+  const int colors = std::to_integer<int>(bytes[kColors]);  // 0, 2, 3, 4 or 6: grey, RGB, palette, with alpha
+  const int channels = (colors == 2 || colors == 6 ? 3 : 1) + (colors >= 4 ? 1 : 0);
+  return PngHeader{Number(bytes.subspan(kWidth)), Number(bytes.subspan(kHeight)), std::to_integer<int>(bytes[kBits]), channels};
 }
 
 bool IsPng(std::span<const std::byte> bytes) {
@@ -53,6 +64,8 @@ bool IsPngFile(const std::filesystem::path& path) {
 
 Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name) {
   constexpr std::size_t kAround = 12;  // length, type and sum
+  const std::optional<PngHeader> header = ReadPngHeader(bytes);
+  std::uint64_t packed = 0;
   bytes = bytes.subspan(kSignature.size());
   while (bytes.size() >= kAround) {
     const std::size_t length = Number(bytes);
@@ -63,7 +76,10 @@ Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name
     if (is_critical && Sum(type_and_data) != Number(bytes.subspan(8 + length))) {
       return InputError("cannot read " + name + ": the PNG file is damaged; copy or save it again");
     }
-    if (Number(type_and_data) == 0x49454e44u) return Ok();  // IEND
+    constexpr std::uint32_t kData = 0x49444154u, kEnd = 0x49454e44u;  // IDAT, IEND
+    if (Number(type_and_data) == kData) packed += length;
+    if (Number(type_and_data) == kEnd && (!header || CanHold(packed, *header))) return Ok();
+    if (Number(type_and_data) == kEnd) break;
     bytes = bytes.subspan(kAround + length);
   }
   return InputError("cannot read " + name + ": the PNG file ends before its picture does; copy or save it again");

@@ -22,12 +22,13 @@ inline constexpr std::size_t kPngHeaderBytes = 33;
 struct PngHeader {
   std::uint32_t width = 0, height = 0;
   int bits = 0;  // per channel
+  int channels = 0;
 };
 // Nothing where they are no PNG's. Thread-safe.
 std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes);
 
 // Follows the chunks (PNG specification, third edition, section 5) up to the one that ends the picture, and checks the
-// sums of those that a reader needs. `name` is for the message. Thread-safe.
+// sums of those that a reader needs, and that the pixels are not more than so many bytes can unpack to. `name` is for the message. Thread-safe.
 Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace scumble::internal

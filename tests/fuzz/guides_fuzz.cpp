@@ -1,0 +1,18 @@
+// Guides in plain EXR files, as OpenEXR alone reads them.
+#include "io/plain_guides.h"
+#include "tests/fuzz/guide_checks.h"
+
+namespace scumble::fuzz {
+namespace {
+
+void Run(Bytes input) {
+  const auto path = InFile("guides.exr", input);
+  const auto info = internal::InspectPlainGuides(path);
+  if (!info || std::int64_t(info->width) * info->height > kMostPixels) return;
+  const auto guides = internal::ReadPlainGuides(path, WhateverThereIs());
+  if (guides) CheckGuides(*guides, *info);
+}
+
+}  // namespace
+SCUMBLE_FUZZ_TARGET(guides, Run)
+}  // namespace scumble::fuzz

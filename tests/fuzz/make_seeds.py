@@ -1,0 +1,234 @@
+#!/usr/bin/python3
+"""Makes the fuzzers' seeds, small files of every kind that Scumble reads: tests/fuzz/make_seeds.py [FOLDER]
+
+They are kept in tests/fuzz/corpus/TARGET/; this makes them again, for when a format gains something to be tested.
+"""
+import io
+import json
+import pathlib
+import struct
+import sys
+import zipfile
+import zlib
+
+import numpy as np
+import OpenImageIO as oiio
+
+FOLDER = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent / "corpus")
+
+
+def write(target, name, content):
+    path = FOLDER / target / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+def png(width, height, kind, bits, extra=b"", interlace=0):
+    """A PNG of colour type `kind` and any pixels."""
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    channels = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}[kind]
+    row = (width * channels * bits + 7) // 8
+    rows = b"".join(bytes([y % 5]) + bytes((7 * x + 3 * y) % 256 for x in range(row)) for y in range(height))
+    if interlace:
+        rows = bytes(4 * (row + 2) * (height + 8))
+    if kind == 3:
+        rows = b"".join(bytes(1 + row) for _ in range(height))
+        extra = chunk(b"PLTE", bytes(range(12))) + chunk(b"tRNS", bytes([255, 7])) + extra
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, kind, 0, 0, interlace))
+    text = chunk(b"tEXt", b"scumble:settings\0one two") if kind == 6 else b""
+    if kind == 2:
+        text = chunk(b"gAMA", struct.pack(">I", 45455)) + chunk(b"sRGB", b"\0") + chunk(b"zTXt", b"Note\0\0" + zlib.compress(b"x" * 50))
+    return b"\x89PNG\r\n\x1a\n" + head + extra + text + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def exr(name, parts):
+    """An EXR file's bytes; parts are (width, height, channels, attributes)."""
+    path = str(FOLDER / "made.exr")
+    specs = []
+    for width, height, channels, attributes in parts:
+        spec = oiio.ImageSpec(width, height, len(channels), oiio.FLOAT)
+        spec.channelnames = channels
+        spec.alpha_channel = -1
+        spec.attribute("DateTime", "")
+        for key, value in attributes.items():
+            if key in ("tile_width", "tile_height", "full_width", "full_height", "x", "y"):
+                setattr(spec, key, value)
+            elif key == "half":
+                spec.set_format(oiio.HALF)
+            else:
+                spec.attribute(key, value)
+        specs.append(spec)
+    output = oiio.ImageOutput.create(path)
+    assert output.open(path, tuple(specs) if len(specs) > 1 else specs[0]), output.geterror()
+    for i, spec in enumerate(specs):
+        if i:
+            assert output.open(path, spec, "AppendSubimage"), output.geterror()
+        pixels = np.zeros((spec.height, spec.width, spec.nchannels), np.float32)
+        for c, channel in enumerate(spec.channelnames):
+            if channel == "A" or channel.endswith((".Z", ".V")):
+                pixels[:, :, c] = 1
+            if channel.endswith((".ID", ".r")):
+                pixels[:, :, c] = 3.5
+        pixels[0, 0, :] = 0
+        assert output.write_image(pixels), output.geterror()
+    output.close()
+    data = pathlib.Path(path).read_bytes()
+    pathlib.Path(path).unlink()
+    for target in ("guides", "exr"):
+        write(target, name, data)
+
+
+def make_exr():
+    guides = ["A", "normal.X", "normal.Y", "normal.Z", "depth.Z", "object.ID", "material.ID"]
+    texts = {"scumble:objects": "3 Ball\n4 A\\nB\n", "scumble:materials": "3 Grey\n", "scumble:camera": "Camera",
+             "scumble:viewFromWorld": "1 0 0 0 0 1 0 0 0 0 1 0 0 0 -5 1", "scumble:generator": "guidegen 0.1",
+             "scumble:clipFromView": "1 0 0 0 0 1 0 0 0 0 -1 -1 0 0 -0.2 0", "scumble:objectStyles": "3 oil\n"}
+    for compression in ("none", "rle", "zips", "zip", "piz"):
+        exr(f"guides_{compression}.exr", [(3, 3, guides, {"compression": compression, **texts})])
+    exr("few.exr", [(2, 2, guides[:4], {"compression": "none"})])
+    exr("colour.exr", [(3, 2, guides[:4] + ["luminance.Y", "albedo.R", "albedo.G", "albedo.B", "shadow.Y"],
+                        {"compression": "none", "half": 1})])
+    exr("tiled.exr", [(4, 4, guides[:4], {"compression": "none", "tile_width": 2, "tile_height": 2})])
+    exr("window.exr", [(2, 2, guides[:4], {"compression": "none", "full_width": 5, "full_height": 4, "x": 1, "y": 1})])
+    exr("parts.exr", [(2, 2, guides[:4], {"compression": "none", "name": "a"}), (2, 2, ["depth.Z", "object.ID"], {"name": "b"})])
+    layer = "ViewLayer."
+    passes = [layer + c for c in ("Combined.R", "Combined.G", "Combined.B", "Combined.A", "Normal.X", "Normal.Y", "Normal.Z",
+                                  "Depth.Z", "Position.X", "Position.Y", "Position.Z", "IndexOB.X",
+                                  "CryptoObject00.r", "CryptoObject00.g", "CryptoObject00.b", "CryptoObject00.a")]
+    exr("blender.exr", [(4, 3, passes, {"compression": "none", "Software": "Blender 3.4.1", "cryptomatte/9f/name": layer + "CryptoObject",
+                                        "cryptomatte/9f/manifest": '{"Ball":"40600000","A \\"b":"1a2b3c4d"}',
+                                        "cryptomatte/9f/hash": "MurmurHash3_32"})])
+
+
+def make_gltf():
+    floats = lambda *v: struct.pack(f"<{len(v)}f", *v)
+    blob, views, accessors = b"", [], []
+
+    def accessor(data, count, kind, component=5126):
+        nonlocal blob
+        blob += bytes(-len(blob) % 4)
+        views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(data)})
+        blob += data
+        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": count, "type": kind})
+        return len(accessors) - 1
+    position = accessor(floats(0, 0, 0, 1, 0, 0, 0, 1, 0), 3, "VEC3")
+    index = accessor(struct.pack("<3H", 0, 1, 2), 3, "SCALAR", 5123)
+    picture = accessor(png(2, 2, 6, 8), 1, "SCALAR", 5121)
+    image_view = accessors.pop(picture)["bufferView"]
+    attributes = {"POSITION": position, "NORMAL": accessor(floats(*(0, 0, 1) * 3), 3, "VEC3"),
+                  "TEXCOORD_0": accessor(floats(0, 0, 1, 0, 0, 1), 3, "VEC2"),
+                  "COLOR_0": accessor(bytes(range(12)), 3, "VEC4", 5121),
+                  "JOINTS_0": accessor(bytes(12), 3, "VEC4", 5121), "WEIGHTS_0": accessor(floats(*(1, 0, 0, 0) * 3), 3, "VEC4")}
+    accessors[attributes["COLOR_0"]]["normalized"] = True
+    times = accessor(floats(0, 1), 2, "SCALAR")
+    moves = accessor(floats(0, 0, 0, 1, 2, 3), 2, "VEC3")
+    turns = accessor(floats(0, 0, 0, 1, 0, 1, 0, 0), 2, "VEC4")
+    weights = accessor(floats(0, 1), 2, "SCALAR")
+    binds = accessor(floats(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1), 1, "MAT4")
+    morph = accessor(floats(*(0, 0, 1) * 3), 3, "VEC3")
+    accessors.append({"componentType": 5126, "count": 3, "type": "VEC3", "sparse": {
+        "count": 1, "indices": {"bufferView": accessors[index]["bufferView"], "componentType": 5123},
+        "values": {"bufferView": accessors[position]["bufferView"]}}})
+    asset = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3], "extras": {"scumble": {"world": [1, 0.5, 1], "style": "oil"}}}], "accessors": accessors,
+             "bufferViews": views}
+    small = {**asset, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": "Tri"}],
+             "meshes": [{"primitives": [{"attributes": {"POSITION": position}, "indices": index}]}]}
+    large = {**asset, "extensionsUsed": ["KHR_lights_punctual", "KHR_texture_transform"],
+             "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 5, "spot": {"outerConeAngle": 0.5}},
+                                                               {"type": "directional"}, {"type": "point", "range": 3}]}},
+             "images": [{"bufferView": image_view, "mimeType": "image/png"}], "samplers": [{"wrapS": 33071, "magFilter": 9728}],
+             "textures": [{"source": 0, "sampler": 0}],
+             "materials": [{"name": "Paint", "alphaMode": "MASK", "alphaCutoff": 0.3, "doubleSided": True, "emissiveFactor": [1, 0, 0],
+                            "extras": {"scumble": {"bsdf": {"type": "GLOSSY", "roughness": 0.2, "color": [1, 0.5, 0]}}},
+                            "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.5, "roughnessFactor": 0.1},
+                            "normalTexture": {"index": 0, "scale": 0.5,
+                                              "extensions": {"KHR_texture_transform": {"scale": [2, 2], "rotation": 1}}}}],
+             "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1, "aspectRatio": 1.5}},
+                         {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 9}}],
+             "meshes": [{"name": "M", "weights": [0.5], "primitives": [
+                 {"attributes": attributes, "indices": index, "material": 0, "targets": [{"POSITION": morph}]},
+                 {"attributes": {"POSITION": len(accessors) - 1}, "mode": 5, "targets": [{"POSITION": morph}]}]}],
+             "skins": [{"joints": [1], "inverseBindMatrices": binds}],
+             "nodes": [{"mesh": 0, "skin": 0, "name": "Leaf", "extras": {"scumble_style": "oil"}},
+                       {"camera": 0, "extras": {"scumble": {"camera": {"sensor_fit": "AUTO", "shift_x": 0.1, "shift_y": 0, "angle": 0.8}}}, "rotation": [0, 0, 0, 1], "children": [4]},
+                       {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], "extensions": {"KHR_lights_punctual": {"light": 0}},
+                        "extras": {"scumble": {"lamp": {"type": "AREA", "shape": "DISK", "size": 1, "size_y": 2, "energy": 10, "color": [1, 1, 1]}}}},
+                       {"camera": 1, "scale": [1, 2, 3], "translation": [0, 1, 0]}, {"mesh": 0, "weights": [1]}],
+             "animations": [{"name": "Go", "samplers": [{"input": times, "output": moves, "interpolation": "STEP"},
+                                                        {"input": times, "output": turns}, {"input": times, "output": weights}],
+                             "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}},
+                                          {"sampler": 1, "target": {"node": 3, "path": "rotation"}},
+                                          {"sampler": 2, "target": {"node": 4, "path": "weights"}}]}]}
+    def glb(model):
+        data = blob + bytes(-len(blob) % 4)
+        text = json.dumps({**model, "buffers": [{"byteLength": len(data)}]}, separators=(",", ":")).encode()
+        text += b" " * (-len(text) % 4)
+        chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+    write("gltf", "small.glb", glb(small))
+    write("gltf", "everything.glb", glb(large))
+    write("gltf", "text.gltf", json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]}))
+
+
+def make_text():
+    write("obj", "cube.obj", "mtllib scene.obj\no A\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 0\nvt 0 0\nvt 1 0\nvn 0 0 1\n"
+          "s 1\nusemtl m\nf 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -5 -4 -3\ng B\ns off\nf 1//1 2//1 3//1\n"
+          "newmtl m\nKd 0.5 1 0\nKe 1 1 1\nNs 50\nd 0.5\nillum 2\nmap_Kd -s 2 2 lit.png\nnorm n.png\n")
+    write("obj", "lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\np 3\nf 1 2 3\n")
+    head = "ply\nformat %s 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n%selement face 1\n" \
+           "property list uchar int vertex_indices\nend_header\n"
+    write("ply", "ascii.ply", head % ("ascii", "property uchar red\nproperty uchar green\nproperty uchar blue\n") +
+          "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n")
+    xyz = (0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0)
+    for order, mark in (("little", "<"), ("big", ">")):
+        write("ply", order + ".ply", (head % (f"binary_{order}_endian", "")).encode() +
+              struct.pack(mark + "12fB4i", *xyz, 4, 0, 1, 2, 3))
+    write("ply", "normals.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+          "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n"
+          "element face 1\nproperty list uint8 uint32 vertex_index\nend_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n")
+    exemplar = '[[exemplar]]\nimage = "lit.png"\n'
+    write("style", "small.toml", exemplar)
+    write("style", "more.toml", 'name = "oil"\nlicence = "CC0-1.0"\n[transfer]\nthreshold = 0.07\nvariety = 15\nlevels = 5\n'
+          'method = "styleblit"\ncolorize = 0.5\ncolorize_mode = "oklab"\nblend_radius = 2\nedge_aware = false\npaper = "#ffeedd"\n'
+          + exemplar + 'luminance = 0.8\n' + exemplar + "luminance = 0.1\n\0transfer.scale=0.5\nexemplar.2.luminance=0.3\n")
+    write("style", "tracks.toml", "[transfer]\nthreshold = [[1, 0.1], [24, 0.3]]\njitter = [[-5, 0], [5, 1.0]]\njitter_fps = 12\n"
+          'edge = "exemplar"\nguide_weights = { normal = 2 }\nluminance_weight = inf\n' + exemplar)
+    write("header", "manifest", '{"Ball":"40600000","A \\"b\\u00e9":"1a2b3c4d","c"d":"00000001"}')
+    write("header", "names", "3 Ball\n4 A\\nB\n5 back\\\\slash\n")
+    write("header", "matrix", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 -5 1e300")
+    for i, name in enumerate(("ViewLayer.CryptoObject00.r", "normal.X", "View.lpe.LDE.R", "A,normal,depth,lpe.full")):
+        write("header", f"channel{i}", name)
+    for i, words in enumerate((
+            "stylize a.glb --style oil --size 640x480 -o p.####.png --frames 1-24x2 --fps 24000/1001 --seed 7",
+            "guidegen a.obj --layers normal,depth --view 35,20,4 --aa 4 --isa avx2 --half --explain -o g.exr",
+            "transfer g.exr --style oil --set transfer.threshold=0.2 --assign Tree*=charcoal --over o.png -o p.png --exposure auto",
+            "compare a.exr b.exr -fail 0.1 -failpercent 2 --json", "sphere --size 512 -o d --paper A4 --margin 12.5mm",
+            "crosscheck a.glb --threads 2 -q", "info f.exr", "styles check d", "help stylize", "--version")):
+        write("options", f"line{i}", words.replace(" ", "\n"))
+
+
+def make_pictures():
+    for kind, bits in ((0, 1), (0, 16), (2, 8), (3, 8), (4, 8), (6, 8), (6, 16)):
+        write("png", f"kind{kind}_{bits}.png", png(3, 3, kind, bits))
+    write("png", "interlaced.png", png(5, 5, 2, 8, interlace=1))
+    for name, method in (("stored.ora", zipfile.ZIP_STORED), ("deflated.ora", zipfile.ZIP_DEFLATED)):
+        data = io.BytesIO()
+        with zipfile.ZipFile(data, "w", method) as archive:
+            for entry, content in (("mimetype", b"image/openraster"), ("stack.xml", b"<image w='2' h='2'><stack/></image>"),
+                                   ("mergedimage.png", png(2, 2, 6, 8)), ("bomb", bytes(3000))):
+                archive.writestr(zipfile.ZipInfo(entry, (1980, 1, 1, 0, 0, 0)), content, method)
+        write("raster", name, data.getvalue())
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    make_exr()
+    make_gltf()
+    make_text()
+    make_pictures()

@@ -1,0 +1,66 @@
+// The arguments of the command line, one a line: parsed as the program parses them; no verb is run. Every value is then
+// given to all that read text in options.
+#include <CLI/CLI.hpp>
+
+#include "cli/assignments.h"
+#include "cli/frames.h"
+#include "cli/help_format.h"
+#include "cli/options.h"
+#include "cli/sequence.h"
+#include "cli/transfer_run.h"
+#include "cli/verbs.h"
+#include "style/print_page.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace scumble::fuzz {
+namespace {
+
+struct Program {
+  CLI::App app{"Scumble: paint a sphere, stylise a scene.", "scumble"};
+  Globals globals;
+  Action chosen;
+  Program() {
+    app.require_subcommand(1);
+    AddVerbs(app, globals, chosen);
+  }
+};
+
+void ReadValue(const std::string& text) {
+  CheckRefusal(ParseSize(text), 1000 + text.size());
+  CheckRefusal(ParseNumbers(text, 1, 4, "--numbers"), 1000 + text.size());
+  CheckRefusal(ParseFps(text), 1000 + text.size());
+  CheckRefusal(ParseExposure(text), 1000 + text.size());
+  CheckRefusal(ParsePaperSize(text), 1000 + text.size());
+  CheckRefusal(ParseLengthMm(text), 1000 + text.size());
+  if (!text.starts_with('@')) CheckRefusal(ReadAssignments({text}), 1000 + 2 * text.size());
+  const auto frames = ParseFrames(text);
+  CheckRefusal(frames, 1000 + 2 * text.size());
+  if (frames) SCUMBLE_CHECK(*ParseFrames(FramesToText(*frames)) == *frames);
+  const auto name = FrameName::Parse(text);
+  CheckRefusal(name, 1000 + 2 * text.size());
+  if (name) SCUMBLE_CHECK(!name->At(-5).empty() || text.empty());
+  static_cast<void>(FitsPattern(text.substr(0, text.size() / 2), text.substr(text.size() / 2)));
+}
+
+void Run(Bytes input) {
+  if (input.size() > 4096) return;
+  static Program program;  // to make one takes a thousand times as long as to parse a line
+  std::vector<std::string> arguments;
+  std::string_view text = AsText(input);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    arguments.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  for (const std::string& argument : arguments) ReadValue(argument);
+  try {
+    program.app.parse(ArgumentsLastFirst(std::move(arguments)));
+  } catch (const CLI::Success&) {
+  } catch (const CLI::ParseError& error) {
+    SCUMBLE_CHECK(!ExplainUsage(program.app, error).empty());
+  }
+}
+
+}  // namespace
+SCUMBLE_FUZZ_TARGET(options, Run)
+}  // namespace scumble::fuzz

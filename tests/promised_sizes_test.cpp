@@ -1,0 +1,133 @@
+// What a file promises and cannot hold is refused before memory is taken for it; what is packed as tightly as it can be
+// is read all the same.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "image/guides.h"
+#include "io/atomic_file.h"
+#include "io/channel_file.h"
+#include "io/exr_file.h"
+#include "io/guide_file.h"
+#include "io/picture_file.h"
+#include "io/plain_guides.h"
+#include "io/whole_exr.h"
+#include "io/whole_png.h"
+#include "temporary_folder.h"
+
+namespace scumble {
+namespace {
+
+using testing::HasSubstr;
+
+// Guides of nothing but background: the most that any compression can do.
+GuideSet Nothing(int width, int height) {
+  GuideSet guides(width, height);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial})
+    guides.Add(layer);
+  return guides;
+}
+
+// Replaces the first value of that attribute.
+void Patch(std::vector<std::byte>& file, const std::string& attribute, std::size_t behind, std::uint32_t value) {
+  const auto* const begin = reinterpret_cast<const char*>(file.data());
+  const auto at =
+      static_cast<std::size_t>(std::search(begin, begin + file.size(), attribute.begin(), attribute.end()) - begin);
+  ASSERT_LT(at + attribute.size() + behind + 4, file.size());
+  for (std::size_t i = 0; i < 4; ++i) file[at + attribute.size() + behind + i] = std::byte(value >> (8 * i));
+}
+
+class Promises : public testing::Test {
+ protected:
+  std::vector<std::byte> Guides(const char* compression, int side) {
+    EXPECT_TRUE(WriteGuides(path_, Nothing(side, side), {false, compression}));
+    return *ReadWholeFile(path_);
+  }
+  // Writes the file, which every reader must then refuse with a word about it.
+  void ExpectRefused(const std::vector<std::byte>& file, const std::string& why) {
+    ASSERT_TRUE(WriteFileAtomically(path_, file));
+    EXPECT_FALSE(internal::ReadPlainGuides(path_, {}));
+    EXPECT_FALSE(internal::InspectPlainGuides(path_));
+    const auto guides = ReadGuides(path_);
+    ASSERT_FALSE(guides);
+    EXPECT_THAT(guides.error().message, HasSubstr(why));
+    EXPECT_THAT(guides.error().message, HasSubstr("g.exr"));
+    EXPECT_FALSE(ReadChannels(path_));
+    EXPECT_FALSE(InspectGuides(path_));
+    EXPECT_FALSE(internal::CheckExrPromises(file, "g.exr"));
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "g.exr";
+};
+
+// 28 bytes a pixel, 2²⁰ pixels, and nearly all of them the same: as near to the limit of each compression as pixels
+// come.
+TEST_F(Promises, WhatIsPackedTightlyIsRead) {
+  for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
+    const auto file = Guides(compression, 1024);
+    EXPECT_TRUE(internal::CheckExrPromises(file, "g.exr")) << compression;
+    const auto guides = ReadGuides(path_);
+    ASSERT_TRUE(guides) << guides.error().message;
+    EXPECT_EQ(guides->width(), 1024);
+  }
+}
+
+// A window's last column and row stand 8 and 12 bytes behind its beginning; 16384² pixels of 28 bytes are 7.5e9 bytes,
+// more than 1032 times what the file of one pixel has.
+TEST_F(Promises, ExrWindowsThatNoFileOfThatSizeHolds) {
+  const std::string window = std::string("dataWindow\0box2i\0\x10\0\0\0", 21);
+  for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
+    for (const std::uint32_t last : {16383u, 32767u, 0x7fffffffu, 0x80000000u, 0xffffffffu}) {
+      auto file = Guides(compression, 1);
+      Patch(file, window, 8, last);
+      Patch(file, window, 12, last);
+      const bool is_empty = last >= 0x80000000u;  // ends before it begins: the library's business
+      if (is_empty) {
+        ASSERT_TRUE(WriteFileAtomically(path_, file));
+        EXPECT_FALSE(ReadGuides(path_));
+      } else {
+        ExpectRefused(file, "promises");
+      }
+    }
+  }
+}
+
+TEST_F(Promises, ExrAttributesOfAnotherSize) {
+  auto file = Guides("zip", 2);
+  Patch(file, std::string("capDate\0string\0", 15), 0, 0x6e000000u);
+  ExpectRefused(file, "1845493760 bytes of its header stand beyond its end");
+  file = Guides("zip", 2);
+  Patch(file, std::string("screenWindowWidth\0float\0", 24), 0, 8);
+  ExpectRefused(file, "no float");
+  file = Guides("zip", 2);
+  Patch(file, std::string("channels\0chlist\0", 16), 6, 3);  // behind the size, and the name A with its NUL
+  ExpectRefused(file, "no chlist");
+}
+
+// A PNG's header says its sides at bytes 16 and 20, and its sum follows.
+TEST(PromisesOfPng, SidesThatNoDataOfThatSizeFills) {
+  for (const std::uint32_t side : {2048u, 16384u, 32768u, 0x7fffffffu}) {
+    auto file = *EncodePng(Picture(4, 4), 0);
+    for (std::size_t i = 0; i < 4; ++i) file[16 + i] = file[20 + i] = std::byte(side >> (24 - 8 * i));
+    std::uint32_t sum = 0xffffffffu;  // PNG specification, third edition, annex D
+    for (std::size_t i = 12; i < 29; ++i) {
+      sum ^= std::to_integer<std::uint32_t>(file[i]);
+      for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320u : 0);
+    }
+    for (std::size_t i = 0; i < 4; ++i) file[29 + i] = std::byte(~sum >> (24 - 8 * i));
+    const auto picture = DecodePicture(file, "p.png");
+    ASSERT_FALSE(picture) << side;
+    EXPECT_THAT(picture.error().message, HasSubstr("p.png: the PNG file ends before its picture does"));
+  }
+}
+
+TEST(PromisesOfPng, WhatIsPackedTightlyIsRead) {
+  const auto file = *EncodePng(Picture(2048, 2048), 0);
+  EXPECT_TRUE(internal::CheckPngIsWhole(file, "p.png"));
+  EXPECT_TRUE(DecodePicture(file, "p.png"));
+}
+
+}  // namespace
+}  // namespace scumble
