@@ -108,7 +108,7 @@ struct Sample {
     const int light = lights.EmitterOf(hit.hit.geomID);
     if (light < 0 || !LooksFor(light)) return 0.0;
     const PlacedObject& object = scene.objects()[hit.hit.geomID];
-    const SurfacePoint met = FindSurfacePoint(object, hit.hit.primID, {hit.hit.u, hit.hit.v}, {origin, direction});
+    const SurfacePoint met = FindSurfacePoint(object, hit.hit.primID, {origin, direction});
     const glm::dvec3 radiance = SurfaceEmission(object, hit.hit.primID, met.barycentric);
     return Weighed(light, radiance, lights.EmitterDensity(light, point.position, met), reflected);
   }

@@ -42,10 +42,11 @@ inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive
   return triangle;
 }
 
-// Whether a triangle is more than kSliver times as long as it is high, or has no area; `area` is the cross product of
-// its edges. Up to there a point that is clamped in barycentrics is off by no more than kSliver float roundings.
-inline constexpr double kSliver = 1024.0;
-bool IsSliver(const Triangle& triangle, const glm::dvec3& area);
+// A triangle that a ray sees as lower than this share of its length, because it is a sliver or lies edge on: there the
+// place where the ray crosses it is lost in double's rounding (2^-47 of the distance over the share), and the nearest
+// place of its edges is no farther from the ray than half a step of float.
+inline constexpr double kEdgeOn = 0x1p-24;
+double LongestEdgeSquared(const Triangle& triangle);
 
 struct SurfacePoint {
   glm::dvec3 position{0.0};         // view space
@@ -59,12 +60,11 @@ struct SurfacePoint {
   glm::dvec3 clear_way{0.0};
 };
 
-// Embree's hit is a float's worth of the truth; this meets the same surface again in double. `barycentric` are
-// Embree's, used where the triangle is seen edge on. A sliver that the exact ray misses is met where it comes nearest.
-// The point always lies on the surface. A back face has both normals flipped, as Cycles does. A shading normal that is
-// zero or NaN gives way to the geometric one; a triangle without area faces the eye.
-SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
-                              const ViewRay& ray);
+// Embree's hit is a float's worth of the truth; this meets the same surface again in double. A triangle that the exact
+// ray misses, or sees edge on, is met where the ray comes nearest to its edges. The point always lies on the surface. A
+// back face has both normals flipped, as Cycles does. A shading normal that is zero or NaN gives way to the geometric
+// one; a triangle without area faces the eye.
+SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray);
 
 // Where a point of a mesh's triangle is before anything deforms it, object space.
 glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);

@@ -225,8 +225,6 @@ void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, TileHits& h
       const std::size_t first = std::size_t(TilePixel(column, row));
       std::copy_n(packet.hit.geomID, kRays, hits.object.data() + first);
       std::copy_n(packet.hit.primID, kRays, hits.primitive.data() + first);
-      std::copy_n(packet.hit.u, kRays, hits.u.data() + first);
-      std::copy_n(packet.hit.v, kRays, hits.v.data() + first);
     }
   }
 }
@@ -298,8 +296,6 @@ std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel,
     if (packet.hit.geomID[0] == RTC_INVALID_GEOMETRY_ID) continue;
     scratch.hits.object[pixel] = packet.hit.geomID[0];
     scratch.hits.primitive[pixel] = packet.hit.primID[0];
-    scratch.hits.u[pixel] = packet.hit.u[0];
-    scratch.hits.v[pixel] = packet.hit.v[0];
     scratch.moved.push_back({pixel, {x, y}});
     break;
   }
@@ -350,7 +346,7 @@ void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratc
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];
   const ViewRay ray = view_.camera.Through(at.x, at.y);
-  const SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], {hits.u[pixel], hits.v[pixel]}, ray);
+  const SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], ray);
   scratch.guides.depth[pixel] = float(std::max(-point.position.z, 0.0));
   scratch.guides.object[pixel] = float(object.object_id);
   scratch.guides.material[pixel] = float(object.material_id);
@@ -369,9 +365,8 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
   }
   if (planes_.position[0]) Store(planes_.position, index, view_.camera.WorldFromView(point.position));
   if (planes_.pref[0]) {
-    const glm::dvec3 rest =
-        object.mesh ? RestPosition(object, hits.primitive[pixel], point.barycentric)
-                    : FindSurfacePoint(object, 0, glm::dvec2(0.0), view_.camera.Through(at.x, at.y)).rest_position;
+    const glm::dvec3 rest = object.mesh ? RestPosition(object, hits.primitive[pixel], point.barycentric)
+                                        : FindSurfacePoint(object, 0, view_.camera.Through(at.x, at.y)).rest_position;
     Store(planes_.pref, index, rest);
   }
   if (planes_.albedo[0]) {
@@ -468,11 +463,7 @@ void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& s
       const glm::dvec2 at = found != scratch.moved.end() ? found->at : Centre(tile, pixel);
       if (points_) WriteOthers(tile, pixel, at, scratch);
       if (pixels) {
-        pixels->push_back({std::uint32_t(Index(tile, pixel)),
-                           hits.object[pixel],
-                           hits.primitive[pixel],
-                           {hits.u[pixel], hits.v[pixel]},
-                           at});
+        pixels->push_back({std::uint32_t(Index(tile, pixel)), hits.object[pixel], hits.primitive[pixel], at});
       }
     });
   }

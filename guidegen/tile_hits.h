@@ -43,8 +43,6 @@ struct TileHits {
   static constexpr std::uint32_t kNothing = ~0u;  // as Embree has it
   alignas(64) std::array<std::uint32_t, kTilePixels> object;
   alignas(64) std::array<std::uint32_t, kTilePixels> primitive;
-  alignas(64) std::array<float, kTilePixels> u;
-  alignas(64) std::array<float, kTilePixels> v;
 
   bool Met(int pixel) const { return object[std::size_t(pixel)] != kNothing; }
 };
