@@ -138,6 +138,34 @@ TEST_F(CliRequired, OfASequenceOnlyTheFrameThatCastsPays) {
   }
 }
 
+// What does not move is decoded once; a picture that is missing ends the whole sequence, with one sentence.
+TEST_F(CliRequired, OfAMovingSceneTexturesAreDecodedForAllFrames) {
+  WritePainted("paint.png", 4, 4);
+  const auto write = [&](const std::string& picture) {
+    WriteTextured(picture);
+    nlohmann::json json = nlohmann::json::parse(Bytes("scene.gltf"));
+    // The triangle's own numbers, read as times 0 and 1 and as two places.
+    json["accessors"].push_back(
+        {{"bufferView", 0}, {"byteOffset", 24}, {"componentType", 5126}, {"count", 2}, {"type", "SCALAR"}});
+    json["accessors"].push_back({{"bufferView", 0}, {"componentType", 5126}, {"count", 2}, {"type", "VEC3"}});
+    json["animations"] = {{{"samplers", {{{"input", 2}, {"output", 3}}}},
+                           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    WriteText("scene.gltf", json.dump());
+  };
+  write("paint.png");
+  WriteStyles();
+  const Arguments frames = Stylize("plain", {"--frames", "1-3", "--set", "transfer.colorize=1"}, "p#.png");
+  const auto json = RunOk(frames).Json();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(json["frames"][i]["rays"]["primary"], kPixels);
+    EXPECT_EQ(json["frames"][i]["work"]["textures_decoded"], i == 0 ? 1 : 0);
+    EXPECT_EQ(json["frames"][i]["work"]["materials"], json["frames"][i]["covered_pixels"]);
+  }
+  write("lost.png");
+  const CommandResult lost = ExpectError(frames, 3, {"scene.gltf: image 0 'lost.png'"});
+  EXPECT_EQ(lost.err.find("lost.png"), lost.err.rfind("lost.png")) << lost.err;
+}
+
 TEST_F(CliRequired, ThePlanSaysWhichPicturesAreDecodedAndWhatWasTaken) {
   WritePainted("paint.png", 4, 4);
   WriteTextured("paint.png");
