@@ -8,6 +8,7 @@
 #include <span>
 
 #include "cli/command.h"
+#include "cli/cost.h"
 #include "cli/json_text.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
@@ -16,6 +17,7 @@
 #include "cli/sequence.h"
 #include "cli/style_set.h"
 #include "cli/timing.h"
+#include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/whole_output.h"
 
@@ -45,10 +47,7 @@ FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const 
     json["width"] = guides.width();
     json["height"] = guides.height();
     json["layers"] = guides.layers().ToString();
-    json["rays"] = {{"primary", made.rays.primary},
-                    {"coverage", made.rays.coverage},
-                    {"shadow", made.rays.shadow},
-                    {"bounce", made.rays.bounce}};
+    CostToJson(made.cost, json);
     if (made.samples > 0 || IsOpenEnded(verb.scene)) json["samples"] = made.samples;
     if (made.noise > 0.0) json["noise"] = made.noise;
   }
@@ -57,6 +56,7 @@ FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const 
 
   if (verb.scene.explain && !made.plan.empty()) report.text = PlanToText(made.plan);
   if (output.empty()) return report;
+  if (!report.text.empty()) report.text += CostToText(made.cost);
   std::string steps;
   for (const auto& [name, ms] : made.times) steps += fmt::format("{}{} {:.1f}", steps.empty() ? "" : ", ", name, ms);
   std::string samples;
@@ -90,16 +90,18 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
     SceneGuides report;  // what there is to say; the pixels stay where they are
-    report.times = guides->times, report.plan = guides->plan, report.rays = guides->rays;
+    report.times = guides->times, report.plan = guides->plan, report.cost = guides->cost;
     report.samples = guides->samples, report.noise = guides->noise;
     NameStylesInPlan(report.plan, styles);
     return FrameWrite([&verb, &write, output, kept = scene.Keep(),
                        told = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
       Stopwatch watch;
+      const std::uint64_t before = BytesWrittenByThisThread();
       SCUMBLE_RETURN_IF_ERROR(WriteGuides(output, kept->guides, write));
       const double ms = watch.Lap();
       told->times.emplace_back("write", ms);
       FrameReport done = ReportOf(verb, output, kept->guides, *told);
+      done.json["work"]["bytes_written"] = BytesWrittenByThisThread() - before;
       done.write_ms = ms;
       return done;
     });
@@ -169,6 +171,7 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
     EndStage(globals, "write");
   }
   FrameReport report = ReportOf(verb, verb.output, made.guides, made);
+  if (!plan_only) report.json["work"]["bytes_written"] = BytesWrittenByThisThread();
   if (globals.timing) {
     report.json["timing"] = globals.timing->ToJson();
     report.text += globals.timing->ToText();

@@ -269,7 +269,7 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   SceneFrames scene(options, RequiredOfScene(styles, options.scene), false, globals);
   PictureSequence pictures(styles, verb.picture, globals);
   const auto source = [&](const SceneGuides& made) -> FrameGuides {
-    GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>()};
+    GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>(), made.cost};
     for (const Style& style : styles.styles) NameStyleInPlan(from.plan, style);
     return {&made.guides, std::move(from)};
   };
@@ -360,7 +360,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   made.times.insert(made.times.begin(), {"style", style_ms});
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
   if (!verb.scene.explain) made.plan.clear();
-  const GuideSource source{verb.scene.scene, std::move(made.times), std::move(made.plan)};
+  const GuideSource source{verb.scene.scene, std::move(made.times), std::move(made.plan), made.cost};
   return RunTransfer(styles, made.guides, source, verb.picture, globals, bar.Part(0.5, 1.0));
 }
 

@@ -13,9 +13,11 @@
 #include <utility>
 
 #include "cli/cache.h"
+#include "cli/cost.h"
 #include "cli/json_text.h"
 #include "cli/show.h"
 #include "cli/timing.h"
+#include "io/atomic_file.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
 #include "style/style_keyframes.h"
@@ -124,10 +126,14 @@ struct Made {
 
 Expected<FrameReport> WriteMade(Made& made) {
   Stopwatch watch;
+  const std::uint64_t before = BytesWrittenByThisThread();
   SCUMBLE_RETURN_IF_ERROR(WritePicture(made.output, made.picture, made.write));
   const double ms = made.report.write_ms = watch.Lap();
   made.steps.emplace_back("write", Spread{ms, ms, ms});
-  if (!made.report.json.empty()) AddStep(made.steps.back(), made.report.json);
+  if (!made.report.json.empty()) {
+    AddStep(made.steps.back(), made.report.json);
+    made.report.json["work"]["bytes_written"] = BytesWrittenByThisThread() - before;
+  }
   made.report.text += fmt::format("{}  {}\n", made.output, StepsToText(made.steps, made.repeat));
   return std::move(made.report);
 }
@@ -441,8 +447,10 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   made.steps.emplace_back("compose", SpreadOf(compose));
   if (globals.json) {  // measuring coherence takes its time
     made.report.json = ToJson(styles, prepared, scratch.field, transfer.exposure, options, source.plan, made.steps);
+    if (source.cost) CostToJson(*source.cost, made.report.json);
   }
   if (!source.plan.empty()) made.report.text = PlanToText(source.plan);
+  if (!source.plan.empty() && source.cost) made.report.text += CostToText(*source.cost);
   made.picture = std::move(picture);
   return FrameWrite([shared = std::make_shared<Made>(std::move(made))] { return WriteMade(*shared); });
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "guidegen/work_tally.h"
 #include "image/color.h"
 
 namespace scumble {
@@ -125,6 +126,7 @@ double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light) {
 }
 
 LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
+  ++work_tally.light_samples;
   LightSample sample;
   sample.endless = light.type == LightType::kSun;
   sample.to_light = sample.endless ? -light.axis : light.position - point.position;

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "guidegen/bsdf.h"
+#include "guidegen/work_tally.h"
 
 namespace scumble {
 namespace {
@@ -236,6 +237,7 @@ double LightSet::Probability(const SurfacePoint& point, int light, bool with_del
 }
 
 LightDraw LightSet::Draw(int light, const glm::dvec3& point, double u, double v) const {
+  ++work_tally.light_samples;
   if (IsEmitter(light)) return DrawEmitter(emitters_[std::size_t(light) - lamps_.size()], point, u, v);
   const PlacedLight& lamp = lamps_[std::size_t(light)];
   if (lamp.IsDelta()) return DrawDelta(lamp, point);

@@ -7,12 +7,14 @@
 #include <exception>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <sstream>
 #include <unordered_map>
 
 #include "guidegen/loader_util.h"
 #include "guidegen/mesh_normals.h"
+#include "guidegen/mtl_materials.h"
 #include "image/color.h"
 #include "image/hash.h"
 #include "io/picture_file.h"
@@ -24,9 +26,6 @@ std::filesystem::path BesideScene(const std::filesystem::path& scene, std::strin
   std::replace(name.begin(), name.end(), '\\', '/');
   return scene.parent_path() / name;
 }
-
-// MTL's illumination model of metals.
-constexpr int kMetalIllumination = 3;
 
 // Reads material libraries from regular files only, and says which one is missing.
 class LibraryReader : public tinyobj::MaterialReader {
@@ -237,61 +236,32 @@ class ObjLoader {
   }
 
   void LoadMaterials() {
-    for (std::size_t i = 0; i < materials_.size(); ++i) {
-      const tinyobj::material_t& from = materials_[i];
-      Material material;
-      material.name = material_names_.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
-      material.base_color_texture = LoadTexture(from.diffuse_texname, from.diffuse_texopt);
-      material.normal_texture = LoadTexture(from.normal_texname, from.normal_texopt);
-      for (int c = 0; c < 3; ++c) {
-        const float kd = material.base_color_texture.texture >= 0 ? 1.0f : static_cast<float>(from.diffuse[c]);
-        material.base_color[c] = std::isfinite(kd) ? std::max(kd, 0.0f) : 1.0f;
+    mtl_ = std::make_shared<MtlLibrary>();
+    mtl_->materials = std::move(materials_);
+    for (const tinyobj::material_t& material : mtl_->materials) {
+      for (const std::string& name : TexturesOf(material)) KeepTexture(name);
+    }
+    for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
+      const std::string& name = mtl_->materials[i].name;
+      scene_.materials.push_back(MakeMaterial(*mtl_, i, scene_));
+      scene_.materials.back().name = material_names_.Take(name.empty() ? "material_" + std::to_string(i) : name);
+    }
+  }
+
+  // To be decoded later.
+  void KeepTexture(const std::string& name) {
+    if (!mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size())).second) return;
+    auto texture = std::make_shared<EncodedTexture>();
+    texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file); };
+    texture->leave_out = [mtl = mtl_](Scene& scene) {
+      for (std::size_t i = 0; i < mtl->materials.size(); ++i) {
+        Material made = MakeMaterial(*mtl, i, scene);
+        made.name = scene.materials[i].name;
+        scene.materials[i] = std::move(made);
       }
-      material.base_color.a =
-          std::isfinite(from.dissolve) ? std::clamp(static_cast<float>(from.dissolve), 0.0f, 1.0f) : 1.0f;
-      if (material.base_color.a < 1.0f) material.alpha_mode = AlphaMode::kBlend;
-      LoadLighting(from, material);
-      scene_.materials.push_back(std::move(material));
-    }
-  }
-
-  // MTL knows a colour, a highlight and its exponent. They are read as Blender 3.4 reads and writes them. A highlight
-  // only says that there is a coat: how strongly one reflects is glTF's.
-  void LoadLighting(const tinyobj::material_t& from, Material& material) {
-    const glm::vec3 highlight = Color(from.specular);
-    const float shininess =
-        std::isfinite(from.shininess) ? std::clamp(static_cast<float>(from.shininess), 0.0f, 1000.0f) : 0.0f;
-    material.roughness = 1.0f - std::sqrt(shininess / 1000.0f);
-    const auto share = [](double of) {
-      const auto value = static_cast<float>(of);
-      return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f;
     };
-    if (from.illum == kMetalIllumination) {
-      const glm::vec3 metallic = Color(from.ambient);
-      material.metallic = share((metallic.r + metallic.g + metallic.b) / 3.0f);
-    }
-    // Pr and Pm of the format's later extension; their absence reads as 0.
-    if (from.roughness > 0.0f) material.roughness = share(from.roughness);
-    if (from.metallic > 0.0f) material.metallic = share(from.metallic);
-    const bool says_pbr = from.roughness > 0.0f || material.metallic > 0.0f;
-    if (highlight == glm::vec3(0.0f) && !says_pbr) {
-      material.bsdf = Bsdf::kDiffuse;
-      material.roughness = 1.0f;
-    } else if (glm::vec3(material.base_color) == glm::vec3(0.0f)) {
-      material.bsdf = Bsdf::kGlossy;  // all its colour is in the highlight, as metals were written before Pm
-      material.base_color = glm::vec4(glm::min(highlight, 1.0f), material.base_color.a);
-    }
-    material.emission_texture = LoadTexture(from.emissive_texname, from.emissive_texopt);
-    material.emission = material.emission_texture.texture >= 0 ? glm::vec3(1.0f) : Color(from.emission);
-  }
-
-  static glm::vec3 Color(const double* from) {
-    glm::vec3 color;
-    for (int c = 0; c < 3; ++c) {
-      const auto value = static_cast<float>(from[c]);
-      color[c] = std::isfinite(value) ? std::max(value, 0.0f) : 0.0f;
-    }
-    return color;
+    scene_.textures.emplace_back();
+    scene_.encoded_textures.push_back(std::move(texture));
   }
 
   // What faces without a material have: Blender's own, so that nobody meets a highlight that nobody asked for. Where
@@ -310,29 +280,6 @@ class ObjLoader {
 
   bool HasColors() const {
     return !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
-  }
-
-  TextureUse LoadTexture(const std::string& name, const tinyobj::texture_option_t& options) {
-    TextureUse use;
-    if (name.empty()) return use;
-    const auto [known, is_new] = textures_.try_emplace(name, -1);
-    if (is_new) {
-      Expected<Picture> picture = ReadPicture(BesideScene(path_, name));
-      if (picture) {
-        known->second = static_cast<int>(scene_.textures.size());
-        scene_.textures.push_back(std::move(*picture));
-      } else {
-        warnings_.Add("a texture cannot be read and is left out", Excerpt(picture.error().message));
-      }
-    }
-    use.texture = known->second;
-    if (options.clamp) use.wrap_u = use.wrap_v = TextureWrap::kClamp;
-    // MTL scales and shifts coordinates whose v points up; ours points down.
-    const auto su = static_cast<float>(options.scale[0]), sv = static_cast<float>(options.scale[1]);
-    use.uv_transform[0][0] = su;
-    use.uv_transform[1][1] = sv;
-    use.uv_transform[2] = glm::vec3(float(options.origin_offset[0]), 1.0f - sv - float(options.origin_offset[1]), 1.0f);
-    return use;
   }
 
   void BuildMeshes() {
@@ -361,7 +308,7 @@ class ObjLoader {
 
   void AddMesh(const std::string& object, int material, const std::vector<std::size_t>& members) {
     Mesh mesh;
-    mesh.material = material >= 0 && std::size_t(material) < materials_.size() ? material : PlainMaterial();
+    mesh.material = material >= 0 && std::size_t(material) < mtl_->materials.size() ? material : PlainMaterial();
     const bool has_colors = HasColors();
     bool has_uvs = false;
     for (std::size_t t : members) {
@@ -419,9 +366,7 @@ class ObjLoader {
   WarningCounter warnings_;
   UniqueNames material_names_;
   int plain_material_ = -1;
-  std::map<std::string, int> textures_;  // index into the scene's, -1 where unreadable
-  glm::dvec3 origin_{0.0};
-  std::vector<glm::vec3> positions_;  // relative to it
+  std::shared_ptr<MtlLibrary> mtl_;  // once it is loaded
   std::vector<Triangle> triangles_;
   std::vector<glm::vec3> smooth_normals_;
   std::size_t faces_ = 0;

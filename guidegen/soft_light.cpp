@@ -6,6 +6,7 @@
 
 #include "guidegen/bsdf.h"
 #include "guidegen/single_ray.h"
+#include "guidegen/work_tally.h"
 
 namespace scumble {
 namespace {
@@ -71,6 +72,7 @@ struct Sample {
 
   // A direction of the surface.
   void TakeDirection(const Quad& u) {
+    ++work_tally.light_samples;
     const glm::dvec2 disc = SquareToDisc(u[0], u[1]);
     glm::dvec3 x, y;
     MakeFrame(point.normal, x, y);

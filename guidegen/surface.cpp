@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "guidegen/work_tally.h"
+
 namespace scumble {
 namespace {
 
@@ -215,6 +217,7 @@ SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitiv
 }
 
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
+  ++work_tally.materials;
   glm::vec4 color = object.material->base_color;
   if (!object.mesh) return color;
   const Mesh& mesh = *object.mesh;

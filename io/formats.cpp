@@ -23,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::atomic<int> io_threads{0};
+std::atomic<bool> is_loaded{false};
 
 constexpr const char* kFile = "libscumble_formats.so";
 
@@ -92,12 +93,15 @@ Expected<const Formats*> LoadFormats() {
   static const Expected<const Formats*> kFormats = [] {
     const Expected<const Formats*> loaded = Load();
     if (loaded) (*loaded)->set_threads(io_threads);
+    is_loaded = loaded.ok();
     return loaded;
   }();
   return kFormats;
 }
 
 void SetIoThreads(int threads) { io_threads = threads; }
+
+bool IsLibraryLoaded() { return is_loaded; }
 
 int internal::IoThreads() { return io_threads; }
 

@@ -302,7 +302,8 @@ TEST_F(Hostile, ObjTexturesThatAreNoFiles) {
         LoadScene(Write("a.obj", std::string("mtllib paint.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")));
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     EXPECT_THAT(scene->warnings, testing::ElementsAre(testing::AllOf(HasSubstr("texture"), HasSubstr(name))));
-    EXPECT_TRUE(scene->textures.empty());
+    ASSERT_EQ(scene->textures.size(), 1u);
+    EXPECT_TRUE(scene->textures[0].empty());
   }
 }
 
