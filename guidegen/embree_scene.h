@@ -32,6 +32,10 @@ struct CastContext {
   RTCIntersectContext embree;  // first: Embree passes its address on
   bool camera_rays;
   ShadowTarget target;
+  // By a ray's id: the farthest place, in lengths of its direction, where it passed the back of a single-sided surface,
+  // if that is farther than what stands there. Not only before what the ray meets: Embree goes its own way. Null:
+  // nobody asks.
+  float* passed = nullptr;
 };
 
 // Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.
