@@ -89,8 +89,9 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
       if (along * object.winding > 0.0) {
         args->valid[i] = 0;
         if (context.passed) {
-          float& farthest = context.passed[RTCRayN_id(args->ray, count, i)];
-          farthest = std::max(farthest, RTCRayN_tfar(args->ray, count, i));
+          BacksPassed& passed = context.passed[RTCRayN_id(args->ray, count, i)];
+          passed.nearest = std::min(passed.nearest, RTCRayN_tfar(args->ray, count, i));
+          passed.farthest = std::max(passed.farthest, RTCRayN_tfar(args->ray, count, i));
         }
         continue;
       }

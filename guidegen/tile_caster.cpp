@@ -190,18 +190,18 @@ void TileCaster::PlaceRays(const Tile& tile, TileRays& rays) const {
   std::copy_n(up_.begin() + tile.y0, kTileSide, rays.up.begin());
 }
 
-// From where the ways of a packet that was cast are clear. What its rays passed, by context.passed, may hide what they
-// passed before what they met; such rays look again, as far as that. The back itself may be a rounding nearer than
-// float has it: half of the way counts.
+// From where the ways of a packet that was cast are clear. Rays that passed backs before what they met and behind it, by
+// context.passed, look again, only as far as that. The back itself may be a rounding nearer than float has it: half of
+// the way counts.
 template <class Packet>
 void TileCaster::FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const {
   constexpr int kRays = kRaysIn<Packet>;
-  float* const passed = context.passed;
+  BacksPassed* const passed = context.passed;
   alignas(64) int again[kRays];
   bool any = false;
   for (int lane = 0; lane < kRays; ++lane) {
     const bool hidden = valid[lane] != 0 && packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID &&
-                        passed[lane] >= packet.ray.tfar[lane];
+                        passed[lane].nearest < packet.ray.tfar[lane] && packet.ray.tfar[lane] <= passed[lane].farthest;
     again[lane] = hidden ? -1 : 0;
     any = any || hidden;
   }
@@ -210,14 +210,15 @@ void TileCaster::FindClear(const Packet& packet, const int* valid, CastContext& 
     Packet shorter = packet;
     for (int lane = 0; lane < kRays; ++lane) {
       if (again[lane] == 0) continue;
-      passed[lane] = near;
+      passed[lane] = {};
       shorter.ray.tfar[lane] = std::nextafter(packet.ray.tfar[lane], 0.0f);
       shorter.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
     scumble::Cast(again, scene_.handle(), &context.embree, shorter);
   }
   for (int lane = 0; lane < kRays; ++lane) {
-    clear_from[lane] = passed[lane] > near ? 0.5f * (passed[lane] + packet.ray.tfar[lane]) : near;
+    const float last = passed[lane].farthest, met = packet.ray.tfar[lane];
+    clear_from[lane] = last > near && last < met ? 0.5f * (last + met) : near;
   }
 }
 
@@ -227,7 +228,7 @@ void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, bool ways, 
   constexpr int kRays = kRaysIn<Packet>;
   constexpr int kRows = kRays / kSquareSide;
   CastContext context(true);
-  std::array<float, kRays> passed;
+  std::array<BacksPassed, kRays> passed;
   if (ways && backs_) context.passed = passed.data();
   Packet packet = {};
   alignas(64) int valid[kRays];
@@ -245,7 +246,6 @@ void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, bool ways, 
     }
   }
   const bool whole = tile.width == kTileSide && tile.height == kTileSide;
-  const float near = float(view_.camera.near_depth());
   const float far = float(view_.camera.far_depth());
   float* const packet_across = rays.orthographic ? packet.ray.org_x : packet.ray.dir_x;
   float* const packet_up = rays.orthographic ? packet.ray.org_y : packet.ray.dir_y;
@@ -258,7 +258,7 @@ void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, bool ways, 
       for (int lane = 0; !whole && lane < kRays; ++lane) {
         valid[lane] = column + lane % kSquareSide < tile.width && row + lane / kSquareSide < tile.height ? -1 : 0;
       }
-      if (context.passed) passed.fill(near);
+      if (context.passed) passed.fill({});
       scumble::Cast(valid, scene_.handle(), &context.embree, packet);
       const std::size_t first = std::size_t(TilePixel(column, row));
       std::copy_n(packet.hit.geomID, kRays, hits.object.data() + first);
@@ -332,8 +332,7 @@ std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel,
     packet.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
     alignas(32) const int valid[kPacket] = {-1};
     CastContext context(true);
-    std::array<float, kPacket> passed;
-    passed.fill(packet.ray.tnear[0]);
+    std::array<BacksPassed, kPacket> passed;
     context.passed = passed.data();
     scumble::Cast(valid, scene_.handle(), &context.embree, packet);
     if (packet.hit.geomID[0] == RTC_INVALID_GEOMETRY_ID) continue;
