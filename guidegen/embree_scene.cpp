@@ -3,6 +3,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -87,6 +88,11 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
                            double(RTCHitN_Ng_z(args->hit, count, i)) * RTCRayN_dir_z(args->ray, count, i);
       if (along * object.winding > 0.0) {
         args->valid[i] = 0;
+        if (context.passed) {
+          BacksPassed& passed = context.passed[RTCRayN_id(args->ray, count, i)];
+          passed.nearest = std::min(passed.nearest, RTCRayN_tfar(args->ray, count, i));
+          passed.farthest = std::max(passed.farthest, RTCRayN_tfar(args->ray, count, i));
+        }
         continue;
       }
     }

@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,13 @@ struct ShadowTarget {
   float near_end = 1.0f;  // in lengths of the ray's direction
 };
 
+// Where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Not only before what it meets:
+// Embree goes its own way.
+struct BacksPassed {
+  float nearest = std::numeric_limits<float>::infinity();
+  float farthest = -std::numeric_limits<float>::infinity();
+};
+
 // What Embree hands to filter functions. Camera rays do not see the back of single-sided surfaces; shadow rays do,
 // because a wall keeps its shadow when it is cut away for the viewer.
 struct CastContext {
@@ -32,6 +40,7 @@ struct CastContext {
   RTCIntersectContext embree;  // first: Embree passes its address on
   bool camera_rays;
   ShadowTarget target;
+  BacksPassed* passed = nullptr;  // by a ray's id; null: nobody asks
 };
 
 // Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.

@@ -57,7 +57,8 @@ auto WithinMemory(const std::filesystem::path& path, Load load) -> decltype(load
   } catch (const std::bad_alloc&) {
     return MemoryError(path.string() + " asks for more memory than there is: simplify the scene");
   } catch (const std::length_error&) {
-    return InputError(path.string() + " asks for more memory than there is: simplify the scene");
+    return InputError(path.string() +
+                      " promises more of something than any file can hold: one of its sizes is wrong, export it again");
   }
 }
 

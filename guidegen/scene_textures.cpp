@@ -6,6 +6,7 @@
 #include "guidegen/bsdf.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/path_layers.h"
+#include "guidegen/picture_budget.h"
 #include "guidegen/surface.h"
 
 namespace scumble {
@@ -20,6 +21,8 @@ template <class Wanted>
 Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
   DecodedTextures done;
   WarningCounter warnings;
+  PictureBudget budget;
+  for (const Picture& picture : scene.textures) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, picture));
   for (bool again = true; std::exchange(again, false);) {
     const std::vector<bool> needed = wanted(scene);
     for (std::size_t i = 0; i < needed.size(); ++i) {
@@ -27,6 +30,7 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
       const std::shared_ptr<const EncodedTexture> encoded = scene.encoded_textures[i];
       Expected<Picture> picture = encoded->decode();
       if (!picture && !encoded->leave_out) return picture.error();
+      if (picture) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *picture));
       scene.encoded_textures[i].reset();
       if (picture) {
         ++done.count;

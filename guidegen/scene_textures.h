@@ -23,8 +23,8 @@ struct DecodedTextures {
 };
 
 // Decodes what RenderGuides needs with these options and is not decoded yet. A picture that is missing or broken is an
-// error that names it, or a warning where the scene's format can do without (Wavefront's). After an error nothing that
-// was decoded is lost.
+// error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than PictureBudget
+// has are an error that names the scene. After an error nothing that was decoded is lost.
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options);
 
 // The same of all there are.

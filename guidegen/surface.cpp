@@ -207,6 +207,11 @@ double LongestEdgeSquared(const Triangle& triangle) {
   return longest;
 }
 
+glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point) {
+  const glm::dvec3 way = ray.origin + ray.direction * clear_from - point;
+  return glm::dot(way, ray.direction) < 0.0 ? way : glm::dvec3(0.0);
+}
+
 bool AllDoubleSided(std::span<const PlacedObject> objects) {
   return std::all_of(objects.begin(), objects.end(),
                      [](const PlacedObject& object) { return object.material->double_sided; });

@@ -44,6 +44,10 @@ struct TileHits {
   alignas(64) std::array<std::uint32_t, kTilePixels> object;
   alignas(64) std::array<std::uint32_t, kTilePixels> primitive;
 
+  // From where on the ray's way to what it met is clear for rays of light, too, in lengths of its direction. Only set
+  // where something was met and somebody asks.
+  alignas(64) std::array<float, kTilePixels> clear_from;
+
   bool Met(int pixel) const { return object[std::size_t(pixel)] != kNothing; }
 };
 
