@@ -7,6 +7,7 @@
 #include <charconv>
 #include <system_error>
 
+#include "cli/memory_need.h"
 #include "cli/sequence.h"
 #include "cli/timing.h"
 #include "io/guide_file.h"
@@ -281,9 +282,14 @@ Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const 
   guidegen.time_budget_seconds = options.time_budget_seconds;
   if (options.samples_given) guidegen.max_samples = options.samples;
   result.plan = PlanGuides(scene, guidegen);
+  AddProgram(globals.threads, result.memory);
+  AddScene(scene, result.memory);
+  AddGuides(size, layers, options, result.memory);
+  if (options.more_memory) options.more_memory(size, layers, result.memory);
   if (plan_only) return result;
 
   EndStage(globals, "scene");
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, globals, "take a smaller --size, or fewer layers"));
   SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
                                                : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);

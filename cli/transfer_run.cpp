@@ -367,6 +367,7 @@ Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const G
   SCUMBLE_ASSIGN(FrameReport report, write());
   EndStage(globals, "write");
   report.json.update(SayHowAssigned(styles));
+  report.json["memory"]["peak_bytes"] = PeakMemory();
   if (globals.timing) {
     report.json["timing"] = globals.timing->ToJson();
     report.text += globals.timing->ToText();
@@ -442,7 +443,8 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   if (globals.json) {  // measuring coherence takes its time
     made.report.json = ToJson(styles, prepared, scratch.field, transfer.exposure, options, source.plan, made.steps);
   }
-  if (!source.plan.empty()) made.report.text = PlanToText(source.plan);
+  if (globals.json) made.report.json["memory"] = MemoryToJson(source.memory);
+  if (!source.plan.empty()) made.report.text = PlanToText(source.plan) + MemoryToText(source.memory);
   made.picture = std::move(picture);
   return FrameWrite([shared = std::make_shared<Made>(std::move(made))] { return WriteMade(*shared); });
 }

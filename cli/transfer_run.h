@@ -48,6 +48,7 @@ struct GuideSource {
   std::string name;            // the file, for messages
   StepTimes times;             // of the steps that led to them
   std::vector<PlanItem> plan;  // printed as part of the result, unless it is empty
+  MemoryNeed memory = {};      // of the whole run
 };
 
 // What a sequence keeps from frame to frame.
