@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/cost.h"
 #include "cli/json_text.h"
+#include "cli/memory_need.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/run_files.h"
@@ -52,9 +53,10 @@ FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const 
     if (made.noise > 0.0) json["noise"] = made.noise;
   }
   if (!made.plan.empty()) json["plan"] = PlanToJson(made.plan);
+  json["memory"] = MemoryToJson(made.memory);
   for (const auto& [name, ms] : made.times) json["ms"][name] = ms;
 
-  if (verb.scene.explain && !made.plan.empty()) report.text = PlanToText(made.plan);
+  if (verb.scene.explain && !made.plan.empty()) report.text = PlanToText(made.plan) + MemoryToText(made.memory);
   if (output.empty()) return report;
   if (!report.text.empty()) report.text += CostToText(made.cost);
   std::string steps;
@@ -91,6 +93,7 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
     SceneGuides report;  // what there is to say; the pixels stay where they are
     report.times = guides->times, report.plan = guides->plan, report.cost = guides->cost;
+    report.memory = guides->memory;
     report.samples = guides->samples, report.noise = guides->noise;
     NameStylesInPlan(report.plan, styles);
     return FrameWrite([&verb, &write, output, kept = scene.Keep(),
@@ -149,6 +152,10 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
     SCUMBLE_ASSIGN(verb.output, NameOfOne(verb.output, verb.scene.blender.frame));
   }
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(verb, sequence, styles));
+  verb.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    if (behind) AddGuidesBehind(size, layers, need);
+    AddGuideFile(size, layers, need);
+  };
   if (sequence && !plan_only) return GuidegenSequence(verb, *sequence, layers_for, motion, styles, write, globals);
   if (sequence && IsBlenderScene(verb.scene.scene)) verb.scene.blender.frame = sequence->frames.front();
   ProgressBar bar("guidegen", globals.quiet);
@@ -176,6 +183,7 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
     report.json["timing"] = globals.timing->ToJson();
     report.text += globals.timing->ToText();
   }
+  if (!plan_only) report.json["memory"]["peak_bytes"] = PeakMemory();
   Print(globals.json ? JsonText(report.json) : report.text);
   return ExitCode::kOk;
 }
@@ -210,6 +218,7 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   AddSequenceOptions(*sub, verb->sequence);
   AddTimingOption(*sub, globals);
+  AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunGuidegenVerb(*verb, globals); }; });
 }

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,6 +13,7 @@
 
 #include "cli/blender.h"
 #include "cli/command.h"
+#include "cli/memory_limit.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "image/stopwatch.h"
@@ -65,6 +66,8 @@ struct SceneOptions {
   double noise = 0.0;
   double time_budget_seconds = 0.0;
   std::uint64_t seed = 0;
+  // What the verb takes besides the guides, told before any of it is taken; null: nothing.
+  std::function<void(const Size& size, const LayerSet& layers, MemoryNeed& need)> more_memory;
   bool key_light = true;  // let one shine where the file has no light and a layer needs some
 };
 // For guides with light paths, which no style reads.
@@ -86,6 +89,7 @@ struct SceneCost {
 struct SceneGuides {
   GuideSet guides;
   std::vector<PlanItem> plan;
+  MemoryNeed memory;  // of the whole run
   StepTimes times;
   SceneCost cost;
   int samples = 0;     // of each pixel, in light-path layers

@@ -373,6 +373,7 @@ Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const G
   SCUMBLE_ASSIGN(FrameReport report, write());
   EndStage(globals, "write");
   report.json.update(SayHowAssigned(styles));
+  report.json["memory"]["peak_bytes"] = PeakMemory();
   if (globals.timing) {
     report.json["timing"] = globals.timing->ToJson();
     report.text += globals.timing->ToText();
@@ -449,7 +450,8 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
     made.report.json = ToJson(styles, prepared, scratch.field, transfer.exposure, options, source.plan, made.steps);
     if (source.cost) CostToJson(*source.cost, made.report.json);
   }
-  if (!source.plan.empty()) made.report.text = PlanToText(source.plan);
+  if (globals.json) made.report.json["memory"] = MemoryToJson(source.memory);
+  if (!source.plan.empty()) made.report.text = PlanToText(source.plan) + MemoryToText(source.memory);
   if (!source.plan.empty() && source.cost) made.report.text += CostToText(*source.cost);
   made.picture = std::move(picture);
   return FrameWrite([shared = std::make_shared<Made>(std::move(made))] { return WriteMade(*shared); });

@@ -49,6 +49,7 @@ struct GuideSource {
   StepTimes times;             // of the steps that led to them
   std::vector<PlanItem> plan;  // printed as part of the result, unless it is empty
   std::optional<SceneCost> cost = {};  // of casting them, where they were cast
+  MemoryNeed memory = {};      // of the whole run
 };
 
 // What a sequence keeps from frame to frame.
