@@ -1,9 +1,9 @@
 // What the ladder of --quality and --budget-ms was made from: for sample scenes and bundled styles, time and energy of
 // every way to do it with less, and which of them nothing else beats in both. Prints one line a way, tab-separated:
 // docs/budget.md has the table. --help lists the arguments.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -59,7 +59,8 @@ std::vector<Candidate> Candidates(const Style& style, const Arguments& arguments
     add("litsphere", {less});
     if (upsample == 1 || upsample == kUpsampling.back()) add("litsphere, radius 0", {less, crisp});
     if (upsample == 1) add("radius 0", {crisp});
-    if (upsample == 1) add("4 levels fewer", {fmt::format("transfer.levels={}", std::max(1, style.transfer.levels - 4))});
+    if (upsample == 1)
+      add("4 levels fewer", {fmt::format("transfer.levels={}", std::max(1, style.transfer.levels - 4))});
     add("match_step 4", {"transfer.match_step=4"});
   }
   all.front().name = "the style";
@@ -132,9 +133,10 @@ class Judge {
   }
 
   EnergyReport Measure(const Picture& picture, const SourceField& field, std::size_t samples) const {
-    EnergyTarget target{&picture,
-                        {guides_.Plane(Layer::kNormal, 0), guides_.Plane(Layer::kNormal, 1), guides_.Plane(Layer::kNormal, 2)},
-                        guides_.Plane(Layer::kCoverage)};
+    EnergyTarget target{
+        &picture,
+        {guides_.Plane(Layer::kNormal, 0), guides_.Plane(Layer::kNormal, 1), guides_.Plane(Layer::kNormal, 2)},
+        guides_.Plane(Layer::kCoverage)};
     for (const auto& plane : more_.target) target.more_guides.emplace_back(plane);
     std::vector<std::uint8_t> covered(field.level.size());
     std::transform(field.level.begin(), field.level.end(), covered.begin(),
@@ -214,8 +216,8 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
   };
   const std::vector<std::size_t> front = ParetoFront(whole), alone = ParetoFront(transfer_alone);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    std::fputs(fmt::format("{}\t{}\t{}\t{:.1f}\t{:.1f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{}\n", scene_name, style_name,
-                           candidates[i].name, whole[i].time, SpreadOf(ms[i]).median, energy[i].both.mean,
+    std::fputs(fmt::format("{}\t{}\t{}\t{:.1f}\t{:.1f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{}\n", scene_name,
+                           style_name, candidates[i].name, whole[i].time, SpreadOf(ms[i]).median, energy[i].both.mean,
                            energy[i].both.standard_error, energy[i].energy.mean, energy[i].missing.mean,
                            on(front, i) ? "*" : "", on(alone, i) ? "*" : "")
                    .c_str(),
@@ -234,7 +236,9 @@ int Main(int argc, char** argv) {
   app.add_option("--scenes", arguments.scenes)->delimiter(',');
   app.add_option("--styles", arguments.styles)->delimiter(',');
   CLI11_PARSE(app, argc, argv);
-  std::puts("scene\tstyle\tway\tguides and transfer, ms\ttransfer, ms\tboth\tstandard error\tenergy\tmissing\tfront\tfront of transfer");
+  std::puts(
+      "scene\tstyle\tway\tguides and transfer, ms\ttransfer, ms\tboth\tstandard error\tenergy\tmissing\tfront\tfront "
+      "of transfer");
   for (const std::string& scene : arguments.scenes) {
     for (const std::string& style : arguments.styles) Measure(scene, style, arguments);
   }

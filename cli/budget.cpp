@@ -13,6 +13,7 @@
 #include "cli/picture_settings.h"
 #include "cli/quality_ladder.h"
 #include "cli/scene_frames.h"
+#include "cli/timing.h"
 #include "guidegen/load_scene.h"
 #include "image/hash.h"
 #include "io/atomic_file.h"
@@ -71,9 +72,11 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
     return paint(ways[place]);
   };
   SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure));
+  EndStage(globals, "calibration");
   const Way& way = ways[picked.way];
-  Say(globals, fmt::format("budget {:g} ms: about {:.0f} ms with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
-                           WordsOf(way), OptionsOf(way).empty() ? "" : ", which repeats it"));
+  Say(globals,
+      fmt::format("budget {:g} ms: about {:.0f} ms with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
+                  WordsOf(way), OptionsOf(way).empty() ? "" : ", which repeats it"));
   if (!picked.fits) {
     Warn(fmt::format("--budget-ms {:g}: nothing fits; the quickest way is taken, which needs about {:.0f} ms",
                      options.budget_ms, std::ceil(picked.predicted_ms)));
@@ -90,7 +93,8 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
 // What times depend on in either verb, as text. Not the frame: all frames of a scene are to look alike.
 std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture, const Globals& globals) {
   ExemplarHashes hashes;
-  return fmt::format("{}; {}{}", MachineName(globals.threads), SettingsText(styles, SettingsOf(picture, {}, {}), hashes),
+  return fmt::format("{}; {}{}", MachineName(globals.threads),
+                     SettingsText(styles, SettingsOf(picture, {}, {}), hashes),
                      KeepsField(picture, globals) ? "; keeps the field" : "");
 }
 
@@ -134,12 +138,13 @@ void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
                       "--upsample win over it")
       ->type_name("NAME")
       ->check(CLI::IsMember(kQualities));
-  verb.add_option("--budget-ms", options.budget_ms,
-                  std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
-                      " of one picture may take, without start-up, reading, preparing the style and writing: the most "
-                      "accurate way that fits is taken, by times that are measured once on this machine and kept in the "
-                      "user's cache folder; one way for all frames; the options that repeat it are printed. --set and "
-                      "--upsample win over it")
+  verb.add_option(
+          "--budget-ms", options.budget_ms,
+          std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
+              " of one picture may take, without start-up, reading, preparing the style and writing: the most "
+              "accurate way that fits is taken, by times that are measured once on this machine and kept in the "
+              "user's cache folder; one way for all frames; the options that repeat it are printed. --set and "
+              "--upsample win over it")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   verb.add_flag("--recalibrate", options.recalibrate, "with --budget-ms: measure anew");
@@ -165,26 +170,26 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, con
   const auto coverage = guides.Plane(Layer::kCoverage);
   const auto covered = std::count_if(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
   // Frames of one shot are alike: how much is covered counts in 64ths.
-  const std::string circumstances = fmt::format(
-      "transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
-      64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())), guides.layers().ToString(),
-      CommonCircumstances(styles, picture, globals));
+  const std::string circumstances =
+      fmt::format("transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
+                  64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
+                  guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
   PaintTrial trial(styles, picture, name, globals);
   return TakeWithin(options, frame, circumstances, styles, picture, globals,
                     [&](const Way& way) { return trial.Paint(way, guides); });
 }
 
-Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame, StyleSet& styles,
-                      PictureOptions& picture, const Globals& globals) {
+Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame,
+                      StyleSet& styles, PictureOptions& picture, const Globals& globals) {
   if (!options.chooses()) return Ok();
   SCUMBLE_ASSIGN(const Size size, ParseSize(scene.size));
   const LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed};
   if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
   SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(scene.scene));
-  const std::string circumstances = fmt::format(
-      "stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
-      HashText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}), scene.size, GuideSettings(scene), scene.isa,
-      scene.half, CommonCircumstances(styles, picture, globals));
+  const std::string circumstances =
+      fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
+                  HashText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}), scene.size,
+                  GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, globals));
   Globals silent = globals;
   silent.quiet = true, silent.timing = nullptr;
   std::optional<OpenedScene> opened;

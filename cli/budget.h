@@ -1,5 +1,5 @@
-// --quality and --budget-ms of `transfer` and `stylize`: which rung of the ladder (cli/quality_ladder.h) the pictures are
-// painted by. One is chosen before the first picture and holds for all of them.
+// --quality and --budget-ms of `transfer` and `stylize`: which rung of the ladder (cli/quality_ladder.h) the pictures
+// are painted by. One is chosen before the first picture and holds for all of them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -34,10 +34,10 @@ Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options);
 Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name, StyleSet& styles,
                        PictureOptions& picture, const Globals& globals);
 
-// The same where the guides are cast, too, and may be smaller than the picture; scene.size is that of the picture, or of
-// its guides where --upsample was given. `frame`: the one that is looked at; none: the scene at rest. Where times are not
-// known, the scene is read for measuring them.
-Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame, StyleSet& styles,
-                      PictureOptions& picture, const Globals& globals);
+// The same where the guides are cast, too, and may be smaller than the picture; scene.size is that of the picture, or
+// of its guides where --upsample was given. `frame`: the one that is looked at; none: the scene at rest. Where times
+// are not known, the scene is read for measuring them.
+Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame,
+                      StyleSet& styles, PictureOptions& picture, const Globals& globals);
 
 }  // namespace scumble

@@ -24,23 +24,33 @@ double Median(Runs runs) {
   return runs.size() % 2 ? runs[half] : 0.5 * (runs[half - 1] + runs[half]);
 }
 
-// Times by way, as {"circumstances": …, "ways": {"--upsample 4": [12.5, …], …}}. Nothing where the text is none of
-// ours, or of others: keys are hashes.
-using Known = std::map<std::string, Runs>;
+bool IsTime(const nlohmann::json& json, double& ms) {
+  if (!json.is_number()) return false;
+  ms = json.get<double>();
+  return ms >= 0.0 && std::isfinite(ms);
+}
+
+// Times by way, as {"circumstances": …, "cold_ms": 3.5, "ways": {"--upsample 4": [12.5, …], …}}. Nothing where the text is
+// none of ours, or of others: keys are hashes.
+struct Known {
+  std::map<std::string, Runs> ways;
+  double cold_ms = 0.0;
+};
 std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::string& circumstances) {
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || json.value("circumstances", nlohmann::json()) != circumstances) return std::nullopt;
   const auto ways = json.find("ways");
-  if (ways == json.end() || !ways->is_object()) return std::nullopt;
+  const auto cold = json.find("cold_ms");
+  if (ways == json.end() || !ways->is_object() || cold == json.end()) return std::nullopt;
   Known known;
+  if (!IsTime(*cold, known.cold_ms)) return std::nullopt;
   for (const auto& [way, times] : ways->items()) {
     if (!times.is_array() || times.size() > std::size_t(kCalibrationRuns)) return std::nullopt;
     for (const auto& time : times) {
-      if (!time.is_number()) return std::nullopt;
-      const double ms = time.get<double>();
-      if (!(ms >= 0.0 && std::isfinite(ms))) return std::nullopt;
-      known[way].push_back(ms);
+      double ms = 0.0;
+      if (!IsTime(time, ms)) return std::nullopt;
+      known.ways[way].push_back(ms);
     }
   }
   return known;
@@ -57,14 +67,18 @@ class Picker {
     if (!bytes) return;
     const std::optional<Known> known = ParseTimes(*bytes, calibration_.circumstances);
     if (!known) return;
+    cold_ms_ = known->cold_ms;
     for (std::size_t way = 0; way < runs_.size(); ++way) {
-      if (const auto found = known->find(calibration_.ways[way]); found != known->end()) runs_[way] = found->second;
+      const auto found = known->ways.find(calibration_.ways[way]);
+      if (found != known->ways.end()) runs_[way] = found->second;
     }
   }
 
   void Store() const {
     if (!calibration_.cache || measured_ == 0) return;
-    nlohmann::ordered_json json{{"circumstances", calibration_.circumstances}, {"ways", nlohmann::ordered_json::object()}};
+    nlohmann::ordered_json json{{"circumstances", calibration_.circumstances},
+                                {"cold_ms", cold_ms_.value_or(0.0)},
+                                {"ways", nlohmann::ordered_json::object()}};
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       if (!runs_[way].empty()) json["ways"][calibration_.ways[way]] = runs_[way];
     }
@@ -89,7 +103,8 @@ class Picker {
  private:
   std::string Key() const { return fmt::format("{:016x}", HashText(calibration_.circumstances)); }
 
-  PickedWay Picked(std::size_t way, bool fits) const { return {way, PredictedMs(runs_[way]), fits, measured_}; }
+  double Predicted(std::size_t way) const { return PredictedMs(runs_[way], cold_ms_.value_or(0.0)); }
+  PickedWay Picked(std::size_t way, bool fits) const { return {way, Predicted(way), fits, measured_}; }
 
   Expected<bool> Fits(std::size_t way) {
     const Runs& runs = runs_[way];
@@ -97,11 +112,28 @@ class Picker {
       return std::any_of(runs.begin(), runs.end(), [&](double ms) { return ms > budget_ms_; });
     };
     while (!too_slow() && runs.size() < std::size_t(kCalibrationRuns)) SCUMBLE_RETURN_IF_ERROR(RunOnce(way));
-    return !too_slow() && PredictedMs(runs) <= budget_ms_;
+    return !too_slow() && Predicted(way) <= budget_ms_;
   }
 
   Status RunOnce(std::size_t way) {
-    if (measured_ == 0) SCUMBLE_RETURN_IF_ERROR(measure_(runs_.size() - 1));
+    if (!cold_ms_) {
+      SCUMBLE_RETURN_IF_ERROR(WarmUp());
+    } else if (measured_ == 0) {
+      SCUMBLE_RETURN_IF_ERROR(measure_(runs_.size() - 1));  // this process is cold, too
+    }
+    return Measure(way);
+  }
+
+  Status WarmUp() {
+    const std::size_t last = runs_.size() - 1;
+    SCUMBLE_ASSIGN(const double cold, measure_(last));
+    SCUMBLE_RETURN_IF_ERROR(Measure(last));
+    SCUMBLE_RETURN_IF_ERROR(Measure(last));
+    cold_ms_ = std::max(0.0, cold - std::max(runs_[last][0], runs_[last][1]));
+    return Ok();
+  }
+
+  Status Measure(std::size_t way) {
     SCUMBLE_ASSIGN(const double ms, measure_(way));
     runs_[way].push_back(ms);
     ++measured_;
@@ -112,15 +144,16 @@ class Picker {
   const double budget_ms_;
   const MeasureWay& measure_;
   std::vector<Runs> runs_;  // by way
+  std::optional<double> cold_ms_;
   int measured_ = 0;
 };
 
 }  // namespace
 
-double PredictedMs(std::span<const double> runs_ms) {
+double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
   if (runs_ms.empty()) return std::numeric_limits<double>::infinity();
   const double slowest = *std::max_element(runs_ms.begin(), runs_ms.end());
-  return slowest + (slowest - Median({runs_ms.begin(), runs_ms.end()}));
+  return slowest + std::max(slowest - Median({runs_ms.begin(), runs_ms.end()}), cold_ms);
 }
 
 Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure) {

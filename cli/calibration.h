@@ -1,9 +1,10 @@
 // How long each way to paint a frame takes on this machine, and which is the most accurate that fits into a budget.
 //
 // A way is run kCalibrationRuns times. If runs are alike, whatever their distribution, one more is slower than the slowest
-// of nine in one case of ten: that is the share of frames that may miss their budget. As a later run meets another moment
-// of the machine, and a program that has just begun, what is predicted lies beyond the slowest of them, as far as that is
-// beyond their median: nothing on a quiet machine, much on a busy one.
+// of nine in one case of ten: that is the share of frames that may miss their budget. Two things make later runs slower than
+// those: another moment of the machine, for which the slowest run's distance from the median is added, nothing on a quiet
+// machine and much on a busy one; and a process that has just begun, whose first run wakes threads and touches memory. What
+// that costs is measured once, by the last way, and added instead where it is more.
 #pragma once
 
 #include <cstddef>
@@ -37,12 +38,12 @@ struct PickedWay {
   int measured = 0;           // runs that were made for it now; 0: all times were known
 };
 
-// What is predicted from times of equal runs; infinity without any.
-double PredictedMs(std::span<const double> runs_ms);
+// What is predicted from times of equal runs, where the first run of a process takes `cold_ms` longer; infinity without any.
+double PredictedMs(std::span<const double> runs_ms, double cold_ms);
 
 // The first of the ways whose predicted time is within the budget; where none is, the quickest. A way is given up at its
-// first run beyond the budget, so what is too slow costs one run; before the first of all runs the last way runs once
-// without being counted. What was kept and makes no sense is measured again. Errors are those of `measure`.
+// first run beyond the budget, so what is too slow costs one run. The first of all runs is one of the last way, and is
+// compared with the slower of two more. What was kept and makes no sense is measured again. Errors are those of `measure`.
 Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure);
 
 }  // namespace scumble

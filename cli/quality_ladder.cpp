@@ -116,8 +116,7 @@ std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame)
   std::vector<Way> ways;
   for (const Rung& rung : Rungs()) {
     Way way = MakeWay(rung, styles, frame);
-    const bool known =
-        std::any_of(ways.begin(), ways.end(), [&](const Way& other) { return other.name == way.name; });
+    const bool known = std::any_of(ways.begin(), ways.end(), [&](const Way& other) { return other.name == way.name; });
     if (!known) ways.push_back(std::move(way));
   }
   return ways;

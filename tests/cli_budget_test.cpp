@@ -45,6 +45,17 @@ TEST_F(CliBudget, AnHourIsEnoughForTheStyleAsItIs) {
   }
 }
 
+// What calibrating takes stands by itself in --timing, and is no part of reading or casting.
+TEST_F(CliBudget, CalibrationIsAStageOfItsOwn) {
+  for (const Arguments& command : {Stylize(), Transfer()}) {
+    const nlohmann::json report =
+        RunOk(With(command, {"--budget-ms", "3600000", "--timing", "--json", "-o", "picked.png"})).Json();
+    int found = 0;
+    for (const auto& stage : report.at("timing")) found += stage.at("stage") == "calibration";
+    EXPECT_EQ(found, 1);
+  }
+}
+
 // A nanosecond is enough for nothing: the quickest, with a warning that says what it needs, and no failure.
 TEST_F(CliBudget, WhereNothingFitsTheQuickestIsTakenWithAWarning) {
   for (const Arguments& command : {Stylize(), Transfer()}) {

@@ -64,10 +64,9 @@ TEST_F(CliQuality, GuidesThatAreThereKeepTheirSize) {
 // 121 is divided by none of the factors, so the guides are as large as the picture.
 TEST_F(CliQuality, SizesThatHaveNoFactorAreCastWhole) {
   WriteStyle("style");
-  const nlohmann::json report =
-      RunOk({"stylize", Scene("suzanne.glb"), "--style", "style", "--size", "121x72", "--quality", "draft", "--json",
-             "-o", "draft.png"})
-          .Json();
+  const nlohmann::json report = RunOk({"stylize", Scene("suzanne.glb"), "--style", "style", "--size", "121x72",
+                                       "--quality", "draft", "--json", "-o", "draft.png"})
+                                    .Json();
   EXPECT_EQ(report.at("upsample"), 1);
   EXPECT_EQ(report.at("width"), 121);
 }

@@ -87,7 +87,8 @@ TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
 TEST(QualityLadder, WhatTheUserSetsStays) {
   EXPECT_FALSE(Sets(QualityLadder(Open("oil", {"transfer.blend_radius=3"}), kCast), "transfer.blend_radius"));
   const StyleSet decided = Open("oil", {"transfer.method=styleblit", "transfer.blend_radius=1"});
-  EXPECT_EQ(Names(QualityLadder(decided, kGiven)), (std::vector<std::string>{"the style"})) << "nothing is left to take";
+  EXPECT_EQ(Names(QualityLadder(decided, kGiven)), (std::vector<std::string>{"the style"}))
+      << "nothing is left to take";
   // For one style by its name, the others may change.
   const std::string oil = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/oil";
   StyleSet named = Open("oil", {oil + ":transfer.method=styleblit"});
@@ -115,7 +116,8 @@ TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
 TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
   for (const char* const style : {"oil", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
     const StyleSet styles = Open(style);
-    for (const LadderFrame& frame : {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false}}) {
+    for (const LadderFrame& frame :
+         {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false}}) {
       const std::vector<std::string> names = Names(QualityLadder(styles, frame));
       const auto place = [&](Quality quality) {
         const Way way = WayOf(quality, styles, frame);
