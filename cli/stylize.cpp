@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "cli/budget.h"
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/json_text.h"
@@ -109,6 +110,7 @@ struct TransferVerb {
   std::string camera;
   StyleOptions style;
   PictureOptions picture;
+  BudgetOptions budget;
   SequenceOptions sequence;
 };
 
@@ -152,6 +154,12 @@ Expected<MemoryNeed> CheckMemoryOfFile(const TransferVerb& verb, const std::stri
   const std::string mend = verb.picture.upsample > 1 ? "take a smaller --upsample, or smaller guides" : "take smaller guides";
   SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals, mend));
   return need;
+}
+
+nlohmann::ordered_json EndOfSequence(StyleSet& styles, const PictureOptions& picture) {
+  nlohmann::ordered_json json = SayHowAssigned(styles);
+  json.update(picture.chosen);
+  return json;
 }
 
 Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& sequence, StyleSet& styles,
@@ -201,9 +209,24 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.1, progress);
   };
-  work.end = [&] { return SayHowAssigned(styles); };
+  work.end = [&] { return EndOfSequence(styles, verb.picture); };
   ProgressBar bar("transfer", globals.quiet);
   return RunSequence(sequence, work, bar, globals);
+}
+
+// --quality and --budget-ms of a sequence: by its first frame.
+Status ChooseForSequence(TransferVerb& verb, const Sequence& sequence, StyleSet& styles, GuideReadOptions read,
+                         const Globals& globals) {
+  if (!verb.budget.chooses()) return Ok();
+  const int frame = sequence.frames.front();
+  SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(verb.guides));
+  SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(verb.camera));
+  const std::string file = name.At(frame);
+  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, read));
+  read.blender_camera = camera.At(frame);
+  SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
+  EndStage(globals, "read");
+  return ChooseForGuides(verb.budget, guides, file, styles, verb.picture, globals);
 }
 
 // Fills places for a frame's number in the names of a single picture.
@@ -250,14 +273,19 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   }
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
   GuideReadOptions read = ReadOptions(verb, styles);
-  if (sequence) return TransferSequence(verb, *sequence, styles, read, globals);
+  if (sequence) {
+    SCUMBLE_RETURN_IF_ERROR(ChooseForSequence(verb, *sequence, styles, read, globals));
+    return TransferSequence(verb, *sequence, styles, read, globals);
+  }
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, verb.guides, read));
   SCUMBLE_ASSIGN(const MemoryNeed memory, CheckMemoryOfFile(verb, verb.guides, styles, read, false, globals));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
+  const double read_ms = watch.Lap();
   EndStage(globals, "read");
+  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.guides, styles, verb.picture, globals));
   ProgressBar bar("transfer", globals.quiet);
-  const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}, memory};
+  const GuideSource source{verb.guides, {{"read", read_ms}}, {}, {}, memory};
   return RunTransfer(styles, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
 }
 
@@ -265,6 +293,7 @@ struct StylizeVerb {
   SceneOptions scene;
   StyleOptions style;
   PictureOptions picture;
+  BudgetOptions budget;
   SequenceOptions sequence;
 };
 
@@ -341,7 +370,7 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.5, progress);
   };
-  work.end = [&] { return SayHowAssigned(styles); };
+  work.end = [&] { return EndOfSequence(styles, verb.picture); };
   ProgressBar bar("stylize", globals.quiet);
   return RunSequence(sequence, work, bar, globals);
 }
@@ -359,6 +388,16 @@ Expected<ExitCode> PrintPlan(const StylizeVerb& verb, StyleSet& styles, const Gl
   const nlohmann::ordered_json json{{"plan", PlanToJson(made.plan)}, {"memory", MemoryToJson(made.memory)}};
   Print(globals.json ? JsonText(json) : PlanToText(made.plan) + MemoryToText(made.memory));
   return ExitCode::kOk;
+}
+
+// --quality and --budget-ms: by the first frame of a sequence.
+Status ChooseForStylize(StylizeVerb& verb, const std::optional<Sequence>& sequence, StyleSet& styles, const Globals& globals) {
+  SceneOptions scene = verb.scene;
+  scene.seed = verb.picture.seed, scene.fps = verb.picture.fps;
+  const std::optional<int> frame = sequence ? sequence->frames.front() : verb.picture.frame;
+  const int before = verb.picture.upsample;
+  SCUMBLE_RETURN_IF_ERROR(ChooseForScene(verb.budget, scene, frame, styles, verb.picture, globals));
+  return verb.picture.upsample == before ? Ok() : ShrinkGuides(verb);
 }
 
 Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
@@ -384,6 +423,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   RunFiles files;
   files.ReadsScene(verb.scene.scene);
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
+  SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(verb, sequence, styles, globals));
   verb.scene.more_memory = PaintingOf(styles, verb.picture, sequence.has_value(), globals);
   if (sequence) return StylizeSequence(verb, *sequence, styles, globals);
   ProgressBar bar("stylize", globals.quiet);
@@ -413,11 +453,17 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, true);
+  AddBudgetOptions(*sub, verb->budget, false);
   AddSequenceOptions(*sub, verb->sequence);
   AddTimingOption(*sub, globals);
   AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
-  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTransferVerb(*verb, globals); }; });
+  sub->callback([verb, sub, &globals, &chosen] {
+    chosen = [verb, sub, &globals]() -> Expected<ExitCode> {
+      SCUMBLE_RETURN_IF_ERROR(CheckBudgetOptions(*sub, verb->budget));
+      return RunTransferVerb(*verb, globals);
+    };
+  });
 }
 
 void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
@@ -426,11 +472,17 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, false);
+  AddBudgetOptions(*sub, verb->budget, true);
   AddSequenceOptions(*sub, verb->sequence);
   AddTimingOption(*sub, globals);
   AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
-  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunStylizeVerb(*verb, globals); }; });
+  sub->callback([verb, sub, &globals, &chosen] {
+    chosen = [verb, sub, &globals]() -> Expected<ExitCode> {
+      SCUMBLE_RETURN_IF_ERROR(CheckBudgetOptions(*sub, verb->budget));
+      return RunStylizeVerb(*verb, globals);
+    };
+  });
 }
 
 }  // namespace scumble

@@ -255,8 +255,8 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
       ->type_name("WHAT")
       ->check(CLI::IsMember(ExplanationNames()));
   verb.add_option("--upsample", options.upsample,
-                  "the picture is N times as wide and high as the guides: they are quicker to make and to match, and the "
-                  "paint has its full size")
+                  "the picture is N times as wide and high as the guides: they are quicker to make, and the paint has its "
+                  "full size")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxUpsampling))
       ->capture_default_str();
@@ -362,6 +362,10 @@ std::string LightInWords(const Exemplar& exemplar, double rim) {
   return fmt::format("luminance {:.4g}, {}", LuminanceOf(exemplar, rim), source);
 }
 
+bool KeepsField(const PictureOptions& options, const Globals& globals) {
+  return globals.json || FindExplanation(options.show);
+}
+
 bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
   return options.exposure == "auto" && std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
 }
@@ -374,6 +378,7 @@ Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const G
   EndStage(globals, "write");
   report.json.update(SayHowAssigned(styles));
   report.json["memory"]["peak_bytes"] = PeakMemory();
+  report.json.update(options.chosen);
   if (globals.timing) {
     report.json["timing"] = globals.timing->ToJson();
     report.text += globals.timing->ToText();
@@ -416,9 +421,8 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   transfer.fps_numerator = fps.numerator, transfer.fps_denominator = fps.denominator;
   transfer.exposure = *memory.exposure;
   transfer.threads = globals.threads;
-  transfer.match_step = options.upsample;
   transfer.over = over;
-  transfer.keep_field = globals.json || FindExplanation(options.show);
+  transfer.keep_field = KeepsField(options, globals);
   TransferScratch& scratch = memory.scratch;
   Picture picture;
   std::vector<double> match, vote, compose;
