@@ -172,7 +172,7 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   MemoryNeed memory;        // with them
   const GuidesAt guides_at = [&](int frame, const Progress&) -> Expected<FrameGuides> {
     const std::string file = guides_name.At(frame);
-    if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, memory}};
+    if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, {}, memory}};
     guides.reset();
     GuideReadOptions one = read;
     SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, one));
@@ -182,7 +182,7 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
     EndStage(globals, "read");
     guides_file = file;
-    return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}, memory}};
+    return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}, {}, memory}};
   };
   SequenceWork work;
   work.check = [&](int frame, const std::string& output) -> Status {
