@@ -10,6 +10,7 @@
 #include "cli/cache.h"
 #include "cli/calibration.h"
 #include "cli/machine.h"
+#include "cli/needed_textures.h"
 #include "cli/picture_settings.h"
 #include "cli/quality_ladder.h"
 #include "cli/scene_frames.h"
@@ -106,7 +107,8 @@ Expected<Scene> SceneToMeasure(const SceneOptions& options, std::optional<int> f
     blender.frame = frame;
     return LoadBlenderScene(options.scene, blender, globals, &film);
   }
-  SCUMBLE_ASSIGN(const AnimatedScene scene, AnimatedScene::Load(options.scene, {options.animation}));
+  SCUMBLE_ASSIGN(const AnimatedScene scene,
+                 AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
   if (!scene.moves() || !frame) return scene.rest();
   SCUMBLE_ASSIGN(const FrameRate rate, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
   return scene.SceneAt(SecondsAt(*frame, rate));
@@ -125,6 +127,8 @@ Expected<OpenedScene> OpenToMeasure(const SceneOptions& options, std::optional<i
   SCUMBLE_ASSIGN(Scene scene, SceneToMeasure(options, frame, globals, film));
   SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, WishesOf(scene.instances, scene), options.scene));
   SCUMBLE_ASSIGN(PreparedView view, ViewScene(scene, options, layers));
+  // Which is reading, and counts as little as that of the scene.
+  SCUMBLE_RETURN_IF_ERROR(DecodeNeededTextures(scene, options, layers));
   return OpenedScene{std::move(scene), std::move(view.camera), layers};
 }
 

@@ -4,7 +4,7 @@
 // of nine in one case of ten: that is the share of frames that may miss their budget. Two things make later runs slower than
 // those: another moment of the machine, for which the slowest run's distance from the median is added, nothing on a quiet
 // machine and much on a busy one; and a process that has just begun, whose first run wakes threads and touches memory. What
-// that costs is measured once, by the last way, and added instead where it is more.
+// that costs is measured once, by the last way, and added too.
 #pragma once
 
 #include <cstddef>

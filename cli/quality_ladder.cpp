@@ -124,8 +124,11 @@ std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame)
 
 Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
   if (quality == Quality::kFinal) return MakeWay(Rungs().front(), styles, frame);
-  if (quality == Quality::kDraft) return MakeWay(Rungs().back(), styles, frame);
-  Rung rung{4, {kStyleBlit, kUnsplit}};
+  Rung rung{4, {kLitSphere, kUnsplit}};
+  if (quality == Quality::kPreview) {
+    const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
+    rung = {lit ? 2 : 1, {kStyleBlit, kUnsplit}};
+  }
   if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
   return MakeWay(rung, styles, frame);
 }

@@ -28,9 +28,12 @@ std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame)
 
 // Named points of it.
 enum class Quality {
-  kDraft,    // the last rung: for finding a camera
-  kPreview,  // guides of a quarter of the size; where they cannot be smaller, no blending instead
-  kFinal,    // the first: the style as it is
+  // For finding a camera: guides of a quarter of the size, where they may be smaller, and the Lit Sphere.
+  kDraft,
+  // For judging a style: guides of half the size where they hold light, which is what makes them slow; elsewhere the
+  // picture's own size, without blending.
+  kPreview,
+  kFinal,  // the style as it is
 };
 Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame);
 
