@@ -133,20 +133,20 @@ RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
 }
 
 // Robust: no cracks between neighbours, and nothing thin is lost.
-RTCScene NewScene(RTCDevice device) {
+RTCScene NewScene(RTCDevice device, bool robust) {
   RTCScene scene = rtcNewScene(device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   return scene;
 }
 
 }  // namespace
 
 Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa,
-                                         bool keep_emitters) {
+                                         bool keep_emitters, bool robust) {
   EmbreeScene scene;
   scene.objects_ = std::make_unique<std::vector<PlacedObject>>(std::move(objects));
   SCUMBLE_RETURN_IF_ERROR(scene.OpenDevice(isa));
-  SCUMBLE_RETURN_IF_ERROR(scene.Commit(keep_emitters));
+  SCUMBLE_RETURN_IF_ERROR(scene.Commit(keep_emitters, robust));
   return scene;
 }
 
@@ -174,7 +174,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
                     AvailableIsas());
 }
 
-Status EmbreeScene::Commit(bool keep_emitters) {
+Status EmbreeScene::Commit(bool keep_emitters, bool robust) {
   std::string reason;  // the first of a row is the root of the others
   rtcSetDeviceErrorFunction(
       device_.get(),
@@ -183,7 +183,7 @@ Status EmbreeScene::Commit(bool keep_emitters) {
         if (first.empty() && text) first = text;
       },
       &reason);
-  scene_.reset(NewScene(device_.get()));
+  scene_.reset(NewScene(device_.get(), robust));
   const std::vector<bool> covered = FindCoveredCopies(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
@@ -193,7 +193,7 @@ Status EmbreeScene::Commit(bool keep_emitters) {
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
     if (keep_emitters && object.mesh && MayEmit(*object.material)) {
-      if (!emitters_) emitters_.reset(NewScene(device_.get()));
+      if (!emitters_) emitters_.reset(NewScene(device_.get(), robust));
       rtcAttachGeometryByID(emitters_.get(), geometry, static_cast<unsigned>(i));
     }
     rtcReleaseGeometry(geometry);

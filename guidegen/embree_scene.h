@@ -41,8 +41,9 @@ class EmbreeScene {
   // error. Builds in the calling thread's oneTBB arena, whose size is the only limit: Embree's own "threads=" would
   // throttle oneTBB for the whole process. The hierarchy is the same at any thread count. Triangles with corners that
   // are not finite are left out.
-  // `keep_emitters`: whether emitters() will be asked for.
-  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, bool keep_emitters);
+  // `keep_emitters`: whether emitters() will be asked for. `robust` as in GuidegenOptions.
+  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, bool keep_emitters,
+                                     bool robust = true);
 
   RTCScene handle() const { return scene_.get(); }
   RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none
@@ -60,7 +61,7 @@ class EmbreeScene {
 
   EmbreeScene() = default;
   Status OpenDevice(const std::string& isa);
-  Status Commit(bool keep_emitters);
+  Status Commit(bool keep_emitters, bool robust);
 
   // Filter functions keep pointers to the objects, so they must not move with this. Order matters: the scene goes
   // before its device, the device before the objects.
