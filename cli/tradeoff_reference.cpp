@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "image/exact_math.h"
@@ -43,6 +44,20 @@ LinearColors LightAsColors(const GuideSet& guides, Layer layer, float factor) {
   }
   return colors;
 }
+
+// A field as measures take it.
+struct Mosaic {
+  explicit Mosaic(const SourceField& field) {
+    covered.reserve(field.level.size());
+    for (const std::int8_t level : field.level) covered.push_back(level != SourceField::kNoSource);
+    planes = {field.width, field.height, field.x, field.y, covered, field.exemplar};
+  }
+  Mosaic(const Mosaic&) = delete;
+  Mosaic& operator=(const Mosaic&) = delete;
+
+  std::vector<std::uint8_t> covered;
+  SourcePlanes planes;
+};
 
 // The root of the mean of off(i) over pixels that both cover.
 template <class Off>
@@ -112,38 +127,41 @@ void TradeReference::AddConditions() {
   }
 }
 
-Status TradeReference::Measure(const Picture& picture, const SourceField* field, EnergyOptions options,
-                               TradeMeasure& measure) const {
-  const auto views = [](const std::vector<std::vector<float>>& planes) {
-    return std::vector<std::span<const float>>(planes.begin(), planes.end());
-  };
-  const EnergyTarget target{&picture,
-                            {guides_->Plane(Layer::kNormal, 0), guides_->Plane(Layer::kNormal, 1), guides_->Plane(Layer::kNormal, 2)},
-                            guides_->Plane(Layer::kCoverage),
-                            views(more_)};
+EnergyTarget TradeReference::Target(const Picture& picture) const {
+  return {&picture,
+          {guides_->Plane(Layer::kNormal, 0), guides_->Plane(Layer::kNormal, 1), guides_->Plane(Layer::kNormal, 2)},
+          guides_->Plane(Layer::kCoverage),
+          {more_.begin(), more_.end()}};
+}
+
+std::vector<EnergyExemplar> TradeReference::Exemplars() const {
   std::vector<EnergyExemplar> exemplars;
   for (std::size_t k = 0; k < more_of_exemplars_.size(); ++k) {
     exemplars.push_back({&style_.exemplar->picture(static_cast<int>(k)),
                          {normal_[0], normal_[1], normal_[2]},
                          usable_,
-                         views(more_of_exemplars_[k])});
+                         {more_of_exemplars_[k].begin(), more_of_exemplars_[k].end()}});
   }
+  return exemplars;
+}
+
+Status TradeReference::MeasurePaint(const Picture& picture, const SourceField* field, EnergyOptions options,
+                                    TradeMeasure& measure) const {
   options.threads = threads_;
-  std::vector<std::uint8_t> covered;
-  SourcePlanes sources;
-  if (field) {
-    for (const std::int8_t level : field->level) covered.push_back(level != SourceField::kNoSource);
-    sources = {field->width, field->height, field->x, field->y, covered, field->exemplar};
-    options.sources = &sources;
-  }
-  SCUMBLE_ASSIGN(const EnergyReport report, MeasureEnergy(target, exemplars, options));
+  std::optional<Mosaic> mosaic;
+  if (field) mosaic.emplace(*field), options.sources = &mosaic->planes;
+  SCUMBLE_ASSIGN(const EnergyReport report, MeasureEnergy(Target(picture), Exemplars(), options));
   measure.both = report.both, measure.energy = report.energy, measure.missing = report.missing;
-  if (!field) return Ok();
-  SCUMBLE_ASSIGN(measure.guide_degrees, MeanSourceDegrees(target, exemplars, sources));
-  const CoherenceReport coherence = MeasureCoherence(sources);
+  return Ok();
+}
+
+Status TradeReference::MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const {
+  const Mosaic mosaic(field);
+  SCUMBLE_ASSIGN(measure.guide_degrees, MeanSourceDegrees(Target(picture), Exemplars(), mosaic.planes));
+  const CoherenceReport coherence = MeasureCoherence(mosaic.planes);
   measure.coherence = coherence.share, measure.chunk_area = coherence.mean_chunk_area;
-  measure.seam_excess = MeasureSeams(picture, sources).excess;
-  measure.repetition = SourceRepetition(sources);
+  measure.seam_excess = MeasureSeams(picture, mosaic.planes).excess;
+  measure.repetition = SourceRepetition(mosaic.planes);
   return Ok();
 }
 

@@ -26,9 +26,11 @@ class TradeReference {
 
   const GuideSet& guides() const { return *guides_; }
 
-  // Fills in the figures of a picture of the guides' size: energies, and where `field` is not null what it says of the
-  // mosaic. `options` as they are but for `sources` and `threads`.
-  Status Measure(const Picture& picture, const SourceField* field, EnergyOptions options, TradeMeasure& measure) const;
+  // Fills in the energies of a picture of the guides' size, which take the most time; where `field` is not null they take
+  // less. `options` as they are but for `sources` and `threads`.
+  Status MeasurePaint(const Picture& picture, const SourceField* field, EnergyOptions options, TradeMeasure& measure) const;
+  // Fills in what the field says of the mosaic.
+  Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
 
   // Over pixels that both cover: of normals the root of the mean squared distance, and FLIP of (n + 1) / 2 as a picture;
   // where the style weighs light, of that light instead, exposed so that 1 is the exemplar's brightest tenth, and cut there.
@@ -36,6 +38,8 @@ class TradeReference {
   Expected<GuideDifference> Compare(const GuideSet& guides, double exposure) const;
 
  private:
+  EnergyTarget Target(const Picture& picture) const;
+  std::vector<EnergyExemplar> Exemplars() const;
   void AddWeighedGuides();
   void AddConditions();
   Expected<GuideDifference> CompareNormals(const GuideSet& guides) const;

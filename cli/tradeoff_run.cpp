@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <string_view>
 #include <thread>
@@ -212,11 +213,25 @@ class Trade {
   }
 
   Status MeasurePaint(WayPainter& painter, TradeMeasure& measure) {
+    std::optional<Picture> untinted;
+    if (painter.is_tinted()) {
+      SCUMBLE_ASSIGN(untinted, painter.PaintUntinted());
+    }
+    const Picture& picture = untinted ? *untinted : painter.picture();
+    if (painter.field()) SCUMBLE_RETURN_IF_ERROR(reference_->MeasureMosaic(picture, *painter.field(), measure));
+    // At some sizes settings round to the same: the same picture has the same energy.
+    const std::string_view bytes(reinterpret_cast<const char*>(picture.rgba.data()),
+                                 picture.rgba.size() * sizeof picture.rgba[0]);
+    const auto [known, is_new] = pictures_.try_emplace(std::hash<std::string_view>()(bytes), report_.ways.size());
+    if (!is_new) {
+      const TradeMeasure& same = report_.ways[known->second];
+      measure.both = same.both, measure.energy = same.energy, measure.missing = same.missing;
+      measure.note += (measure.note.empty() ? "" : "; ") + std::string("the same picture as ") + same.name;
+      return Ok();
+    }
     EnergyOptions options;
     options.seed = setup_.scene.seed;
-    if (!painter.is_tinted()) return reference_->Measure(painter.picture(), painter.field(), options, measure);
-    SCUMBLE_ASSIGN(const Picture untinted, painter.PaintUntinted());
-    return reference_->Measure(untinted, painter.field(), options, measure);
+    return reference_->MeasurePaint(picture, painter.field(), options, measure);
   }
 
   const TradeSetup& setup_;
@@ -231,6 +246,7 @@ class Trade {
   std::map<std::string, std::vector<double>> guides_ms_;
   std::shared_ptr<const WayGuides> exact_guides_;
   std::optional<TradeReference> reference_;
+  std::map<std::size_t, std::size_t> pictures_;  // of ways, by a hash of 64 bits
   TradeReport report_;
 };
 

@@ -58,7 +58,8 @@ Painted Paint(const Style& style, const GuideSet& guides) {
 
 TradeMeasure Measured(const TradeReference& reference, const Painted& painted) {
   TradeMeasure measure;
-  EXPECT_TRUE(reference.Measure(painted.picture, &painted.scratch.field, {}, measure).ok());
+  EXPECT_TRUE(reference.MeasurePaint(painted.picture, &painted.scratch.field, {}, measure).ok());
+  EXPECT_TRUE(reference.MeasureMosaic(painted.picture, painted.scratch.field, measure).ok());
   return measure;
 }
 
@@ -88,7 +89,7 @@ TEST(TradeReference, AnotherPictureScoresMoreAndWithoutAFieldSaysNothingOfTheMos
   const Painted painted = Paint(LitSphereStyle(kSize), *guides);
   const TradeReference reference(guides, painted.style, 0.0, 0);
   TradeMeasure measure;
-  ASSERT_TRUE(reference.Measure(Noise(kSize, 7), nullptr, {}, measure).ok());
+  ASSERT_TRUE(reference.MeasurePaint(Noise(kSize, 7), nullptr, {}, measure).ok());
   EXPECT_GT(measure.both.mean, 1.0);
   EXPECT_FALSE(measure.coherence || measure.chunk_area || measure.guide_degrees || measure.seam_excess || measure.repetition);
 }
