@@ -45,6 +45,7 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen);
+void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen);
 
 ExitCode ExitCodeFor(ErrorKind kind);
 

@@ -15,6 +15,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/run_files.h"
+#include "cli/shell_word.h"
 #include "guidegen/path_layers.h"
 #include "guidegen/pure_materials.h"
 #include "io/atomic_file.h"
@@ -248,15 +249,6 @@ Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline) {
 
 // ---- The work
 // ---------------------------------------------------------------------------------------------------------
-
-// As a shell takes it for one word.
-std::string Quoted(const std::string& word) {
-  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,@-";
-  if (!word.empty() && word.front() != '-' && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 std::string RepeatCommand(const CrosscheckVerb& verb) {
   std::string command = "scumble crosscheck";

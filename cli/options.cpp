@@ -87,7 +87,7 @@ Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t 
                     (most > least ? " to " + std::to_string(most) : "") + " numbers with commas between");
 }
 
-void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
+void AddViewOptions(CLI::App& verb, SceneOptions& options) {
   verb.add_option("scene", options.scene,
                   "scene file: .glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first")
       ->type_name("FILE")
@@ -101,6 +101,10 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
           "look at the scene's centre instead of through a camera: AZIMUTH,ELEVATION[,DISTANCE] in degrees from "
           "+Z towards +X, degrees above the horizon, metres; without DISTANCE the scene is framed")
       ->type_name("AZ,EL[,DIST]");
+}
+
+void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
+  AddViewOptions(verb, options);
   verb.add_option("--animation", options.animation,
                   "which animation of a .glb or .gltf scene to play, with --frame or --frames: its name, or * for all at "
                   "once; left out: the first. scumble info lists them")
@@ -119,6 +123,8 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine. "
                   "Name one where several machines must give the same bytes")
       ->type_name("NAME");
+  verb.add_flag("!--no-robust", options.robust,
+                "without Embree's robust mode: rays may pass where two triangles meet; scumble tradeoff shows what it gains");
   verb.add_option("--blender", options.blender.program,
                   "the Blender that exports a .blend scene; left out: blender in PATH")
       ->type_name("PATH")
@@ -260,6 +266,7 @@ std::string GuideSettings(const SceneOptions& options) {
   };
   add("camera", options.camera), add("view", options.view), add("animation", options.animation);
   add("fps", options.fps == kUsualFps ? "" : options.fps);
+  if (!options.robust) text += "; robust no";
   return text;
 }
 
@@ -275,6 +282,7 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   guidegen.normal_frame = options.normal_frame == "eye" ? NormalFrame::kEye : NormalFrame::kCamera;
   guidegen.threads = globals.threads;
   guidegen.isa = options.isa;
+  guidegen.robust = options.robust;
   guidegen.progress = progress;
   guidegen.samples = options.samples;
   guidegen.max_bounces = options.max_bounces;
@@ -339,7 +347,7 @@ nlohmann::ordered_json PlanToJson(const std::vector<PlanItem>& plan) {
   return json;
 }
 
-void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
+void AddOneStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
   const std::string what = "style folder, style.toml, picture of a painted sphere, or a bundled style's name";
   auto* style = verb.add_option("--style", options.style, required ? what : what + "; adds the layers that it needs");
   style->type_name("STYLE");
@@ -350,6 +358,10 @@ void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
                   "wins. scumble styles --keys lists them")
       ->type_name("[NAME:]KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required) {
+  AddOneStyleOptions(verb, options, required);
   verb.add_option("--assign", options.assigned,
                   "another style for an object or material, * stands for any text, as 'Tree*=charcoal'; "
                   "NAME=rendered leaves it as it is, for --over; NAME=catcher shows only the shadows on it, with "

@@ -54,6 +54,7 @@ struct SceneOptions {
   int aa = 1;
   std::string normal_frame = "camera";
   std::string isa;
+  bool robust = true;
   bool half = false;
   bool explain = false;
   BlenderOptions blender;  // for .blend scenes
@@ -72,7 +73,9 @@ struct SceneOptions {
 };
 // For guides with light paths, which no style reads.
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options);
-// All but blender.frame, because verbs that make pictures have a frame already.
+// A scene, the picture's size and whence it is seen.
+void AddViewOptions(CLI::App& verb, SceneOptions& options);
+// With everything else but blender.frame, because verbs that make pictures have a frame already.
 void AddSceneOptions(CLI::App& verb, SceneOptions& options);
 
 // Milliseconds by step, in the order they happened.
@@ -134,6 +137,8 @@ struct StyleOptions {
   std::vector<std::string> assigned;  // "NAME=STYLE", or "@FILE" of such lines
   bool scene_styles = true;           // heed what the scene says
 };
+// --style and --set alone, for one style.
+void AddOneStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
 // One group for verbs that paint and for those that make what is painted on, so that the two steps take what the one takes.
 void AddStyleOptions(CLI::App& verb, StyleOptions& options, bool required);
 

@@ -184,23 +184,29 @@ Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const
   return scene.Take();
 }
 
-Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                       const Globals& globals, const Progress& progress, bool plan_only) {
+Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                      const Globals& globals, bool plan_only) {
   const std::string mend = ": give --frame N, or --frames for several";
   if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
   if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
   Stopwatch watch;
-  BlenderFilm film;
-  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals, plan_only ? nullptr : &film));
-  SCUMBLE_ASSIGN(const LayerSet layers, layers_for(WishesOf(scene.instances, scene)));
-  const double load_ms = watch.Lap();
-  SCUMBLE_ASSIGN(const PreparedView view, ViewBlender(scene, film, options, layers));
-  for (const std::string& note : view.notes) Say(globals, note);
+  SceneAtRest rest;
+  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, globals, plan_only ? nullptr : &rest.film));
+  SCUMBLE_ASSIGN(rest.layers, layers_for(WishesOf(rest.scene.instances, rest.scene)));
+  rest.load_ms = watch.Lap();
+  SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, rest.layers));
+  for (const std::string& note : rest.view.notes) Say(globals, note);
+  return rest;
+}
+
+Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                       const Globals& globals, const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(SceneAtRest rest, OpenSceneAtRest(options, layers_for, motion, globals, plan_only));
   SCUMBLE_ASSIGN(SceneGuides result,
-                 CastScene(scene, view.camera, nullptr, options, layers, globals, progress, plan_only));
-  TellRate(options, film, result.guides);
-  result.times.insert(result.times.begin(), {"load", load_ms});
+                 CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, globals, progress, plan_only));
+  TellRate(options, rest.film, result.guides);
+  result.times.insert(result.times.begin(), {"load", rest.load_ms});
   return result;
 }
 

@@ -92,6 +92,19 @@ class SceneFrames {
 Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const LayersFor& layers_for, bool motion,
                                    const Globals& globals, const Progress& progress);
 
+// A scene as it stands without a frame's number, and how it is seen.
+struct SceneAtRest {
+  Scene scene;
+  PreparedView view;
+  LayerSet layers;
+  BlenderFilm film;
+  double load_ms = 0.0;
+};
+
+// Says how it is seen. Errors as MakeGuidesAtRest has them.
+Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                      const Globals& globals, bool plan_only);
+
 // The scene as it stands without a frame's number, as MakeGuidesOf has it. --animation and the layer motion are usage
 // errors.
 Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,

@@ -26,6 +26,7 @@ void AddVerbs(CLI::App& app, Globals& globals, Action& chosen) {
   AddStylizeVerb(app, globals, chosen);
   AddCompareVerb(app, globals, chosen);
   AddCrosscheckVerb(app, globals, chosen);
+  AddTradeoffVerb(app, globals, chosen);
   AddInfoVerb(app, globals, chosen);
   AddStylesVerb(app, globals, chosen);
   auto topic = std::make_shared<std::string>();

@@ -5,16 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "io/guide_precision.h"
 #include "transfer/look_up_table.h"
 
 namespace scumble {
-
-// What the layers of the guides are rounded to before the transfer reads them.
-enum class GuidePrecision {
-  kFloat,
-  kHalf,
-  kEightBits,  // as in a PNG: 0 … 1 in 255 steps, normals packed as (n + 1) / 2
-};
 
 struct Way {
   std::string name;                   // unique in its list, "levels 3"; "the style" changes nothing
@@ -24,7 +18,7 @@ struct Way {
   GuidePrecision precision = GuidePrecision::kFloat;
   double guide_scale = 1.0;  // width and height of the guides against the picture's: 0.5 is upsampled, 2 is thinned out
   int samples = 0;           // of a pixel, for guides of light; 0: as the verb's --samples
-  bool robust = false;       // Embree's robust mode: rays that hit an edge or a vertex never pass between triangles
+  bool robust = true;        // Embree's robust mode, GuidegenOptions::robust
   int table_resolution = LookUpTable::kResolution;  // cells a side, where nearest neighbours come from a table
 };
 

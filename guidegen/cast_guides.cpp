@@ -90,6 +90,7 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   // Only the light of meshes without blockers needs the emitters by themselves.
   needs.emitters = options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
   needs.light_rays = needs.emitters || !follower.empty();
+  needs.robust = options.robust;
   SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa, needs));
   result.build_ms = watch.Lap();
 
@@ -122,6 +123,7 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   result.guides.camera = view.camera.ToGuideCamera();
   result.guides.attributes["scumble:generator"] = "guidegen " SCUMBLE_VERSION;
   result.guides.attributes["scumble:isa"] = scene.isa();
+  if (!options.robust) result.guides.attributes["scumble:robust"] = "false";
   if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);
   if (options.seed != 0) result.guides.attributes["scumble:seed"] = std::to_string(options.seed);
   result.guides.attributes["scumble:normal_frame"] = options.normal_frame == NormalFrame::kEye ? "eye" : "camera";

@@ -143,9 +143,9 @@ RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
 }
 
 // Robust: no cracks between neighbours, and nothing thin is lost.
-RTCScene NewScene(RTCDevice device) {
+RTCScene NewScene(RTCDevice device, bool robust) {
   RTCScene scene = rtcNewScene(device);
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   return scene;
 }
 
@@ -193,7 +193,7 @@ Status EmbreeScene::Commit(const Needs& needs) {
         if (first.empty() && text) first = text;
       },
       &reason);
-  scene_.reset(NewScene(device_.get()));
+  scene_.reset(NewScene(device_.get(), needs.robust));
   const std::vector<bool> covered = FindCoveredCopies(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
@@ -204,7 +204,7 @@ Status EmbreeScene::Commit(const Needs& needs) {
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
     if (needs.emitters && object.mesh && MayEmit(*object.material)) {
-      if (!emitters_) emitters_.reset(NewScene(device_.get()));
+      if (!emitters_) emitters_.reset(NewScene(device_.get(), needs.robust));
       rtcAttachGeometryByID(emitters_.get(), geometry, static_cast<unsigned>(i));
     }
     rtcReleaseGeometry(geometry);

@@ -53,6 +53,7 @@ class EmbreeScene {
   struct Needs {
     bool light_rays = false;  // rays to lights will be cast, as ShadowTarget has them, not only those of the camera
     bool emitters = false;    // emitters() will be asked for
+    bool robust = true;       // as in GuidegenOptions
   };
   static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs);
 

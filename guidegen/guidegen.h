@@ -31,6 +31,10 @@ struct GuidegenOptions {
   NormalFrame normal_frame = NormalFrame::kCamera;
   int threads = 0;  // 0: all
   std::string isa;  // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"
+  // Embree's robust mode: rays that meet an edge or a corner never pass between two triangles. Without it the tests of
+  // boxes and triangles are a little quicker, and may miss there. What they hit is the same elsewhere; in
+  // attributes["scumble:robust"] as "false" where it is off.
+  bool robust = true;
   Progress progress;
 
   // For light-path layers, and for luminance and shadow under lights with extent. Samples of a pixel, 1 … kMaxSamples;

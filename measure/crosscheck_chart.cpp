@@ -6,13 +6,13 @@
 #include <cmath>
 #include <iterator>
 
+#include "measure/chart_colors.h"
+
 namespace scumble::internal {
 namespace {
 
 constexpr double kWidth = 640, kHeight = 380;
 constexpr double kLeft = 64, kRight = 130, kTop = 16, kBottom = 48;
-// Okabe and Ito's, of middling lightness: they stand on white and on black, and apart for every eye.
-constexpr const char* kColors[] = {"#e69f00", "#0a9ad6", "#009e73", "#d55e00", "#cc79a7", "#7a7ad6"};
 
 struct Axis {
   double low, high;   // log10 of the values at its ends
@@ -109,7 +109,7 @@ std::string NoiseChart(const std::vector<CrosscheckNoise>& noise) {
   svg += Grid(x, y, samples) + Guide(x, y, layers);
   const std::vector<double> heights = LabelHeights(y, layers);
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    const char* color = kColors[i % std::size(kColors)];
+    const char* color = kChartColors[i % std::size(kChartColors)];
     std::string points, dots;
     for (std::size_t k = 0; k < samples.size(); ++k) {
       const double px = x.At(samples[k]), py = y.At(layers[i]->nrmse[k]);

@@ -9,85 +9,30 @@
 #include "io/picture_file.h"
 #include "measure/crosscheck_chart.h"
 #include "measure/crosscheck_parts.h"
+#include "measure/html_page.h"
 
 namespace scumble {
 namespace {
 
-std::string Escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else if (c == '\'')
-      escaped += "&#39;";
-    else
-      escaped += c;
-  }
-  return escaped;
-}
-
-// RFC 4648.
-std::string Base64(const std::vector<std::byte>& bytes) {
-  constexpr const char* kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t word = 0;
-    for (std::size_t b = 0; b < 3; ++b) {
-      word = word << 8 | (i + b < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i + b]) : 0u);
-    }
-    for (std::size_t b = 0; b < 4; ++b) {
-      text += i + b <= bytes.size() ? kAlphabet[word >> (18 - 6 * b) & 63u] : '=';
-    }
-  }
-  return text;
-}
+using internal::EscapeHtml;
 
 Expected<std::string> ImageTag(const Picture& picture, const std::string& caption) {
   SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(picture));
-  return fmt::format(
-      "<figure><img loading=\"lazy\" src=\"data:image/png;base64,{}\" "
-      "alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
-      Base64(png), Escape(caption), Escape(caption));
+  return fmt::format("<figure><img loading=\"lazy\" src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+                     internal::PngAddress(png), EscapeHtml(caption), EscapeHtml(caption));
 }
 
-constexpr const char* kHead = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>Scumble cross-check</title>
-<style>
-:root { color-scheme: light dark; --text: #23252b; --soft: #676b75; --ground: #f7f7f8; --card: #fff; --line: #dcdde2;
-  --good: #1f7a4a; --bad: #b3261e; --warn: #8a5a00; --badground: #fbeae8; }
-@media (prefers-color-scheme: dark) { :root { --text: #e4e5e9; --soft: #9a9eaa; --ground: #17181b; --card: #202226;
-  --line: #35373e; --good: #4dbb82; --bad: #ff8a80; --warn: #e5b04a; --badground: #3a2221; } }
-body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 80rem; padding: 0 1.2rem; color: var(--text);
-  background: var(--ground); }
-h1 { font-weight: 600; margin-bottom: .3rem; } h2 { margin: 3rem 0 .2rem; font-weight: 600; } h3 { margin: 1.8rem 0 .4rem; font-size: 1rem; }
-p { margin: .3rem 0; } .soft { color: var(--soft); } a { color: inherit; }
-section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: .2rem 1.2rem .8rem; margin: .8rem 0; overflow-x: auto; }
-table { border-collapse: collapse; margin: .6rem 0; } th { font-weight: 600; color: var(--soft); font-size: .85rem; }
-th, td { text-align: left; padding: .28rem 1.4rem .28rem 0; border-bottom: 1px solid var(--line); vertical-align: baseline; }
-tr:last-child td { border-bottom: 0; } th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+constexpr const char* kStyle = R"(
 tr.broken td { color: var(--bad); font-weight: 600; } td.first { font-weight: 600; } td.again { color: transparent; }
 .verdict { display: inline-block; padding: .1rem .7rem; border-radius: 1rem; font-size: .85em; font-weight: 600; border: 1.5px solid; }
 .agrees { color: var(--good); } .differs { color: var(--bad); } .unproved { color: var(--warn); }
 .scale { height: .6rem; border-radius: 3px; margin-top: .4rem; border: 1px solid var(--line); }
 .labels { display: flex; justify-content: space-between; color: var(--soft); font-size: .78rem; }
-td.state { white-space: nowrap; }
 .fails { background: var(--badground); border-left: 4px solid var(--bad); padding: .4rem 1rem; margin: .6rem 0; }
-ul { margin: .2rem 0; padding-left: 1.2rem; }
+td.state { white-space: nowrap; }
 .row { display: grid; grid-template-columns: repeat(3, 1fr); gap: .8rem; } figure { margin: 0; }
-img { width: 100%; border-radius: 4px; background: repeating-conic-gradient(#8884 0 25%, #8882 0 50%) 0 0 / 16px 16px; display: block; }
-figcaption { color: var(--soft); font-size: .82rem; padding-top: .25rem; }
-code { background: var(--card); border: 1px solid var(--line); padding: .05rem .35rem; border-radius: 3px; overflow-wrap: anywhere; }
 svg { max-width: 44rem; width: 100%; font: 12px system-ui, sans-serif; } svg text { fill: var(--soft); } svg text.label { fill: revert-layer; }
 svg .grid { stroke: var(--line); } svg .guide { stroke: var(--soft); stroke-dasharray: 5 5; stroke-width: 1.4; }
-</style></head><body>
 )";
 
 // A mark too: colours alone are not for every eye.
@@ -129,12 +74,12 @@ std::string Summary(const std::vector<CrosscheckReport>& reports) {
     html += fmt::format(
         "<tr><td class=\"first\"><a href=\"#{}\">{}</a></td><td>{}</td><td class=\"number\">{}</td>"
         "<td class=\"number\">{}</td>",
-        Anchor(i), Escape(report.scene), Badge(report.Outcome()), report.compared,
+        Anchor(i), EscapeHtml(report.scene), Badge(report.Outcome()), report.compared,
         report.setup.samples > 0 ? std::to_string(report.setup.samples) : "data only");
     if (const CrosscheckFigure* figure = Tightest(report)) {
       html += fmt::format("<td>{} {}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{:.3g}</td><td>{}</td>",
-                          Escape(figure->layer), Escape(figure->name), figure->value, figure->LimitInForce(),
-                          Escape(figure->unit));
+                          EscapeHtml(figure->layer), EscapeHtml(figure->name), figure->value, figure->LimitInForce(),
+                          EscapeHtml(figure->unit));
     }
     html += "</tr>\n";
   }
@@ -154,13 +99,13 @@ std::string FigureTable(const CrosscheckReport& report) {
     html += fmt::format(
         "<tr{}><td class=\"{}\">{}</td><td>{}</td><td class=\"number\">{:.3g}</td><td class=\"number\">{}</td>"
         "<td class=\"number\">{:.3g}</td><td>{}</td><td class=\"state\">{}</td><td class=\"soft\">{}</td></tr>\n",
-        figure.kept() ? "" : " class=\"broken\"", figure.layer == above ? "again" : "first", Escape(figure.layer),
-        Escape(figure.name), figure.value, figure.error > 0.0 ? fmt::format("{:.2g}", figure.error) : "",
-        figure.LimitInForce(), Escape(figure.unit),
+        figure.kept() ? "" : " class=\"broken\"", figure.layer == above ? "again" : "first", EscapeHtml(figure.layer),
+        EscapeHtml(figure.name), figure.value, figure.error > 0.0 ? fmt::format("{:.2g}", figure.error) : "",
+        figure.LimitInForce(), EscapeHtml(figure.unit),
         figure.kept()       ? "✓ kept"
         : figure.TooNoisy() ? "? too noisy"
                             : "✗ broken",
-        Escape(remark));
+        EscapeHtml(remark));
     above = figure.layer;
   }
   return html + "</table>\n";
@@ -177,7 +122,7 @@ std::string NoiseTable(const std::vector<CrosscheckNoise>& noise) {
     html += "<th class=\"number\">" + internal::Counted(count, "sample") + "</th>";
   html += "<th class=\"number\">slope</th><th>largest difference of a pixel</th></tr>\n";
   for (const CrosscheckNoise& layer : noise) {
-    html += "<tr><td class=\"first\">" + Escape(layer.layer) + "</td>";
+    html += "<tr><td class=\"first\">" + EscapeHtml(layer.layer) + "</td>";
     if (layer.no_such_light) {
       html += fmt::format("<td class=\"soft\" colspan=\"{}\">no such light</td></tr>\n", measured->samples.size() + 2);
       continue;
@@ -205,14 +150,14 @@ std::string NoisePart(const CrosscheckReport& report) {
 
 std::string List(const std::vector<std::string>& lines) {
   std::string html = "<ul>";
-  for (const std::string& line : lines) html += "<li>" + Escape(line) + "</li>";
+  for (const std::string& line : lines) html += "<li>" + EscapeHtml(line) + "</li>";
   return html + "</ul>\n";
 }
 
 std::string SetupLine(const CrosscheckReport& report) {
   const CrosscheckSetup& setup = report.setup;
   std::string line = fmt::format("{}×{} pixels, {} compared", setup.width, setup.height, report.compared);
-  if (!setup.camera.empty()) line += ", camera " + Escape(setup.camera);
+  if (!setup.camera.empty()) line += ", camera " + EscapeHtml(setup.camera);
   if (setup.frame) line += fmt::format(", frame {}", *setup.frame);
   if (setup.samples == 0) return line + "; data layers alone, light was not compared";
   return line + fmt::format("; light with {} and {}, {}", internal::Counted(setup.samples, "sample"),
@@ -224,7 +169,7 @@ std::string ColorScale(const CrosscheckPictures& pictures) {
   if (pictures.scale_colors.empty()) return "";
   std::string colors, labels;
   for (const std::string& color : pictures.scale_colors) colors += ", " + color;
-  for (const std::string& label : pictures.scale_labels) labels += "<span>" + Escape(label) + "</span>";
+  for (const std::string& label : pictures.scale_labels) labels += "<span>" + EscapeHtml(label) + "</span>";
   return "<div class=\"scale\" style=\"background: linear-gradient(to right" + colors +
          ")\"></div><div class=\"labels\">" + labels + "</div>";
 }
@@ -235,9 +180,9 @@ Expected<std::string> PictureRows(const CrosscheckReport& report) {
     SCUMBLE_ASSIGN(const std::string reference, ImageTag(pictures.reference, "reference"));
     SCUMBLE_ASSIGN(const std::string ours, ImageTag(pictures.ours, "ours"));
     SCUMBLE_ASSIGN(const std::string difference, ImageTag(pictures.difference, "difference; " + pictures.full_scale));
-    html += "<h3>" + Escape(pictures.layer);
+    html += "<h3>" + EscapeHtml(pictures.layer);
     if (!pictures.look.empty())
-      html += " <span class=\"soft\" style=\"font-weight:400\">" + Escape(pictures.look) + "</span>";
+      html += " <span class=\"soft\" style=\"font-weight:400\">" + EscapeHtml(pictures.look) + "</span>";
     html += "</h3>\n<div class=\"row\">\n" + reference + ours + "<div>" + difference + ColorScale(pictures) +
             "</div></div>\n";
   }
@@ -247,10 +192,11 @@ Expected<std::string> PictureRows(const CrosscheckReport& report) {
 }  // namespace
 
 Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& reports, const CrosscheckRun& run) {
-  std::string html = kHead;
-  html += fmt::format("<h1>Scumble cross-check {}</h1>\n<p>Reference: {}. Repeat with <code>{}</code>.{}</p>\n",
-                      Badge(OutcomeOf(reports)), Escape(run.reference), Escape(run.command),
-                      run.baseline.empty() ? "" : " Limits tightened by <code>" + Escape(run.baseline) + "</code>.");
+  std::string html = internal::PageHead("Scumble cross-check", kStyle);
+  html +=
+      fmt::format("<h1>Scumble cross-check {}</h1>\n<p>Reference: {}. Repeat with <code>{}</code>.{}</p>\n",
+                  Badge(OutcomeOf(reports)), EscapeHtml(run.reference), EscapeHtml(run.command),
+                  run.baseline.empty() ? "" : " Limits tightened by <code>" + EscapeHtml(run.baseline) + "</code>.");
   html +=
       "<p class=\"soft\">Coverage is compared over the whole picture; everything else where a pixel and its "
       "neighbours, two to "
@@ -258,13 +204,13 @@ Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& repo
   html += Summary(reports);
   for (std::size_t i = 0; i < reports.size(); ++i) {
     const CrosscheckReport& report = reports[i];
-    html += fmt::format("<h2 id=\"{}\">{} {}</h2>\n", Anchor(i), Escape(report.scene), Badge(report.Outcome()));
+    html += fmt::format("<h2 id=\"{}\">{} {}</h2>\n", Anchor(i), EscapeHtml(report.scene), Badge(report.Outcome()));
     if (!report.failure.empty()) {
       html += "<div class=\"fails\"><b>It could not be compared</b>" + List({report.failure}) + "</div>\n";
       continue;
     }
     html += fmt::format("<p class=\"soft\">{}.</p>\n", SetupLine(report));
-    if (!report.passed()) html += "<p><b>Verdict:</b> " + Escape(CrosscheckVerdict(report)) + ".</p>\n";
+    if (!report.passed()) html += "<p><b>Verdict:</b> " + EscapeHtml(CrosscheckVerdict(report)) + ".</p>\n";
     if (!report.unsupported.empty()) html += "<h3>Not expressed</h3>\n" + List(report.unsupported);
     const std::vector<std::string> reasons = WhyCrosscheckFails(report);
     if (!reasons.empty()) {
@@ -273,7 +219,7 @@ Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& repo
               List(reasons) + "</div>\n";
     }
     if (!report.baseline_mismatch.empty()) {
-      html += "<p>Judged by the built-in limits alone: " + Escape(report.baseline_mismatch) + ".</p>\n";
+      html += "<p>Judged by the built-in limits alone: " + EscapeHtml(report.baseline_mismatch) + ".</p>\n";
     }
     html += "<section>" + FigureTable(report) + "</section>\n";
     if (!report.warnings.empty()) html += "<h3>Not compared as authored</h3>\n" + List(report.warnings);

@@ -1,6 +1,7 @@
 // The report of `scumble tradeoff`: what every way to stylise a scene costs and how far off it is.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,7 +15,8 @@ struct Quartiles {
   double median = 0.0, lower = 0.0, upper = 0.0;
 };
 
-// Of one way. What was not measured, or does not exist for it, is empty.
+// Of one way. What was not measured, or does not exist for it, is empty; a time or memory of 0 and an estimate of NaN
+// too.
 struct TradeMeasure {
   std::string name;     // unique
   std::string axis;     // what it changes of the style's own settings, "levels"; "style": nothing
@@ -26,13 +28,14 @@ struct TradeMeasure {
   Quartiles guides_ms, transfer_ms, total_ms;  // wall clock
   std::size_t memory_bytes = 0;                // the peak
   Estimate both, energy, missing;              // measure/energy.h; `both` ranks
-  std::optional<double> guide_degrees;         // mean angle between a pixel's normal and that of its source, exact guides
-  std::optional<double> coherence;             // 0 … 1
-  std::optional<double> chunk_area;            // mean, pixels
-  std::optional<double> seam_excess;           // measure/repetition.h
+  std::optional<double> guide_degrees;  // mean angle between a pixel's normal and that of its source, exact guides
+  std::optional<double> coherence;      // 0 … 1
+  std::optional<double> chunk_area;     // mean, pixels
+  std::optional<double> seam_excess;    // measure/repetition.h
   std::optional<double> repetition;
-  std::optional<double> guide_rms;  // of its guides against the converged ones: of normals, or of light where it is weighed
-  std::optional<double> guide_flip; // mean FLIP of the same, 0 … 1
+  std::optional<double>
+      guide_rms;  // of its guides against the converged ones: of normals, or of light where it is weighed
+  std::optional<double> guide_flip;  // mean FLIP of the same, 0 … 1
   std::vector<std::uint8_t> picture_png;
 };
 
@@ -42,10 +45,39 @@ struct TradeReport {
   std::string machine;  // processor and threads
   int repeats = 0;
   double lambda = 0.0;
+  std::string command = {};  // that measures all this again; empty: not said
   std::vector<TradeMeasure> ways;
 };
 
-// Places in `ways` of the Pareto front of median total time and `both`, by rising time.
+// Places in `ways` of the Pareto front of median total time and `both`, by rising time. What was not measured is not
+// there.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
+
+// Places in `ways`, the axes in the order in which they first come, ways of one axis in the order given.
+std::vector<std::size_t> ByAxis(const TradeReport& report);
+
+// A name for the picture of ways[i] that no other way has: "03-levels-4.png". Letters, digits and hyphens alone.
+std::string TradePictureName(const TradeReport& report, std::size_t i);
+
+// For a terminal, at most 120 columns wide unless a figure is absurdly long: a line a way by axis, the front marked
+// with a star; what the guides of ways differ by, where that was measured; notes.
+std::string TradeTable(const TradeReport& report);
+
+// RFC 4180 (lines end in CR LF): a line of column names with their units, then one a way in the order given. Numbers
+// are as C writes them, whatever the locale, and read back to the same value; yes and no are 1 and 0; what was not
+// measured is empty; "nan", "inf" and "-inf" are what was measured and is no number.
+std::string TradeCsv(const TradeReport& report);
+
+// The same figures; docs/tradeoff.md has the schema. What was not measured is null.
+std::string TradeJson(const TradeReport& report);
+
+// A self-contained SVG on white: time (logarithmic) against `both`, quartiles and standard errors as bars, the front as
+// a line with its names, a colour and shape for each axis. Ways without a time or without `both` are not drawn.
+std::string TradeChart(const TradeReport& report);
+
+// One HTML page that loads nothing: the charts, the table, and every picture, embedded. Without scripts it still has
+// all of that, with a link from each point to its picture; with them, figures show under the pointer, columns sort, and
+// pictures are flipped against the style's own. A picture that equals an earlier one byte for byte is there once.
+std::string TradeHtml(const TradeReport& report);
 
 }  // namespace scumble

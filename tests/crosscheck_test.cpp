@@ -104,7 +104,7 @@ TEST(Crosscheck, ThePageIsOneFileAndEscapesNames) {
   ASSERT_TRUE(html.ok());
   EXPECT_NE(html->find("a&lt;b&gt;&amp;.glb"), std::string::npos);
   EXPECT_EQ(html->find("<b>"), std::string::npos);
-  EXPECT_EQ(html->find("http"), std::string::npos) << "nothing is loaded from elsewhere";
+  EXPECT_EQ(html->find("://"), std::string::npos) << "nothing is loaded from elsewhere";
   EXPECT_NE(html->find("data:image/png;base64,iVBORw0KGgo"), std::string::npos) << "a PNG's first bytes";
 }
 

@@ -1,0 +1,124 @@
+// scumble tradeoff: what every way to stylise a scene costs, and how far off it is.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "cli/command.h"
+#include "cli/json_text.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "cli/run_files.h"
+#include "cli/style_set.h"
+#include "cli/tradeoff_run.h"
+#include "io/atomic_file.h"
+#include "measure/tradeoff_report.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TradeoffVerb {
+  TradeSetup setup;
+  std::string folder;
+  std::string peak_of;  // a way's name: its memory alone, for the process that AskForPeak starts
+};
+
+constexpr const char* kPictures = "pictures";
+
+// Told before minutes of work: whether the folder can be made and written to, and takes the place of nothing that is read.
+Status PrepareFolder(const TradeoffVerb& verb) {
+  const fs::path pictures = fs::path(verb.folder) / kPictures;
+  std::error_code failed;
+  fs::create_directories(pictures, failed);
+  if (!fs::is_directory(fs::status(pictures, failed))) {
+    return OutputError(fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made; name another", verb.folder,
+                                   kPictures));
+  }
+  RunFiles files;
+  files.ReadsScene(verb.setup.scene.scene);
+  StyleOptions style = verb.setup.style;
+  style.scene_styles = false;
+  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style));
+  files.ReadsStyles(styles);
+  for (const char* name : {"report.html", "tradeoff.csv", "tradeoff.json"}) {
+    SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
+  }
+  return files.CheckOutput((pictures / "00.png").string());
+}
+
+// The page last: where it is, all that it tells of is there.
+Status WriteFolder(const std::string& folder, const TradeReport& report) {
+  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+    const fs::path file = fs::path(folder) / kPictures / TradePictureName(report, i);
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.ways[i].picture_png))));
+  }
+  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.csv", TradeCsv(report)));
+  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.json", TradeJson(report)));
+  return WriteFileAtomically(fs::path(folder) / "report.html", TradeHtml(report));
+}
+
+Expected<ExitCode> RunTradeoffVerb(const TradeoffVerb& verb, const Globals& globals) {
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.setup.scene));
+  if (!verb.peak_of.empty()) {
+    SCUMBLE_ASSIGN(const std::size_t bytes, PeakOfWay(verb.setup, verb.peak_of, globals));
+    Print(fmt::format("{{\"peak_bytes\": {}}}\n", bytes));
+    return ExitCode::kOk;
+  }
+  if (!verb.folder.empty()) SCUMBLE_RETURN_IF_ERROR(PrepareFolder(verb));
+  ProgressBar bar("tradeoff", globals.quiet);
+  SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals, bar));
+  bar.Clear();
+  if (!verb.folder.empty()) {
+    SCUMBLE_RETURN_IF_ERROR(WriteFolder(verb.folder, report));
+    Say(globals, (fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");
+  }
+  Print(globals.json ? TradeJson(report) : TradeTable(report));
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
+  auto verb = std::make_shared<TradeoffVerb>();
+  CLI::App* sub = app.add_subcommand(
+      "tradeoff", "what every way to stylise a scene costs on this machine, and how far off it is: a table, a chart, all pictures");
+  sub->footer(
+      "Each way changes one thing of the style, or a few; the energy says how far its picture is from what the exemplar shows:\n"
+      "`both` ranks. Times are of the guides (with the acceleration structure) and of the transfer, after a run to warm up;\n"
+      "loading, preparing the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak\n"
+      "of a process that makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
+      "says; colorized styles are measured before the scene's colours are on them.\n");
+  AddViewOptions(*sub, verb->setup.scene);
+  AddOneStyleOptions(*sub, verb->setup.style, true);
+  sub->add_option("--only", verb->setup.only,
+                  "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "
+                  "measured in any case")
+      ->type_name("AXIS,…")
+      ->check(RefuseEmpty);
+  sub->add_flag("--quick", verb->setup.quick, "the small grid: a dozen ways or two");
+  sub->add_option("--repeat", verb->setup.repeats, "times to run each, for the median and its spread")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  sub->add_option("--samples", verb->setup.scene.samples, "paths a pixel for guides of light, of the style itself")
+      ->type_name("N")
+      ->check(CLI::Range(1, kMaxSamples))
+      ->capture_default_str();
+  sub->add_option("--seed", verb->setup.scene.seed, "another seed, another pattern and other noise; the same seed, the same errors")
+      ->type_name("N")
+      ->check(RefuseNegative)
+      ->capture_default_str();
+  sub->add_flag("!--no-memory", verb->setup.memory, "do not measure memory, which takes a process for each way");
+  sub->add_option("-o,--output", verb->folder,
+                  "folder to write to: report.html, tradeoff.csv, tradeoff.json, pictures/*.png; left out: the table alone")
+      ->type_name("FOLDER")
+      ->check(RefuseEmpty);
+  sub->add_option("--peak-of", verb->peak_of)->group("");
+  AddGlobalOptions(*sub, globals);
+  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTradeoffVerb(*verb, globals); }; });
+}
+
+}  // namespace scumble

@@ -1,0 +1,36 @@
+// The guides of the ways that `scumble tradeoff` measures: made as `stylize` would make them.
+#pragma once
+
+#include <string>
+
+#include "cli/options.h"
+#include "cli/scene_frames.h"
+#include "cli/ways.h"
+#include "image/guides.h"
+
+namespace scumble {
+
+// Whether guides of these layers need chance there, so that their samples matter.
+bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneOptions& options);
+
+// The guides' size against the picture's in whole steps: a way of half size is upsampled twice, one of twice the size is
+// painted so and averaged.
+inline int UpsamplingOf(const Way& way) { return way.guide_scale < 1.0 ? 2 : 1; }
+inline int SupersamplingOf(const Way& way) { return way.guide_scale > 1.0 ? 2 : 1; }
+
+struct WayGuides {
+  GuideSet guides;  // as the transfer reads them
+  GuideSet given;   // before they were upsampled, by which the exposure is measured; empty where they were not
+  double ms = 0.0;  // of wall clock: building the acceleration structure, casting, upsampling; not rounding
+
+  const GuideSet& ForExposure() const { return given.pixel_count() > 0 ? given : guides; }
+};
+
+// `options.size` is the picture's.
+Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
+                                  const LayerSet& layers, const Globals& globals);
+
+// Ways with equal text have equal guides; with `rounded` false, guides that take the same time.
+std::string GuidesKey(const Way& way, const LayerSet& layers, bool rounded);
+
+}  // namespace scumble

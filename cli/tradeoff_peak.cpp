@@ -1,0 +1,63 @@
+#include "cli/tradeoff_peak.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/blender_process.h"
+
+namespace scumble {
+
+std::size_t PeakOfThisProcess() {
+  std::ifstream file("/proc/self/status");
+  constexpr std::string_view kName = "VmHWM:";
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(kName)) return std::stoull(line.substr(kName.size())) * 1024;
+  }
+  return 0;
+}
+
+std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals) {
+  std::vector<std::string> words = {"tradeoff"};
+  const auto add = [&](const std::string& option, const std::string& value) {
+    words.push_back(option), words.push_back(value);
+  };
+  const std::string& scene = setup.scene.scene;
+  words.push_back(scene.starts_with("-") ? "./" + scene : scene);
+  add("--style", setup.style.style);
+  for (const std::string& set : setup.style.sets) add("--set", set);
+  add("--size", setup.scene.size);
+  if (!setup.scene.camera.empty()) words.push_back("--camera=" + setup.scene.camera);
+  if (!setup.scene.view.empty()) words.push_back("--view=" + setup.scene.view);
+  if (setup.scene.samples != SceneOptions().samples) add("--samples", std::to_string(setup.scene.samples));
+  if (setup.scene.seed != 0) add("--seed", std::to_string(setup.scene.seed));
+  if (!setup.only.empty()) add("--only", setup.only);
+  if (setup.repeats != TradeSetup().repeats) add("--repeat", std::to_string(setup.repeats));
+  if (setup.quick) words.push_back("--quick");
+  if (!setup.memory) words.push_back("--no-memory");
+  if (globals.threads != 0) add("--threads", std::to_string(globals.threads));
+  return words;
+}
+
+Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const Globals& globals) {
+  const ScratchFolder scratch;
+  if (scratch.path().empty()) return std::size_t(0);
+  std::error_code failed;
+  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe", failed).string()};
+  if (failed) return std::size_t(0);
+  for (std::string& word : TradeArguments(setup, globals)) words.push_back(std::move(word));
+  words.push_back("--peak-of=" + way);
+  words.push_back("--quiet");
+  const std::filesystem::path log = scratch.path() / "log";
+  const Expected<ProgramEnd> end = RunProgram(words, log);
+  SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(setup.scene.scene));
+  if (!end || end->code != 0) return std::size_t(0);
+  for (const std::string& line : LinesOf(log)) {
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (json.is_object() && json.contains("peak_bytes")) return json["peak_bytes"].get<std::size_t>();
+  }
+  return std::size_t(0);
+}
+
+}  // namespace scumble

@@ -1,0 +1,23 @@
+// The memory that a way takes, measured in a process of its own: in one that has made other pictures before, memory is
+// already there.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cli/tradeoff_run.h"
+
+namespace scumble {
+
+// What this process has held at most so far, in bytes: libraries, scene and exemplars included. 0 where the system does not
+// tell. (getrusage would count what the parent held when it started this one.)
+std::size_t PeakOfThisProcess();
+
+// The verb's arguments that set this up, behind the program's name. No option of output is among them.
+std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals);
+
+// Runs this program again for one way. 0 where that fails: memory is not worth an error. kCancelled where a signal has come.
+Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const Globals& globals);
+
+}  // namespace scumble

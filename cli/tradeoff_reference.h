@@ -1,0 +1,58 @@
+// What the ways of `scumble tradeoff` are measured against: the guides of the exact way, and the exemplars as they are used.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "image/guides.h"
+#include "measure/energy.h"
+#include "measure/tradeoff_report.h"
+#include "transfer/transfer.h"
+
+namespace scumble {
+
+// How far guides are from those of the exact way.
+struct GuideDifference {
+  double rms = 0.0;
+  double flip = 0.0;
+};
+
+class TradeReference {
+ public:
+  // `style` is prepared for the guides' height, at `exposure` stops. Both are kept.
+  TradeReference(std::shared_ptr<const GuideSet> guides, PreparedStyle style, double exposure, int threads);
+
+  const GuideSet& guides() const { return *guides_; }
+
+  // Fills in the energies of a picture of the guides' size, which take the most time; where `field` is not null they take
+  // less. `options` as they are but for `sources` and `threads`.
+  Status MeasurePaint(const Picture& picture, const SourceField* field, EnergyOptions options, TradeMeasure& measure) const;
+  // Fills in what the field says of the mosaic.
+  Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
+
+  // Over pixels that both cover: of normals the root of the mean squared distance, and FLIP of (n + 1) / 2 as a picture;
+  // where the style weighs light, of that light instead, exposed so that 1 is the exemplar's brightest tenth, and cut there.
+  // The guides must have one size.
+  Expected<GuideDifference> Compare(const GuideSet& guides, double exposure) const;
+
+ private:
+  EnergyTarget Target(const Picture& picture) const;
+  std::vector<EnergyExemplar> Exemplars() const;
+  void AddWeighedGuides();
+  void AddConditions();
+  Expected<GuideDifference> CompareNormals(const GuideSet& guides) const;
+  Expected<GuideDifference> CompareLight(const GuideSet& guides, double exposure, Layer layer, float white) const;
+
+  std::shared_ptr<const GuideSet> guides_;
+  PreparedStyle style_;
+  double exposure_;
+  int threads_;
+  std::array<std::vector<float>, 3> normal_;                         // of exemplars, by pixel
+  std::vector<std::uint8_t> usable_;                                 // likewise
+  std::vector<std::vector<float>> more_;                             // guides beside normals, of the scene
+  std::vector<std::vector<std::vector<float>>> more_of_exemplars_;  // by exemplar
+};
+
+}  // namespace scumble

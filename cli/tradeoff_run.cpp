@@ -1,0 +1,263 @@
+#include "cli/tradeoff_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include "cli/machine.h"
+#include "cli/shell_word.h"
+#include "cli/tradeoff_peak.h"
+#include "cli/tradeoff_reference.h"
+#include "cli/tradeoff_way.h"
+#include "io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+// Ways that are timed in turn: prepared styles take memory.
+constexpr std::size_t kTogether = 8;
+
+// Linear between the values around, as spreadsheets have it.
+Quartiles QuartilesOf(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    const double place = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    const double next = values[std::min(below + 1, values.size() - 1)];
+    return values[below] + (place - static_cast<double>(below)) * (next - values[below]);
+  };
+  return {at(0.5), at(0.25), at(0.75)};
+}
+
+// Runs of guides and transfers, the first with the first; where there are fewer of one kind they come again.
+Quartiles TotalOf(const std::vector<double>& guides, const std::vector<double>& transfers) {
+  std::vector<double> sums;
+  if (guides.empty() || transfers.empty()) return {};
+  for (std::size_t i = 0; i < std::max(guides.size(), transfers.size()); ++i) {
+    sums.push_back(guides[i % guides.size()] + transfers[i % transfers.size()]);
+  }
+  return QuartilesOf(std::move(sums));
+}
+
+class Trade {
+ public:
+  Trade(const TradeSetup& setup, const Globals& globals, ProgressBar& bar)
+      : setup_(setup), globals_(globals), progress_(bar.Part(0.0, 1.0)) {
+    silent_ = globals;
+    silent_.quiet = true;
+  }
+
+  Expected<TradeReport> Measure() {
+    SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, globals_));
+    SCUMBLE_ASSIGN(const std::vector<Way> ways, ChooseWays(stage_.grid.ways, setup_.only));
+    for (const std::string& line : stage_.grid.left_out) Say(globals_, "left out: " + line);
+    SCUMBLE_RETURN_IF_ERROR(OpenStyles(ways));
+    // Guides that differ only in how they are rounded take one time.
+    std::map<std::string, bool> jobs;
+    for (std::size_t i = 0; i < ways.size(); ++i) jobs[GuidesKey(ways[i], layers_[i], false)] = true;
+    const double runs = setup_.repeats + 1;
+    work_ = static_cast<double>(jobs.size()) * runs * kGuidesWork +
+            static_cast<double>(ways.size()) * (runs + kMeasureWork + (setup_.memory ? kMemoryWork : 0.0));
+    SCUMBLE_RETURN_IF_ERROR(MakeReference());
+    SCUMBLE_RETURN_IF_ERROR(TimeGuides(ways));
+    report_.scene = std::filesystem::path(setup_.scene.scene).stem().string();
+    report_.style = stage_.style.name.empty() ? setup_.style.style : stage_.style.name;
+    report_.width = stage_.width, report_.height = stage_.height;
+    report_.machine = MachineName(globals_.threads), report_.repeats = setup_.repeats;
+    report_.lambda = EnergyOptions().lambda, report_.command = TradeCommand(setup_, globals_);
+    for (std::size_t begin = 0; begin < ways.size(); begin += kTogether) {
+      SCUMBLE_RETURN_IF_ERROR(MeasureTogether(ways, begin, std::min(ways.size(), begin + kTogether)));
+    }
+    return std::move(report_);
+  }
+
+ private:
+  // Shares of the bar, a transfer being 1.
+  static constexpr double kGuidesWork = 2.0, kMeasureWork = 20.0, kMemoryWork = 10.0;
+
+  void Finished(double work) {
+    done_ += work;
+    if (progress_) progress_(std::min(1.0, done_ / work_));
+  }
+
+  Status OpenStyles(const std::vector<Way>& ways) {
+    for (const Way& way : ways) {
+      SCUMBLE_ASSIGN(Style style, StyleOfWay(setup_, way));
+      layers_.push_back(RequiredLayers(style));
+      styles_.push_back(std::move(style));
+    }
+    return Ok();
+  }
+
+  // Kept as long as some way needs them.
+  Expected<std::shared_ptr<const WayGuides>> GuidesOf(const Way& way, const LayerSet& layers) {
+    const std::string key = GuidesKey(way, layers, true);
+    if (auto known = guides_[key].lock()) return known;
+    SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage_.scene, setup_.scene, way, layers, silent_));
+    auto shared = std::make_shared<const WayGuides>(std::move(made));
+    guides_[key] = shared;
+    return std::shared_ptr<const WayGuides>(shared);
+  }
+
+  Status MakeReference() {
+    const auto exact = std::find_if(stage_.grid.ways.begin(), stage_.grid.ways.end(),
+                                    [](const Way& way) { return way.axis == kExactAxis; });
+    SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, *exact));
+    SCUMBLE_ASSIGN(exact_guides_, GuidesOf(*exact, RequiredLayers(style)));
+    const GuideSet& guides = exact_guides_->guides;
+    SCUMBLE_RETURN_IF_ERROR(guides.Validate(setup_.scene.scene));
+    const auto coverage = guides.Plane(Layer::kCoverage);
+    if (std::none_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; })) {
+      return InputError(setup_.scene.scene + ": the camera sees nothing, so there is nothing to measure; try --view or another "
+                        "--camera");
+    }
+    SCUMBLE_ASSIGN(const WayPainter painter, WayPainter::Prepare(setup_, *exact, style, exact_guides_, globals_));
+    reference_.emplace(std::shared_ptr<const GuideSet>(exact_guides_, &guides), painter.prepared(), painter.exposure(),
+                       globals_.threads);
+    return Ok();
+  }
+
+  Status TimeGuides(const std::vector<Way>& ways) {
+    for (int run = 0; run <= setup_.repeats; ++run) {
+      std::map<std::string, bool> made;
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        const std::string key = GuidesKey(ways[i], layers_[i], false);
+        if (!std::exchange(made[key], true)) SCUMBLE_RETURN_IF_ERROR(TimeGuides(ways[i], layers_[i], run, guides_ms_[key]));
+      }
+    }
+    return Ok();
+  }
+
+  // The first run warms up, and counts only where it is slow.
+  Status TimeGuides(const Way& way, const LayerSet& layers, int run, std::vector<double>& times) {
+    Finished(kGuidesWork);
+    if (run > 0 && !times.empty() && times.front() > kSlowMs) return Ok();
+    SCUMBLE_ASSIGN(const WayGuides made, MakeWayGuides(stage_.scene, setup_.scene, way, layers, silent_));
+    if (run > 0 || made.ms > kSlowMs) times.push_back(made.ms);
+    return Ok();
+  }
+
+  Status MeasureTogether(const std::vector<Way>& ways, std::size_t begin, std::size_t end) {
+    std::vector<WayPainter> painters;
+    std::vector<std::vector<double>> times(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+      SCUMBLE_ASSIGN(auto guides, GuidesOf(ways[i], layers_[i]));
+      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways[i], styles_[i], std::move(guides), globals_));
+      painters.push_back(std::move(painter));
+      SCUMBLE_ASSIGN(const double ms, painters.back().Paint(true));
+      if (ms > kSlowMs) times[i - begin].push_back(ms);
+      SCUMBLE_RETURN_IF_ERROR(MeasureWay(ways[i], painters.back()));
+    }
+    for (int run = 1; run <= setup_.repeats; ++run) {
+      for (std::size_t i = 0; i < painters.size(); ++i) {
+        Finished(1.0);
+        if (!times[i].empty() && times[i].front() > kSlowMs) continue;
+        SCUMBLE_ASSIGN(const double ms, painters[i].Paint());
+        times[i].push_back(ms);
+      }
+    }
+    painters.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::vector<double>& guides = guides_ms_[GuidesKey(ways[i], layers_[i], false)];
+      TradeMeasure& measure = report_.ways[i];
+      measure.guides_ms = QuartilesOf(guides), measure.transfer_ms = QuartilesOf(times[i - begin]);
+      measure.total_ms = TotalOf(guides, times[i - begin]);
+      if (!setup_.memory) continue;
+      if (measure.total_ms.median <= 2.0 * kSlowMs) {
+        SCUMBLE_ASSIGN(measure.memory_bytes, AskForPeak(setup_, ways[i].name, globals_));
+      }
+      Finished(kMemoryWork);
+    }
+    return Ok();
+  }
+
+  // All but times and memory.
+  Status MeasureWay(const Way& way, WayPainter& painter) {
+    TradeMeasure measure;
+    measure.name = way.name, measure.axis = way.axis, measure.value = way.value;
+    measure.chosen = way.axis == kStyleAxis, measure.exact = way.axis == kExactAxis;
+    RepeatOptions repeat = RepeatWay(setup_, stage_, way);
+    measure.options = std::move(repeat.options), measure.note = std::move(repeat.note);
+    if (SupersamplingOf(way) == 1) {
+      SCUMBLE_ASSIGN(const GuideDifference off, reference_->Compare(painter.guides().guides, painter.exposure()));
+      measure.guide_rms = off.rms, measure.guide_flip = off.flip;
+    }
+    SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(painter.picture()));
+    measure.picture_png.resize(png.size());
+    std::transform(png.begin(), png.end(), measure.picture_png.begin(),
+                   [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+    SCUMBLE_RETURN_IF_ERROR(MeasurePaint(painter, measure));
+    report_.ways.push_back(std::move(measure));
+    Finished(kMeasureWork);
+    return Ok();
+  }
+
+  Status MeasurePaint(WayPainter& painter, TradeMeasure& measure) {
+    std::optional<Picture> untinted;
+    if (painter.is_tinted()) {
+      SCUMBLE_ASSIGN(untinted, painter.PaintUntinted());
+    }
+    const Picture& picture = untinted ? *untinted : painter.picture();
+    if (painter.field()) SCUMBLE_RETURN_IF_ERROR(reference_->MeasureMosaic(picture, *painter.field(), measure));
+    // At some sizes settings round to the same: the same picture has the same energy.
+    const std::string_view bytes(reinterpret_cast<const char*>(picture.rgba.data()),
+                                 picture.rgba.size() * sizeof picture.rgba[0]);
+    const auto [known, is_new] = pictures_.try_emplace(std::hash<std::string_view>()(bytes), report_.ways.size());
+    if (!is_new) {
+      const TradeMeasure& same = report_.ways[known->second];
+      measure.both = same.both, measure.energy = same.energy, measure.missing = same.missing;
+      measure.note += (measure.note.empty() ? "" : "; ") + std::string("the same picture as ") + same.name;
+      return Ok();
+    }
+    EnergyOptions options;
+    options.seed = setup_.scene.seed;
+    return reference_->MeasurePaint(picture, painter.field(), options, measure);
+  }
+
+  const TradeSetup& setup_;
+  const Globals& globals_;
+  Globals silent_;
+  Progress progress_;
+  double work_ = 1.0, done_ = 0.0;
+  TradeStage stage_;
+  std::vector<Style> styles_;     // by way
+  std::vector<LayerSet> layers_;  // by way
+  std::map<std::string, std::weak_ptr<const WayGuides>> guides_;
+  std::map<std::string, std::vector<double>> guides_ms_;
+  std::shared_ptr<const WayGuides> exact_guides_;
+  std::optional<TradeReference> reference_;
+  std::map<std::size_t, std::size_t> pictures_;  // of ways, by a hash of 64 bits
+  TradeReport report_;
+};
+
+}  // namespace
+
+Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const Globals& globals, ProgressBar& bar) {
+  return Trade(setup, globals, bar).Measure();
+}
+
+std::string TradeCommand(const TradeSetup& setup, const Globals& globals) {
+  std::string command = "scumble";
+  for (const std::string& word : TradeArguments(setup, globals)) command += " " + Quoted(word);
+  return command;
+}
+
+Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const Globals& globals) {
+  SCUMBLE_ASSIGN(TradeStage stage, OpenTradeStage(setup, globals));
+  const auto way = std::find_if(stage.grid.ways.begin(), stage.grid.ways.end(), [&](const Way& one) { return one.name == name; });
+  if (way == stage.grid.ways.end()) return UsageError("--peak-of " + name + ": there is no such way");
+  SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way));
+  SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, RequiredLayers(style), globals));
+  auto guides = std::make_shared<const WayGuides>(std::move(made));
+  SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup, *way, style, std::move(guides), globals));
+  SCUMBLE_RETURN_IF_ERROR(painter.Paint());
+  return PeakOfThisProcess();
+}
+
+}  // namespace scumble

@@ -1,0 +1,37 @@
+// What `scumble tradeoff` does: each way is made and measured.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/progress_bar.h"
+#include "measure/tradeoff_report.h"
+
+namespace scumble {
+
+struct TradeSetup {
+  SceneOptions scene;  // its size is the picture's
+  StyleOptions style;
+  int repeats = 5;
+  bool quick = false;
+  bool memory = true;
+  std::string only;
+};
+
+// A run that takes longer than this is not repeated.
+inline constexpr double kSlowMs = 5000.0;
+
+// Everything that was measured. Guides are timed first, all ways' in turn, then transfers, those of a few ways in turn: what
+// else the machine does then is spread over ways. Wrong options are kUsage; a scene that shows nothing is kInput.
+Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const Globals& globals, ProgressBar& bar);
+
+// The command line that measures all this again.
+std::string TradeCommand(const TradeSetup& setup, const Globals& globals);
+
+// Makes the picture of one way, once, and returns the memory that this process has held at most, in bytes; for a process of
+// its own.
+Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const Globals& globals);
+
+}  // namespace scumble

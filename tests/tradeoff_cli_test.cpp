@@ -1,0 +1,213 @@
+// scumble tradeoff, from its arguments to its files.
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+// RFC 4180, as any reader takes it.
+std::vector<std::vector<std::string>> ParseCsv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows(1, std::vector<std::string>(1));
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+      rows.back().back() += c, ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (quoted) {
+      rows.back().back() += c;
+    } else if (c == ',') {
+      rows.back().emplace_back();
+    } else if (c == '\n') {
+      rows.emplace_back(1);
+    } else if (c != '\r') {
+      rows.back().back() += c;
+    }
+  }
+  rows.pop_back();  // what follows the last line's end
+  return rows;
+}
+
+class Tradeoff : public CliTest {
+ protected:
+  void SetUp() override { WriteStyle("mine"); }
+
+  // Small, and without the processes that measure memory.
+  Arguments Small(const std::string& scene, const Arguments& more, const std::string& size = "96x54") const {
+    return With({"tradeoff", scene, "--style", "mine", "--size", size, "--repeat", "1", "--no-memory"}, more);
+  }
+  // The ways' measures but for what the clock says.
+  nlohmann::json WithoutTimes(const CommandResult& result) const {
+    nlohmann::json ways = result.Json()["ways"];
+    for (auto& way : ways) {
+      for (const char* key : {"guides_ms", "transfer_ms", "total_ms", "front"}) way.erase(key);
+    }
+    return ways;
+  }
+  // What a shell makes of options without special characters.
+  static Arguments Words(const std::string& options) {
+    std::istringstream stream(options);
+    return {std::istream_iterator<std::string>(stream), {}};
+  }
+};
+
+TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
+  const CommandResult result = RunOk({"tradeoff", Scene("suzanne.glb"), "--style", "mine", "--size", "96x54", "--repeat", "2",
+                                      "--only", "method,levels 1,precision,resolution", "-o", "out/deep", "--quick"});
+  EXPECT_NE(result.out.find("the style"), std::string::npos);
+  EXPECT_NE(result.out.find("litsphere"), std::string::npos);
+  EXPECT_NE(result.err.find("out/deep/report.html"), std::string::npos);
+  const nlohmann::json json = nlohmann::json::parse(Bytes("out/deep/tradeoff.json"));
+  const auto rows = ParseCsv(Bytes("out/deep/tradeoff.csv"));
+  const std::string page = Bytes("out/deep/report.html");
+  EXPECT_EQ(json["scene"], "suzanne");
+  EXPECT_EQ(json["width"], 96);
+  EXPECT_EQ(json["repeats"], 2);
+  ASSERT_EQ(rows.size(), json["ways"].size() + 1);
+  std::map<std::string, std::size_t> column;
+  for (std::size_t c = 0; c < rows[0].size(); ++c) column[rows[0][c]] = c;
+  for (std::size_t i = 0; i < json["ways"].size(); ++i) {
+    const auto& way = json["ways"][i];
+    const auto& row = rows[i + 1];
+    ASSERT_EQ(row.size(), rows[0].size());
+    EXPECT_EQ(row[column["way"]], way["way"]);
+    EXPECT_EQ(row[column["options"]], way["options"]);
+    EXPECT_EQ(std::stod(row[column["both"]]), way["both"]["mean"].get<double>());
+    EXPECT_EQ(std::stod(row[column["total_ms_median"]]), way["total_ms"]["median"].get<double>());
+    EXPECT_EQ(std::stod(row[column["memory_bytes"]]), way["memory_bytes"].get<double>());
+    EXPECT_GT(way["memory_bytes"].get<double>(), 10e6) << "a process with its libraries";
+    EXPECT_LT(way["memory_bytes"].get<double>(), 4e9);
+    const double both = way["both"]["mean"], parts = double(way["energy"]["mean"]) + double(way["missing"]["mean"]);
+    EXPECT_NEAR(both, parts, 1e-9 * (1.0 + both));
+    const double lower = way["total_ms"]["lower_quartile"], median = way["total_ms"]["median"],
+                 upper = way["total_ms"]["upper_quartile"];
+    EXPECT_LE(lower, median);
+    EXPECT_LE(median, upper);
+    const auto picture = ReadPicture(At("out/deep/pictures") / way["picture"].get<std::string>());
+    ASSERT_TRUE(picture.ok()) << way["picture"];
+    EXPECT_EQ(picture->width, 96);
+    EXPECT_EQ(picture->height, 54);
+    EXPECT_NE(page.find(way["way"].get<std::string>()), std::string::npos);
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(At("out"))) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path() << " is a temporary file";
+  }
+}
+
+TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
+  RunOk(Small(Scene("suzanne.glb"), {"--only", "method litsphere,levels 3,threshold 0.25,blend_radius 4,edge_aware,match_step 2,"
+                                               "nearest tree,nearest table 64,resolution,robust",
+                                     "--seed", "3", "-o", "out"}));
+  const nlohmann::json json = nlohmann::json::parse(Bytes("out/tradeoff.json"));
+  int repeated = 0;
+  for (const auto& way : json["ways"]) {
+    const std::string options = way["options"], name = way["way"];
+    if (options.empty()) {
+      EXPECT_NE(way["note"], "") << name << " should say why";
+      continue;
+    }
+    RunOk(With(With({"stylize", Scene("suzanne.glb")}, Words(options)), {"-o", "again.png"}));
+    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << name << ": " << options;
+    ++repeated;
+  }
+  EXPECT_EQ(repeated, 10) << "all but the small table and twice the resolution";
+}
+
+TEST_F(Tradeoff, FiguresButTimesAreTheSameForAnyThreads) {
+  const Arguments arguments = Small(Scene("toys.glb"), {"--json", "--only", "exact,levels 1,threshold 0.25,blend_radius 4,"
+                                                                        "precision,resolution 0.5,nearest tree"});
+  const nlohmann::json one = WithoutTimes(RunOk(With(arguments, {"--threads", "1"})));
+  ASSERT_EQ(one.size(), 9u);
+  EXPECT_EQ(one, WithoutTimes(RunOk(With(arguments, {"--threads", "2"}))));
+  const nlohmann::json other = WithoutTimes(RunOk(With(arguments, {"--threads", "2", "--seed", "1"})));
+  EXPECT_NE(one[0]["both"], other[0]["both"]) << "another pattern, other places looked at";
+}
+
+TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
+  WritePainted("mine/shade.png", 64, 64);
+  WriteText("mine/style.toml",
+            "[transfer]\nreference_height = 0\nlevels = 4\npaper = \"#ffeecc\"\n"
+            "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
+  const CommandResult result = RunOk(Small(Scene("suzanne.glb"), {"--json", "--only", "precision,exact"}));
+  const nlohmann::json ways = result.Json()["ways"];
+  ASSERT_EQ(ways.size(), 4u);
+  EXPECT_EQ(ways[0]["guide_rms"], 0.0) << "suns need no samples: the style's guides are the exact ones";
+  EXPECT_EQ(ways[1]["exact"], true);
+  EXPECT_GT(ways[2]["guide_rms"].get<double>(), 0.0) << "8 bits of luminance";
+  EXPECT_GT(ways[2]["guide_rms"].get<double>(), ways[3]["guide_rms"].get<double>()) << "half floats are finer";
+  EXPECT_NE(ways[0]["options"].get<std::string>().find("transfer.paper="), std::string::npos) << "measured without paper";
+  // ball.glb is lit by a square: its light is sampled.
+  const nlohmann::json sampled = RunOk(Small(Scene("ball.glb"), {"--json", "--only", "samples"}, "40x40")).Json()["ways"];
+  std::map<std::string, double> rms;
+  for (const auto& way : sampled) rms[way["value"]] = way["guide_rms"];
+  ASSERT_TRUE(rms.count("1") && rms.count("256") && rms.count("1024"));
+  EXPECT_EQ(rms["1024"], 0.0) << "what the others are compared with";
+  EXPECT_GT(rms["1"], 4.0 * rms["256"]) << "noise falls with the root of the samples: 16 times, less what is cut at 1";
+}
+
+TEST_F(Tradeoff, SaysWhatIsWrongAndHowToMendIt) {
+  const std::string scene = Scene("suzanne.glb");
+  ExpectError(Small(scene, {"--only", "levles"}), 2, {"--only levles", "levels", "nearest", "threshold"});
+  ExpectError(Small(scene, {"--only", ""}), 2, {"--only"});
+  ExpectError(Small(scene, {"--repeat", "0"}), 2, {"--repeat"});
+  ExpectError({"tradeoff", scene}, 2, {"--style"});
+  ExpectError({"tradeoff", "none.glb", "--style", "mine"}, 3, {"none.glb"});
+  ExpectError({"tradeoff", scene, "--style", "nobody"}, 3, {"nobody"});
+  WriteText("file", "");
+  ExpectError(Small(scene, {"-o", "file"}), 4, {"-o file"});
+  WriteText("away.gltf", TriangleGltf(true));
+  ExpectError(Small("away.gltf", {"-o", "out"}), 3, {"away.gltf", "nothing", "--view"});
+  EXPECT_FALSE(Exists("out/report.html"));
+  EXPECT_FALSE(Exists("out/tradeoff.csv"));
+}
+
+TEST_F(Tradeoff, InterruptedLeavesNothingHalfWritten) {
+  const pid_t child = Start({"tradeoff", Scene("suzanne.glb"), "--style", "mine", "--size", "96x54", "--repeat", "1000", "-o", "out"});
+  siginfo_t state = {};
+  while (!Exists("out/pictures") && state.si_pid == 0) {
+    ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(child), &state, WEXITED | WNOHANG | WNOWAIT), 0);
+  }
+  ::kill(child, SIGINT);
+  EXPECT_EQ(Finish(child).code, 128 + SIGINT);
+  for (const auto& entry : fs::recursive_directory_iterator(At("out"))) {
+    EXPECT_TRUE(entry.is_directory()) << entry.path();
+  }
+}
+
+TEST_F(Tradeoff, HelpSaysWhatIsTimed) {
+  const std::string help = RunOk({"help", "tradeoff"}).out;
+  for (const char* word : {"--only", "--quick", "--repeat", "--samples", "--no-memory", "both", "not in them", "FOLDER"}) {
+    EXPECT_NE(help.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(help.find("--peak-of"), std::string::npos) << "for the program itself";
+}
+
+// Embree's robust mode is about rays that meet an edge: what is hit elsewhere is the same, and its last bits are refined by our
+// own arithmetic in any case. The file says which it was.
+TEST_F(Tradeoff, GuidesWithoutRobustModeSaySo) {
+  const Arguments arguments = {"guidegen", Scene("suzanne.glb"), "--size", "160x90", "-o"};
+  RunOk(With(arguments, {"robust.exr"}));
+  RunOk(With(arguments, {"plain.exr", "--no-robust"}));
+  const auto robust = ReadGuides(At("robust.exr"), {}), plain = ReadGuides(At("plain.exr"), {});
+  ASSERT_TRUE(robust.ok() && plain.ok());
+  EXPECT_EQ(robust->attributes.count("scumble:robust"), 0u);
+  ASSERT_EQ(plain->attributes.count("scumble:robust"), 1u);
+  EXPECT_EQ(plain->attributes.at("scumble:robust"), "false");
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < robust->pixel_count(); ++i) {
+    different += robust->Plane(Layer::kObject)[i] != plain->Plane(Layer::kObject)[i];
+  }
+  EXPECT_LE(different, robust->pixel_count() / 1000) << "rays through edges are few";
+}
+
+}  // namespace
+}  // namespace scumble

@@ -1,0 +1,163 @@
+// What pictures are measured against, where the figures are known.
+#include "cli/tradeoff_reference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "guidegen/guidegen.h"
+#include "tests/transfer_fixtures.h"
+
+namespace scumble {
+namespace {
+
+using namespace testing;
+
+constexpr int kSize = 64;
+
+Picture Noise(int size, std::uint64_t seed = 1) {
+  Picture picture(size, size);
+  for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+    picture.rgba[i] = i % 4 == 3 ? 65535 : static_cast<std::uint16_t>(Hash(seed, i) & 0xffff);
+  }
+  return picture;
+}
+
+std::shared_ptr<const GuideSet> SphereOf(int size, LayerSet layers = {}) {
+  SphereOptions options;
+  options.size = size, options.layers = layers;
+  auto made = RenderSphereGuides(options);
+  EXPECT_TRUE(made.ok());
+  return std::make_shared<const GuideSet>(std::move(made->guides));
+}
+
+Style LitSphereStyle(int size) {
+  Style style = PlainStyle(Noise(size));
+  style.transfer.method = Method::kLitSphere, style.transfer.rim = 0.0, style.transfer.blend_radius = 0;
+  return style;
+}
+
+struct Painted {
+  PreparedStyle style;
+  Picture picture;
+  TransferScratch scratch;
+};
+
+Painted Paint(const Style& style, const GuideSet& guides) {
+  Painted painted;
+  auto prepared = Prepare(style, guides.height());
+  EXPECT_TRUE(prepared.ok());
+  painted.style = *prepared;
+  TransferOptions options;
+  options.keep_field = true;
+  EXPECT_TRUE(Transfer(painted.style, guides, options, painted.scratch, painted.picture).ok());
+  return painted;
+}
+
+TradeMeasure Measured(const TradeReference& reference, const Painted& painted) {
+  TradeMeasure measure;
+  EXPECT_TRUE(reference.MeasurePaint(painted.picture, &painted.scratch.field, {}, measure).ok());
+  EXPECT_TRUE(reference.MeasureMosaic(painted.picture, painted.scratch.field, measure).ok());
+  return measure;
+}
+
+// The sphere that was painted, in its own paint: every pixel's nearest neighbour is itself, so the picture is the exemplar.
+// Its normals are Embree's, the exemplar's the formula's: they are a few ulps of a float apart, whose squares times λ are
+// below 10 · 3 · (4 · 2^-24)², so nothing in single precision.
+TEST(TradeReference, AStraightCopyOfTheExemplarScoresNothing) {
+  const auto guides = SphereOf(kSize);
+  const Painted painted = Paint(LitSphereStyle(kSize), *guides);
+  const TradeReference reference(guides, painted.style, 0.0, 0);
+  const TradeMeasure measure = Measured(reference, painted);
+  EXPECT_LT(measure.both.mean, 1e-9);
+  EXPECT_LT(measure.energy.mean, 1e-9);
+  EXPECT_LT(measure.missing.mean, 1e-9);
+  ASSERT_TRUE(measure.coherence && measure.guide_degrees && measure.repetition);
+  EXPECT_EQ(*measure.coherence, 1.0) << "one piece";
+  EXPECT_EQ(*measure.repetition, 1.0) << "nothing twice";
+  EXPECT_LT(*measure.guide_degrees, 0.1);
+  const auto off = reference.Compare(*guides, 0.0);
+  ASSERT_TRUE(off.ok());
+  EXPECT_EQ(off->rms, 0.0);
+  EXPECT_EQ(off->flip, 0.0);
+}
+
+TEST(TradeReference, AnotherPictureScoresMoreAndWithoutAFieldSaysNothingOfTheMosaic) {
+  const auto guides = SphereOf(kSize);
+  const Painted painted = Paint(LitSphereStyle(kSize), *guides);
+  const TradeReference reference(guides, painted.style, 0.0, 0);
+  TradeMeasure measure;
+  ASSERT_TRUE(reference.MeasurePaint(Noise(kSize, 7), nullptr, {}, measure).ok());
+  EXPECT_GT(measure.both.mean, 1.0);
+  EXPECT_FALSE(measure.coherence || measure.chunk_area || measure.guide_degrees || measure.seam_excess || measure.repetition);
+}
+
+// All normals turned by an angle about z: the distance of each is 2 sin(angle / 2) · |(x, y)|, and the mean of x² + y² over
+// the unit disc is a half.
+TEST(TradeReference, TheDifferenceOfNormalsIsTheirRootMeanSquareDistance) {
+  const auto guides = SphereOf(200);
+  GuideSet turned = *guides;
+  const double angle = 0.1;
+  for (std::size_t i = 0; i < turned.pixel_count(); ++i) {
+    const glm::vec3 n = guides->Vec3(Layer::kNormal, i);
+    turned.Plane(Layer::kNormal, 0)[i] = float(std::cos(angle) * n.x - std::sin(angle) * n.y);
+    turned.Plane(Layer::kNormal, 1)[i] = float(std::sin(angle) * n.x + std::cos(angle) * n.y);
+  }
+  const Painted painted = Paint(LitSphereStyle(32), *guides);
+  const TradeReference reference(guides, painted.style, 0.0, 0);
+  const auto off = reference.Compare(turned, 0.0);
+  ASSERT_TRUE(off.ok());
+  const double expected = 2.0 * std::sin(angle / 2.0) * std::sqrt(0.5);
+  EXPECT_NEAR(off->rms, expected, 0.01 * expected) << "pixels on the rim are whole: a share of 4 / 200 or less of the area";
+  EXPECT_GT(off->flip, 0.0);
+}
+
+// Light counts instead of normals where there are several conditions; it is exposed, and cut at the brightest exemplar's.
+TEST(TradeReference, OfAStyleWithLightItIsTheLight) {
+  const auto guides = SphereOf(kSize, {Layer::kLuminance});
+  Style style = LitSphereStyle(kSize);
+  style.exemplars.push_back(style.exemplars.front());
+  style.exemplars[0].luminance = 0.5, style.exemplars[1].luminance = 0.1;
+  const Painted painted = Paint(style, *guides);
+  const TradeReference reference(guides, painted.style, 0.0, 0);
+  GuideSet other = *guides;
+  for (float& z : other.Plane(Layer::kNormal, 2)) z = 0.0f;
+  EXPECT_EQ(reference.Compare(other, 0.0)->rms, 0.0) << "normals do not count";
+  GuideSet dark = *guides, bright = *guides;
+  for (float& value : dark.Plane(Layer::kLuminance)) value = 0.0f;
+  for (float& value : bright.Plane(Layer::kLuminance)) value = 1.0f;
+  // Against light of 1 everywhere, which is cut at 0.5 of 0.5: the difference to darkness is 1.
+  const auto all = std::make_shared<const GuideSet>(bright);
+  const TradeReference lit(all, painted.style, 0.0, 0);
+  EXPECT_EQ(lit.Compare(dark, 0.0)->rms, 1.0);
+  EXPECT_EQ(lit.Compare(bright, 1.0)->rms, 0.0) << "twice as bright is cut all the same";
+  for (float& value : bright.Plane(Layer::kLuminance)) value = 0.125f;
+  EXPECT_EQ(lit.Compare(bright, 1.0)->rms, 0.5) << "0.125 a stop brighter is half of 0.5";
+}
+
+// The wrong condition costs λ times the weighed difference of luminances, however well the paint fits.
+TEST(TradeReference, PaintForOtherLightCosts) {
+  const auto guides = SphereOf(kSize, {Layer::kLuminance});
+  GuideSet bright = *guides;
+  for (float& value : bright.Plane(Layer::kLuminance)) value = 0.5f;
+  Style style = LitSphereStyle(kSize);
+  style.exemplars.push_back(style.exemplars.front());
+  style.exemplars[0].luminance = 0.5, style.exemplars[1].luminance = 0.1;
+  style.exemplars[1].picture = Noise(kSize, 5);
+  style.transfer.luminance_weight = 0.3f;
+  const auto lit = std::make_shared<const GuideSet>(bright);
+  const Painted right = Paint(style, *lit);
+  const TradeReference reference(lit, right.style, 0.0, 0);
+  EXPECT_LT(Measured(reference, right).energy.mean, 1e-9);
+  GuideSet dark = bright;
+  for (float& value : dark.Plane(Layer::kLuminance)) value = 0.1f;
+  const Painted wrong = Paint(style, dark);  // all in the second exemplar's paint
+  const double expected = 10.0 * std::pow(0.3 * (0.5 - 0.1), 2);
+  EXPECT_NEAR(Measured(reference, wrong).energy.mean, expected, 1e-5 * expected)
+      << "noise of random colours has no nearer patch";
+}
+
+}  // namespace
+}  // namespace scumble
