@@ -81,7 +81,7 @@ std::string Choices(const TradeReport& report) {
 
 // What is chosen is shown by style sheet alone, so that it works without scripts.
 std::string ChoiceStyle(const TradeReport& report) {
-  std::string css = "@supports selector(:has(*)) {\n.plot { display: none; }\n";
+  std::string css = "@supports selector(:has(*)) {\n.plot, .plot.first { display: none; }\n";
   for (std::size_t t = 0; t < std::size(kTimes); ++t) {
     for (std::size_t e = 0; e < std::size(kErrors); ++e) {
       css += fmt::format(
