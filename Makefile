@@ -1,6 +1,6 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo test test-asan test-tsan fuzz bench bench-cycles exemplars traits scenes gallery format clean
+.PHONY: help build demo test test-asan test-tsan fuzz bench bench-cycles tradeoff exemplars traits scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -50,6 +50,10 @@ bench: ## measure speed against its targets, one table (docs/performance.md); BE
 bench-cycles: build ## our speed beside Cycles' on the same scene, into out/bench-cycles/
 	@.ci/install test
 	@/usr/bin/python3 bench/cycles_bench.py --scumble build/scumble $(BENCH_ARGS)
+
+tradeoff: build ## speed against accuracy on the sample scenes, into out/tradeoff/; WRITE_DOCS=1 puts it into docs/tradeoff.md
+	@.ci/install test
+	@/usr/bin/python3 bench/tradeoff.py $(if $(WRITE_DOCS),--write-docs) $(TRADEOFF_ARGS)
 
 exemplars: ## repaint the bundled styles (libmypaint), their thumbnails and docs/exemplars.md
 	@.ci/install test
