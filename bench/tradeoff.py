@@ -109,7 +109,8 @@ def parse():
     parser.add_argument("--size", default="960x540", help="of the pictures")
     parser.add_argument("--only", help="samples with commas between; left out: " + ", ".join(SAMPLES))
     parser.add_argument("--show", action="store_true", help="measure nothing: use the reports that are there")
-    parser.add_argument("--write-docs", action="store_true", help="put charts and tables into docs/tradeoff.md")
+    parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="folder of the page")
+    parser.add_argument("--write-docs", action="store_true", help="put charts and tables into the page")
     parser.add_argument("verb_options", nargs="*", metavar="OPTION", help="after --: options of scumble tradeoff")
     options = parser.parse_args()
     options.only = options.only.split(",") if options.only else list(SAMPLES)
@@ -122,7 +123,7 @@ def parse():
 
 def main():
     options = parse()
-    page = ROOT / "docs/tradeoff.md"
+    page = options.docs / "tradeoff.md"
     for name in options.only:
         if not options.show:
             say("measuring: " + name)
@@ -134,7 +135,7 @@ def main():
             report = json.loads(file.read_text(encoding="utf-8"))
             text = replaced(page, page.read_text(encoding="utf-8"), name, "make tradeoff", section(name, report))
             page.write_text(text, encoding="utf-8")
-            shutil.copyfile(options.output / name / "chart.svg", ROOT / ("docs/gallery/tradeoff-%s.svg" % name))
+            shutil.copyfile(options.output / name / "chart.svg", options.docs / ("gallery/tradeoff-%s.svg" % name))
         print(options.output / name / "report.html")
 
 
