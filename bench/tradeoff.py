@@ -32,7 +32,8 @@ NONE = "–"
 
 def measure(options, name):
     scene, style, _ = SAMPLES[name]
-    command = [options.build / "scumble", "tradeoff", ROOT / "scenes" / (scene + ".glb"), "--style", style,
+    # The scene without its folder's folder: the report says how to repeat it, on any machine.
+    command = [options.build / "scumble", "tradeoff", "scenes/%s.glb" % scene, "--style", style,
                "--size", options.size, "-o", options.output / name] + options.verb_options
     # The verb's own table and progress go where ours would.
     if subprocess.run([str(part) for part in command], cwd=ROOT).returncode != 0:
@@ -94,8 +95,9 @@ def section(name, report):
     scene, style, what = SAMPLES[name]
     front = [next(way for way in report["ways"] if way["way"] == each) for each in report["front"]]
     own = [way for way in report["ways"] if way["chosen"] and not way["front"]]
-    lines = ["### %s in %s" % (scene, style), "", "*%s.* %d ways at %d×%d; %s; medians of %d runs." % (
-        what.capitalize(), len(report["ways"]), report["width"], report["height"], report["machine"], report["repeats"]), ""]
+    lines = ["### %s in %s" % (scene, style), "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
+        what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "", report["width"],
+        report["height"], report["machine"], report["repeats"]), ""]
     lines += ["![time against error of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]
     lines += ["The front%s:" % (", and below it the style as it is" if own else ""), ""] + table(front + own)
     lines += ["", "<details><summary>All ways</summary>", ""] + table(by_axis(report["ways"]))

@@ -25,7 +25,6 @@ from marked_pages import replaced
 
 ROOT = Path(__file__).resolve().parent.parent
 PAIRS = ROOT / "bench/tradeoff_pairs.json"
-REPORTS = ROOT / "out/tradeoff"
 # The piece that is shown, and the paint it is compared with, at the size at which it was used.
 SAMPLES = {
     "suzanne-oil": ("560x360+200+80", ["oil/lit.png"]),
@@ -35,8 +34,8 @@ SAMPLES = {
 FIGURES = ("both", "energy")
 
 
-def ways_of(name):
-    report = json.loads((REPORTS / name / "tradeoff.json").read_text(encoding="utf-8"))
+def ways_of(reports, name):
+    report = json.loads((reports / name / "tradeoff.json").read_text(encoding="utf-8"))
     return {way["way"]: way for way in report["ways"] if way["both"] and way["picture"]}, report["front"]
 
 
@@ -60,10 +59,10 @@ def disputed(ways):
     return max(itertools.combinations(ways, 2), key=dispute)
 
 
-def choose():
+def choose(reports):
     pairs = []
     for name in SAMPLES:
-        ways, front = ways_of(name)
+        ways, front = ways_of(reports, name)
         for rule, pair in (("neighbours on the front", neighbours(ways, front)), ("`both` and `energy` disagree", disputed(ways))):
             if hashlib.sha256((name + rule + "".join(pair)).encode()).digest()[0] % 2:
                 pair = pair[::-1]
@@ -84,9 +83,9 @@ def panel(file, piece, output):
     return output
 
 
-def draw_pair(number, pair, folder):
+def draw_pair(reports, number, pair, folder):
     """Exemplar, A and B side by side."""
-    ways, _ = ways_of(pair["sample"])
+    ways, _ = ways_of(reports, pair["sample"])
     piece, exemplars = SAMPLES[pair["sample"]]
     parts, width = [], 360 // len(exemplars)
     for i, exemplar in enumerate(exemplars):
@@ -94,7 +93,7 @@ def draw_pair(number, pair, folder):
         draw([ROOT / "exemplars" / exemplar, "--resize", "512x512", "--ch", "R,G,B", "-o", half])
         parts.append(panel(half, "%dx360+%d+60" % (width, 76 + i * width), folder / ("paint%d.png" % i)))
     for side in "AB":
-        picture = REPORTS / pair["sample"] / "pictures" / ways[pair[side]]["picture"]
+        picture = reports / pair["sample"] / "pictures" / ways[pair[side]]["picture"]
         parts.append(panel(picture, piece, folder / ("side%s.png" % side)))
     row = folder / ("pair%d.png" % number)
     draw(["--create", "1504x396", "3", "--addc", "0.97,0.97,0.97", "-o", row])
@@ -112,12 +111,12 @@ def ranked(ways, pair, figure):
     return "A" if mean(ways[pair["A"]], figure) < mean(ways[pair["B"]], figure) else "B"
 
 
-def table(pairs):
+def table(reports, pairs):
     lines = ["| pair | | A | B | `both` of A, B | `energy` of A, B | nearer by `both` | by `energy` | by eye | why |",
              "|---|---|---|---|---|---|---|---|---|---|"]
     agreed = dict.fromkeys(FIGURES, 0)
     for number, pair in enumerate(pairs, 1):
-        ways, _ = ways_of(pair["sample"])
+        ways, _ = ways_of(reports, pair["sample"])
         if pair["eye"] not in ("A", "B"):
             sys.exit("%s: pair %d has no verdict: look at it, and write A or B at \"eye\"" % (PAIRS, number))
         cells = ["%d" % number, "%s, %s" % (pair["sample"], pair["rule"]), pair["A"], pair["B"]]
@@ -143,17 +142,18 @@ def sheet(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--choose", action="store_true", help="pick the pairs anew and forget the verdicts")
+    parser.add_argument("--reports", type=Path, default=ROOT / "out/tradeoff", help="folder that make tradeoff wrote to")
     parser.add_argument("--write-docs", action="store_true", help="put sheet and table into docs/tradeoff.md")
     options = parser.parse_args()
     if options.choose:
-        choose()
-    folder = REPORTS / "pairs"
+        choose(options.reports)
+    folder = options.reports / "pairs"
     folder.mkdir(parents=True, exist_ok=True)
     pairs = json.loads(PAIRS.read_text(encoding="utf-8"))
-    rows = [draw_pair(number, pair, folder) for number, pair in enumerate(pairs, 1)]
+    rows = [draw_pair(options.reports, number, pair, folder) for number, pair in enumerate(pairs, 1)]
     if options.write_docs:
         page = ROOT / "docs/tradeoff.md"
-        page.write_text(replaced(page, page.read_text(encoding="utf-8"), "pairs", "bench/tradeoff_pairs.py", table(pairs)),
+        page.write_text(replaced(page, page.read_text(encoding="utf-8"), "pairs", "bench/tradeoff_pairs.py", table(options.reports, pairs)),
                         encoding="utf-8")
         sheet(rows)
 
