@@ -35,7 +35,7 @@ std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& 
   const std::size_t place = static_cast<std::size_t>(own - report.ways.begin());
   std::string text = "The style as it is takes " + Costs(*own);
   if (std::find(front.begin(), front.end(), place) != front.end()) return text + ", and is on the front.";
-  text += ". Faster, and no farther from the exemplar:";
+  text += ". Faster, and no farther from the exemplar by “both”:";
   const char* comma = " ";
   for (const std::size_t i : front) {
     const TradeMeasure& way = report.ways[i];

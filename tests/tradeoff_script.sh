@@ -3,12 +3,15 @@
 # nowhere else; showing it again changes nothing. What is not there is said.
 # Usage: tradeoff_script.sh SOURCE_FOLDER BUILD_FOLDER
 set -eu
-source=$1
-build=$2
+source=$1 build=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-fails() { echo "$1"; cat "$folder/out"; exit 1; }
+fails() {
+  printf '%s\n' "$1"
+  cat "$folder/out"
+  exit 1
+}
 tradeoff() {
   /usr/bin/python3 "$source/bench/tradeoff.py" --build "$build" --output "$folder/made" --docs "$folder" --size 96x54 "$@" \
     > "$folder/out" 2>&1
