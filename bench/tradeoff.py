@@ -20,21 +20,24 @@ from marked_pages import replaced
 from runs import say
 
 ROOT = Path(__file__).resolve().parent.parent
-# A scene and a style, what is special about it, and options of its own.
+# A scene and a style, what is special about it, the size, and options of its own.
 SAMPLES = {
-    "suzanne-oil": ("suzanne", "oil", "strokes of paint, normals alone"),
-    "stilllife-plein-air": ("stilllife", "plein-air", "three exemplars that the light chooses from"),
-    "toys-graphite": ("toys", "graphite", "hatching, normals alone"),
-    "snail-scene-oil": ("snail", "scene-oil", "a painted scene whose light is matched, five guides"),
+    "suzanne-oil": ("suzanne", "oil", "strokes of paint, normals alone", "960x540", []),
+    "stilllife-plein-air": ("stilllife", "plein-air", "three exemplars that the light chooses from", "960x540", []),
+    "toys-graphite": ("toys", "graphite", "hatching, normals alone", "960x540", []),
+    "snail-scene-oil": ("snail", "scene-oil", "a painted scene whose light is matched, four guides", "960x540", []),
+    # 1024 samples take their time.
+    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light matched too, which needs chance: samples alone",
+                            "480x270", ["--set", "transfer.guide_weights.lpe.LDDE=1", "--only", "samples,exact"]),
 }
 NONE = "–"
 
 
 def measure(options, name):
-    scene, style, _ = SAMPLES[name]
+    scene, style, _, size, own_options = SAMPLES[name]
     # The scene without its folder's folder: the report says how to repeat it, on any machine.
     command = [options.build / "scumble", "tradeoff", "scenes/%s.glb" % scene, "--style", style,
-               "--size", options.size, "-o", options.output / name] + options.verb_options
+               "--size", options.size or size, "-o", options.output / name] + own_options + options.verb_options
     # The verb's own table and progress go where ours would.
     if subprocess.run([str(part) for part in command], cwd=ROOT).returncode != 0:
         sys.exit("%s: scumble tradeoff failed, see above" % name)
@@ -92,10 +95,10 @@ def by_axis(ways):
 
 
 def section(name, report):
-    scene, style, what = SAMPLES[name]
+    scene, style, what = SAMPLES[name][:3]
     front = [next(way for way in report["ways"] if way["way"] == each) for each in report["front"]]
     own = [way for way in report["ways"] if way["chosen"] and not way["front"]]
-    lines = ["### %s in %s" % (scene, style), "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
+    lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
         what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "", report["width"],
         report["height"], report["machine"], report["repeats"]), ""]
     lines += ["![time against error of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]
@@ -108,7 +111,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder that CMake built in")
     parser.add_argument("--output", type=Path, default=ROOT / "out/tradeoff", help="folder for the reports")
-    parser.add_argument("--size", default="960x540", help="of the pictures")
+    parser.add_argument("--size", help="of the pictures; left out: as large as the page has them")
     parser.add_argument("--only", help="samples with commas between; left out: " + ", ".join(SAMPLES))
     parser.add_argument("--show", action="store_true", help="measure nothing: use the reports that are there")
     parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="folder of the page")
