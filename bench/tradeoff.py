@@ -26,9 +26,9 @@ SAMPLES = {
     "stilllife-plein-air": ("stilllife", "plein-air", "three exemplars that the light chooses from", "960x540", []),
     "toys-graphite": ("toys", "graphite", "hatching, normals alone", "960x540", []),
     "snail-scene-oil": ("snail", "scene-oil", "a painted scene whose light is matched, four guides", "960x540", []),
-    # 1024 samples take their time.
-    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light matched too, which needs chance: samples alone",
-                            "480x270", ["--set", "transfer.guide_weights.lpe.LDDE=1", "--only", "samples,exact"]),
+    # Small, as 1024 samples take their time.
+    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights", "320x180", ["--set", "transfer.guide_weights.lpe.LDDE=1", "--set", "transfer.guide_weights.lpe.LSE=0",
+                                        "--only", "samples,exact"]),
 }
 NONE = "–"
 
