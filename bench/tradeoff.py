@@ -27,15 +27,16 @@ SAMPLES = {
     "toys-graphite": ("toys", "graphite", "hatching, normals alone", "960x540", []),
     "snail-scene-oil": ("snail", "scene-oil", "a painted scene whose light is matched, four guides", "960x540", []),
     # Small, as 1024 samples take their time.
-    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights", "320x180", ["--set", "transfer.guide_weights.lpe.LDDE=1", "--set", "transfer.guide_weights.lpe.LSE=0",
-                                        "--only", "samples,exact"]),
+    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights", "320x180",
+                            ["--set", "transfer.guide_weights.lpe.LDDE=1", "--set", "transfer.guide_weights.lpe.LSE=0",
+                             "--only", "samples,exact"]),
 }
 NONE = "–"
 
 
 def measure(options, name):
     scene, style, _, size, own_options = SAMPLES[name]
-    # The scene without its folder's folder: the report says how to repeat it, on any machine.
+    # The scene's path as it is anywhere: the report says how to repeat it, on any machine.
     command = [options.build / "scumble", "tradeoff", "scenes/%s.glb" % scene, "--style", style,
                "--size", options.size or size, "-o", options.output / name] + own_options + options.verb_options
     # The verb's own table and progress go where ours would.
