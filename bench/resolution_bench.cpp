@@ -92,8 +92,8 @@ void Measure(const std::string& scene, const std::string& style_name) {
   std::vector<Way> ways;
   for (const int step : {1, 2, 4, 8})
     ways.push_back({"match_step " + std::to_string(step), &full.guides, step, full.ms});
-  ways.push_back({"--upsample 2", &upsampled[0].guides, 2, upsampled[0].ms});
-  ways.push_back({"--upsample 4", &upsampled[1].guides, 4, upsampled[1].ms});
+  ways.push_back({"--upsample 2, match_step 2", &upsampled[0].guides, 2, upsampled[0].ms});
+  ways.push_back({"--upsample 4, match_step 4", &upsampled[1].guides, 4, upsampled[1].ms});
   TransferScratch scratch;
   Picture picture;
   for (int run = 0; run < kRuns; ++run) {  // in turns, so that what else the machine does meets all of them

@@ -72,9 +72,18 @@ Expected<std::vector<std::string>> ExportCommand(const std::string& path, const 
 }
 
 Expected<Scene> LoadExport(const fs::path& exported, const std::string& path) {
-  Expected<Scene> scene = LoadScene(exported);
+  Expected<Scene> scene = LoadScene(exported, TextureLoading::kWhenNeeded);
   if (!scene) return Error{scene.error().kind, Renamed(scene.error().message, exported.string(), path)};
   scene->name = path;
+  for (std::shared_ptr<const EncodedTexture>& texture : scene->encoded_textures) {
+    auto renamed = std::make_shared<EncodedTexture>(*texture);
+    renamed->decode = [decode = texture->decode, from = exported.string(), path]() -> Expected<Picture> {
+      Expected<Picture> picture = decode();
+      if (!picture) return Error{picture.error().kind, Renamed(picture.error().message, from, path)};
+      return picture;
+    };
+    texture = std::move(renamed);
+  }
   return scene;
 }
 

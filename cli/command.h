@@ -29,6 +29,7 @@ struct Globals {
   bool quiet = false;
   bool json = false;
   int threads = 0;
+  std::uint64_t max_memory = 0;    // bytes, of --max-memory; 0: what the machine has
   std::shared_ptr<Timing> timing;  // null unless --timing was given, which not every verb takes
 };
 

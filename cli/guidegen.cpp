@@ -8,7 +8,9 @@
 #include <span>
 
 #include "cli/command.h"
+#include "cli/cost.h"
 #include "cli/json_text.h"
+#include "cli/memory_need.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/run_files.h"
@@ -16,6 +18,7 @@
 #include "cli/sequence.h"
 #include "cli/style_set.h"
 #include "cli/timing.h"
+#include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/whole_output.h"
 
@@ -45,18 +48,17 @@ FrameReport ReportOf(const GuidegenVerb& verb, const std::string& output, const 
     json["width"] = guides.width();
     json["height"] = guides.height();
     json["layers"] = guides.layers().ToString();
-    json["rays"] = {{"primary", made.rays.primary},
-                    {"coverage", made.rays.coverage},
-                    {"shadow", made.rays.shadow},
-                    {"bounce", made.rays.bounce}};
+    CostToJson(made.cost, json);
     if (made.samples > 0 || IsOpenEnded(verb.scene)) json["samples"] = made.samples;
     if (made.noise > 0.0) json["noise"] = made.noise;
   }
   if (!made.plan.empty()) json["plan"] = PlanToJson(made.plan);
+  json["memory"] = MemoryToJson(made.memory);
   for (const auto& [name, ms] : made.times) json["ms"][name] = ms;
 
-  if (verb.scene.explain && !made.plan.empty()) report.text = PlanToText(made.plan);
+  if (verb.scene.explain && !made.plan.empty()) report.text = PlanToText(made.plan) + MemoryToText(made.memory);
   if (output.empty()) return report;
+  if (!report.text.empty()) report.text += CostToText(made.cost);
   std::string steps;
   for (const auto& [name, ms] : made.times) steps += fmt::format("{}{} {:.1f}", steps.empty() ? "" : ", ", name, ms);
   std::string samples;
@@ -90,16 +92,19 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
     SceneGuides report;  // what there is to say; the pixels stay where they are
-    report.times = guides->times, report.plan = guides->plan, report.rays = guides->rays;
+    report.times = guides->times, report.plan = guides->plan, report.cost = guides->cost;
+    report.memory = guides->memory;
     report.samples = guides->samples, report.noise = guides->noise;
     NameStylesInPlan(report.plan, styles);
     return FrameWrite([&verb, &write, output, kept = scene.Keep(),
                        told = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
       Stopwatch watch;
+      const std::uint64_t before = BytesWrittenByThisThread();
       SCUMBLE_RETURN_IF_ERROR(WriteGuides(output, kept->guides, write));
       const double ms = watch.Lap();
       told->times.emplace_back("write", ms);
       FrameReport done = ReportOf(verb, output, kept->guides, *told);
+      done.json["work"]["bytes_written"] = BytesWrittenByThisThread() - before;
       done.write_ms = ms;
       return done;
     });
@@ -147,6 +152,10 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
     SCUMBLE_ASSIGN(verb.output, NameOfOne(verb.output, verb.scene.blender.frame));
   }
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(verb, sequence, styles));
+  verb.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    if (behind) AddGuidesBehind(size, layers, need);
+    AddGuideFile(size, layers, need);
+  };
   if (sequence && !plan_only) return GuidegenSequence(verb, *sequence, layers_for, motion, styles, write, globals);
   if (sequence && IsBlenderScene(verb.scene.scene)) verb.scene.blender.frame = sequence->frames.front();
   ProgressBar bar("guidegen", globals.quiet);
@@ -169,10 +178,12 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
     EndStage(globals, "write");
   }
   FrameReport report = ReportOf(verb, verb.output, made.guides, made);
+  if (!plan_only) report.json["work"]["bytes_written"] = BytesWrittenByThisThread();
   if (globals.timing) {
     report.json["timing"] = globals.timing->ToJson();
     report.text += globals.timing->ToText();
   }
+  if (!plan_only) report.json["memory"]["peak_bytes"] = PeakMemory();
   Print(globals.json ? JsonText(report.json) : report.text);
   return ExitCode::kOk;
 }
@@ -207,6 +218,7 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   AddSequenceOptions(*sub, verb->sequence);
   AddTimingOption(*sub, globals);
+  AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunGuidegenVerb(*verb, globals); }; });
 }

@@ -12,6 +12,7 @@
 #include "cli/style_set.h"
 #include "cli/transfer_run.h"
 #include "guidegen/load_scene.h"
+#include "guidegen/scene_textures.h"
 #include "io/guide_file.h"
 
 namespace scumble {
@@ -50,7 +51,9 @@ Expected<Json> DescribeGuides(const std::string& path) {
 Json DescribeScene(const Scene& scene) {
   std::size_t triangles = 0;
   for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangles.size();
-  Json json{{"kind", "scene"}, {"triangles", triangles}, {"textures", scene.textures.size()}};
+  const auto textures = std::count_if(scene.textures.begin(), scene.textures.end(),
+                                      [](const Picture& picture) { return !picture.empty(); });
+  Json json{{"kind", "scene"}, {"triangles", triangles}, {"textures", textures}};
   const auto names = [&](const char* key, const auto& items, auto name_of) {
     json[key] = Json::array();
     for (const auto& item : items) {
@@ -89,7 +92,8 @@ Expected<Json> DescribeSceneFile(const std::string& path) {
 }
 
 Expected<Json> DescribeBlenderScene(const std::string& path, const BlenderOptions& blender, const Globals& globals) {
-  SCUMBLE_ASSIGN(const Scene scene, LoadBlenderScene(path, blender, globals));
+  SCUMBLE_ASSIGN(Scene scene, LoadBlenderScene(path, blender, globals));
+  SCUMBLE_RETURN_IF_ERROR(DecodeAllTextures(scene));
   Json json = DescribeScene(scene);
   json["warnings"] = scene.warnings;
   return json;

@@ -7,6 +7,8 @@
 #include <charconv>
 #include <system_error>
 
+#include "cli/memory_need.h"
+#include "cli/needed_textures.h"
 #include "cli/sequence.h"
 #include "cli/timing.h"
 #include "io/guide_file.h"
@@ -176,7 +178,7 @@ Expected<Scene> LoadAnyScene(const SceneOptions& options, const Globals& globals
   BlenderOptions blender = options.blender;
   blender.wants_start = !options.view.empty();
   if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, globals, film);
-  return LoadScene(options.scene);
+  return LoadScene(options.scene, TextureLoading::kWhenNeeded);
 }
 
 }  // namespace
@@ -268,7 +270,7 @@ std::string GuideSettings(const SceneOptions& options) {
   return text;
 }
 
-Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const NextFrame* next,
+Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next,
                                 const SceneOptions& options, const LayerSet& layers, const Globals& globals,
                                 const Progress& progress, bool plan_only) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
@@ -289,19 +291,29 @@ Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const 
   guidegen.time_budget_seconds = options.time_budget_seconds;
   if (options.samples_given) guidegen.max_samples = options.samples;
   result.plan = PlanGuides(scene, guidegen);
-  if (plan_only) return result;
+  AddProgram(globals.threads, result.memory);
+  AddGuides(size, layers, options, result.memory);
+  if (options.more_memory) options.more_memory(size, layers, result.memory);
+  if (plan_only) return AddScene(scene, result.memory), result;
 
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(result.cost, DecodeNeededTextures(scene, options, layers));
+  const double textures_ms = watch.Lap();
+  AddScene(scene, result.memory);
   EndStage(globals, "scene");
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, globals, "take a smaller --size, or fewer layers"));
   SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
                                                : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);
   result.times.emplace_back("rays", rendered.render_ms);
   result.guides = std::move(rendered.guides);
-  result.rays = rendered.rays, result.samples = rendered.samples, result.noise = rendered.noise;
+  result.cost.rays = rendered.rays, result.cost.work = rendered.work;
+  result.samples = rendered.samples, result.noise = rendered.noise;
   if (options.half) RoundColorLayersToHalf(result.guides);
   result.guides.attributes["scumble:settings"] = GuideSettings(options);
   if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene);
   EndStage(globals, "guides", result.times);
+  if (result.cost.textures_decoded > 0) result.times.insert(result.times.begin(), {"textures", textures_ms});
   return result;
 }
 

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,6 +13,7 @@
 
 #include "cli/blender.h"
 #include "cli/command.h"
+#include "cli/memory_limit.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "image/stopwatch.h"
@@ -66,6 +67,8 @@ struct SceneOptions {
   double noise = 0.0;
   double time_budget_seconds = 0.0;
   std::uint64_t seed = 0;
+  // What the verb takes besides the guides, told before any of it is taken; null: nothing.
+  std::function<void(const Size& size, const LayerSet& layers, MemoryNeed& need)> more_memory;
   bool key_light = true;  // let one shine where the file has no light and a layer needs some
 };
 // For guides with light paths, which no style reads.
@@ -78,11 +81,20 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options);
 // Milliseconds by step, in the order they happened.
 using StepTimes = std::vector<std::pair<std::string, double>>;
 
+// What guides took, counted.
+struct SceneCost {
+  RayCounts rays;
+  WorkCounts work;
+  int textures_decoded = 0;
+  std::size_t texture_bytes = 0;  // of those
+};
+
 struct SceneGuides {
   GuideSet guides;
   std::vector<PlanItem> plan;
+  MemoryNeed memory;  // of the whole run
   StepTimes times;
-  RayCounts rays;
+  SceneCost cost;
   int samples = 0;     // of each pixel, in light-path layers
   double noise = 0.0;  // estimated, where noise or a time budget was asked for
 };
@@ -90,7 +102,8 @@ struct SceneGuides {
 // Whether the name has a scene's ending.
 bool IsScene(const std::string& path);
 
-// Loads the scene, a .blend by way of Blender; warns of what the scene asks for in vain.
+// Loads the scene, a .blend by way of Blender; warns of what the scene asks for in vain. Its textures are decoded by
+// CastScene, if at all.
 Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film = nullptr);
 
 // Mistakes in the options come to light before a large scene is loaded.
@@ -102,8 +115,9 @@ Expected<PreparedView> ViewScene(Scene& scene, const SceneOptions& options, cons
 // What the guides' attribute scumble:settings says of how they are seen, for --resume to compare.
 std::string GuideSettings(const SceneOptions& options);
 
-// Casts the guides of a scene that is ready. The layer motion wants `next`, which may be null otherwise.
-Expected<SceneGuides> CastScene(const Scene& scene, const Camera& camera, const NextFrame* next,
+// Casts the guides of a scene that is ready; what they need of its textures is decoded and stays in it. The layer motion
+// wants `next`, which may be null otherwise.
+Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next,
                                 const SceneOptions& options, const LayerSet& layers, const Globals& globals,
                                 const Progress& progress, bool plan_only);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/needed_textures.h"
+
 namespace scumble {
 
 namespace {
@@ -51,7 +53,7 @@ Status SceneFrames::StartBlender(std::span<const int> frames) {
 
 Status SceneFrames::StartFile(const Progress& progress) {
   Stopwatch watch;
-  SCUMBLE_ASSIGN(film_, AnimatedScene::Load(options_.scene, {options_.animation}));
+  SCUMBLE_ASSIGN(film_, AnimatedScene::Load(options_.scene, {options_.animation, TextureLoading::kWhenNeeded}));
   SCUMBLE_ASSIGN(now_, film_->SceneAt(0.0));
   WarnOnce(now_);
   SCUMBLE_ASSIGN(layers_, layers_for_(WishesOf(film_->objects(), film_->rest())));
@@ -65,8 +67,10 @@ Status SceneFrames::StartFile(const Progress& progress) {
         if (now_.cameras[i].name == view.camera.name) by_file_ = static_cast<int>(i);
       }
     }
-    if (motion_) next_ = now_, next_.textures.clear();
-    load_ms_ = load_ms;
+    if (motion_) next_ = now_, next_.textures.clear(), next_.encoded_textures.clear();
+    // Here, so that a picture which is missing ends the sequence, and not each of its frames.
+    SCUMBLE_ASSIGN(decoded_, DecodeNeededTextures(now_, options_, layers_));
+    load_ms_ = load_ms + watch.Lap();
     return Ok();
   }
   const NextFrame next{now_, camera_};
@@ -85,7 +89,7 @@ Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress
 }
 
 Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progress) {
-  if (used_) guides_->times.clear(), guides_->plan.clear();
+  if (used_) guides_->times.clear(), guides_->plan.clear(), guides_->cost = {};
   used_ = false;
   if ((!blender_ && !film_) || frame_ == frame) return guides_.get();
   frame_.reset();
@@ -111,6 +115,9 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
   guides.times.insert(guides.times.begin(), {"move", move_ms});
   if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
   load_ms_.reset();
+  guides.cost.textures_decoded += decoded_.textures_decoded;
+  guides.cost.texture_bytes += decoded_.texture_bytes;
+  decoded_ = {};
   return guides;
 }
 
@@ -132,7 +139,7 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
   PreparedView following_view;
   if (motion_) {
     SCUMBLE_ASSIGN(const Scene* const after, BlenderFrame(frame + 1));
-    following = *after, following->textures.clear();
+    following = *after, following->textures.clear(), following->encoded_textures.clear();
     SCUMBLE_ASSIGN(following_view, ViewBlender(*following, blender_->film(), options_, layers));
   }
   std::optional<NextFrame> next;
@@ -195,7 +202,7 @@ Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersF
 
 Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
                                        const Globals& globals, const Progress& progress, bool plan_only) {
-  SCUMBLE_ASSIGN(const SceneAtRest rest, OpenSceneAtRest(options, layers_for, motion, globals, plan_only));
+  SCUMBLE_ASSIGN(SceneAtRest rest, OpenSceneAtRest(options, layers_for, motion, globals, plan_only));
   SCUMBLE_ASSIGN(SceneGuides result,
                  CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, globals, progress, plan_only));
   TellRate(options, rest.film, result.guides);

@@ -37,11 +37,11 @@ class SceneFrames {
   Status Start(std::span<const int> frames, const Progress& progress);
 
   // The guides of one of the frames, to be asked for in their order; the same one may be asked for again. What the
-  // scene has to say (cameras, lights, warnings) is said once. Plan and times are those of the work that this call did.
+  // scene has to say (cameras, lights, warnings) is said once. Plan, times and cost are those of the work that this call did.
   // Valid until the next call.
   Expected<const SceneGuides*> At(int frame, const Progress& progress);
 
-  // The same, for a look at a frame that At will be asked for next; plan and times are kept for it.
+  // The same, for a look at a frame that At will be asked for next; plan, times and cost are kept for it.
   Expected<const SceneGuides*> Ahead(int frame, const Progress& progress);
 
   // What At has handed out last, to keep beyond the next call: only its guides, the rest may change.
@@ -68,6 +68,7 @@ class SceneFrames {
   std::optional<AnimatedScene> film_;  // none: the scene stands still, or is Blender's
   LayerSet layers_;
   std::optional<double> load_ms_;  // that no frame has told of
+  SceneCost decoded_;              // nor of these textures
   FrameRate rate_;
   Scene now_, next_;           // as they are posed; `next_` for the layer motion, without textures
   Camera camera_;              // where the file's own are not looked through

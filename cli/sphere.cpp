@@ -10,6 +10,7 @@
 
 #include "cli/command.h"
 #include "cli/json_text.h"
+#include "cli/memory_need.h"
 #include "cli/options.h"
 #include "cli/rectify.h"
 #include "guidegen/guidegen.h"
@@ -43,14 +44,17 @@ struct SphereVerb {
 // As --light takes it.
 std::string KeyLightText() { return fmt::format("{:g},{:g}", kKeyLightAzimuth, kKeyLightElevation); }
 
+Expected<LayerSet> LayersOf(const SphereVerb& verb) {
+  SCUMBLE_ASSIGN(const LayerSet more, ParseLayers(verb.layers));
+  return LayerSet{Layer::kPosition, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}.Add(more);
+}
+
 Expected<KitLight> RenderLight(const SphereVerb& verb, const std::string& text, const Globals& globals) {
   SCUMBLE_ASSIGN(const auto angles, ParseNumbers(text, 2, 2, "--light"));
   if (angles[1] < -90.0 || angles[1] > 90.0) return UsageError("--light " + text + ": elevation must be -90 to 90");
   SphereOptions options;
   options.size = verb.size;
-  options.layers = {Layer::kPosition, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow};
-  SCUMBLE_ASSIGN(const LayerSet more, ParseLayers(verb.layers));
-  options.layers.Add(more);
+  SCUMBLE_ASSIGN(options.layers, LayersOf(verb));
   options.aa = verb.aa;
   options.light_azimuth = angles[0], options.light_elevation = angles[1];
   options.threads = globals.threads;
@@ -168,6 +172,11 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
   std::vector<std::string> texts = verb.lights;
   if (texts.empty()) texts = {KeyLightText()};
   SCUMBLE_RETURN_IF_ERROR(CheckNames(verb, texts.size()));
+  MemoryNeed memory;
+  AddProgram(globals.threads, memory);
+  SCUMBLE_ASSIGN(const LayerSet layers, LayersOf(verb));
+  AddKit(verb.size, texts.size(), layers, options.ora, memory);
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(memory, globals, "take a smaller --size, fewer --light, or --only png"));
   std::vector<KitLight> lights;
   for (const std::string& text : texts) {
     SCUMBLE_ASSIGN(KitLight light, RenderLight(verb, text, globals));
@@ -180,6 +189,8 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
     for (const auto& file : files) json["files"].push_back(file.string());
     json["size"] = verb.size;
     json["dpi"] = verb.dpi;
+    json["memory"] = MemoryToJson(memory);
+    json["memory"]["peak_bytes"] = PeakMemory();
     if (page) json["page"] = {{"name", page->name}, {"width_mm", page->width_mm}, {"height_mm", page->height_mm}};
     Print(JsonText(json));
   } else {
@@ -250,6 +261,7 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FOLDER")
       ->required();
   AddRectifyOptions(*sub, verb->rectify);
+  AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, sub, &globals, &chosen] {
     chosen = [verb, sub, &globals]() -> Expected<ExitCode> {

@@ -6,9 +6,11 @@
 #include <span>
 #include <utility>
 
+#include "cli/budget.h"
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/json_text.h"
+#include "cli/memory_need.h"
 #include "cli/picture_settings.h"
 #include "cli/progress_bar.h"
 #include "cli/run_files.h"
@@ -108,6 +110,7 @@ struct TransferVerb {
   std::string camera;
   StyleOptions style;
   PictureOptions picture;
+  BudgetOptions budget;
   SequenceOptions sequence;
 };
 
@@ -131,6 +134,34 @@ Status RequireOfFile(StyleSet& styles, const std::string& file, GuideReadOptions
   return Ok();
 }
 
+// What painting a frame takes besides its guides.
+PictureWork WorkOf(const StyleSet& styles, const PictureOptions& picture, const Size& guides, const LayerSet& layers,
+                   bool is_sequence, const Globals& globals) {
+  const bool has_map = styles.styles.size() > 1 || !styles.assigned.empty();
+  return {styles.styles, has_map, guides, layers, is_sequence, globals.json || !picture.show.empty(), globals.threads};
+}
+
+// Before any of it is taken. A file that cannot be read takes nothing; reading it says why.
+Expected<MemoryNeed> CheckMemoryOfFile(const TransferVerb& verb, const std::string& file, const StyleSet& styles,
+                                       const GuideReadOptions& read, bool is_sequence, const Globals& globals) {
+  MemoryNeed need;
+  AddProgram(globals.threads, need);
+  if (const Expected<GuideFileInfo> info = InspectGuides(file)) {
+    AddGuidesRead(*info, read, need);
+    AddPicture(WorkOf(styles, verb.picture, {info->width, info->height}, read.required, is_sequence, globals), verb.picture,
+               need);
+  }
+  const std::string mend = verb.picture.upsample > 1 ? "take a smaller --upsample, or smaller guides" : "take smaller guides";
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals, mend));
+  return need;
+}
+
+nlohmann::ordered_json EndOfSequence(StyleSet& styles, const PictureOptions& picture) {
+  nlohmann::ordered_json json = SayHowAssigned(styles);
+  json.update(picture.chosen);
+  return json;
+}
+
 Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& sequence, StyleSet& styles,
                                     const GuideReadOptions& read, const Globals& globals) {
   SCUMBLE_ASSIGN(const FrameName guides_name, FrameName::Parse(verb.guides));
@@ -138,18 +169,20 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   PictureSequence pictures(styles, verb.picture, globals);
   std::optional<GuideSet> guides;
   std::string guides_file;  // that `guides` are from
+  MemoryNeed memory;        // with them
   const GuidesAt guides_at = [&](int frame, const Progress&) -> Expected<FrameGuides> {
     const std::string file = guides_name.At(frame);
-    if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}}};
+    if (guides && file == guides_file) return FrameGuides{&*guides, {file, {}, {}, memory}};
     guides.reset();
     GuideReadOptions one = read;
     SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, one));
     one.blender_camera = camera.At(frame);
+    SCUMBLE_ASSIGN(memory, CheckMemoryOfFile(verb, file, styles, one, true, globals));
     Stopwatch watch;
     SCUMBLE_ASSIGN(guides, ReadGuides(file, one));
     EndStage(globals, "read");
     guides_file = file;
-    return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}}};
+    return FrameGuides{&*guides, {file, {{"read", watch.Lap()}}, {}, memory}};
   };
   SequenceWork work;
   work.check = [&](int frame, const std::string& output) -> Status {
@@ -176,9 +209,24 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.1, progress);
   };
-  work.end = [&] { return SayHowAssigned(styles); };
+  work.end = [&] { return EndOfSequence(styles, verb.picture); };
   ProgressBar bar("transfer", globals.quiet);
   return RunSequence(sequence, work, bar, globals);
+}
+
+// --quality and --budget-ms of a sequence: by its first frame.
+Status ChooseForSequence(TransferVerb& verb, const Sequence& sequence, StyleSet& styles, GuideReadOptions read,
+                         const Globals& globals) {
+  if (!verb.budget.chooses()) return Ok();
+  const int frame = sequence.frames.front();
+  SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(verb.guides));
+  SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(verb.camera));
+  const std::string file = name.At(frame);
+  SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, read));
+  read.blender_camera = camera.At(frame);
+  SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
+  EndStage(globals, "read");
+  return ChooseForGuides(verb.budget, guides, file, styles, verb.picture, globals);
 }
 
 // Fills places for a frame's number in the names of a single picture.
@@ -225,13 +273,19 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   }
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
   GuideReadOptions read = ReadOptions(verb, styles);
-  if (sequence) return TransferSequence(verb, *sequence, styles, read, globals);
+  if (sequence) {
+    SCUMBLE_RETURN_IF_ERROR(ChooseForSequence(verb, *sequence, styles, read, globals));
+    return TransferSequence(verb, *sequence, styles, read, globals);
+  }
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, verb.guides, read));
+  SCUMBLE_ASSIGN(const MemoryNeed memory, CheckMemoryOfFile(verb, verb.guides, styles, read, false, globals));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
+  const double read_ms = watch.Lap();
   EndStage(globals, "read");
+  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.guides, styles, verb.picture, globals));
   ProgressBar bar("transfer", globals.quiet);
-  const GuideSource source{verb.guides, {{"read", watch.Lap()}}, {}};
+  const GuideSource source{verb.guides, {{"read", read_ms}}, {}, {}, memory};
   return RunTransfer(styles, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
 }
 
@@ -239,6 +293,7 @@ struct StylizeVerb {
   SceneOptions scene;
   StyleOptions style;
   PictureOptions picture;
+  BudgetOptions budget;
   SequenceOptions sequence;
 };
 
@@ -261,6 +316,14 @@ Status ShrinkGuides(StylizeVerb& verb) {
   return Ok();
 }
 
+// Refers to both.
+decltype(SceneOptions::more_memory) PaintingOf(const StyleSet& styles, const PictureOptions& picture, bool is_sequence,
+                                               const Globals& globals) {
+  return [&styles, picture, is_sequence, &globals](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    AddPicture(WorkOf(styles, picture, size, layers, is_sequence, globals), picture, need);
+  };
+}
+
 Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequence, StyleSet& styles,
                                    const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
@@ -269,7 +332,8 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   SceneFrames scene(options, RequiredOfScene(styles, options.scene), false, globals);
   PictureSequence pictures(styles, verb.picture, globals);
   const auto source = [&](const SceneGuides& made) -> FrameGuides {
-    GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>()};
+    GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>(), made.cost,
+                     made.memory};
     for (const Style& style : styles.styles) NameStyleInPlan(from.plan, style);
     return {&made.guides, std::move(from)};
   };
@@ -306,7 +370,7 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
     return pictures.Make(frame, output, guides_at, 0.5, progress);
   };
-  work.end = [&] { return SayHowAssigned(styles); };
+  work.end = [&] { return EndOfSequence(styles, verb.picture); };
   ProgressBar bar("stylize", globals.quiet);
   return RunSequence(sequence, work, bar, globals);
 }
@@ -321,8 +385,19 @@ Expected<ExitCode> PrintPlan(const StylizeVerb& verb, StyleSet& styles, const Gl
                                                     bar.Part(0.0, 1.0), true));
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
   bar.Clear();
-  Print(globals.json ? JsonText(nlohmann::ordered_json{{"plan", PlanToJson(made.plan)}}) : PlanToText(made.plan));
+  const nlohmann::ordered_json json{{"plan", PlanToJson(made.plan)}, {"memory", MemoryToJson(made.memory)}};
+  Print(globals.json ? JsonText(json) : PlanToText(made.plan) + MemoryToText(made.memory));
   return ExitCode::kOk;
+}
+
+// --quality and --budget-ms: by the first frame of a sequence.
+Status ChooseForStylize(StylizeVerb& verb, const std::optional<Sequence>& sequence, StyleSet& styles, const Globals& globals) {
+  SceneOptions scene = verb.scene;
+  scene.seed = verb.picture.seed, scene.fps = verb.picture.fps;
+  const std::optional<int> frame = sequence ? sequence->frames.front() : verb.picture.frame;
+  const int before = verb.picture.upsample;
+  SCUMBLE_RETURN_IF_ERROR(ChooseForScene(verb.budget, scene, frame, styles, verb.picture, globals));
+  return verb.picture.upsample == before ? Ok() : ShrinkGuides(verb);
 }
 
 Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
@@ -333,6 +408,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
     }
     SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.scene));
     SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
+    verb.scene.more_memory = PaintingOf(styles, verb.picture, false, globals);
     return PrintPlan(verb, styles, globals);
   }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(verb.picture.output, {verb.picture.bits}));
@@ -347,6 +423,8 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   RunFiles files;
   files.ReadsScene(verb.scene.scene);
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
+  SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(verb, sequence, styles, globals));
+  verb.scene.more_memory = PaintingOf(styles, verb.picture, sequence.has_value(), globals);
   if (sequence) return StylizeSequence(verb, *sequence, styles, globals);
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
@@ -360,7 +438,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   made.times.insert(made.times.begin(), {"style", style_ms});
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
   if (!verb.scene.explain) made.plan.clear();
-  const GuideSource source{verb.scene.scene, std::move(made.times), std::move(made.plan)};
+  const GuideSource source{verb.scene.scene, std::move(made.times), std::move(made.plan), made.cost, made.memory};
   return RunTransfer(styles, made.guides, source, verb.picture, globals, bar.Part(0.5, 1.0));
 }
 
@@ -375,10 +453,17 @@ void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, true);
+  AddBudgetOptions(*sub, verb->budget, false);
   AddSequenceOptions(*sub, verb->sequence);
   AddTimingOption(*sub, globals);
+  AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
-  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTransferVerb(*verb, globals); }; });
+  sub->callback([verb, sub, &globals, &chosen] {
+    chosen = [verb, sub, &globals]() -> Expected<ExitCode> {
+      SCUMBLE_RETURN_IF_ERROR(CheckBudgetOptions(*sub, verb->budget));
+      return RunTransferVerb(*verb, globals);
+    };
+  });
 }
 
 void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
@@ -387,10 +472,17 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddSceneOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, false);
+  AddBudgetOptions(*sub, verb->budget, true);
   AddSequenceOptions(*sub, verb->sequence);
   AddTimingOption(*sub, globals);
+  AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
-  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunStylizeVerb(*verb, globals); }; });
+  sub->callback([verb, sub, &globals, &chosen] {
+    chosen = [verb, sub, &globals]() -> Expected<ExitCode> {
+      SCUMBLE_RETURN_IF_ERROR(CheckBudgetOptions(*sub, verb->budget));
+      return RunStylizeVerb(*verb, globals);
+    };
+  });
 }
 
 }  // namespace scumble

@@ -19,7 +19,7 @@ bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneOptions&
   return !follower.empty() && follower.NeedsSamples();
 }
 
-Expected<WayGuides> MakeWayGuides(const SceneAtRest& scene, const SceneOptions& options, const Way& way,
+Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
                                   const LayerSet& layers, const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
   SceneOptions one = options;
@@ -29,7 +29,9 @@ Expected<WayGuides> MakeWayGuides(const SceneAtRest& scene, const SceneOptions& 
   if (way.samples > 0) one.samples = way.samples;
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(scene.scene, scene.view.camera, nullptr, one, layers, globals, {}, false));
   WayGuides result;
-  for (const auto& [step, ms] : made.times) result.ms += ms;
+  for (const auto& [step, ms] : made.times) {
+    if (step != "textures") result.ms += ms;  // decoded once, whatever is cast first
+  }
   RoundGuides(way.precision, made.guides);
   if (up == 1) {
     result.guides = std::move(made.guides);

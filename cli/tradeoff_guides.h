@@ -27,7 +27,7 @@ struct WayGuides {
 };
 
 // `options.size` is the picture's.
-Expected<WayGuides> MakeWayGuides(const SceneAtRest& scene, const SceneOptions& options, const Way& way,
+Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
                                   const LayerSet& layers, const Globals& globals);
 
 // Ways with equal text have equal guides; with `rounded` false, guides that take the same time.

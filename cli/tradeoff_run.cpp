@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <string_view>
-#include <thread>
 #include <utility>
 
+#include "cli/machine.h"
 #include "cli/shell_word.h"
 #include "cli/tradeoff_peak.h"
 #include "cli/tradeoff_reference.h"
@@ -46,19 +45,6 @@ Quartiles TotalOf(const std::vector<double>& guides, const std::vector<double>& 
   return QuartilesOf(std::move(sums));
 }
 
-std::string Machine(int threads) {
-  std::ifstream file("/proc/cpuinfo");
-  std::string name = "a processor without a name";
-  for (std::string line; std::getline(file, line);) {
-    const std::size_t colon = line.find(": ");
-    if (!line.starts_with("model name") || colon == std::string::npos) continue;
-    name = line.substr(colon + 2);
-    break;
-  }
-  const unsigned count = threads > 0 ? unsigned(threads) : std::max(1u, std::thread::hardware_concurrency());
-  return fmt::format("{}, {} {}", name, count, count == 1 ? "thread" : "threads");
-}
-
 class Trade {
  public:
   Trade(const TradeSetup& setup, const Globals& globals, ProgressBar& bar)
@@ -83,7 +69,7 @@ class Trade {
     report_.scene = std::filesystem::path(setup_.scene.scene).stem().string();
     report_.style = stage_.style.name.empty() ? setup_.style.style : stage_.style.name;
     report_.width = stage_.width, report_.height = stage_.height;
-    report_.machine = Machine(globals_.threads), report_.repeats = setup_.repeats;
+    report_.machine = MachineName(globals_.threads), report_.repeats = setup_.repeats;
     report_.lambda = EnergyOptions().lambda, report_.command = TradeCommand(setup_, globals_);
     for (std::size_t begin = 0; begin < ways.size(); begin += kTogether) {
       SCUMBLE_RETURN_IF_ERROR(MeasureTogether(ways, begin, std::min(ways.size(), begin + kTogether)));
@@ -263,7 +249,7 @@ std::string TradeCommand(const TradeSetup& setup, const Globals& globals) {
 }
 
 Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const Globals& globals) {
-  SCUMBLE_ASSIGN(const TradeStage stage, OpenTradeStage(setup, globals));
+  SCUMBLE_ASSIGN(TradeStage stage, OpenTradeStage(setup, globals));
   const auto way = std::find_if(stage.grid.ways.begin(), stage.grid.ways.end(), [&](const Way& one) { return one.name == name; });
   if (way == stage.grid.ways.end()) return UsageError("--peak-of " + name + ": there is no such way");
   SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way));

@@ -13,9 +13,11 @@
 #include <utility>
 
 #include "cli/cache.h"
+#include "cli/cost.h"
 #include "cli/json_text.h"
 #include "cli/show.h"
 #include "cli/timing.h"
+#include "io/atomic_file.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
 #include "style/style_keyframes.h"
@@ -124,10 +126,14 @@ struct Made {
 
 Expected<FrameReport> WriteMade(Made& made) {
   Stopwatch watch;
+  const std::uint64_t before = BytesWrittenByThisThread();
   SCUMBLE_RETURN_IF_ERROR(WritePicture(made.output, made.picture, made.write));
   const double ms = made.report.write_ms = watch.Lap();
   made.steps.emplace_back("write", Spread{ms, ms, ms});
-  if (!made.report.json.empty()) AddStep(made.steps.back(), made.report.json);
+  if (!made.report.json.empty()) {
+    AddStep(made.steps.back(), made.report.json);
+    made.report.json["work"]["bytes_written"] = BytesWrittenByThisThread() - before;
+  }
   made.report.text += fmt::format("{}  {}\n", made.output, StepsToText(made.steps, made.repeat));
   return std::move(made.report);
 }
@@ -249,8 +255,8 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
       ->type_name("WHAT")
       ->check(CLI::IsMember(ExplanationNames()));
   verb.add_option("--upsample", options.upsample,
-                  "the picture is N times as wide and high as the guides: they are quicker to make and to match, and the "
-                  "paint has its full size")
+                  "the picture is N times as wide and high as the guides: they are quicker to make, and the paint has its "
+                  "full size")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxUpsampling))
       ->capture_default_str();
@@ -356,6 +362,10 @@ std::string LightInWords(const Exemplar& exemplar, double rim) {
   return fmt::format("luminance {:.4g}, {}", LuminanceOf(exemplar, rim), source);
 }
 
+bool KeepsField(const PictureOptions& options, const Globals& globals) {
+  return globals.json || FindExplanation(options.show);
+}
+
 bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options) {
   return options.exposure == "auto" && std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
 }
@@ -367,6 +377,8 @@ Expected<ExitCode> RunTransfer(StyleSet& styles, const GuideSet& guides, const G
   SCUMBLE_ASSIGN(FrameReport report, write());
   EndStage(globals, "write");
   report.json.update(SayHowAssigned(styles));
+  report.json["memory"]["peak_bytes"] = PeakMemory();
+  report.json.update(options.chosen);
   if (globals.timing) {
     report.json["timing"] = globals.timing->ToJson();
     report.text += globals.timing->ToText();
@@ -409,9 +421,8 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   transfer.fps_numerator = fps.numerator, transfer.fps_denominator = fps.denominator;
   transfer.exposure = *memory.exposure;
   transfer.threads = globals.threads;
-  transfer.match_step = options.upsample;
   transfer.over = over;
-  transfer.keep_field = globals.json || FindExplanation(options.show);
+  transfer.keep_field = KeepsField(options, globals);
   TransferScratch& scratch = memory.scratch;
   Picture picture;
   std::vector<double> match, vote, compose;
@@ -441,8 +452,11 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   made.steps.emplace_back("compose", SpreadOf(compose));
   if (globals.json) {  // measuring coherence takes its time
     made.report.json = ToJson(styles, prepared, scratch.field, transfer.exposure, options, source.plan, made.steps);
+    if (source.cost) CostToJson(*source.cost, made.report.json);
   }
-  if (!source.plan.empty()) made.report.text = PlanToText(source.plan);
+  if (globals.json) made.report.json["memory"] = MemoryToJson(source.memory);
+  if (!source.plan.empty()) made.report.text = PlanToText(source.plan) + MemoryToText(source.memory);
+  if (!source.plan.empty() && source.cost) made.report.text += CostToText(*source.cost);
   made.picture = std::move(picture);
   return FrameWrite([shared = std::make_shared<Made>(std::move(made))] { return WriteMade(*shared); });
 }

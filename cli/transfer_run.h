@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ struct PictureOptions {
   int repeat = 1;
   int upsample = 1;  // the picture is so many times as wide and high as the guides
   std::string show;  // an explanation's name; empty: the result itself
+  nlohmann::ordered_json chosen = nlohmann::ordered_json::object();  // what --quality or --budget-ms took, for the report
 };
 // `needed`: the verb does nothing without an output.
 void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed);
@@ -48,6 +50,8 @@ struct GuideSource {
   std::string name;            // the file, for messages
   StepTimes times;             // of the steps that led to them
   std::vector<PlanItem> plan;  // printed as part of the result, unless it is empty
+  std::optional<SceneCost> cost = {};  // of casting them, where they were cast
+  MemoryNeed memory = {};      // of the whole run
 };
 
 // What a sequence keeps from frame to frame.
@@ -86,6 +90,9 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureOptio
 Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                     const PictureOptions& options, const Globals& globals, const Progress& progress,
                                     TransferMemory& memory);
+
+// Whether the source field outlives the transfer, to be reported or shown: that takes more time.
+bool KeepsField(const PictureOptions& options, const Globals& globals);
 
 // Whether the exposure is measured, and by some style is looked at.
 bool MeasuresExposure(const StyleSet& styles, const PictureOptions& options);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "guidegen/matrix_util.h"
@@ -67,6 +68,15 @@ Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int heigh
   const bool across = MeasuresWidth(camera, double(width) / height);
   rays.shift_ = 2.0 * (across ? rays.half_extent_.x : rays.half_extent_.y) * glm::dvec2(camera.shift_x, camera.shift_y);
   rays.step_ = rays.half_extent_ / glm::dvec2(width, height);
+  const glm::dvec2 farthest = rays.half_extent_ + glm::abs(rays.shift_);
+  const double most = std::max(farthest.x, farthest.y);
+  if (!(most <= kLargestInRay)) {
+    std::ostringstream fault;
+    fault << "sees " << most << (camera.orthographic ? " m" : " m at a distance of 1 m") << " to one side in a picture of "
+          << width << "x" << height << " pixels; expected at most " << kLargestInRay << ": give it a smaller "
+          << (camera.orthographic ? "height" : "angle") << ", aspect or shift";
+    return InputError(who + fault.str());
+  }
   return rays;
 }
 

@@ -10,6 +10,10 @@
 
 namespace scumble {
 
+// Embree takes no ray with a larger component, of its origin in metres or of its direction: built with assertions, as
+// Debian's is, it ends the process. Its own limit is 1.844e18.
+inline constexpr double kLargestInRay = 0x1.9p60;
+
 // `direction.z` is exactly −1, so that the ray's parameter is the planar depth.
 struct ViewRay {
   glm::dvec3 origin{0.0};
@@ -21,7 +25,8 @@ class CameraRays {
  public:
   // Only the direction of the camera matrix's axes counts: scale is dropped and shear is straightened, keeping the
   // viewing direction. Fails with kInput, naming the camera, on a matrix that has no direction, an angle outside
-  // (0, 180), a height that is not positive, a shift that is not finite, or a far plane before the near one.
+  // (0, 180), a height that is not positive, a shift that is not finite, a far plane before the near one, or rays that
+  // leave kLargestInRay.
   static Expected<CameraRays> Make(const Camera& camera, int width, int height);
 
   // The ray through a point of the picture, in pixels from the top left corner.

@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +20,7 @@
 #include "guidegen/progress_gate.h"
 #include "guidegen/tile_caster.h"
 #include "guidegen/tile_store.h"
+#include "guidegen/work_tally.h"
 #include "image/stopwatch.h"
 
 namespace scumble {
@@ -31,20 +32,19 @@ bool Continue(const Progress& progress, double share) { return !progress || prog
 constexpr double kCastShare = 0.05;
 
 // False where the caller asked to stop. Covered pixels are listed by tile where `pixels` is given.
-bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double end, RayCounts& counts,
+bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double end, GuidegenResult& result,
                std::vector<std::vector<PathPixel>>* pixels) {
   const std::size_t columns = std::size_t(options.width + kTileSide - 1) / kTileSide;
   const std::size_t rows = std::size_t(options.height + kTileSide - 1) / kTileSide;
   const std::size_t strips = (columns + kStripTiles - 1) / kStripTiles;  // in a row
   ProgressGate gate(options.progress, strips * rows, 0.0, end);
   if (pixels) pixels->resize(columns * rows);
-  std::atomic<std::size_t> primary{0};
-  std::atomic<std::size_t> coverage{0};
-  std::atomic<std::size_t> shadow{0};
+  std::mutex summing;
   tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, strips * rows), [&](const auto& range) {
     TileCaster::Scratch& own = scratch.local();
     RayCounts cast;
+    const WorkMeter meter;
     for (std::size_t i = range.begin(); i != range.end() && !gate.cancelled(); ++i) {
       const std::size_t row = i / strips;
       const std::size_t first = i % strips * kStripTiles;
@@ -63,11 +63,12 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
       gate.TileDone();
     }
     PublishTiles();
-    primary += cast.primary;
-    coverage += cast.coverage;
-    shadow += cast.shadow;
+    const std::lock_guard lock(summing);
+    result.rays.primary += cast.primary;
+    result.rays.coverage += cast.coverage;
+    result.rays.shadow += cast.shadow;
+    AddWork(meter.Since(), result.work);
   });
-  counts = {primary, coverage, shadow, 0};
   return !gate.cancelled();
 }
 
@@ -84,18 +85,26 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   if (!Continue(options.progress, 0.0)) return CancelledError();
   GuidegenResult result;
   Stopwatch watch;
+  const PathFollower follower(options.layers, view.supply, options.max_bounces);
+  EmbreeScene::Needs needs;
   // Only the light of meshes without blockers needs the emitters by themselves.
-  const bool keep_emitters = options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
-  SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa, keep_emitters,
-                                                             options.robust));
+  needs.emitters = options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
+  needs.light_rays = needs.emitters || !follower.empty();
+  needs.robust = options.robust;
+  SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa, needs));
   result.build_ms = watch.Lap();
 
   result.guides = UnsetGuides(options);
-  const PathFollower follower(options.layers, view.supply, options.max_bounces);
+  for (const LayerInfo& info : AllLayers()) {
+    if (!result.guides.Has(info.layer)) continue;
+    for (int i = 0; i < ChannelCount(info.layer); ++i) {
+      result.work.plane_bytes += result.guides.Plane(info.layer, i).size_bytes();
+    }
+  }
   const TileCaster caster(scene, view, options, result.guides);
   std::vector<std::vector<PathPixel>> pixels;
   const bool paths = !follower.empty();
-  if (!CastTiles(caster, options, paths ? kCastShare : 1.0, result.rays, paths ? &pixels : nullptr)) {
+  if (!CastTiles(caster, options, paths ? kCastShare : 1.0, result, paths ? &pixels : nullptr)) {
     return CancelledError();
   }
   if (paths) {
@@ -104,6 +113,7 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
     if (traced.cancelled) return CancelledError();
     result.rays.shadow += traced.rays.shadow;
     result.rays.bounce += traced.rays.bounce;
+    AddWork(traced.work, result.work);
     result.samples = traced.samples;
     result.noise = traced.noise;
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "guidegen/work_tally.h"
 #include "image/color.h"
 
 namespace scumble {
@@ -19,6 +20,12 @@ constexpr double kWidestSun = 179.9;
 
 // Layers hold floats: brighter than this cannot be told.
 constexpr double kMaxIrradiance = std::numeric_limits<float>::max() * glm::pi<double>();
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+glm::dvec3 WithinRange(const glm::dvec3& v) {
+  return glm::clamp(v, glm::dvec3(-kLargestInRay), glm::dvec3(kLargestInRay));
+}
 
 Status CheckBrightness(const Light& light, const std::string& who) {
   for (int i = 0; i < 3; ++i) {
@@ -125,6 +132,7 @@ double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light) {
 }
 
 LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
+  ++work_tally.light_samples;
   LightSample sample;
   sample.endless = light.type == LightType::kSun;
   sample.to_light = sample.endless ? -light.axis : light.position - point.position;
@@ -141,6 +149,25 @@ LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
   irradiance *= SpotAttenuation(light, -direction);
   sample.luminance = irradiance * glm::one_over_pi<double>();
   return sample;
+}
+
+double LightGap(const glm::dvec3& origin, const glm::dvec3& light) {
+  return kRoundingPerCoordinate * std::max(LargestCoordinate(origin), LargestCoordinate(light));
+}
+
+LightRay LightRayTo(const glm::dvec3& origin, const glm::dvec3& light) {
+  LightRay ray{WithinRange(origin), light - origin, 1.0, 0.0};
+  const double largest = LargestCoordinate(ray.direction);
+  if (largest > kLargestInRay) {
+    ray.end = largest;
+    ray.direction /= largest;
+  }
+  ray.reach = std::max(0.0, ray.end - LightGap(origin, light) / glm::length(ray.direction));  // 0 for no way at all
+  return ray;
+}
+
+LightRay EndlessLightRay(const glm::dvec3& origin, const glm::dvec3& direction) {
+  return {WithinRange(origin), direction, kInfinity, kInfinity};
 }
 
 glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {

@@ -3,11 +3,13 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
 #include "guidegen/bsdf.h"
 #include "guidegen/exact_copies.h"
+#include "guidegen/work_tally.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -73,6 +75,7 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
   const unsigned count = args->N;
   for (unsigned i = 0; i < count; ++i) {
     if (args->valid[i] == 0) continue;
+    ++work_tally.filtered_hits;
     if (may_be_target &&
         (RTCRayN_tfar(args->ray, count, i) >= context.target.near_end ||
          (context.target.object == &object && RTCHitN_primID(args->hit, count, i) == context.target.primitive))) {
@@ -85,6 +88,11 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
                            double(RTCHitN_Ng_z(args->hit, count, i)) * RTCRayN_dir_z(args->ray, count, i);
       if (along * object.winding > 0.0) {
         args->valid[i] = 0;
+        if (context.passed) {
+          BacksPassed& passed = context.passed[RTCRayN_id(args->ray, count, i)];
+          passed.nearest = std::min(passed.nearest, RTCRayN_tfar(args->ray, count, i));
+          passed.farthest = std::max(passed.farthest, RTCRayN_tfar(args->ray, count, i));
+        }
         continue;
       }
     }
@@ -108,13 +116,15 @@ void FillVertices(RTCGeometry geometry, const PlacedObject& object) {
   });
 }
 
-RTCGeometry MakeMesh(RTCDevice device, const PlacedObject& object) {
+// Of what shines, only rays to its light ask whether they may pass.
+RTCGeometry MakeMesh(RTCDevice device, const PlacedObject& object, bool light_rays) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   FillVertices(geometry, object);
   const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                              sizeof(glm::uvec3), triangles.size());
-  if (!object.material->double_sided || MayHaveHoles(*object.material) || MayEmit(*object.material)) {
+  const bool is_target = light_rays && MayEmit(*object.material);
+  if (!object.material->double_sided || MayHaveHoles(*object.material) || is_target) {
     rtcSetGeometryIntersectFilterFunction(geometry, FilterHits);
     rtcSetGeometryOccludedFilterFunction(geometry, FilterHits);
   }
@@ -142,11 +152,11 @@ RTCScene NewScene(RTCDevice device, bool robust) {
 }  // namespace
 
 Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa,
-                                         bool keep_emitters, bool robust) {
+                                         const Needs& needs) {
   EmbreeScene scene;
   scene.objects_ = std::make_unique<std::vector<PlacedObject>>(std::move(objects));
   SCUMBLE_RETURN_IF_ERROR(scene.OpenDevice(isa));
-  SCUMBLE_RETURN_IF_ERROR(scene.Commit(keep_emitters, robust));
+  SCUMBLE_RETURN_IF_ERROR(scene.Commit(needs));
   return scene;
 }
 
@@ -174,7 +184,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
                     AvailableIsas());
 }
 
-Status EmbreeScene::Commit(bool keep_emitters, bool robust) {
+Status EmbreeScene::Commit(const Needs& needs) {
   std::string reason;  // the first of a row is the root of the others
   rtcSetDeviceErrorFunction(
       device_.get(),
@@ -183,17 +193,18 @@ Status EmbreeScene::Commit(bool keep_emitters, bool robust) {
         if (first.empty() && text) first = text;
       },
       &reason);
-  scene_.reset(NewScene(device_.get(), robust));
+  scene_.reset(NewScene(device_.get(), needs.robust));
   const std::vector<bool> covered = FindCoveredCopies(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
     if (covered[i] || (object.mesh && object.mesh->triangles.empty())) continue;
-    RTCGeometry geometry = object.mesh ? MakeMesh(device_.get(), object) : MakeSphere(device_.get(), object);
+    RTCGeometry geometry =
+        object.mesh ? MakeMesh(device_.get(), object, needs.light_rays) : MakeSphere(device_.get(), object);
     rtcSetGeometryUserData(geometry, &object);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(i));
-    if (keep_emitters && object.mesh && MayEmit(*object.material)) {
-      if (!emitters_) emitters_.reset(NewScene(device_.get(), robust));
+    if (needs.emitters && object.mesh && MayEmit(*object.material)) {
+      if (!emitters_) emitters_.reset(NewScene(device_.get(), needs.robust));
       rtcAttachGeometryByID(emitters_.get(), geometry, static_cast<unsigned>(i));
     }
     rtcReleaseGeometry(geometry);

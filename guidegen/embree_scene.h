@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,13 @@ struct ShadowTarget {
   float near_end = 1.0f;  // in lengths of the ray's direction
 };
 
+// Where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Not only before what it meets:
+// Embree goes its own way.
+struct BacksPassed {
+  float nearest = std::numeric_limits<float>::infinity();
+  float farthest = -std::numeric_limits<float>::infinity();
+};
+
 // What Embree hands to filter functions. Camera rays do not see the back of single-sided surfaces; shadow rays do,
 // because a wall keeps its shadow when it is cut away for the viewer.
 struct CastContext {
@@ -32,6 +40,7 @@ struct CastContext {
   RTCIntersectContext embree;  // first: Embree passes its address on
   bool camera_rays;
   ShadowTarget target;
+  BacksPassed* passed = nullptr;  // by a ray's id; null: nobody asks
 };
 
 // Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.
@@ -41,9 +50,12 @@ class EmbreeScene {
   // error. Builds in the calling thread's oneTBB arena, whose size is the only limit: Embree's own "threads=" would
   // throttle oneTBB for the whole process. The hierarchy is the same at any thread count. Triangles with corners that
   // are not finite are left out.
-  // `keep_emitters`: whether emitters() will be asked for. `robust` as in GuidegenOptions.
-  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, bool keep_emitters,
-                                     bool robust = true);
+  struct Needs {
+    bool light_rays = false;  // rays to lights will be cast, as ShadowTarget has them, not only those of the camera
+    bool emitters = false;    // emitters() will be asked for
+    bool robust = true;       // as in GuidegenOptions
+  };
+  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs);
 
   RTCScene handle() const { return scene_.get(); }
   RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none
@@ -61,7 +73,7 @@ class EmbreeScene {
 
   EmbreeScene() = default;
   Status OpenDevice(const std::string& isa);
-  Status Commit(bool keep_emitters, bool robust);
+  Status Commit(const Needs& needs);
 
   // Filter functions keep pointers to the objects, so they must not move with this. Order matters: the scene goes
   // before its device, the device before the objects.

@@ -30,10 +30,13 @@ bool IsCopy(const PlacedObject& a, const PlacedObject& b) {
   return a.mesh == b.mesh || (a.mesh->positions == b.mesh->positions && a.mesh->triangles == b.mesh->triangles);
 }
 
+// What has holes never does.
+bool MayCover(const PlacedObject& over) { return !MayHaveHoles(*over.material); }
+
 bool Covers(const PlacedObject& over, const PlacedObject& under) {
   const bool seen_from_behind =
       over.material->double_sided || (!under.material->double_sided && over.winding == under.winding);
-  return seen_from_behind && !MayHaveHoles(*over.material) && IsCopy(over, under);
+  return seen_from_behind && IsCopy(over, under);
 }
 
 }  // namespace
@@ -46,7 +49,7 @@ std::vector<bool> FindCoveredCopies(std::span<const PlacedObject> objects) {
     if (!object.mesh || object.mesh->triangles.empty() || MayEmit(*object.material)) continue;
     std::vector<const PlacedObject*>& here = seen[HashOf(object)];
     covered[i] = std::any_of(here.begin(), here.end(), [&](const PlacedObject* over) { return Covers(*over, object); });
-    if (!covered[i]) here.push_back(&object);
+    if (!covered[i] && MayCover(object)) here.push_back(&object);
   }
   return covered;
 }

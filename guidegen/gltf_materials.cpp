@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "guidegen/gltf_accessor.h"
+#include "guidegen/gltf_parse.h"
 #include "io/picture_file.h"
 
 namespace scumble {
@@ -69,7 +71,41 @@ std::optional<std::string> EndingOf(std::span<const unsigned char> bytes) {
   return std::nullopt;
 }
 
-// Decodes each picture once and gives the indices of Scene::textures.
+// A picture of the file, as its decoding needs it when the file is closed.
+struct EncodedPicture {
+  std::string file;   // the scene's
+  std::string label;  // of the picture, and of a material that uses it
+  std::string owner;
+  int number = 0;
+  std::vector<unsigned char> bytes;
+  std::filesystem::path beside;  // the file that has them instead; empty: none
+};
+
+Expected<Picture> Decode(const EncodedPicture& encoded) {
+  std::span<const unsigned char> bytes(encoded.bytes);
+  std::vector<std::byte> read;
+  if (!encoded.beside.empty()) {
+    Expected<std::vector<std::byte>> whole = ReadRegularFile(encoded.beside);
+    if (whole) read = *std::move(whole);
+    bytes = AsChars(read);
+  }
+  if (bytes.empty()) {
+    return InputError(encoded.file + ": " + encoded.label + ", used by " + encoded.owner +
+                      ", is missing or empty: put it beside the scene, or export to .glb, which holds its pictures");
+  }
+  const std::optional<std::string> ending = EndingOf(bytes);
+  if (!ending) {
+    return InputError(encoded.file + ": " + encoded.label + ", used by " + encoded.owner +
+                      ", is neither PNG, JPEG nor WebP: export it again");
+  }
+  // The decoder goes by the ending of the name.
+  const std::string name = encoded.file + ": image " + std::to_string(encoded.number) + *ending;
+  Expected<Picture> picture = DecodePicture(std::as_bytes(bytes), name);
+  if (!picture) return Error{picture.error().kind, picture.error().message + " (" + encoded.label + ")"};
+  return picture;
+}
+
+// Keeps each picture once, to be decoded later, and gives the indices of Scene::textures.
 class TextureLoader {
  public:
   TextureLoader(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings)
@@ -120,26 +156,23 @@ class TextureLoader {
     }
     if (const auto known = loaded_.find(source); known != loaded_.end()) return known->second;
     const tinygltf::Image& image = model_.images[std::size_t(source)];
-    const std::string label = Label("image", source, image.uri.empty() ? image.name : image.uri);
-    std::span<const unsigned char> encoded(image.image);
+    EncodedPicture encoded;
+    encoded.label = Label("image", source, image.uri.empty() ? image.name : image.uri);
+    encoded.owner = owner;
+    encoded.file = file_;
+    encoded.number = source;
     if (image.bufferView >= 0) {
-      SCUMBLE_ASSIGN(encoded, ReadBufferView(model_, file_, image.bufferView, label));
+      SCUMBLE_ASSIGN(const auto bytes, ReadBufferView(model_, file_, image.bufferView, encoded.label));
+      encoded.bytes.assign(bytes.begin(), bytes.end());
+    } else if (!image.image.empty() || image.uri.empty()) {
+      encoded.bytes = image.image;
+    } else {
+      encoded.beside = PictureFile(file_, image.uri);
     }
-    if (encoded.empty()) {
-      return InputError(file_ + ": " + label + ", used by " + owner +
-                        ", is missing or empty: put it beside the scene, " +
-                        "or export to .glb, which holds its pictures");
-    }
-    const std::optional<std::string> ending = EndingOf(encoded);
-    if (!ending) {
-      return InputError(file_ + ": " + label + ", used by " + owner +
-                        ", is neither PNG, JPEG nor WebP: export it again");
-    }
-    // The decoder goes by the ending of the name.
-    const std::string name = file_ + ": image " + std::to_string(source) + *ending;
-    auto picture = DecodePicture(std::as_bytes(encoded), name);
-    if (!picture) return Error{picture.error().kind, picture.error().message + " (" + label + ")"};
-    scene_.textures.push_back(*std::move(picture));
+    auto kept_texture = std::make_shared<EncodedTexture>();
+    kept_texture->decode = [kept = std::make_shared<const EncodedPicture>(std::move(encoded))] { return Decode(*kept); };
+    scene_.textures.emplace_back();
+    scene_.encoded_textures.push_back(std::move(kept_texture));
     const int index = static_cast<int>(scene_.textures.size()) - 1;
     loaded_[source] = index;
     return index;

@@ -14,9 +14,9 @@ class Model;
 
 namespace scumble {
 
-// Appends every material of the file to scene.materials, in the file's order, and decodes the pictures that their base
-// colours, normal maps, roughness, metalness and emission need (others are never looked at). A picture that is missing
-// or cannot be decoded is an error that names it.
+// Appends every material of the file to scene.materials, in the file's order, and keeps the pictures that their base
+// colours, normal maps, roughness, metalness and emission use (others are never looked at) as encoded textures. That
+// one is missing or cannot be decoded is an error which names it, once it is to be decoded.
 Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings);
 
 }  // namespace scumble

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <exception>
 #include <limits>
@@ -96,10 +97,28 @@ bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, 
   return true;
 }
 
-// tinygltf also looks in the current folder; only files beside the scene (or below or above it) belong to it.
+// Where tinygltf finds files.
+struct Surroundings {
+  std::string folder;            // the scene's
+  bool keep_pictures = false;    // pictures are there, too
+  bool hidden_pictures = false;  // some were asked for, and were not
+};
+
+bool HasPictureEnding(const std::string& name) {
+  std::string ending = std::filesystem::path(name).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".png" || ending == ".jpg" || ending == ".jpeg" || ending == ".webp";
+}
+
+// tinygltf also looks in the current folder; only files beside the scene (or below or above it) belong to it. It takes
+// a picture that is not there for one that nobody needs.
 bool BesideScene(const std::string& name, void* base) {
-  const std::string& folder = *static_cast<const std::string*>(base);
-  if (name.rfind(folder, 0) != 0) return false;
+  Surroundings& surroundings = *static_cast<Surroundings*>(base);
+  if (name.rfind(surroundings.folder, 0) != 0) return false;
+  if (!surroundings.keep_pictures && HasPictureEnding(name)) {
+    surroundings.hidden_pictures = true;
+    return false;
+  }
   std::error_code error;
   return std::filesystem::is_regular_file(name, error) && !error;
 }
@@ -126,12 +145,18 @@ void WarnOfComplaints(std::string complaints, WarningCounter& warnings) {
   if (!complaints.empty()) warnings.Add("some of the file is not valid glTF and is left out", Excerpt(complaints));
 }
 
-Status RunTinygltf(const std::string& file, std::string folder, std::span<const unsigned char> bytes,
+std::string FolderOf(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+Status RunTinygltf(const std::string& file, Surroundings& surroundings, std::span<const unsigned char> bytes,
                    tinygltf::Model& model, WarningCounter& counter) {
+  const std::string& folder = surroundings.folder;
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(&KeepEncoded, nullptr);
   loader.SetFsCallbacks(
-      {&BesideScene, [](const std::string& name, void*) { return name; }, &ReadForTinygltf, &NeverWrite, &folder});
+      {&BesideScene, [](const std::string& name, void*) { return name; }, &ReadForTinygltf, &NeverWrite, &surroundings});
   std::string errors, warnings;
   bool ok = false;
   const unsigned size = static_cast<unsigned>(bytes.size());
@@ -177,8 +202,34 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
     return InputError(file + " nests its JSON more than " + std::to_string(kMaxJsonDepth) +
                       " levels deep; no scene needs that");
   }
-  const std::filesystem::path folder = path.parent_path();
-  return RunTinygltf(file, folder.empty() ? "." : folder.string(), bytes, model, warnings);
+  Surroundings surroundings{FolderOf(path)};
+  const Status parsed = RunTinygltf(file, surroundings, bytes, model, warnings);
+  if (parsed || !surroundings.hidden_pictures) return parsed;
+  // A buffer may have a picture's name.
+  surroundings.keep_pictures = true;
+  model = tinygltf::Model();
+  return RunTinygltf(file, surroundings, bytes, model, warnings);
+}
+
+// The escapes %20 to %FF stand for bytes; a name that has a % of its own keeps it.
+std::filesystem::path PictureFile(const std::filesystem::path& scene, const std::string& uri) {
+  const auto digit = [&](std::size_t at) -> int {
+    if (at >= uri.size()) return -1;
+    const char c = uri[at];
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+  };
+  std::string name;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0) {
+      name += static_cast<char>(digit(i + 1) * 16 + digit(i + 2));
+      i += 2;
+    } else {
+      name += uri[i];
+    }
+  }
+  return FolderOf(scene) + "/" + name;  // also where the name begins with a slash: nothing outside is meant
 }
 
 }  // namespace scumble

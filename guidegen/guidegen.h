@@ -72,9 +72,20 @@ struct RayCounts {
   std::size_t bounce = 0;    // that look for the next surface of a path
 };
 
+// What it made us pay besides: how often the inner loops were gone through. The same for any number of threads.
+struct WorkCounts {
+  std::size_t light_samples = 0;    // times that a lamp, a point on a light, or a direction was asked for its light
+  std::size_t materials = 0;        // times that a material was asked at a point: for its colour, or what it emits
+  std::size_t texture_lookups = 0;  // times that a texture was asked for a value
+  std::size_t texels = 0;           // that were read for it: 4 each, or 1 where nothing is interpolated
+  std::size_t filtered_hits = 0;    // times that Embree had to ask whether a surface lets a ray pass
+  std::size_t plane_bytes = 0;      // of the layers' planes
+};
+
 struct GuidegenResult {
   GuideSet guides;
   RayCounts rays;
+  WorkCounts work;
   double build_ms = 0;  // acceleration structure
   double render_ms = 0;
   // Of each pixel, in light-path layers; 0 where they need no chance. Also in guides.attributes["scumble:samples"].

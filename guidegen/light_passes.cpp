@@ -9,6 +9,7 @@
 
 #include "guidegen/bsdf.h"
 #include "guidegen/progress_gate.h"
+#include "guidegen/work_tally.h"
 #include "image/stopwatch.h"
 
 namespace scumble {
@@ -27,6 +28,7 @@ struct PassStatistics {
   std::array<double, kMaxPathLayers> sum{};
   std::array<double, kMaxPathLayers> squared_error{};
   RayCounts rays;
+  WorkCounts work;
 };
 
 class LightPasses {
@@ -52,6 +54,7 @@ class LightPasses {
     tbb::parallel_for(std::size_t(0), pixels_.size(), [&](std::size_t list) {
       if (gate.cancelled()) return;
       PassStatistics& statistics = statistics_[list] = {};
+      const WorkMeter meter;
       for (std::size_t i = 0; i < pixels_[list].size(); ++i) {
         PathSums sums{};
         const auto kept =
@@ -60,9 +63,13 @@ class LightPasses {
         Shade(pixels_[list][i], done, wanted, sums, statistics);
         std::copy_n(sums.begin(), kept.size(), kept.begin());
       }
+      statistics.work = meter.Since();
       gate.TileDone();
     });
-    for (const PassStatistics& statistics : statistics_) AddRays(statistics.rays, rays_);
+    for (const PassStatistics& statistics : statistics_) {
+      AddRays(statistics.rays, rays_);
+      AddWork(statistics.work, work_);
+    }
     return !gate.cancelled();
   }
 
@@ -84,6 +91,7 @@ class LightPasses {
   }
 
   const RayCounts& rays() const { return rays_; }
+  const WorkCounts& work() const { return work_; }
 
  private:
   void Shade(const PathPixel& pixel, int done, int wanted, PathSums& sums, PassStatistics& statistics) {
@@ -125,6 +133,7 @@ class LightPasses {
   std::vector<std::vector<glm::dvec3>> kept_;  // by list; of each pixel its layers' sums
   std::vector<PassStatistics> statistics_;     // by list, so that sums do not depend on the order of work
   RayCounts rays_;
+  WorkCounts work_;
 };
 
 // How far the samples go next: doubled, or as many as the time allows at the speed so far. No further: `done`.
@@ -156,6 +165,7 @@ LightPassResult TraceLightPaths(const LightPathTracer& tracer, const PathFollowe
     ProgressGate gate(options.progress, pixels.size(), progress_begin, 1.0);
     result.cancelled = !passes.Run(0, result.samples, gate);
     result.rays = passes.rays();
+    result.work = passes.work();
     return result;
   }
   passes.KeepSums();
@@ -175,6 +185,7 @@ LightPassResult TraceLightPaths(const LightPathTracer& tracer, const PathFollowe
     if (result.samples >= kLeastSamplesForNoise && options.noise > 0.0 && result.noise <= options.noise) break;
   }
   result.rays = passes.rays();
+  result.work = passes.work();
   return result;
 }
 

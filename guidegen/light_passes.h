@@ -10,6 +10,7 @@ namespace scumble {
 // What the light paths took.
 struct LightPassResult {
   RayCounts rays;
+  WorkCounts work;
   int samples = 0;     // of each pixel; 0 where the light needs no chance
   double noise = 0.0;  // estimated, as GuidegenOptions::noise; 0 where it was not asked for
   bool cancelled = false;

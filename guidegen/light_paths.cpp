@@ -40,22 +40,20 @@ LightPathTracer::LightPathTracer(const EmbreeScene& scene, const View& view, con
       view_(view),
       follower_(follower),
       max_bounces_(max_bounces),
-      clear_to_eye_(AllDoubleSided(scene.objects())),
       lights_(view.lights, scene.objects(), view.world_radiance) {}
 
-LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::uint32_t primitive,
-                                                    const glm::dvec2& barycentric, const ViewRay& ray, bool is_clear,
-                                                    double least_alpha) const {
+LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::uint32_t primitive, const ViewRay& ray,
+                                                    double clear_from, double least_alpha) const {
   const PlacedObject& placed = scene_.objects()[object];
-  SurfacePoint point = FindSurfacePoint(placed, primitive, barycentric, ray);
-  if (is_clear) point.clear_way = ray.origin - point.position;
+  SurfacePoint point = FindSurfacePoint(placed, primitive, ray);
+  point.clear_way = ClearWay(ray, clear_from, point.position);
   const SurfaceBsdf bsdf(placed, primitive, point, glm::normalize(-ray.direction), least_alpha);
   return {point, bsdf, ShadowRayOrigin(point), object, primitive};
 }
 
 LightPathTracer::First LightPathTracer::FirstVertex(const PathPixel& pixel) const {
   const ViewRay ray = view_.camera.Through(pixel.at.x, pixel.at.y);
-  const Vertex vertex = MakeVertex(pixel.object, pixel.primitive, pixel.barycentric, ray, clear_to_eye_, 0.0);
+  const Vertex vertex = MakeVertex(pixel.object, pixel.primitive, ray, double(pixel.clear_from), 0.0);
   return {vertex, LobesAt(vertex, follower_.AtEye(), max_bounces_ <= 0)};
 }
 
@@ -228,8 +226,8 @@ std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex
     if (lit) AddMet(vertex, state, flight, kInfinity, sums);
     return std::nullopt;
   }
-  const Vertex next = MakeVertex(hit.hit.geomID, hit.hit.primID, {hit.hit.u, hit.hit.v},
-                                 {vertex.origin, flight.direction}, true, RoughenedAlpha(flight.widest));
+  const Vertex next = MakeVertex(hit.hit.geomID, hit.hit.primID, {vertex.origin, flight.direction}, 0.0,
+                                 RoughenedAlpha(flight.widest));
   if (lit) {
     AddMet(vertex, state, flight, glm::length(next.point.position - vertex.origin), sums);
     AddEmission(vertex, next, state, flight, sums);

@@ -35,8 +35,8 @@ struct PathPixel {
   std::uint32_t index = 0;  // in the picture
   std::uint32_t object = 0;
   std::uint32_t primitive = 0;
-  glm::vec2 barycentric{0.0f};
   glm::dvec2 at{0.0};  // where in the picture the ray went through
+  float clear_from = 0.0f;  // as in TileHits
 };
 
 // Immutable; free to use from any thread.
@@ -83,8 +83,8 @@ class LightPathTracer {
     bool first = true;                                        // whether it leaves the first surface
   };
 
-  Vertex MakeVertex(std::uint32_t object, std::uint32_t primitive, const glm::dvec2& barycentric, const ViewRay& ray,
-                    bool is_clear, double least_alpha) const;
+  Vertex MakeVertex(std::uint32_t object, std::uint32_t primitive, const ViewRay& ray, double clear_from,
+                    double least_alpha) const;
   Lobes LobesAt(const Vertex& vertex, const PathState& state, bool last) const;
   void Add(const PathState& state, const glm::dvec3& light, PathSums& sums) const;
   bool IsBlocked(const Vertex& vertex, const LightDraw& draw, RayCounts& rays) const;
@@ -109,7 +109,6 @@ class LightPathTracer {
   const View& view_;
   const PathFollower& follower_;
   const int max_bounces_;
-  const bool clear_to_eye_;
   const LightSet lights_;
 };
 

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "guidegen/bsdf.h"
+#include "guidegen/work_tally.h"
 
 namespace scumble {
 namespace {
@@ -118,7 +119,7 @@ LightDraw MeetBall(const PlacedLight& lamp, const glm::dvec3& point, const glm::
   const double along = glm::dot(way, direction);
   if (!(along > 0.0) || !(distance > 0.0)) return met;
   const double t = distance * (distance / along);
-  if (!(t * kShadowReach < length)) return met;
+  if (!(t - LightGap(point, point + direction * t) < length)) return met;
   const glm::dvec3 off = direction * t - way;
   if (glm::dot(off, off) > lamp.radius * lamp.radius) return met;
   const double area = kPi * lamp.radius * lamp.radius;
@@ -133,7 +134,7 @@ LightDraw MeetArea(const PlacedLight& lamp, const glm::dvec3& point, const glm::
   if (!(cosine > 0.0)) return met;
   const glm::dvec3 way = lamp.position - point;
   const double t = -glm::dot(way, lamp.axis) / cosine;
-  if (!(t > 0.0) || !(t * kShadowReach < length)) return met;
+  if (!(t > 0.0) || !(t - LightGap(point, point + direction * t) < length)) return met;
   const glm::dvec3 off = direction * t - way;
   const double x = glm::dot(off, lamp.half_x) / glm::dot(lamp.half_x, lamp.half_x);
   const double y = glm::dot(off, lamp.half_y) / glm::dot(lamp.half_y, lamp.half_y);
@@ -236,6 +237,7 @@ double LightSet::Probability(const SurfacePoint& point, int light, bool with_del
 }
 
 LightDraw LightSet::Draw(int light, const glm::dvec3& point, double u, double v) const {
+  ++work_tally.light_samples;
   if (IsEmitter(light)) return DrawEmitter(emitters_[std::size_t(light) - lamps_.size()], point, u, v);
   const PlacedLight& lamp = lamps_[std::size_t(light)];
   if (lamp.IsDelta()) return DrawDelta(lamp, point);

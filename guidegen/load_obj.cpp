@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <glm/gtc/matrix_transform.hpp>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <sstream>
 #include <unordered_map>
 
 #include "guidegen/loader_util.h"
 #include "guidegen/mesh_normals.h"
+#include "guidegen/mtl_materials.h"
 #include "image/color.h"
 #include "image/hash.h"
 #include "io/picture_file.h"
@@ -23,9 +26,6 @@ std::filesystem::path BesideScene(const std::filesystem::path& scene, std::strin
   std::replace(name.begin(), name.end(), '\\', '/');
   return scene.parent_path() / name;
 }
-
-// MTL's illumination model of metals.
-constexpr int kMetalIllumination = 3;
 
 // Reads material libraries from regular files only, and says which one is missing.
 class LibraryReader : public tinyobj::MaterialReader {
@@ -86,6 +86,7 @@ class ObjLoader {
   Expected<Scene> Load() {
     SCUMBLE_RETURN_IF_ERROR(Parse());
     SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
+    PlacePositions();
     for (std::size_t s = 0; s < shapes_.size(); ++s) SCUMBLE_RETURN_IF_ERROR(AddShape(s));
     if (lacks_normals_) ComputeNormals();
     LoadMaterials();
@@ -118,12 +119,24 @@ class ObjLoader {
 
   Status CheckAttributes() const {
     for (std::size_t i = 0; i < attributes_.vertices.size(); ++i) {
-      if (!std::isfinite(attributes_.vertices[i])) {
+      if (!std::isfinite(static_cast<float>(attributes_.vertices[i]))) {
         return InputError(file_ + ": vertex " + std::to_string(i / 3 + 1) +
                           " is NaN or infinite; expected finite numbers");
       }
     }
     return Ok();
+  }
+
+  // Text holds any number of digits: surveyors' files stand millions of metres from 0.
+  void PlacePositions() {
+    std::vector<glm::dvec3> places;
+    for (std::size_t i = 0; i + 2 < attributes_.vertices.size(); i += 3) {
+      const double* v = attributes_.vertices.data() + i;
+      places.emplace_back(v[0], v[1], v[2]);
+    }
+    origin_ = OriginOf(places);
+    positions_.reserve(places.size());
+    for (const glm::dvec3& place : places) positions_.emplace_back(place - origin_);
   }
 
   // One of the file's lists that faces point into.
@@ -175,7 +188,9 @@ class ObjLoader {
   void AddFace(std::size_t shape_index, std::size_t face, std::size_t first, std::size_t count) {
     const tinyobj::mesh_t& mesh = shapes_[shape_index].mesh;
     std::vector<glm::vec3> polygon;
-    for (std::size_t i = 0; i < count; ++i) polygon.push_back(Position(mesh.indices[first + i].vertex_index));
+    for (std::size_t i = 0; i < count; ++i) {
+      polygon.push_back(positions_[std::size_t(mesh.indices[first + i].vertex_index)]);
+    }
     std::vector<glm::uvec3> cuts;
     TriangulatePolygon(polygon, cuts);
     for (const glm::uvec3& cut : cuts) {
@@ -194,17 +209,10 @@ class ObjLoader {
     ++faces_;
   }
 
-  glm::vec3 Position(int index) const {
-    const float* v = attributes_.vertices.data() + 3 * std::size_t(index);
-    return {v[0], v[1], v[2]};
-  }
-
   // Smooth over the whole file, so that no seam shows between shapes or materials. In a file with smoothing groups a
   // normal is shared inside a group only, and group 0 means flat faces; a file without any is smooth everywhere.
   void ComputeNormals() {
-    std::vector<glm::vec3> all;
-    for (std::size_t i = 0; i < attributes_.vertices.size() / 3; ++i) all.push_back(Position(static_cast<int>(i)));
-    const std::vector<std::uint32_t> weld = WeldByPosition(all);
+    const std::vector<std::uint32_t> weld = WeldByPosition(positions_);
     std::unordered_map<SmoothKey, std::uint32_t, SmoothKeyHash> ids;
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
@@ -216,7 +224,7 @@ class ObjLoader {
         const std::uint32_t place = weld[std::size_t(corner.position)];
         const SmoothKey key{place, triangle.smoothing_group, flat ? triangle.face + 1 : 0};
         const auto [it, is_new] = ids.try_emplace(key, static_cast<std::uint32_t>(positions.size()));
-        if (is_new) positions.push_back(all[place]);
+        if (is_new) positions.push_back(positions_[place]);
         indices[i] = it->second;
         if (corner.normal < 0) corner.normal = -1 - std::int64_t(it->second);
       }
@@ -228,53 +236,32 @@ class ObjLoader {
   }
 
   void LoadMaterials() {
-    for (std::size_t i = 0; i < materials_.size(); ++i) {
-      const tinyobj::material_t& from = materials_[i];
-      Material material;
-      material.name = material_names_.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
-      material.base_color_texture = LoadTexture(from.diffuse_texname, from.diffuse_texopt);
-      material.normal_texture = LoadTexture(from.normal_texname, from.normal_texopt);
-      for (int c = 0; c < 3; ++c) {
-        const float kd = material.base_color_texture.texture >= 0 ? 1.0f : from.diffuse[c];
-        material.base_color[c] = std::isfinite(kd) ? std::max(kd, 0.0f) : 1.0f;
+    mtl_ = std::make_shared<MtlLibrary>();
+    mtl_->materials = std::move(materials_);
+    for (const tinyobj::material_t& material : mtl_->materials) {
+      for (const std::string& name : TexturesOf(material)) KeepTexture(name);
+    }
+    for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
+      const std::string& name = mtl_->materials[i].name;
+      scene_.materials.push_back(MakeMaterial(*mtl_, i, scene_));
+      scene_.materials.back().name = material_names_.Take(name.empty() ? "material_" + std::to_string(i) : name);
+    }
+  }
+
+  // To be decoded later.
+  void KeepTexture(const std::string& name) {
+    if (!mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size())).second) return;
+    auto texture = std::make_shared<EncodedTexture>();
+    texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file); };
+    texture->leave_out = [mtl = mtl_](Scene& scene) {
+      for (std::size_t i = 0; i < mtl->materials.size(); ++i) {
+        Material made = MakeMaterial(*mtl, i, scene);
+        made.name = scene.materials[i].name;
+        scene.materials[i] = std::move(made);
       }
-      material.base_color.a = std::isfinite(from.dissolve) ? std::clamp(from.dissolve, 0.0f, 1.0f) : 1.0f;
-      if (material.base_color.a < 1.0f) material.alpha_mode = AlphaMode::kBlend;
-      LoadLighting(from, material);
-      scene_.materials.push_back(std::move(material));
-    }
-  }
-
-  // MTL knows a colour, a highlight and its exponent. They are read as Blender 3.4 reads and writes them. A highlight
-  // only says that there is a coat: how strongly one reflects is glTF's.
-  void LoadLighting(const tinyobj::material_t& from, Material& material) {
-    const glm::vec3 highlight = Color(from.specular);
-    const float shininess = std::isfinite(from.shininess) ? std::clamp(from.shininess, 0.0f, 1000.0f) : 0.0f;
-    material.roughness = 1.0f - std::sqrt(shininess / 1000.0f);
-    const auto share = [](float value) { return std::isfinite(value) ? std::clamp(value, 0.0f, 1.0f) : 0.0f; };
-    if (from.illum == kMetalIllumination) {
-      const glm::vec3 metallic = Color(from.ambient);
-      material.metallic = share((metallic.r + metallic.g + metallic.b) / 3.0f);
-    }
-    // Pr and Pm of the format's later extension; their absence reads as 0.
-    if (from.roughness > 0.0f) material.roughness = share(from.roughness);
-    if (from.metallic > 0.0f) material.metallic = share(from.metallic);
-    const bool says_pbr = from.roughness > 0.0f || material.metallic > 0.0f;
-    if (highlight == glm::vec3(0.0f) && !says_pbr) {
-      material.bsdf = Bsdf::kDiffuse;
-      material.roughness = 1.0f;
-    } else if (glm::vec3(material.base_color) == glm::vec3(0.0f)) {
-      material.bsdf = Bsdf::kGlossy;  // all its colour is in the highlight, as metals were written before Pm
-      material.base_color = glm::vec4(glm::min(highlight, 1.0f), material.base_color.a);
-    }
-    material.emission_texture = LoadTexture(from.emissive_texname, from.emissive_texopt);
-    material.emission = material.emission_texture.texture >= 0 ? glm::vec3(1.0f) : Color(from.emission);
-  }
-
-  static glm::vec3 Color(const float* from) {
-    glm::vec3 color;
-    for (int c = 0; c < 3; ++c) color[c] = std::isfinite(from[c]) ? std::max(from[c], 0.0f) : 0.0f;
-    return color;
+    };
+    scene_.textures.emplace_back();
+    scene_.encoded_textures.push_back(std::move(texture));
   }
 
   // What faces without a material have: Blender's own, so that nobody meets a highlight that nobody asked for. Where
@@ -293,29 +280,6 @@ class ObjLoader {
 
   bool HasColors() const {
     return !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
-  }
-
-  TextureUse LoadTexture(const std::string& name, const tinyobj::texture_option_t& options) {
-    TextureUse use;
-    if (name.empty()) return use;
-    const auto [known, is_new] = textures_.try_emplace(name, -1);
-    if (is_new) {
-      Expected<Picture> picture = ReadPicture(BesideScene(path_, name));
-      if (picture) {
-        known->second = static_cast<int>(scene_.textures.size());
-        scene_.textures.push_back(std::move(*picture));
-      } else {
-        warnings_.Add("a texture cannot be read and is left out", Excerpt(picture.error().message));
-      }
-    }
-    use.texture = known->second;
-    if (options.clamp) use.wrap_u = use.wrap_v = TextureWrap::kClamp;
-    // MTL scales and shifts coordinates whose v points up; ours points down.
-    const float su = options.scale[0], sv = options.scale[1];
-    use.uv_transform[0][0] = su;
-    use.uv_transform[1][1] = sv;
-    use.uv_transform[2] = glm::vec3(options.origin_offset[0], 1.0f - sv - options.origin_offset[1], 1.0f);
-    return use;
   }
 
   void BuildMeshes() {
@@ -344,7 +308,7 @@ class ObjLoader {
 
   void AddMesh(const std::string& object, int material, const std::vector<std::size_t>& members) {
     Mesh mesh;
-    mesh.material = material >= 0 && std::size_t(material) < materials_.size() ? material : PlainMaterial();
+    mesh.material = material >= 0 && std::size_t(material) < mtl_->materials.size() ? material : PlainMaterial();
     const bool has_colors = HasColors();
     bool has_uvs = false;
     for (std::size_t t : members) {
@@ -358,7 +322,7 @@ class ObjLoader {
         const auto [it, is_new] = vertices.try_emplace(corner, static_cast<std::uint32_t>(mesh.positions.size()));
         indices[i] = it->second;
         if (!is_new) continue;
-        mesh.positions.push_back(Position(corner.position));
+        mesh.positions.push_back(positions_[std::size_t(corner.position)]);
         mesh.normals.push_back(NormalAt(corner));
         if (has_uvs) mesh.uvs[0].push_back(UvAt(corner));
         if (has_colors) mesh.colors.push_back(ColorAt(corner));
@@ -369,25 +333,26 @@ class ObjLoader {
     const TextureUse& normal_map = scene_.materials[std::size_t(mesh.material)].normal_texture;
     if (normal_map.texture >= 0 && has_uvs) FillTangents(mesh, 0, normal_map.uv_transform);
     scene_.meshes.push_back(std::move(mesh));
-    scene_.instances.push_back({object, static_cast<int>(scene_.meshes.size()) - 1, glm::dmat4(1.0)});
+    scene_.instances.push_back(
+        {object, static_cast<int>(scene_.meshes.size()) - 1, glm::translate(glm::dmat4(1.0), origin_)});
   }
 
   glm::vec3 NormalAt(const Corner& corner) const {
     if (corner.normal < 0) return smooth_normals_[std::size_t(-1 - corner.normal)];
-    const float* n = attributes_.normals.data() + 3 * std::size_t(corner.normal);
+    const double* n = attributes_.normals.data() + 3 * std::size_t(corner.normal);
     return {n[0], n[1], n[2]};
   }
 
   glm::vec2 UvAt(const Corner& corner) const {
     if (corner.uv < 0) return glm::vec2(0.0f);
-    const float* uv = attributes_.texcoords.data() + 2 * std::size_t(corner.uv);
-    const glm::vec2 turned(uv[0], 1.0f - uv[1]);
+    const double* uv = attributes_.texcoords.data() + 2 * std::size_t(corner.uv);
+    const glm::vec2 turned(static_cast<float>(uv[0]), 1.0f - static_cast<float>(uv[1]));
     return IsFinite(turned) ? turned : glm::vec2(0.0f);
   }
 
   glm::vec4 ColorAt(const Corner& corner) const {
-    const float* c = attributes_.colors.data() + 3 * std::size_t(corner.position);
-    const glm::vec4 color(SrgbToLinear(c[0]), SrgbToLinear(c[1]), SrgbToLinear(c[2]), 1.0f);
+    const double* c = attributes_.colors.data() + 3 * std::size_t(corner.position);
+    const glm::vec4 color(SrgbToLinear(float(c[0])), SrgbToLinear(float(c[1])), SrgbToLinear(float(c[2])), 1.0f);
     return IsFinite(color) ? glm::max(color, glm::vec4(0.0f)) : glm::vec4(1.0f);
   }
 
@@ -401,7 +366,9 @@ class ObjLoader {
   WarningCounter warnings_;
   UniqueNames material_names_;
   int plain_material_ = -1;
-  std::map<std::string, int> textures_;  // index into the scene's, -1 where unreadable
+  glm::dvec3 origin_{0.0};
+  std::vector<glm::vec3> positions_;  // relative to it
+  std::shared_ptr<MtlLibrary> mtl_;  // once it is loaded
   std::vector<Triangle> triangles_;
   std::vector<glm::vec3> smooth_normals_;
   std::size_t faces_ = 0;

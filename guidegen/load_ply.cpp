@@ -169,23 +169,6 @@ class Values {
   std::size_t at_ = 0;
 };
 
-// The place that positions are stored relative to, so that floats can hold them: the middle of the whole, in whole
-// metres, where it is so far from 0 that floats would lose four bits or more of the shape; else 0.
-glm::dvec3 OriginOf(const std::vector<glm::dvec3>& places) {
-  if (places.empty()) return glm::dvec3(0.0);
-  glm::dvec3 low = places[0], high = places[0];
-  for (const glm::dvec3& place : places) {
-    low = glm::min(low, place);
-    high = glm::max(high, place);
-  }
-  const glm::dvec3 size = high - low;
-  constexpr double kFar = 16.0;
-  const glm::dvec3 middle = glm::round(0.5 * low + 0.5 * high);
-  const glm::dvec3 away = glm::abs(middle);
-  const bool far = std::max({away.x, away.y, away.z}) > kFar * std::max({size.x, size.y, size.z});
-  return far ? middle : glm::dvec3(0.0);
-}
-
 class PlyLoader {
  public:
   explicit PlyLoader(const std::filesystem::path& path) : path_(path), file_(path.string()) {}

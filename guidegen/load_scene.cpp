@@ -11,6 +11,7 @@
 #include "guidegen/load_obj.h"
 #include "guidegen/load_ply.h"
 #include "guidegen/loader_util.h"
+#include "guidegen/scene_textures.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -56,23 +57,28 @@ auto WithinMemory(const std::filesystem::path& path, Load load) -> decltype(load
   } catch (const std::bad_alloc&) {
     return MemoryError(path.string() + " asks for more memory than there is: simplify the scene");
   } catch (const std::length_error&) {
-    return InputError(path.string() + " asks for more memory than there is: simplify the scene");
+    return InputError(path.string() +
+                      " promises more of something than any file can hold: one of its sizes is wrong, export it again");
   }
 }
 
-void Finish(const std::filesystem::path& path, bool has_geometry, Scene& scene) {
+Status Finish(const std::filesystem::path& path, bool has_geometry, TextureLoading textures, Scene& scene) {
   scene.name = path.string();
   if (scene.materials.empty()) DefaultMaterial(scene);
   if (!has_geometry) scene.warnings.push_back("there is no geometry in the scene, its picture is empty");
   CheckPromises(scene);
+  if (textures == TextureLoading::kWhenNeeded) return Ok();
+  SCUMBLE_ASSIGN(const DecodedTextures decoded, DecodeAllTextures(scene));
+  scene.warnings.insert(scene.warnings.end(), decoded.warnings.begin(), decoded.warnings.end());
+  return Ok();
 }
 
 }  // namespace
 
-Expected<Scene> LoadScene(const std::filesystem::path& path) {
+Expected<Scene> LoadScene(const std::filesystem::path& path, TextureLoading textures) {
   return WithinMemory(path, [&]() -> Expected<Scene> {
     SCUMBLE_ASSIGN(Scene scene, LoadByEnding(path));
-    Finish(path, !scene.instances.empty(), scene);
+    SCUMBLE_RETURN_IF_ERROR(Finish(path, !scene.instances.empty(), textures, scene));
     return scene;
   });
 }
@@ -82,7 +88,7 @@ Expected<AnimatedScene> AnimatedScene::Load(const std::filesystem::path& path, c
     AnimatedScene animated;
     const std::string ending = LowerEnding(path);
     if (ending != ".glb" && ending != ".gltf") {
-      SCUMBLE_ASSIGN(animated.rest_, LoadScene(path));
+      SCUMBLE_ASSIGN(animated.rest_, LoadScene(path, options.textures));
       if (options.animation.empty() || options.animation == "*") return animated;
       return UsageError(path.string() + " has no animation \"" + Excerpt(options.animation, 80) +
                         "\": only .glb and .gltf files have any");
@@ -90,7 +96,7 @@ Expected<AnimatedScene> AnimatedScene::Load(const std::filesystem::path& path, c
     SCUMBLE_ASSIGN(MovingScene loaded, LoadMovingGltfScene(path, options.animation));
     animated.rest_ = std::move(loaded.scene);
     animated.animations_ = std::move(loaded.animations);
-    Finish(path, !loaded.rig.instances.empty(), animated.rest_);
+    SCUMBLE_RETURN_IF_ERROR(Finish(path, !loaded.rig.instances.empty(), options.textures, animated.rest_));
     if (!loaded.rig.animation.empty()) animated.rig_ = std::make_shared<const GltfRig>(std::move(loaded.rig));
     return animated;
   });

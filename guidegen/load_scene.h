@@ -13,14 +13,20 @@
 
 namespace scumble {
 
+enum class TextureLoading {
+  kNow,         // the scene is complete
+  kWhenNeeded,  // DecodeTextures is called before the scene is rendered, and tells what is wrong with them
+};
+
 // Loads by the file's ending. Missing normals are made smooth, weighted by angle. A scene without geometry is legal
 // (a warning says so). Errors name the file and what is wrong with it: unreadable, corrupt, an accessor that points
 // outside its buffer, an index that points outside its attributes, a texture that is missing. Never reads outside the
 // file's data. A scene that moves is seen at rest: its nodes as they stand, skins and morph weights applied.
-Expected<Scene> LoadScene(const std::filesystem::path& path);
+Expected<Scene> LoadScene(const std::filesystem::path& path, TextureLoading textures = TextureLoading::kNow);
 
 struct AnimationOptions {
   std::string animation;  // by name; "": the file's first, "*": all of them at once
+  TextureLoading textures = TextureLoading::kNow;
 };
 
 struct GltfRig;

@@ -1,5 +1,6 @@
 #include "guidegen/loader_util.h"
 
+#include <algorithm>
 #include <cmath>
 #include <system_error>
 
@@ -150,6 +151,21 @@ void TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uve
     }
   }
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) triangles.emplace_back(ring[0], ring[i], ring[i + 1]);
+}
+
+glm::dvec3 OriginOf(std::span<const glm::dvec3> places) {
+  if (places.empty()) return glm::dvec3(0.0);
+  glm::dvec3 low = places[0], high = places[0];
+  for (const glm::dvec3& place : places) {
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+  const glm::dvec3 size = high - low;
+  constexpr double kFar = 16.0;
+  const glm::dvec3 middle = glm::round(0.5 * low + 0.5 * high);
+  const glm::dvec3 away = glm::abs(middle);
+  const bool far = std::max({away.x, away.y, away.z}) > kFar * std::max({size.x, size.y, size.z});
+  return far ? middle : glm::dvec3(0.0);
 }
 
 bool IsFinite(const glm::vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }

@@ -82,6 +82,10 @@ class GeometryBudget {
 // fan. Fewer than three corners give nothing.
 void TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles);
 
+// The place that positions are stored relative to, so that floats can hold them: the middle of the whole, in whole
+// metres, where it is so far from 0 that floats would lose four bits or more of the shape; else 0.
+glm::dvec3 OriginOf(std::span<const glm::dvec3> places);
+
 bool IsFinite(const glm::vec2& v);
 bool IsFinite(const glm::vec3& v);
 bool IsFinite(const glm::vec4& v);

@@ -4,6 +4,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/path_layers.h"
+#include "guidegen/scene_textures.h"
 
 namespace scumble {
 namespace {
@@ -86,6 +87,12 @@ std::vector<PlanItem> PlanGuides(const Scene& scene, const GuidegenOptions& opti
   const bool holes = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; });
   if (holes) plan.push_back({"alpha test", "materials with holes", "1 texture lookup per ray and surface met"});
+  if (!scene.textures.empty()) {
+    const std::vector<bool> needed = NeededTextures(scene, options);
+    const auto count = std::size_t(std::count(needed.begin(), needed.end(), true));
+    plan.push_back({"textures", "pictures of the scene's materials",
+                    (count ? std::to_string(count) : std::string("none")) + " of " + std::to_string(needed.size()) + " decoded"});
+  }
   return plan;
 }
 

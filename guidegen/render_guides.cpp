@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -6,6 +7,7 @@
 #include "guidegen/cast_guides.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/path_layers.h"
+#include "guidegen/scene_textures.h"
 #include "image/check.h"
 
 namespace scumble {
@@ -31,6 +33,14 @@ void CheckMaterial(const Material& material, const Scene& scene) {
                                 &material.metallic_roughness_texture, &material.emission_texture}) {
     SCUMBLE_CHECK(use->texture < 0 || std::size_t(use->texture) < scene.textures.size());
     SCUMBLE_CHECK(use->uv_set == 0 || use->uv_set == 1);
+  }
+}
+
+// The caller has decoded what is needed (guidegen/scene_textures.h): white in its place would be a quiet lie.
+void CheckTextures(const Scene& scene, const GuidegenOptions& options) {
+  const std::vector<bool> needed = NeededTextures(scene, options);
+  for (std::size_t i = 0; i < std::min(needed.size(), scene.encoded_textures.size()); ++i) {
+    SCUMBLE_CHECK(!needed[i] || !scene.encoded_textures[i]);
   }
 }
 
@@ -117,6 +127,7 @@ Expected<GuidegenResult> Render(const Scene& scene, const Camera& camera, const 
   SCUMBLE_RETURN_IF_ERROR(CheckOptions(options, next != nullptr));
   for (const Material& material : scene.materials) CheckMaterial(material, scene);
   for (const Mesh& mesh : scene.meshes) CheckMesh(mesh, scene);
+  CheckTextures(scene, options);
 
   View view;
   SCUMBLE_ASSIGN(view.camera, CameraRays::Make(camera, options.width, options.height));

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "image/picture.h"
+#include "image/status.h"
 
 namespace scumble {
 
@@ -115,12 +118,24 @@ struct Light {
   double size_y = 1.0;
 };
 
+struct Scene;
+
+// What a texture is decoded from, by DecodeTextures of guidegen/scene_textures.h. Immutable: copies of a scene share it.
+struct EncodedTexture {
+  std::function<Expected<Picture>()> decode;
+  // Makes the scene's materials do without: the texture's picture is empty and nothing encoded is left of it. Null: they
+  // cannot, and a picture that cannot be decoded is an error.
+  std::function<void(Scene&)> leave_out;
+};
+
 struct Scene {
   std::string name;  // the file's, for messages
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<Material> materials;  // never empty once loaded
   std::vector<Picture> textures;
+  // Of each texture that is not decoded yet, with an empty picture in `textures`; null, or no longer there: it is.
+  std::vector<std::shared_ptr<const EncodedTexture>> encoded_textures;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   glm::vec3 world_radiance{0.0f};     // from every direction that meets nothing; linear

@@ -1,20 +1,19 @@
 #include "guidegen/single_ray.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace scumble {
 namespace {
 
-RTCRay MakeRay(const glm::dvec3& origin, const glm::dvec3& way, double length) {
+RTCRay MakeRay(const LightRay& from) {
   RTCRay ray = {};
-  ray.org_x = float(origin.x);
-  ray.org_y = float(origin.y);
-  ray.org_z = float(origin.z);
-  ray.dir_x = float(way.x);
-  ray.dir_y = float(way.y);
-  ray.dir_z = float(way.z);
-  ray.tfar = float(length);
+  ray.org_x = float(from.origin.x);
+  ray.org_y = float(from.origin.y);
+  ray.org_z = float(from.origin.z);
+  ray.dir_x = float(from.direction.x);
+  ray.dir_y = float(from.direction.y);
+  ray.dir_z = float(from.direction.z);
+  ray.tfar = float(from.reach);
   ray.mask = ~0u;
   return ray;
 }
@@ -25,18 +24,17 @@ CastContext SingleRays() {
   return context;
 }
 
-bool Occluded(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& way, double length,
-              const ShadowTarget& target) {
+bool Occluded(RTCScene scene, const LightRay& light_ray, const ShadowTarget& target) {
   CastContext context = SingleRays();
   context.target = target;
-  RTCRay ray = MakeRay(origin, way, length);
+  RTCRay ray = MakeRay(light_ray);
   rtcOccluded1(scene, &context.embree, &ray);
   return ray.tfar < 0.0f;
 }
 
 RTCRayHit Cast(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direction) {
   CastContext context = SingleRays();
-  RTCRayHit hit = {MakeRay(origin, direction, std::numeric_limits<double>::infinity()), {}};
+  RTCRayHit hit = {MakeRay(EndlessLightRay(origin, direction)), {}};
   hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   if (scene) rtcIntersect1(scene, &context.embree, &hit);
   return hit;
@@ -47,11 +45,11 @@ RTCRayHit Cast(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direc
 bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw, Blockers blockers) {
   const RTCScene among = blockers == Blockers::kAll ? scene.handle() : scene.emitters();
   if (!among) return false;
-  if (draw.endless) return Occluded(among, origin, draw.direction, std::numeric_limits<double>::infinity(), {});
-  const glm::dvec3 way = draw.target - origin;
-  if (draw.object == LightDraw::kNoObject) return Occluded(among, origin, way, kShadowReach, {});
-  const double near_end = std::clamp(1.0 - draw.rounding / glm::length(way), 0.0, kShadowReach);
-  return Occluded(among, origin, way, kShadowReach, {&scene.objects()[draw.object], draw.primitive, float(near_end)});
+  if (draw.endless) return Occluded(among, EndlessLightRay(origin, draw.direction), {});
+  const LightRay ray = LightRayTo(origin, draw.target);
+  if (draw.object == LightDraw::kNoObject) return Occluded(among, ray, {});
+  const double near_end = std::max(0.0, ray.end - draw.rounding / glm::length(ray.direction));
+  return Occluded(among, ray, {&scene.objects()[draw.object], draw.primitive, float(near_end)});
 }
 
 RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {

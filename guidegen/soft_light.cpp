@@ -6,6 +6,7 @@
 
 #include "guidegen/bsdf.h"
 #include "guidegen/single_ray.h"
+#include "guidegen/work_tally.h"
 
 namespace scumble {
 namespace {
@@ -71,6 +72,7 @@ struct Sample {
 
   // A direction of the surface.
   void TakeDirection(const Quad& u) {
+    ++work_tally.light_samples;
     const glm::dvec2 disc = SquareToDisc(u[0], u[1]);
     glm::dvec3 x, y;
     MakeFrame(point.normal, x, y);
@@ -108,7 +110,7 @@ struct Sample {
     const int light = lights.EmitterOf(hit.hit.geomID);
     if (light < 0 || !LooksFor(light)) return 0.0;
     const PlacedObject& object = scene.objects()[hit.hit.geomID];
-    const SurfacePoint met = FindSurfacePoint(object, hit.hit.primID, {hit.hit.u, hit.hit.v}, {origin, direction});
+    const SurfacePoint met = FindSurfacePoint(object, hit.hit.primID, {origin, direction});
     const glm::dvec3 radiance = SurfaceEmission(object, hit.hit.primID, met.barycentric);
     return Weighed(light, radiance, lights.EmitterDensity(light, point.position, met), reflected);
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "guidegen/work_tally.h"
+
 namespace scumble {
 namespace {
 
@@ -19,44 +21,63 @@ auto Interpolate(const std::vector<T>& values, const glm::uvec3& triangle, const
   return a * (1.0f - v - w) + b * v + c * w;
 }
 
-// The barycentrics of the place on a triangle's edges that the ray's line passes at the least distance.
-glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray) {
-  const double along = glm::dot(ray.direction, ray.direction);
-  const auto across = [&](const glm::dvec3& v) { return v - ray.direction * (glm::dot(v, ray.direction) / along); };
+// The place on a triangle's edge that the ray's line passes at the least distance.
+struct EdgePlace {
+  glm::dvec2 barycentric;
+  double miss;   // squared distance
+  double along;  // from the ray's origin, in lengths of its direction
+};
+
+EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray) {
   constexpr glm::dvec2 kCorners[] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
-  glm::dvec2 nearest(0.0);
+  const int next = (i + 1) % 3;
+  const double squared = glm::dot(ray.direction, ray.direction);
+  const auto along = [&](const glm::dvec3& v) { return glm::dot(v, ray.direction) / squared; };
+  const glm::dvec3 corner = triangle.corner[i] - ray.origin;
+  const glm::dvec3 edge = triangle.corner[next] - triangle.corner[i];
+  const glm::dvec3 from = corner - ray.direction * along(corner);
+  const glm::dvec3 across = edge - ray.direction * along(edge);
+  const double length = glm::dot(across, across);
+  const double share = length > 0.0 ? glm::clamp(-glm::dot(from, across) / length, 0.0, 1.0) : 0.0;
+  const glm::dvec3 miss = from + across * share;
+  return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), along(corner + edge * share)};
+}
+
+// The barycentrics of the place on a triangle's edges that the ray passes at the least distance. A triangle seen edge
+// on shows two of its edges there: of places before the ray's origin that lie on the ray, to a step of float of their
+// distance, it is the first.
+glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray) {
+  EdgePlace places[3];
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
-    const int next = (i + 1) % 3;
-    const glm::dvec3 from = across(triangle.corner[i] - ray.origin);
-    const glm::dvec3 edge = across(triangle.corner[next] - triangle.corner[i]);
-    const double length = glm::dot(edge, edge);
-    const double share = length > 0.0 ? glm::clamp(-glm::dot(from, edge) / length, 0.0, 1.0) : 0.0;
-    const glm::dvec3 miss = from + edge * share;
-    const double distance = glm::dot(miss, miss);
-    if (!(distance < least)) continue;
-    least = distance;
-    nearest = glm::mix(kCorners[i], kCorners[next], share);
+    places[i] = NearestOnEdge(triangle, i, ray);
+    if (!(places[i].along >= 0.0)) places[i].miss += kLargestPlainSquare;  // behind, for want of anything before
+    least = std::min(least, places[i].miss);
   }
-  return nearest;
+  const double step_squared = kEdgeOn * kEdgeOn * glm::dot(ray.direction, ray.direction);
+  glm::dvec2 first(0.0);
+  double first_along = std::numeric_limits<double>::infinity();
+  for (const EdgePlace& place : places) {
+    const bool on_ray = place.miss <= std::max(least, step_squared * place.along * place.along);
+    if (!on_ray || !(place.along < first_along)) continue;
+    first_along = place.along;
+    first = place.barycentric;
+  }
+  return first;
 }
 
 // Möller & Trumbore 1997, in double; `area` is the cross product of the triangle's edges. Rays that just miss the
-// triangle, because Embree sees it with its corners rounded to float, meet its nearest edge. By how much they miss is
-// told in barycentrics, where a sliver's height is 1 however small it is: a micrometre may seem to be a thousand
-// slivers away, so there the nearest edge is looked for in space.
-glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray,
-                        const glm::dvec2& fallback) {
+// triangle, because Embree sees it with its corners rounded to float, meet the nearest place of its edges, in space: in
+// barycentrics a triangle's height is 1 however low it is seen, and a micrometre may seem to be a thousand triangles.
+glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray) {
   const glm::dvec3 moment = glm::cross(ray.origin - triangle.corner[0], ray.direction);
-  const double scale = -1.0 / glm::dot(area, ray.direction);
-  glm::dvec2 result(glm::dot(triangle.corner[2] - triangle.corner[0], moment) * scale,
-                    glm::dot(triangle.corner[0] - triangle.corner[1], moment) * scale);
+  const double seen = glm::dot(area, ray.direction);
+  const double scale = -1.0 / seen;
+  const glm::dvec2 result(glm::dot(triangle.corner[2] - triangle.corner[0], moment) * scale,
+                          glm::dot(triangle.corner[0] - triangle.corner[1], moment) * scale);
   const bool inside = result.x >= 0.0 && result.y >= 0.0 && result.x + result.y <= 1.0;  // false for NaN
-  if (!inside && IsSliver(triangle, area)) return NearestOnEdges(triangle, ray);
-  if (!std::isfinite(result.x + result.y)) result = fallback;
-  result = glm::max(result, glm::dvec2(0.0));
-  const double sum = result.x + result.y;
-  return sum > 1.0 ? result / sum : result;
+  const bool steady = std::abs(seen) > kEdgeOn * LongestEdgeSquared(triangle) * glm::length(ray.direction);
+  return inside && steady ? result : NearestOnEdges(triangle, ray);
 }
 
 glm::dvec3 Mix(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec2& barycentric) {
@@ -89,13 +110,12 @@ glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, 
   return tangent * (bend.x * strength) + bitangent * (bend.y * strength) + unit * bend.z;
 }
 
-SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric,
-                               const ViewRay& ray) {
+SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray) {
   const glm::uvec3& corners = object.mesh->triangles[primitive];
   const Triangle triangle = ViewTriangle(object, primitive);
   const glm::dvec3 area = glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
   SurfacePoint point;
-  point.barycentric = MeetTriangle(triangle, area, ray, barycentric);
+  point.barycentric = MeetTriangle(triangle, area, ray);
   point.position = Mix(triangle.corner[0], triangle.corner[1], triangle.corner[2], point.barycentric);
   point.rest_position = RestPosition(object, primitive, point.barycentric);
   point.largest_coordinate = LargestCoordinate(point.position);
@@ -178,13 +198,18 @@ PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const P
   return object;
 }
 
-bool IsSliver(const Triangle& triangle, const glm::dvec3& area) {
+double LongestEdgeSquared(const Triangle& triangle) {
   double longest = 0.0;
   for (int i = 0; i < 3; ++i) {
     const glm::dvec3 edge = triangle.corner[(i + 1) % 3] - triangle.corner[i];
     longest = std::max(longest, glm::dot(edge, edge));
   }
-  return !(glm::dot(area, area) * (kSliver * kSliver) >= longest * longest);
+  return longest;
+}
+
+glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point) {
+  const glm::dvec3 way = ray.origin + ray.direction * clear_from - point;
+  return glm::dot(way, ray.direction) < 0.0 ? way : glm::dvec3(0.0);
 }
 
 bool AllDoubleSided(std::span<const PlacedObject> objects) {
@@ -192,12 +217,12 @@ bool AllDoubleSided(std::span<const PlacedObject> objects) {
                      [](const PlacedObject& object) { return object.material->double_sided; });
 }
 
-SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
-                              const ViewRay& ray) {
-  return object.mesh ? FindTrianglePoint(object, primitive, barycentric, ray) : FindSpherePoint(object, ray);
+SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray) {
+  return object.mesh ? FindTrianglePoint(object, primitive, ray) : FindSpherePoint(object, ray);
 }
 
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
+  ++work_tally.materials;
   glm::vec4 color = object.material->base_color;
   if (!object.mesh) return color;
   const Mesh& mesh = *object.mesh;

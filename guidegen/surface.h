@@ -42,10 +42,11 @@ inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive
   return triangle;
 }
 
-// Whether a triangle is more than kSliver times as long as it is high, or has no area; `area` is the cross product of
-// its edges. Up to there a point that is clamped in barycentrics is off by no more than kSliver float roundings.
-inline constexpr double kSliver = 1024.0;
-bool IsSliver(const Triangle& triangle, const glm::dvec3& area);
+// A triangle that a ray sees as lower than this share of its length, because it is a sliver or lies edge on: there the
+// place where the ray crosses it is lost in double's rounding (2^-47 of the distance over the share), and the nearest
+// place of its edges is no farther from the ray than half a step of float.
+inline constexpr double kEdgeOn = 0x1p-24;
+double LongestEdgeSquared(const Triangle& triangle);
 
 struct SurfacePoint {
   glm::dvec3 position{0.0};         // view space
@@ -54,17 +55,17 @@ struct SurfacePoint {
   glm::dvec3 rest_position{0.0};    // object space
   glm::dvec2 barycentric{0.0};      // weights of the second and third corner
   double largest_coordinate = 0.0;  // of the point and its triangle: what float rounding errors are relative to
-  // A way from the point that nothing is in: back along the ray that met it, as far as the ray came. 0: none is known.
+  // A way from the point that nothing is in: back along the ray that met it, as far as the ray came, or to a place before
+  // the last back of a single-sided surface that a camera ray passed. 0: none is known.
   // Whoever casts the rays fills it in.
   glm::dvec3 clear_way{0.0};
 };
 
-// Embree's hit is a float's worth of the truth; this meets the same surface again in double. `barycentric` are
-// Embree's, used where the triangle is seen edge on. A sliver that the exact ray misses is met where it comes nearest.
-// The point always lies on the surface. A back face has both normals flipped, as Cycles does. A shading normal that is
-// zero or NaN gives way to the geometric one; a triangle without area faces the eye.
-SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric,
-                              const ViewRay& ray);
+// Embree's hit is a float's worth of the truth; this meets the same surface again in double. A triangle that the exact
+// ray misses, or sees edge on, is met where the ray comes nearest to its edges. The point always lies on the surface. A
+// back face has both normals flipped, as Cycles does. A shading normal that is zero or NaN gives way to the geometric
+// one; a triangle without area faces the eye.
+SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray);
 
 // Where a point of a mesh's triangle is before anything deforms it, object space.
 glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);
@@ -93,6 +94,10 @@ std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const Texture
                                        glm::dvec2 barycentric);
 std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
                                             glm::dvec2 barycentric);
+
+// SurfacePoint::clear_way of a point that a ray met and before which, from `clear_from` lengths of the ray's direction
+// on, it passed nothing. 0 where float has put that place behind the point.
+glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point);
 
 // Whether no object is single-sided: rays of light, which meet backs as well, then pass wherever camera rays pass.
 bool AllDoubleSided(std::span<const PlacedObject> objects);

@@ -39,7 +39,7 @@ void SetLane(Packet& packet, int lane, const Segment& segment) {
   packet.tfar[lane] = float(segment.far);
   packet.time[lane] = 0.0f;
   packet.mask[lane] = ~0u;
-  packet.id[lane] = 0;
+  packet.id[lane] = unsigned(lane);
   packet.flags[lane] = 0;
 }
 
@@ -81,6 +81,9 @@ void ForEachPixel(const Tile& tile, const Visit& visit) {
     for (int column = 0; column < tile.width; ++column) visit(TilePixel(column, row));
   }
 }
+
+template <class Packet>
+constexpr int kRaysIn = sizeof(Packet::hit.geomID) / sizeof(unsigned);
 
 void Cast(const int* valid, RTCScene scene, RTCIntersectContext* context, RTCRayHit8& packet) {
   rtcIntersect8(valid, scene, context, &packet);
@@ -132,7 +135,7 @@ TileCaster::TileCaster(const EmbreeScene& scene, const View& view, const Guidege
       past_caches_(guides.pixel_count() > kCachedPixels),
       lights_(view.lights, LitObjects(scene, guides), view.world_radiance),
       object_records_(MakeObjectRecords(scene.objects())),
-      clear_ways_(AllDoubleSided(scene.objects())) {
+      backs_(!AllDoubleSided(scene.objects())) {
   const int n = options.aa;
   std::vector<std::array<int, 3>> ranked;  // squared distance in half subsamples, row, column
   for (int row = 0; row < n; ++row) {
@@ -187,12 +190,46 @@ void TileCaster::PlaceRays(const Tile& tile, TileRays& rays) const {
   std::copy_n(up_.begin() + tile.y0, kTileSide, rays.up.begin());
 }
 
+// From where the ways of a packet that was cast are clear. Rays that passed backs before what they met and behind it, by
+// context.passed, look again, only as far as that. The back itself may be a rounding nearer than float has it: half of
+// the way counts.
+template <class Packet>
+void TileCaster::FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const {
+  constexpr int kRays = kRaysIn<Packet>;
+  BacksPassed* const passed = context.passed;
+  alignas(64) int again[kRays];
+  bool any = false;
+  for (int lane = 0; lane < kRays; ++lane) {
+    const bool hidden = valid[lane] != 0 && packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID &&
+                        passed[lane].nearest < packet.ray.tfar[lane] && packet.ray.tfar[lane] <= passed[lane].farthest;
+    again[lane] = hidden ? -1 : 0;
+    any = any || hidden;
+  }
+  const float near = float(view_.camera.near_depth());
+  if (any) {
+    Packet shorter = packet;
+    for (int lane = 0; lane < kRays; ++lane) {
+      if (again[lane] == 0) continue;
+      passed[lane] = {};
+      shorter.ray.tfar[lane] = std::nextafter(packet.ray.tfar[lane], 0.0f);
+      shorter.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    scumble::Cast(again, scene_.handle(), &context.embree, shorter);
+  }
+  for (int lane = 0; lane < kRays; ++lane) {
+    const float last = passed[lane].farthest, met = packet.ray.tfar[lane];
+    clear_from[lane] = last > near && last < met ? 0.5f * (last + met) : near;
+  }
+}
+
 // A square is a packet of 16 rays or two of 8.
 template <class Packet>
-void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, TileHits& hits) const {
-  constexpr int kRays = sizeof(Packet::hit.geomID) / sizeof(unsigned);
+void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const {
+  constexpr int kRays = kRaysIn<Packet>;
   constexpr int kRows = kRays / kSquareSide;
   CastContext context(true);
+  std::array<BacksPassed, kRays> passed;
+  if (ways && backs_) context.passed = passed.data();
   Packet packet = {};
   alignas(64) int valid[kRays];
   // Of the packets in a column and in a row of them.
@@ -221,22 +258,23 @@ void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, TileHits& h
       for (int lane = 0; !whole && lane < kRays; ++lane) {
         valid[lane] = column + lane % kSquareSide < tile.width && row + lane / kSquareSide < tile.height ? -1 : 0;
       }
+      if (context.passed) passed.fill({});
       scumble::Cast(valid, scene_.handle(), &context.embree, packet);
       const std::size_t first = std::size_t(TilePixel(column, row));
       std::copy_n(packet.hit.geomID, kRays, hits.object.data() + first);
       std::copy_n(packet.hit.primID, kRays, hits.primitive.data() + first);
-      std::copy_n(packet.hit.u, kRays, hits.u.data() + first);
-      std::copy_n(packet.hit.v, kRays, hits.v.data() + first);
+      if (context.passed) FindClear(packet, valid, context, hits.clear_from.data() + first);
     }
   }
 }
 
-void TileCaster::CastCentres(const Tile& tile, const TileRays& rays, TileHits& hits) const {
+void TileCaster::CastCentres(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const {
   if (tile.width < kTileSide || tile.height < kTileSide) hits.object.fill(TileHits::kNothing);
+  if (ways && !backs_) hits.clear_from.fill(float(view_.camera.near_depth()));
   if (scene_.wide_packets()) {
-    CastPackets<RTCRayHit16>(tile, rays, hits);
+    CastPackets<RTCRayHit16>(tile, rays, ways, hits);
   } else {
-    CastPackets<RTCRayHit8>(tile, rays, hits);
+    CastPackets<RTCRayHit8>(tile, rays, ways, hits);
   }
 }
 
@@ -294,12 +332,15 @@ std::size_t TileCaster::CastMissed(const Tile& tile, Samples samples, int pixel,
     packet.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
     alignas(32) const int valid[kPacket] = {-1};
     CastContext context(true);
-    rtcIntersect8(valid, scene_.handle(), &context.embree, &packet);
+    std::array<BacksPassed, kPacket> passed;
+    context.passed = passed.data();
+    scumble::Cast(valid, scene_.handle(), &context.embree, packet);
     if (packet.hit.geomID[0] == RTC_INVALID_GEOMETRY_ID) continue;
     scratch.hits.object[pixel] = packet.hit.geomID[0];
     scratch.hits.primitive[pixel] = packet.hit.primID[0];
-    scratch.hits.u[pixel] = packet.hit.u[0];
-    scratch.hits.v[pixel] = packet.hit.v[0];
+    std::array<float, kPacket> clear_from;
+    FindClear(packet, valid, context, clear_from.data());
+    scratch.hits.clear_from[pixel] = clear_from[0];
     scratch.moved.push_back({pixel, {x, y}});
     break;
   }
@@ -350,7 +391,7 @@ void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratc
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];
   const ViewRay ray = view_.camera.Through(at.x, at.y);
-  const SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], {hits.u[pixel], hits.v[pixel]}, ray);
+  const SurfacePoint point = FindSurfacePoint(object, hits.primitive[pixel], ray);
   scratch.guides.depth[pixel] = float(std::max(-point.position.z, 0.0));
   scratch.guides.object[pixel] = float(object.object_id);
   scratch.guides.material[pixel] = float(object.material_id);
@@ -369,9 +410,8 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
   }
   if (planes_.position[0]) Store(planes_.position, index, view_.camera.WorldFromView(point.position));
   if (planes_.pref[0]) {
-    const glm::dvec3 rest =
-        object.mesh ? RestPosition(object, hits.primitive[pixel], point.barycentric)
-                    : FindSurfacePoint(object, 0, glm::dvec2(0.0), view_.camera.Through(at.x, at.y)).rest_position;
+    const glm::dvec3 rest = object.mesh ? RestPosition(object, hits.primitive[pixel], point.barycentric)
+                                        : FindSurfacePoint(object, 0, view_.camera.Through(at.x, at.y)).rest_position;
     Store(planes_.pref, index, rest);
   }
   if (planes_.albedo[0]) {
@@ -383,7 +423,7 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
   }
   if (!lit_) return;
   scratch.lit[pixel] = point;
-  if (clear_ways_) scratch.lit[pixel].clear_way = view_.camera.Through(at.x, at.y).origin - point.position;
+  scratch.lit[pixel].clear_way = ClearWay(view_.camera.Through(at.x, at.y), hits.clear_from[pixel], point.position);
 }
 
 void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points,
@@ -403,9 +443,9 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
       unoccluded[pixel] += sample.luminance;
       ++counts.shadow;
       const glm::dvec3 origin = ShadowRayOrigin(points[pixel]);
-      const glm::dvec3 way = sample.endless ? sample.to_light : light.position - origin;
-      const double reach = sample.endless ? std::numeric_limits<double>::infinity() : kShadowReach;
-      batch.Add({origin, way, 0.0, reach}, {pixel, sample.luminance}, report);
+      const LightRay ray =
+          sample.endless ? EndlessLightRay(origin, sample.to_light) : LightRayTo(origin, light.position);
+      batch.Add({ray.origin, ray.direction, 0.0, ray.reach}, {pixel, sample.luminance}, report);
     });
     batch.Flush(report);
   }
@@ -468,11 +508,8 @@ void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& s
       const glm::dvec2 at = found != scratch.moved.end() ? found->at : Centre(tile, pixel);
       if (points_) WriteOthers(tile, pixel, at, scratch);
       if (pixels) {
-        pixels->push_back({std::uint32_t(Index(tile, pixel)),
-                           hits.object[pixel],
-                           hits.primitive[pixel],
-                           {hits.u[pixel], hits.v[pixel]},
-                           at});
+        pixels->push_back({std::uint32_t(Index(tile, pixel)), hits.object[pixel], hits.primitive[pixel], at,
+                           hits.clear_from[pixel]});
       }
     });
   }
@@ -485,7 +522,7 @@ void TileCaster::Cast(std::span<const Tile> tiles, Scratch& scratch, RayCounts& 
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     TileScratch& own = scratch.tiles[i];
     PlaceRays(tiles[i], own.rays);
-    CastCentres(tiles[i], own.rays, own.hits);
+    CastCentres(tiles[i], own.rays, lit_ || !pixels.empty(), own.hits);
     counts.primary += std::size_t(tiles[i].width) * tiles[i].height;
   }
   for (std::size_t i = 0; i < tiles.size(); ++i) {

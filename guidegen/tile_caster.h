@@ -88,9 +88,12 @@ class TileCaster {
   };
 
   void PlaceRays(const Tile& tile, TileRays& rays) const;
-  void CastCentres(const Tile& tile, const TileRays& rays, TileHits& hits) const;
+  // `ways`: whether hits.clear_from is asked for.
+  void CastCentres(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const;
   template <class Packet>
-  void CastPackets(const Tile& tile, const TileRays& rays, TileHits& hits) const;
+  void CastPackets(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const;
+  template <class Packet>
+  void FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const;
   Mask FindWhole(const Tile& tile, const TileHits& hits) const;
   std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
   std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, TileScratch& scratch) const;
@@ -117,7 +120,7 @@ class TileCaster {
   bool past_caches_;
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
-  const bool clear_ways_;        // whether what a camera ray passes is empty for rays of light, too
+  const bool backs_;             // whether camera rays may pass what rays of light do not
   std::vector<Offset> offsets_;  // of subsamples, by rank
   std::vector<double> across_;   // of the rays through centres, as TileRays has it, by the picture's column
   std::vector<double> up_;       // and by its row; a tile's more of both than there are

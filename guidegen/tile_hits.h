@@ -43,8 +43,10 @@ struct TileHits {
   static constexpr std::uint32_t kNothing = ~0u;  // as Embree has it
   alignas(64) std::array<std::uint32_t, kTilePixels> object;
   alignas(64) std::array<std::uint32_t, kTilePixels> primitive;
-  alignas(64) std::array<float, kTilePixels> u;
-  alignas(64) std::array<float, kTilePixels> v;
+
+  // From where on the ray's way to what it met is clear for rays of light, too, in lengths of its direction. Only set
+  // where something was met and somebody asks.
+  alignas(64) std::array<float, kTilePixels> clear_from;
 
   bool Met(int pixel) const { return object[std::size_t(pixel)] != kNothing; }
 };

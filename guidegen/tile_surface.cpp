@@ -6,7 +6,9 @@
 // foreach_target.h must come first.
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include "guidegen/tile_surface.h"
@@ -49,7 +51,7 @@ HWY_INLINE void Blend(M lanes, const double* v, D3& into) {
 // The triangles of the lanes.
 struct LaneTriangles {
   D3 corner, first_edge, second_edge, area, facing;
-  D largest;
+  D edge_on, largest;
   F normal[9];
 
   template <bool kPoints>
@@ -57,6 +59,7 @@ struct LaneTriangles {
     const Floats f;
     corner = SetAll(record.corner), first_edge = SetAll(record.first_edge);
     second_edge = SetAll(record.second_edge), area = SetAll(record.area);
+    edge_on = hn::Set(Doubles(), record.edge_on);
     for (int i = 0; i < 9; ++i) normal[i] = hn::Set(f, record.normal[i]);
     if constexpr (kPoints) {
       facing = SetAll(record.facing);
@@ -69,6 +72,7 @@ struct LaneTriangles {
     const Floats f;
     Blend(lanes, record.corner, corner), Blend(lanes, record.first_edge, first_edge);
     Blend(lanes, record.second_edge, second_edge), Blend(lanes, record.area, area);
+    edge_on = hn::IfThenElse(lanes, hn::Set(Doubles(), record.edge_on), edge_on);
     for (int i = 0; i < 9; ++i) normal[i] = hn::IfThenElse(float_lanes, hn::Set(f, record.normal[i]), normal[i]);
     if constexpr (kPoints) {
       Blend(lanes, record.facing, facing);
@@ -125,10 +129,24 @@ struct LaneRays {
   bool orthographic;
 };
 
+// Of the tile's directions, in m; none of them is shorter than 1.
+double LongestRay(const TileRays& rays) {
+  if (rays.orthographic) return 1.0;
+  const auto largest_square = [](const auto& steps) {
+    return std::max(steps.front() * steps.front(), steps.back() * steps.back());
+  };
+  return std::sqrt(1.0 + largest_square(rays.across) + largest_square(rays.up));
+}
+
 class TileWork {
  public:
   TileWork(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides, TilePoints* points)
-      : hits_(hits), rays_(rays), triangles_(triangles), guides_(guides), points_(points) {
+      : hits_(hits),
+        rays_(rays),
+        longest_ray_(LongestRay(rays)),
+        triangles_(triangles),
+        guides_(guides),
+        points_(points) {
     guides_.left_over_count = 0;
     triangles_.Begin();
     for (std::size_t i = 0; i < kTilePixels; ++i) keys_[i] = std::uint64_t(hits.object[i]) << 32 | hits.primitive[i];
@@ -223,17 +241,11 @@ class TileWork {
     const D along =
         hn::Sub(hn::Add(hn::Mul(triangles.area.x, way.x), hn::Mul(triangles.area.y, way.y)), triangles.area.z);
     const D scale = hn::Div(hn::Set(d, -1.0), along);
-    D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
-    D w = hn::Mul(Dot(triangles.first_edge, moment), scale);
-    const auto infinite = hn::Not(hn::IsFinite(hn::Add(v, w)));
-    v = ZeroAtLeast(v);
-    w = ZeroAtLeast(w);
-    const D sum = hn::Add(v, w);
-    const auto beyond = hn::Gt(sum, hn::Set(d, 1.0));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, beyond))) {
-      v = hn::IfThenElse(beyond, hn::Div(v, sum), v);
-      w = hn::IfThenElse(beyond, hn::Div(w, sum), w);
-    }
+    const D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
+    const D w = hn::Mul(Dot(triangles.first_edge, moment), scale);
+    const auto inside = hn::And(hn::And(hn::Ge(v, zero), hn::Ge(w, zero)), hn::Le(hn::Add(v, w), hn::Set(d, 1.0)));
+    const auto steady = hn::Gt(hn::Abs(along), hn::Mul(triangles.edge_on, hn::Set(d, longest_ray_)));
+    const auto missed = hn::Not(hn::And(inside, steady));
     const auto mix = [&](D corner, D first, D second) {
       return hn::Add(hn::Sub(corner, hn::Mul(first, v)), hn::Mul(second, w));
     };
@@ -265,7 +277,7 @@ class TileWork {
         hn::And(hn::Gt(squared, hn::Set(d, kLeastPlainSquare)), hn::Lt(squared, hn::Set(d, kLargestPlainSquare)));
 
     const auto met_double = hn::RebindMask(d, met);
-    const auto left_over = hn::And(hn::Or(hn::Or(irregular, infinite), hn::Not(hn::And(usable, ordinary))), met_double);
+    const auto left_over = hn::And(hn::Or(hn::Or(irregular, missed), hn::Not(hn::And(usable, ordinary))), met_double);
     if (HWY_UNLIKELY(!hn::AllFalse(d, left_over))) LeaveOver(pixel, left_over);
 
     const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
@@ -330,6 +342,7 @@ class TileWork {
 
   const TileHits& hits_;
   const LaneRays rays_;
+  const double longest_ray_;
   TriangleCache& triangles_;
   TileGuides& guides_;
   TilePoints* points_;

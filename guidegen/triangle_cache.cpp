@@ -43,7 +43,8 @@ void TriangleCache::Fill(std::uint32_t object, std::uint32_t primitive, Triangle
   Put(triangle.corner[2] - triangle.corner[0], record.second_edge);
   Put(area, record.area);
   const double squared = glm::dot(area, area);
-  record.regular = squared > kLeastPlainSquare && squared < kLargestPlainSquare && !IsSliver(triangle, area);
+  record.edge_on = 2.0 * kEdgeOn * LongestEdgeSquared(triangle);
+  record.regular = squared > kLeastPlainSquare && squared < kLargestPlainSquare;
   for (int corner = 0; corner < 3; ++corner) {
     const glm::vec3 normal = mesh.normals[mesh.triangles[primitive][corner]];
     for (int axis = 0; axis < 3; ++axis) record.normal[3 * corner + axis] = normal[axis];

@@ -1,5 +1,6 @@
 #include "image/plane_allocator.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <mutex>
 #include <vector>
@@ -7,11 +8,15 @@
 #include <sys/mman.h>
 #endif
 
+#include "image/plane_count.h"
+
 namespace scumble {
 namespace {
 
 constexpr std::size_t kLargePage = std::size_t(2) << 20;
 constexpr std::size_t kCacheLine = 64;
+
+std::atomic<std::size_t> handed_out{0};
 
 bool IsLarge(std::size_t bytes) { return bytes >= kLargePage; }
 
@@ -65,7 +70,10 @@ KeptPlanes& Kept() {
 
 }  // namespace
 
+std::size_t PlaneBytesHandedOut() { return handed_out; }
+
 void* AllocatePlane(std::size_t bytes) {
+  handed_out += bytes;
   if (IsLarge(bytes)) {
     if (void* const kept = Kept().Take(bytes)) return kept;
   }

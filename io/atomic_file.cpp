@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constinit thread_local std::uint64_t bytes_written = 0;
+
 Error WriteFailure(const fs::path& path, int error_number) {
   return OutputError("cannot write " + path.string() + ": " + std::strerror(error_number));
 }
@@ -113,6 +115,7 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
     const int descriptor = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) return WriteFailure(path, errno);
     const int failure = WriteAllAndClose(descriptor, bytes, false);
+    if (failure == 0) bytes_written += bytes.size();
     return failure == 0 ? Ok() : Status(WriteFailure(path, failure));
   }
   internal::UnfinishedFile temporary(target);
@@ -122,8 +125,11 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
   [[maybe_unused]] const int kept = ::fchmod(descriptor, ModeFor(checked.status));
   int failure = WriteAllAndClose(descriptor, bytes, true);
   if (failure == 0) failure = temporary.Finish(target);
+  if (failure == 0) bytes_written += bytes.size();
   return failure == 0 ? Ok() : Status(WriteFailure(path, failure));
 }
+
+std::uint64_t BytesWrittenByThisThread() { return bytes_written; }
 
 Status WriteFileAtomically(const fs::path& path, std::string_view text) {
   return WriteFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));

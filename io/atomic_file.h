@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string_view>
@@ -17,6 +18,9 @@ namespace scumble {
 // Every failure is an error with the file's name and the system's reason.
 Status WriteFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
+
+// Bytes that this thread has brought to the system by WriteFileAtomically, in files that were finished.
+std::uint64_t BytesWrittenByThisThread();
 
 // Whether WriteFileAtomically could write there, found out by making its temporary file and taking it away: to be asked
 // before long work.

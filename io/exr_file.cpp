@@ -34,7 +34,8 @@ namespace {
 // A file in memory.
 class MemoryOutput : public Imf::OStream {
  public:
-  explicit MemoryOutput(const std::string& name) : Imf::OStream(name.c_str()) {}
+  // Room for a file that does not pack: one that grew would be there twice while it is copied.
+  MemoryOutput(const std::string& name, std::size_t room) : Imf::OStream(name.c_str()) { bytes_.reserve(room); }
 
   void write(const char bytes[], int count) override {
     const std::size_t end = at_ + static_cast<std::size_t>(count);
@@ -76,6 +77,14 @@ Imf::Compression CompressionOf(const std::string& name) {
   if (name == "rle") return Imf::RLE_COMPRESSION;
   if (name == "zips") return Imf::ZIPS_COMPRESSION;
   return name == "piz" ? Imf::PIZ_COMPRESSION : Imf::ZIP_COMPRESSION;
+}
+
+// Of the file if nothing packs.
+std::size_t RoomFor(const ExrImage& image) {
+  constexpr std::size_t kHeader = 1 << 16, kOfRow = 32;  // their places and sizes
+  std::size_t room = kHeader + kOfRow * static_cast<std::size_t>(image.height);
+  for (const ExrChannel& channel : image.channels) room += channel.values.size() * (channel.half ? 2 : 4);
+  return room;
 }
 
 Imf::Header HeaderOf(const ExrImage& image) {
@@ -133,7 +142,7 @@ Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrIma
   }
   SetThreads();
   try {
-    MemoryOutput bytes(name);
+    MemoryOutput bytes(name, RoomFor(image));
     std::size_t first_chunk = 0;
     {
       Imf::OutputFile file(bytes, HeaderOf(image));

@@ -19,8 +19,10 @@ Imath::half ToHalf(float value);
 // pixels prove nothing.
 bool LookPacked(const GuideSet& guides);
 
-// Half floats and filtered passes shorten normals; a direction is what the transfer needs. Lengths that no rounding
-// or filter explains are left for Validate to refuse.
+// Eight bits, half floats and filtered passes make normals longer or shorter; a direction is what the transfer needs, and
+// near a silhouette the sphere has none for a length that is off: there, x and y alone would find paint that was made for
+// a normal √(2 · what is missing) radians away. Lengths as good as floats can hold stay, so that a file gives the bytes
+// it was written from; lengths that no rounding or filter explains are left for Validate to refuse.
 void NormalizeNormals(GuideSet& guides);
 
 }  // namespace scumble::internal

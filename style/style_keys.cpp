@@ -1,5 +1,6 @@
 #include "style/style_keys.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -32,12 +33,22 @@ std::string Range(double low, double high) {
   return text;
 }
 
+// The nearest number that the field holds. What is too large for it is infinite, and what is above 0 stays above: a
+// threshold of 0 accepts nothing, the smallest one exact copies.
+template <class T>
+T Rounded(double number) {
+  using Limits = std::numeric_limits<T>;
+  if (number > static_cast<double>(Limits::max())) return Limits::infinity();
+  const T rounded = static_cast<T>(number);
+  return number > 0.0 ? std::max(rounded, Limits::denorm_min()) : rounded;
+}
+
 template <class T>
 Setter Number(T TransferSettings::*field, double low, double high) {
   return [=](Style& style, const KeyValue& value, const auto&) -> Status {
     const auto number = AsNumber(value);
     if (!number || !(*number >= low && *number <= high)) return UsageError("expected a number, " + Range(low, high));
-    style.transfer.*field = static_cast<T>(*number);
+    style.transfer.*field = Rounded<T>(*number);
     return Ok();
   };
 }

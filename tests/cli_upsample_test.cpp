@@ -23,6 +23,18 @@ TEST_F(Upsample, StylizeIsTheTwoStepsThroughFiles) {
   EXPECT_EQ(Bytes("1.png"), Bytes("full.png"));
 }
 
+// A step takes longer than matching all pixels, so none comes with --upsample unasked.
+TEST_F(Upsample, EveryPixelOfTheLargerPictureIsMatched) {
+  WriteStyle("style");
+  WriteGuideFile("ball.exr", Ball(32));
+  const Arguments transfer{"transfer", "ball.exr", "--style", "style", "--upsample", "4", "-o"};
+  RunOk(With(transfer, {"plain.png"}));
+  RunOk(With(transfer, {"one.png", "--set", "transfer.match_step=1"}));
+  EXPECT_EQ(Bytes("one.png"), Bytes("plain.png"));
+  RunOk(With(transfer, {"four.png", "--set", "transfer.match_step=4"}));
+  EXPECT_FALSE(Pixels("four.png") == Pixels("plain.png"));
+}
+
 TEST_F(Upsample, ThePictureUnderneathHasThePicturesSize) {
   WriteStyle("style");
   WriteGuideFile("ball.exr", Ball(32));

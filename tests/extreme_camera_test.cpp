@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "guidegen/camera_rays.h"
 #include "guidegen/load_scene.h"
 #include "tests/exact_rays.h"
 #include "tests/guidegen_checks.h"
@@ -228,6 +229,41 @@ TEST(NearPlane, CutsThroughAFaceWhereTheFormulaSays) {
       }
     }
   }
+}
+
+// --- Beyond what Embree takes ---------------------------------------------------------------------------------------
+
+// A ray's largest part is the half width of what is seen, at a distance of 1 in perspective. Expected: up to
+// kLargestInRay a picture, of nothing or of what stands in the middle; beyond it kInput, where Embree may end the
+// process.
+TEST(FarOut, CamerasThatSeeBeyondEmbreesRangeAreRefused) {
+  const Scene scene = SceneOf(CubeMesh());
+  Camera camera = LookingAt({0, 0, 5}, {0, 0, 0}, 60.0);
+  const auto expect = [&](int width, bool drawn) {
+    const auto result = RenderGuides(scene, camera, Sized(width, 1, {Layer::kPosition}));
+    ASSERT_EQ(bool(result), drawn) << width;
+    if (drawn) return;
+    EXPECT_EQ(result.error().kind, ErrorKind::kInput);
+    EXPECT_NE(result.error().message.find(camera.name), std::string::npos) << result.error().message;
+  };
+  camera.aspect = 1e30;
+  camera.fit = CameraFit::kVertical;
+  expect(4, false);
+  camera.aspect.reset();
+  camera.yfov_degrees = glm::degrees(3.14159265358979);  // tangent of half of it 6.2e14
+  expect(4, true);
+  expect(kMaxImageSide, false);
+  camera.shift_x = 1e4;
+  expect(4, false);
+  camera.shift_x = 0.0;
+  camera.orthographic = true;
+  for (const double half : {1e15, 1e18, 0.25 * kLargestInRay, 0.2500001 * kLargestInRay, 1e19, 1e300}) {
+    camera.ymag = half;
+    expect(1, half <= kLargestInRay);
+    expect(4, 4.0 * half <= kLargestInRay);
+  }
+  camera.ymag = 1e15;
+  expect(kMaxImageSide, false);
 }
 
 // --- Inside -------------------------------------------------------------------------------------------------------

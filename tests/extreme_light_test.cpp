@@ -134,6 +134,101 @@ TEST(LampOnASurface, LightsByTheFormulaOrNotAtAll) {
   }
 }
 
+// A lamp as far away as doubles and floats reach, as bright as its distance's square: on a floor that faces it, 1/π,
+// rounded once; and a lid over the floor hides it. No ray is longer than Embree takes.
+TEST(FarOut, LampsLightByTheFormula) {
+  for (const double distance : {1e10, 1e17, 1.8e18, 2e18, 1e20, 1e37, 1e100, 1e150}) {
+    for (const bool lid : {false, true}) {
+      Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f), 2.0);
+      if (lid) AddObject(scene, "lid", QuadMesh(), glm::scale(Moved(0, 0, 2), glm::dvec3(4.0)));
+      scene.lights = {PointLight({0, 0, distance}, distance * distance)};
+      const auto result = Render(scene, LookingAt({0, 0, 1}, {0, 0, 0}, 30.0), Sized(8, 8, AllLight()));
+      const double expected = lid ? 0.0 : 1.0 / kPi;
+      for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
+        EXPECT_NEAR(result.guides.Plane(Layer::kLuminance)[i], expected, kFloat * expected + 0x1p-49) << distance;
+        EXPECT_NEAR(result.guides.Plane(Layer::kLpeLDE, 1)[i], expected, kFloat * expected + 0x1p-49) << distance;
+        EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], lid ? 1.0f : 0.0f) << distance;
+      }
+    }
+  }
+}
+
+// Surfaces, cameras and lights with extent out there: whatever comes out, the process lives and every value is finite.
+TEST(FarOut, WhateverStandsThereIsSurvived) {
+  for (const double distance : {1e17, 1.5e18, 1.84e18, 2e18, 1e30, 1e150}) {
+    Scene scene = Floor(Painted(Bsdf::kGlossy, 0.9f, 0.5f), 2.0);
+    Material glow = Painted(Bsdf::kDiffuse, 0.5f);
+    glow.emission = glm::vec3(2.0f);
+    Mesh panel = QuadMesh();
+    panel.material = AddMaterial(scene, glow);
+    AddObject(scene, "far", panel, glm::scale(Moved(0, 0, distance), glm::dvec3(distance)));
+    AddObject(scene, "wide", panel, glm::scale(Moved(0, 0, -1), glm::dvec3(distance)));
+    for (int i = 0; i < 8; ++i) {
+      Light light = Above(LightType(i % 4), distance, 3.0);
+      light.radius = i < 4 ? 0.0 : 0.1 * distance;
+      light.size_x = light.size_y = 0.2 * distance;
+      scene.lights.push_back(light);
+    }
+    scene.world_radiance = glm::vec3(0.5f);
+    for (const double from : {2.0, 0.5 * distance}) {
+      ExpectFinite(Render(scene, LookingAt({0, 0, from}, {0, 0, 0}, 60.0), Paths(8, AllLight(), 4)));
+    }
+  }
+}
+
+enum class LightKind { kPoint, kArea, kPanel };
+
+// A lamp, with and without extent, or a panel that shines, behind a lid of a room or before it, by 2^-19 of the largest
+// coordinate before the eye: the ray ends 2^-20 of it before the lamp, and the lid is no farther off than that again.
+// Behind, none of it comes in, at any scale, place and turn of the room. Before, the lid hides nothing.
+TEST(LampBesideALid, IsHiddenBehindItAndNotBeforeIt) {
+  constexpr double kWidth = 3.0;  // of the lid, in heights of the room
+  for (int turn = 0; turn < 52; ++turn) {
+    const double scale = std::pow(10.0, turn % 13 - 6), place = turn % 4 == 3 ? 1e3 : turn % 4;
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(std::cos(turn), std::sin(2.0 * turn), 0.3));
+    const glm::dmat4 room = glm::scale(
+        glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(place, -place, 0.5 * place)), 0.7 * turn, axis),
+        glm::dvec3(scale));
+    const auto at = [&](const glm::dvec3& local) { return glm::dvec3(room * glm::dvec4(local, 1.0)); };
+    // From half way up, the lid's corners are the farthest, less than √2 of its half width and a half away.
+    const double gap = 0x1p-19 * std::sqrt(2.0 * kWidth * kWidth + 0.25);
+    for (const double side : {1.0, -1.0}) {
+      for (const LightKind kind : {LightKind::kPoint, LightKind::kArea, LightKind::kPanel}) {
+        Scene scene = SceneOf(QuadMesh(), room);
+        AddObject(scene, "lid", QuadMesh(), room * glm::scale(Moved(0, 0, 1), glm::dvec3(kWidth)));
+        const glm::dmat4 stand = room * Moved(0, 0, 1.0 + side * gap);
+        if (kind == LightKind::kPanel) {
+          Material glow = Painted(Bsdf::kDiffuse, 0.5f);
+          glow.emission = glm::vec3(1.0f);
+          Mesh panel = QuadMesh();
+          panel.material = AddMaterial(scene, glow);
+          AddObject(scene, "panel", panel, stand * glm::scale(glm::dmat4(1.0), glm::dvec3(0.5)));
+        } else {
+          const bool wide = kind == LightKind::kArea;
+          Light lamp = Above(wide ? LightType::kArea : LightType::kPoint, 0.0, wide ? 1.0 : scale * scale);
+          lamp.world_from_light = stand;
+          lamp.size_x = lamp.size_y = scale;
+          scene.lights = {lamp};
+        }
+        const Camera camera = LookingAt(at({0.1, 0.1, 0.5}), at({0, 0, 0}), 40.0);
+        const auto result = Render(scene, camera, Paths(8, {Layer::kLuminance, Layer::kShadow, Layer::kLpeLDE}, 16));
+        for (std::size_t i = 0; i < result.guides.pixel_count(); ++i) {
+          SCOPED_TRACE("turn " + std::to_string(turn) + ", kind " + std::to_string(int(kind)));
+          if (side > 0.0) {
+            EXPECT_EQ(result.guides.Plane(Layer::kLuminance)[i], 0.0f);
+            EXPECT_EQ(result.guides.Plane(Layer::kLpeLDE, 1)[i], 0.0f);
+            EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 1.0f);
+          } else {
+            EXPECT_GT(result.guides.Plane(Layer::kLuminance)[i], 0.0f);
+            EXPECT_GT(result.guides.Plane(Layer::kLpeLDE, 1)[i], 0.0f);
+            EXPECT_EQ(result.guides.Plane(Layer::kShadow)[i], 0.0f);
+          }
+        }
+      }
+    }
+  }
+}
+
 // Lamps of each kind inside a closed box over a floor: all of their light stays inside, so the floor has none of it and
 // `shadow` is 1 wherever a lamp would shine; and the box's outside is turned away from them.
 TEST(LampInsideAnObject, NoneOfItsLightComesOut) {

@@ -119,6 +119,27 @@ TEST_F(ExtremePlace, ScansInDoublesFarFromTheOriginKeepTheirDigits) {
   EXPECT_EQ(near_by->meshes[0].positions[2], glm::vec3(4.05f, 2.95f, 0.25f));
 }
 
+// The same in OBJ's text, whose digits are as many as are written.
+TEST_F(ExtremePlace, ObjFilesFarFromTheOriginKeepTheirDigits) {
+  const auto wall_at = [&](double x, double y) {
+    std::string text = "o wall\n";
+    for (const glm::dvec2 corner : {glm::dvec2(-0.95, -1.05), {1.05, -1.05}, {1.05, 0.95}, {-0.95, 0.95}}) {
+      text += "v " + std::to_string(x + corner.x) + " " + std::to_string(y + corner.y) + " 0.25\n";
+    }
+    return LoadScene(Write("wall.obj", text + "f 1 2 3 4\n"));
+  };
+  const auto far = wall_at(1e7, -3e6);
+  ASSERT_TRUE(far) << far.error().message;
+  EXPECT_EQ(glm::dvec3(far->instances[0].world_from_object[3]), glm::dvec3(1e7, -3e6, 0.0));
+  EXPECT_EQ(far->meshes[0].positions[2], glm::vec3(1.05f, 0.95f, 0.25f));
+  EXPECT_EQ(far->meshes[0].normals[2], glm::vec3(0, 0, 1));
+  EXPECT_GT(ExpectExactGuides(*far, LookingAt({1e7 + 1, -3e6, 4}, {1e7, -3e6, 0}), 30, 30).covered, 300);
+  const auto near_by = wall_at(3.0, 2.0);
+  ASSERT_TRUE(near_by);
+  EXPECT_EQ(near_by->instances[0].world_from_object, glm::dmat4(1.0));
+  EXPECT_EQ(near_by->meshes[0].positions[2], glm::vec3(4.05f, 2.95f, 0.25f));
+}
+
 // A skin and an animation under a node that far away: joints are placed in double and the skinned shape is stored
 // relative to its first joint, so its floats are as good as at 0. Every number here has few bits and keys are halved at
 // most, so nothing is rounded, and guides and motion have the same bits.

@@ -4,10 +4,13 @@
 #include <sys/stat.h>
 
 #include <limits>
+#include <memory>
 #include <set>
 
 #include "gltf_builder.h"
 #include "guidegen/load_scene.h"
+#include "guidegen/picture_budget.h"
+#include "guidegen/scene_textures.h"
 #include "image/hash.h"
 #include "io/picture_file.h"
 
@@ -302,7 +305,8 @@ TEST_F(Hostile, ObjTexturesThatAreNoFiles) {
         LoadScene(Write("a.obj", std::string("mtllib paint.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")));
     ASSERT_TRUE(scene.ok()) << scene.error().message;
     EXPECT_THAT(scene->warnings, testing::ElementsAre(testing::AllOf(HasSubstr("texture"), HasSubstr(name))));
-    EXPECT_TRUE(scene->textures.empty());
+    ASSERT_EQ(scene->textures.size(), 1u);
+    EXPECT_TRUE(scene->textures[0].empty());
   }
 }
 
@@ -339,6 +343,54 @@ TEST_F(Hostile, PlyPromisesMoreThanItHas) {
                              std::string("\xff\xff\xff\x7f", 4)));
   Refusal(Write("f.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n"));
   Refusal(Write("g.ply", "ply\nelement vertex 0\nend_header\n"));
+}
+
+// Pictures are counted together, to the last pixel, and one that is refused is not counted: 3 of 100 × 50 fit into
+// 15,000 pixels, and nothing but an empty one does beside them.
+TEST(PictureBudget, CountsAllPicturesOfAScene) {
+  Picture picture;
+  picture.width = 100;
+  picture.height = 50;
+  PictureBudget budget(15'000);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(budget.Take("a.glb", picture)) << i;
+  picture.width = picture.height = 1;
+  const Status refused = budget.Take("a.glb", picture);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
+  EXPECT_EQ(refused.error().message,
+            "a.glb has textures of at least 15001 pixels together; expected at most 15000: make them smaller");
+  EXPECT_TRUE(budget.Take("a.glb", Picture()));
+  // The largest that can be read: four of them, 8 bytes a pixel.
+  picture.width = picture.height = 1 << 14;
+  PictureBudget whole;
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(whole.Take("a.glb", picture)) << i;
+  EXPECT_FALSE(whole.Take("a.glb", picture));
+}
+
+// Four textures of 2^28 pixels are taken, a fifth is refused, whether the others were decoded at once or before. Their
+// pixels are not there: only the sizes count.
+TEST(PictureBudget, HoldsForAScenesTextures) {
+  const auto encoded = std::make_shared<EncodedTexture>();
+  encoded->decode = []() -> Expected<Picture> {
+    Picture picture;
+    picture.width = picture.height = 1 << 14;
+    return picture;
+  };
+  Scene scene;
+  scene.name = "bomb.glb";
+  for (int more = 0; more < 2; ++more) {
+    for (int i = 0; i < 2; ++i) {
+      scene.textures.emplace_back();
+      scene.encoded_textures.push_back(encoded);
+    }
+    EXPECT_TRUE(DecodeAllTextures(scene)) << more;
+  }
+  scene.textures.emplace_back();
+  scene.encoded_textures.push_back(encoded);
+  const auto refused = DecodeAllTextures(scene);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
+  EXPECT_THAT(refused.error().message, HasSubstr("bomb.glb has textures of at least 1342177280 pixels together"));
 }
 
 }  // namespace

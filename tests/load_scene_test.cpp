@@ -167,8 +167,9 @@ TEST_F(LoadText, ObjShapesAndMaterials) {
   EXPECT_EQ(wood.base_color, glm::vec4(1.0f));
   EXPECT_EQ(wood.base_color_texture.texture, 0);
   EXPECT_EQ(wood.base_color_texture.wrap_u, TextureWrap::kClamp);
-  ASSERT_EQ(scene.textures.size(), 1u);
+  ASSERT_EQ(scene.textures.size(), 2u);
   EXPECT_EQ(scene.textures[0].rgba, picture.rgba);
+  EXPECT_TRUE(scene.textures[1].empty());
   // (1, 0.25) in the file is (2.25, 1.25) in its picture with v up, so (2.25, -0.25) with v down.
   ASSERT_EQ(scene.meshes[1].uvs[0].size(), 3u);
   EXPECT_EQ(scene.meshes[1].uvs[0][1], glm::vec2(1, 0.75));

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/plain_engine.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/seeds.h"
 
 namespace scumble {
 namespace {
@@ -63,82 +63,13 @@ Picture Painted(const Style& style, const GuideSet& guides, bool mapped = false)
   const auto prepared = Prepare(style, guides.height());
   EXPECT_TRUE(prepared.ok()) << (prepared.ok() ? "" : prepared.error().message);
   TransferOptions options;
-  options.seed = 21;
+  options.seed = kPlainSeed;
   TransferScratch scratch;
   Picture picture;
   const PreparedStyle* const styles[] = {&*prepared};
   const Status done = mapped ? Transfer(styles, MapStyles(guides, {}), guides, options, scratch, picture)
                              : Transfer(*prepared, guides, options, scratch, picture);
   EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().message);
-  return picture;
-}
-
-// ---- the plain engine ----------------------------------------------------------------------------------------------
-
-struct PlainSource {
-  int x = 0, y = 0;
-};
-
-// Section 3.2 of the StyleBlit paper, pixel by pixel.
-PlainSource SourceAt(const GuideSet& guides, const PreparedExemplar& exemplar, const TransferSettings& settings, int x,
-                     int y) {
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  const glm::vec3 normal = guides.Vec3(Layer::kNormal, guides.Index(x, y));
-  for (int level = settings.levels - 1; level >= 1; --level) {
-    PixelPosition q;
-    std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
-    for (int row = -1; row <= 1; ++row) {
-      for (int column = -1; column <= 1; ++column) {
-        const PixelPosition s =
-            SeedOfCell({21, 0, settings.jitter, 0}, level, (x >> level) + column, (y >> level) + row);
-        const std::int64_t d = std::int64_t(s.x - x) * (s.x - x) + std::int64_t(s.y - y) * (s.y - y);
-        if (d < nearest) nearest = d, q = s;
-      }
-    }
-    if (q.x < 0 || q.y < 0 || q.x >= guides.width() || q.y >= guides.height()) continue;
-    if (!(coverage[guides.Index(q.x, q.y)] > 0.0f)) continue;
-    const Source u = exemplar.NearestNeighbour(guides.Vec3(Layer::kNormal, guides.Index(q.x, q.y)));
-    const PlainSource offer{u.x + x - q.x, u.y + y - q.y};
-    if (!exemplar.Usable(offer.x, offer.y)) continue;
-    const glm::vec3 d = normal - exemplar.Normal(offer.x, offer.y);
-    if (d.x * d.x + d.y * d.y + d.z * d.z < settings.threshold * settings.threshold) return offer;
-  }
-  const Source own = exemplar.NearestNeighbour(normal);
-  return {own.x, own.y};
-}
-
-// Every neighbour inside the window votes; nothing stops at edges.
-Picture PlainEngine(const Style& style, const GuideSet& guides) {
-  const PreparedExemplar exemplar(style.exemplars[0].picture, style.transfer.rim, style.exemplars[0].picture.width);
-  const auto coverage = guides.Plane(Layer::kCoverage);
-  std::vector<PlainSource> sources(guides.pixel_count());
-  for (int y = 0; y < guides.height(); ++y) {
-    for (int x = 0; x < guides.width(); ++x) {
-      const std::size_t i = guides.Index(x, y);
-      if (coverage[i] > 0.0f) sources[i] = SourceAt(guides, exemplar, style.transfer, x, y);
-    }
-  }
-  Picture picture(guides.width(), guides.height());
-  const int radius = style.transfer.blend_radius;
-  for (int y = 0; y < guides.height(); ++y) {
-    for (int x = 0; x < guides.width(); ++x) {
-      if (!(coverage[guides.Index(x, y)] > 0.0f)) continue;
-      std::uint64_t sum[3] = {0, 0, 0}, votes = 0;
-      for (int v = std::max(0, y - radius); v <= std::min(guides.height() - 1, y + radius); ++v) {
-        for (int u = std::max(0, x - radius); u <= std::min(guides.width() - 1, x + radius); ++u) {
-          const std::size_t q = guides.Index(u, v);
-          if (!(coverage[q] > 0.0f)) continue;
-          const int sx = sources[q].x + x - u, sy = sources[q].y + y - v;
-          if (!exemplar.Usable(sx, sy)) continue;
-          for (int c = 0; c < 3; ++c) sum[c] += exemplar.picture().At(sx, sy)[c];
-          ++votes;
-        }
-      }
-      std::uint16_t* pixel = picture.At(x, y);
-      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint16_t>((2 * sum[c] + votes) / (2 * votes));
-      pixel[3] = 65535;
-    }
-  }
   return picture;
 }
 

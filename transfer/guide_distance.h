@@ -1,6 +1,7 @@
 // The one place that decides whether two guides are alike.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -32,7 +33,7 @@ class GuideTest {
     const float left = threshold_ - extra;
     if (!(left > 0.0f)) return false;
     const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
-    if (metric_ == ThresholdMetric::kL2) return dx * dx + dy * dy + dz * dz < left * left;
+    if (metric_ == ThresholdMetric::kL2) return dx * dx + dy * dy + dz * dz < SquareOf(left);
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < left;
   }
 
@@ -42,7 +43,7 @@ class GuideTest {
     const float left = threshold_ - extra;
     if (!(left > 0.0f)) return false;
     if (metric_ == ThresholdMetric::kL2) {
-      return dx * dx + dy * dy + dz * dz + rest < (extra > 0.0f ? left * left : bound_);
+      return dx * dx + dy * dy + dz * dz + rest < (extra > 0.0f ? SquareOf(left) : bound_);
     }
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + rest < (extra > 0.0f ? left : bound_);
   }
@@ -56,6 +57,10 @@ class GuideTest {
     }
     return sum;
   }
+
+  // Of what light leaves of the threshold, which is above 0: so is its square, where rounding would make it 0.
+  static float SquareOf(float left) { return std::max(left * left, kLeastSquare); }
+  static constexpr float kLeastSquare = std::numeric_limits<float>::denorm_min();
 
   float threshold() const { return threshold_; }
   ThresholdMetric metric() const { return metric_; }

@@ -15,10 +15,12 @@
 namespace scumble {
 
 Illumination::Illumination(std::span<const double> luminances, float weight, LuminanceError form)
-    : luminances_(luminances.begin(), luminances.end()), weight_(weight), form_(form) {}
+    : luminances_(luminances.begin(), luminances.end()), weight_(weight), form_(form) {
+  for (const float one : luminances_) brightest_ = std::max(brightest_, one);
+}
 
 int Illumination::Choose(float luminance) const {
-  if (!(luminance >= 0.0f)) luminance = 0.0f;
+  luminance = Clamped(luminance);
   int best = 0;
   for (int k = 1; k < static_cast<int>(luminances_.size()); ++k) {
     if (std::fabs(luminance - luminances_[k]) < std::fabs(luminance - luminances_[best])) best = k;
@@ -28,9 +30,11 @@ int Illumination::Choose(float luminance) const {
 
 float Illumination::Error(float luminance, int chosen) const {
   if (!active() || !(weight_ > 0.0f)) return 0.0f;
-  if (!(luminance >= 0.0f)) luminance = 0.0f;
+  if (form_ == LuminanceError::kPublished) {
+    return weight_ * std::fabs((luminance >= 0.0f ? luminance : 0.0f) - luminances_[chosen]);
+  }
+  luminance = Clamped(luminance);
   const float off = std::fabs(luminance - luminances_[chosen]);
-  if (form_ == LuminanceError::kPublished) return weight_ * off;
   const float excess = off - std::fabs(luminance - luminances_[Choose(luminance)]);
   // A weight of infinity cuts exactly where the best exemplar changes; infinity times 0 would be NaN.
   return excess > 0.0f ? weight_ * excess : 0.0f;

@@ -1,6 +1,7 @@
 // The illuminated extension: exemplars painted for different light, and which of them a pixel wants.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,15 +23,20 @@ class Illumination {
   std::span<const float> luminances() const { return luminances_; }
   float weight() const { return weight_; }
   LuminanceError form() const { return form_; }
+  float brightest() const { return brightest_; }
 
-  // The exemplar whose luminance is nearest; ties to the first. NaN counts as darkness.
+  // The exemplar whose luminance is nearest; ties to the first. NaN and what is negative count as darkness, and all that is
+  // brighter than the brightest exemplar is as bright as it: far from all of them, differences to them would be rounded away.
   int Choose(float luminance) const;
 
   // What painting a pixel of this luminance with exemplar `chosen` adds to its guide distance: 0 or more.
   float Error(float luminance, int chosen) const;
 
  private:
+  float Clamped(float luminance) const { return luminance >= 0.0f ? std::min(luminance, brightest_) : 0.0f; }
+
   std::vector<float> luminances_;
+  float brightest_ = 0.0f;
   float weight_ = 0.0f;
   LuminanceError form_ = LuminanceError::kExcess;
 };

@@ -411,7 +411,7 @@ class TileMatcher {
       if (light_counts_) {
         const auto extra = LightError(row_.light + from + i, exemplar);
         const auto left = hn::Sub(hn::Set(kFloats, input_.test.threshold()), extra);
-        const auto less = hn::Lt(distance, squares_ ? hn::Mul(left, left) : left);
+        const auto less = hn::Lt(distance, squares_ ? hn::Max(hn::Mul(left, left), hn::Set(kFloats, GuideTest::kLeastSquare)) : left);
         const auto zero = hn::Zero(kFloats);
         const auto lit = hn::And(hn::Gt(left, zero), less);
         const auto counts = hn::Gt(extra, zero);
@@ -428,9 +428,13 @@ class TileMatcher {
     auto luminance = hn::LoadU(kFloats, light);
     luminance = hn::IfThenElseZero(hn::Ge(luminance, zero), luminance);
     const auto luminances = input_.illumination.luminances();
-    const auto off = hn::Abs(hn::Sub(luminance, hn::Set(kFloats, luminances[static_cast<std::size_t>(exemplar)])));
+    const auto of_exemplar = hn::Set(kFloats, luminances[static_cast<std::size_t>(exemplar)]);
     const auto weight = hn::Set(kFloats, input_.illumination.weight());
-    if (input_.illumination.form() == LuminanceError::kPublished) return hn::Mul(weight, off);
+    if (input_.illumination.form() == LuminanceError::kPublished) {
+      return hn::Mul(weight, hn::Abs(hn::Sub(luminance, of_exemplar)));
+    }
+    luminance = hn::Min(luminance, hn::Set(kFloats, input_.illumination.brightest()));
+    const auto off = hn::Abs(hn::Sub(luminance, of_exemplar));
     auto least = hn::Abs(hn::Sub(luminance, hn::Set(kFloats, luminances[0])));
     for (std::size_t k = 1; k < luminances.size(); ++k) {
       const auto other = hn::Abs(hn::Sub(luminance, hn::Set(kFloats, luminances[k])));

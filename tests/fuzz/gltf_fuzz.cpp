@@ -5,7 +5,7 @@ namespace scumble::fuzz {
 namespace {
 
 void Run(Bytes input) {
-  LoadFrom("scene.glb", input);
+  LoadFrom("scene.glb", input, true);
   const Expected<AnimatedScene> animated = AnimatedScene::Load(Folder() / "scene.glb", {"*"});
   CheckRefusal(animated);
   if (!animated || !animated->moves()) return;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -21,13 +22,35 @@ inline void CheckScene(const Scene& scene) {
   }
 }
 
-// Loads a scene from a file of that name, and looks at it from outside.
-inline void LoadFrom(const std::string& name, Bytes input) {
+// Scenes that a target has time to draw.
+inline bool IsSmall(const Scene& scene) {
+  std::size_t triangles = 0;
+  for (const Instance& instance : scene.instances) {
+    triangles += scene.meshes[std::size_t(instance.mesh)].triangles.size() + 1;
+  }
+  return triangles <= 10'000 && scene.lights.size() <= 100;
+}
+
+// Draws 4 × 4 pixels of it with all its light, by one ray for each question.
+inline void Draw(const Scene& scene, const Camera& camera) {
+  if (!IsSmall(scene)) return;
+  GuidegenOptions options;
+  options.width = options.height = 4;
+  options.layers = {Layer::kLuminance, Layer::kShadow, Layer::kAlbedo, Layer::kPosition, Layer::kLpeFull};
+  options.samples = options.threads = 1;
+  options.max_bounces = 2;
+  CheckRefusal(RenderGuides(scene, camera, options));
+}
+
+// Loads a scene from a file of that name and looks at it, from its own camera or else from outside; draws it if told to.
+inline void LoadFrom(const std::string& name, Bytes input, bool draws = false) {
   Expected<Scene> scene = LoadScene(InFile(name, input));
   CheckRefusal(scene);
   if (!scene) return;
   CheckScene(*scene);
-  CheckRefusal(PrepareView(*scene, "", std::nullopt, 1.5, true));
+  const Expected<PreparedView> view = PrepareView(*scene, "", std::nullopt, 1.0, true);
+  CheckRefusal(view);
+  if (view && draws) Draw(*scene, view->camera);
 }
 
 inline void LoadObj(Bytes input) { LoadFrom("scene.obj", input); }

@@ -1,0 +1,251 @@
+// What the ladder of --quality and --budget-ms was made from: for sample scenes and bundled styles, time and energy of
+// every way to do it with less, and which of them nothing else beats in both. Prints one line a way, tab-separated:
+// docs/budget.md has the table. --help lists the arguments.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bench/or_stop.h"
+#include "bench/repeats.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load_scene.h"
+#include "image/stopwatch.h"
+#include "measure/energy.h"
+#include "measure/pareto.h"
+#include "style/style_file.h"
+#include "transfer/transfer.h"
+#include "transfer/upsample_guides.h"
+
+namespace scumble::bench {
+namespace {
+
+const std::string kSource = SCUMBLE_SOURCE_DIR;
+
+constexpr std::array<int, 4> kUpsampling{1, 2, 4, 8};
+
+struct Arguments {
+  int width = 1280, height = 720, runs = 5;
+  std::size_t samples = 512;
+  std::vector<std::string> scenes{"suzanne", "stilllife", "toys"};
+  std::vector<std::string> styles{"oil", "charcoal", "woodcut", "sumi-e", "chiaroscuro", "scene-oil"};
+};
+
+// What a way takes instead of the style's own.
+struct Candidate {
+  std::string name;
+  int upsample = 1;
+  std::vector<std::string> settings;
+};
+
+// What could be done with less and leaves the artist's choices of look alone, combined.
+std::vector<Candidate> Candidates(const Style& style, const Arguments& arguments) {
+  const std::string less = "transfer.method=litsphere", crisp = "transfer.blend_radius=0";
+  std::vector<Candidate> all;
+  for (const int upsample : kUpsampling) {
+    if (arguments.width % upsample || arguments.height % upsample) continue;
+    const std::string name = upsample > 1 ? fmt::format("upsample {}", upsample) : "";
+    const auto add = [&](const std::string& what, std::vector<std::string> settings) {
+      all.push_back({name + (name.empty() || what.empty() ? "" : ", ") + what, upsample, std::move(settings)});
+    };
+    add("", {});
+    if (style.transfer.hybrid > 0.0) add("hybrid 0", {"transfer.hybrid=0"});
+    add("litsphere", {less});
+    if (upsample == 1 || upsample == kUpsampling.back()) add("litsphere, radius 0", {less, crisp});
+    if (upsample == 1) add("radius 0", {crisp});
+    if (upsample == 1)
+      add("4 levels fewer", {fmt::format("transfer.levels={}", std::max(1, style.transfer.levels - 4))});
+    add("match_step 4", {"transfer.match_step=4"});
+  }
+  all.front().name = "the style";
+  return all;
+}
+
+// Guides that count beside normals, as the energy takes them: what the style weighs, or where it is painted for several
+// lights the luminance, by its weight.
+struct MoreGuides {
+  std::vector<std::vector<float>> target;
+  std::vector<std::vector<std::vector<float>>> exemplars;
+};
+
+MoreGuides MoreGuidesOf(const PreparedStyle& style, const GuideSet& guides, double exposure) {
+  const PreparedExemplar& exemplar = *style.exemplar;
+  const std::size_t pixels = std::size_t(exemplar.width()) * exemplar.height();
+  const float brightness = float(std::exp2(exposure));
+  MoreGuides more;
+  more.exemplars.resize(std::size_t(exemplar.count()));
+  if (style.space) {
+    const int rest = style.space->rest();
+    std::vector<float> point(std::size_t(std::max(rest, 1)));
+    more.target.assign(std::size_t(rest), std::vector<float>(guides.pixel_count()));
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      style.space->Read(guides, i, brightness, point.data());
+      for (int d = 0; d < rest; ++d) more.target[std::size_t(d)][i] = point[std::size_t(d)];
+    }
+    for (int k = 0; k < exemplar.count(); ++k) {
+      auto& planes = more.exemplars[std::size_t(k)];
+      planes.assign(std::size_t(rest), std::vector<float>(pixels));
+      for (const Source at : exemplar.UsablePixels()) {
+        for (int d = 0; d < rest; ++d) {
+          planes[std::size_t(d)][std::size_t(at.y) * exemplar.width() + at.x] = style.space->RestAt(k, at)[d];
+        }
+      }
+    }
+  } else if (style.illumination.active()) {
+    const float weight = style.illumination.weight();
+    const auto luminance = guides.Plane(Layer::kLuminance);
+    more.target.emplace_back();
+    for (const float value : luminance) more.target.back().push_back(weight * std::min(1.0f, brightness * value));
+    for (int k = 0; k < exemplar.count(); ++k) {
+      const float painted = std::min(1.0f, style.illumination.luminances()[std::size_t(k)]);
+      more.exemplars[std::size_t(k)].emplace_back(pixels, weight * painted);
+    }
+  }
+  return more;
+}
+
+// The energy of pictures by one style of one scene, by the guides of the picture's own size.
+class Judge {
+ public:
+  Judge(const PreparedStyle& style, const GuideSet& guides, double exposure)
+      : guides_(guides), more_(MoreGuidesOf(style, guides, exposure)) {
+    const PreparedExemplar& exemplar = *style.exemplar;
+    const std::size_t pixels = std::size_t(exemplar.width()) * exemplar.height();
+    usable_.assign(pixels, 0);
+    for (auto& plane : normal_) plane.assign(pixels, 0.0f);
+    for (const Source at : exemplar.UsablePixels()) {
+      const std::size_t i = std::size_t(at.y) * exemplar.width() + at.x;
+      const glm::vec3 normal = exemplar.Normal(at.x, at.y);
+      usable_[i] = 1;
+      for (int c = 0; c < 3; ++c) normal_[std::size_t(c)][i] = normal[c];
+    }
+    for (int k = 0; k < exemplar.count(); ++k) {
+      EnergyExemplar one{&exemplar.picture(k), {normal_[0], normal_[1], normal_[2]}, usable_};
+      for (const auto& plane : more_.exemplars[std::size_t(k)]) one.more_guides.emplace_back(plane);
+      exemplars_.push_back(std::move(one));
+    }
+  }
+
+  EnergyReport Measure(const Picture& picture, const SourceField& field, std::size_t samples) const {
+    EnergyTarget target{
+        &picture,
+        {guides_.Plane(Layer::kNormal, 0), guides_.Plane(Layer::kNormal, 1), guides_.Plane(Layer::kNormal, 2)},
+        guides_.Plane(Layer::kCoverage)};
+    for (const auto& plane : more_.target) target.more_guides.emplace_back(plane);
+    std::vector<std::uint8_t> covered(field.level.size());
+    std::transform(field.level.begin(), field.level.end(), covered.begin(),
+                   [](std::int8_t level) { return level != SourceField::kNoSource; });
+    const SourcePlanes sources{field.width, field.height, field.x, field.y, covered, field.exemplar};
+    EnergyOptions options;
+    options.samples = samples, options.sources = &sources;
+    return OrStop(MeasureEnergy(target, exemplars_, options));
+  }
+
+ private:
+  const GuideSet& guides_;
+  MoreGuides more_;
+  std::vector<std::uint8_t> usable_;
+  std::array<std::vector<float>, 3> normal_;
+  std::vector<EnergyExemplar> exemplars_;
+};
+
+struct MadeGuides {
+  GuideSet guides;
+  std::vector<double> ms;
+};
+
+void Measure(const std::string& scene_name, const std::string& style_name, const Arguments& arguments) {
+  const std::string folder = kSource + "/exemplars/" + style_name;
+  Style style = OrStop(LoadStyle(folder));
+  Scene scene = OrStop(LoadScene(kSource + "/scenes/" + scene_name + ".glb"));
+  const PreparedView view =
+      OrStop(PrepareView(scene, "", std::nullopt, double(arguments.width) / arguments.height, true));
+  const std::vector<Candidate> candidates = Candidates(style, arguments);
+  std::map<int, MadeGuides> guides;
+  for (int run = 0; run <= arguments.runs; ++run) {
+    for (const int factor : kUpsampling) {
+      if (arguments.width % factor || arguments.height % factor) continue;
+      GuidegenOptions options;
+      options.width = arguments.width / factor, options.height = arguments.height / factor;
+      options.layers = RequiredLayers(style);
+      Stopwatch watch;
+      GuideSet made = OrStop(RenderGuides(scene, view.camera, options)).guides;
+      if (factor > 1) made = OrStop(UpsampleGuides(made, factor));
+      const double ms = watch.Lap();
+      if (run > 0) guides[factor].ms.push_back(ms);
+      guides[factor].guides = std::move(made);
+    }
+  }
+  std::vector<PreparedStyle> prepared;
+  for (const Candidate& candidate : candidates) {
+    Style one = OrStop(LoadStyle(folder, candidate.settings));
+    one.paper = {};
+    prepared.push_back(OrStop(Prepare(one, arguments.height)));
+  }
+  TransferOptions options;
+  options.exposure = MeasureExposure({prepared.data(), 1}, guides[1].guides).value_or(0.0);
+  const Judge judge(prepared.front(), guides[1].guides, options.exposure);
+  std::vector<std::vector<double>> ms(candidates.size());
+  std::vector<EnergyReport> energy(candidates.size());
+  for (int run = 0; run <= arguments.runs; ++run) {  // in turns, so that what else the machine does meets all of them
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      TransferScratch scratch;
+      Picture picture;
+      options.keep_field = run == 0;
+      Stopwatch watch;
+      OrStop(Transfer(prepared[i], guides[candidates[i].upsample].guides, options, scratch, picture));
+      if (run > 0) ms[i].push_back(watch.Lap());
+      if (run == 0) energy[i] = judge.Measure(picture, scratch.field, arguments.samples);
+    }
+  }
+  std::vector<TradePoint> whole, transfer_alone;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const double painting = SpreadOf(ms[i]).median;
+    const double casting = SpreadOf(guides[candidates[i].upsample].ms).median;
+    whole.push_back({casting + painting, energy[i].both.mean});
+    transfer_alone.push_back({candidates[i].upsample > 1 ? NAN : painting, energy[i].both.mean});
+  }
+  const auto on = [](const std::vector<std::size_t>& front, std::size_t i) {
+    return std::find(front.begin(), front.end(), i) != front.end();
+  };
+  const std::vector<std::size_t> front = ParetoFront(whole), alone = ParetoFront(transfer_alone);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    std::fputs(fmt::format("{}\t{}\t{}\t{:.1f}\t{:.1f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t{}\t{}\n", scene_name,
+                           style_name, candidates[i].name, whole[i].time, SpreadOf(ms[i]).median, energy[i].both.mean,
+                           energy[i].both.standard_error, energy[i].energy.mean, energy[i].missing.mean,
+                           on(front, i) ? "*" : "", on(alone, i) ? "*" : "")
+                   .c_str(),
+               stdout);
+  }
+  std::fflush(stdout);
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("time and energy of every way to do it with less");
+  app.add_option("--width", arguments.width);
+  app.add_option("--height", arguments.height);
+  app.add_option("--samples", arguments.samples, "patches that the energy looks at");
+  app.add_option("--runs", arguments.runs);
+  app.add_option("--scenes", arguments.scenes)->delimiter(',');
+  app.add_option("--styles", arguments.styles)->delimiter(',');
+  CLI11_PARSE(app, argc, argv);
+  std::puts(
+      "scene\tstyle\tway\tguides and transfer, ms\ttransfer, ms\tboth\tstandard error\tenergy\tmissing\tfront\tfront "
+      "of transfer");
+  for (const std::string& scene : arguments.scenes) {
+    for (const std::string& style : arguments.styles) Measure(scene, style, arguments);
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace scumble::bench
+
+int main(int argc, char** argv) { return scumble::bench::Main(argc, argv); }

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""What five kinds of styles make a run pay, by the program's own counters: the table of docs/required.md.
+
+    /usr/bin/python3 bench/required.py --program build/scumble [--write-docs | --check]
+
+Without an option the table goes to standard output. --write-docs puts it into the page. --check fails, exit code 1,
+where a figure of the page that is 0 is no longer, or another one has moved by more than 2 %.
+"""
+
+import argparse
+import json
+import struct
+import sys
+import tempfile
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+from runs import run
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs/required.md"
+BEGIN, END = "<!-- table: begin, written by bench/required.py -->\n", "<!-- table: end -->"
+SIZE = (480, 270)
+PATH_SAMPLES = 8
+MOST_MOVED = 0.02  # instruction sets differ by a few pixels of a silhouette
+
+# Title, scene, arguments.
+ROWS = [
+    ("normals only", "sun", ["stylize", "--style", "oil"]),
+    ("illuminated, a sun", "sun", ["stylize", "--style", "chiaroscuro"]),
+    ("illuminated, an area light", "area", ["stylize", "--style", "chiaroscuro"]),
+    ("colorized", "sun", ["stylize", "--style", "tinted-oil"]),
+    ("full light paths", "sun", ["guidegen", "--samples", PATH_SAMPLES, "--layers",
+                                  "lpe.full,lpe.LDE,lpe.LSE,lpe.LDDE,lpe.LD12E"]),
+]
+COLUMNS = ["primary rays", "shadow rays", "bounced rays", "light samples", "materials", "texture look-ups",
+           "textures decoded", "planes, MB", "written, MB"]
+
+
+def with_one_light(source, target, is_area):
+    """A copy of a .glb with its first lamp alone, or an area light in its place."""
+    data = source.read_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    gltf, rest = json.loads(data[20:20 + length]), data[20 + length:]
+    lamps = [node for node in gltf["nodes"] if "KHR_lights_punctual" in node.get("extensions", {})]
+    for lamp in lamps[1:]:
+        del lamp["extensions"]
+    if is_area:
+        lamps[0]["extras"] = {"scumble": {"lamp": {"type": "AREA", "energy": 400.0, "color": [1.0, 1.0, 1.0],
+                                                   "shape": "SQUARE", "size": 1.0, "size_y": 1.0}}}
+    text = json.dumps(gltf).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
+    target.write_bytes(head + text + rest)
+
+
+def measure(program):
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="scumble-required-") as scratch:
+        scenes = {name: Path(scratch) / (name + ".glb") for name in ("sun", "area")}
+        for name, path in scenes.items():
+            with_one_light(ROOT / "scenes/stilllife.glb", path, name == "area")
+        for title, scene, (verb, *arguments) in ROWS:
+            output = Path(scratch) / ("out.png" if verb == "stylize" else "out.exr")
+            told = json.loads(run([program, verb, scenes[scene], *arguments, "--size", "%dx%d" % SIZE, "--json", "--quiet",
+                                   "-o", output])[2])
+            rays, work = told["rays"], told["work"]
+            rows.append((title, [rays["primary"], rays["shadow"], rays["bounce"], work["light_samples"], work["materials"],
+                                 work["texture_lookups"], work["textures_decoded"], work["plane_bytes"] * 1e-6,
+                                 work["bytes_written"] * 1e-6]))
+    return rows
+
+
+def text_of(value):
+    return "%.2f" % value if isinstance(value, float) else "{:,}".format(value)
+
+
+def table(rows):
+    lines = ["| | " + " | ".join(COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
+    return "\n".join(lines + ["| %s | %s |" % (title, " | ".join(map(text_of, values))) for title, values in rows]) + "\n"
+
+
+def parts_of_page():
+    text = PAGE.read_text(encoding="utf-8")
+    if BEGIN not in text or END not in text:
+        sys.exit("%s: the lines «%s» and «%s» are not there: put them back around the table" % (PAGE, BEGIN.strip(), END))
+    head, rest = text.split(BEGIN, 1)
+    return head, *rest.split(END, 1)
+
+
+def check(rows):
+    stands = [[cell.strip() for cell in line.strip("|").split("|")] for line in parts_of_page()[1].strip().split("\n")[2:]]
+    wrong = [] if [row[0] for row in stands] == [title for title, _ in rows] else ["the page has other rows"]
+    for row, (title, values) in zip(stands, rows):
+        for name, cell, value in zip(COLUMNS, row[1:], values):
+            expected = float(cell.replace(",", ""))
+            if abs(value - expected) > MOST_MOVED * expected + (0.005 if isinstance(value, float) else 0):
+                wrong.append("%s: %s, the page has %s, measured %s" % (title, name, cell, text_of(value)))
+    if wrong:
+        sys.exit("\n".join(wrong) + "\nfind what is paid for in vain, or write the page anew with --write-docs")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path, default=ROOT / "build/scumble", help="the program to measure")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--write-docs", action="store_true", help="put the table into docs/required.md")
+    what.add_argument("--check", action="store_true", help="compare with docs/required.md")
+    options = parser.parse_args()
+    rows = measure(options.program.resolve())
+    if options.check:
+        check(rows)
+    elif options.write_docs:
+        head, _, tail = parts_of_page()
+        PAGE.write_text(head + BEGIN + table(rows) + END + tail, encoding="utf-8")
+    else:
+        print(table(rows), end="")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,212 @@
+#include "cli/budget.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cli/budget_trial.h"
+#include "cli/cache.h"
+#include "cli/calibration.h"
+#include "cli/machine.h"
+#include "cli/picture_settings.h"
+#include "cli/quality_ladder.h"
+#include "cli/scene_frames.h"
+#include "cli/timing.h"
+#include "guidegen/load_scene.h"
+#include "image/hash.h"
+#include "io/atomic_file.h"
+#include "style/style_keyframes.h"
+
+namespace scumble {
+namespace {
+
+const std::vector<std::string> kQualities = {"draft", "preview", "final"};
+
+Quality QualityOf(const std::string& name) {
+  if (name == "draft") return Quality::kDraft;
+  return name == "preview" ? Quality::kPreview : Quality::kFinal;
+}
+
+// One frame by the way at a place of the ladder.
+using PaintWay = std::function<Expected<double>(const Way& way)>;
+
+std::string WordsOf(const Way& way) {
+  const std::string options = OptionsOf(way);
+  return options.empty() ? "the style as it is" : options;
+}
+
+nlohmann::ordered_json OptionsJson(const Way& way) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  if (UpsampleOf(way) > 1) json.insert(json.end(), {"--upsample", std::to_string(UpsampleOf(way))});
+  for (const std::string& setting : way.settings) json.insert(json.end(), {"--set", setting});
+  return json;
+}
+
+Status Take(const Way& way, StyleSet& styles, PictureOptions& picture) {
+  picture.upsample *= UpsampleOf(way);
+  return ApplyWay(way, styles);
+}
+
+Status TakeQuality(const BudgetOptions& options, const LadderFrame& frame, StyleSet& styles, PictureOptions& picture,
+                   const Globals& globals) {
+  const Way way = WayOf(QualityOf(options.quality), styles, frame);
+  const bool as_it_is = OptionsOf(way).empty();
+  Say(globals, fmt::format("quality {}: {}{}", options.quality, WordsOf(way), as_it_is ? "" : ", which repeats it"));
+  picture.chosen["quality"] = {{"name", options.quality}, {"options", OptionsJson(way)}};
+  return Take(way, styles, picture);
+}
+
+Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const std::string& circumstances,
+                  StyleSet& styles, PictureOptions& picture, const Globals& globals, const PaintWay& paint) {
+  const std::vector<Way> ways = QualityLadder(styles, frame);
+  FileCache cache(CacheFolder() ? *CacheFolder() / "times" : std::filesystem::path());
+  Calibration calibration{circumstances, {}, &cache, options.recalibrate};
+  for (const Way& way : ways) calibration.ways.push_back(way.name);
+  bool said = false;
+  const MeasureWay measure = [&](std::size_t place) {
+    if (!std::exchange(said, true)) {
+      Say(globals, fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
+    }
+    return paint(ways[place]);
+  };
+  SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure));
+  EndStage(globals, "calibration");
+  const Way& way = ways[picked.way];
+  Say(globals,
+      fmt::format("budget {:g} ms: about {:.0f} ms with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
+                  WordsOf(way), OptionsOf(way).empty() ? "" : ", which repeats it"));
+  if (!picked.fits) {
+    Warn(fmt::format("--budget-ms {:g}: nothing fits; the quickest way is taken, which needs about {:.0f} ms",
+                     options.budget_ms, std::ceil(picked.predicted_ms)));
+  }
+  picture.chosen["budget"] = {{"ms", options.budget_ms},
+                              {"picked", way.name},
+                              {"predicted_ms", picked.predicted_ms},
+                              {"fits", picked.fits},
+                              {"measured_runs", picked.measured},
+                              {"options", OptionsJson(way)}};
+  return Take(way, styles, picture);
+}
+
+// What times depend on in either verb, as text. Not the frame: all frames of a scene are to look alike.
+std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture, const Globals& globals) {
+  ExemplarHashes hashes;
+  return fmt::format("{}; {}{}", MachineName(globals.threads),
+                     SettingsText(styles, SettingsOf(picture, {}, {}), hashes),
+                     KeepsField(picture, globals) ? "; keeps the field" : "");
+}
+
+// The scene as it stands in the frame that is looked at.
+Expected<Scene> SceneToMeasure(const SceneOptions& options, std::optional<int> frame, const Globals& globals,
+                               BlenderFilm& film) {
+  if (IsBlenderScene(options.scene)) {
+    BlenderOptions blender = options.blender;
+    blender.frame = frame;
+    return LoadBlenderScene(options.scene, blender, globals, &film);
+  }
+  SCUMBLE_ASSIGN(const AnimatedScene scene, AnimatedScene::Load(options.scene, {options.animation}));
+  if (!scene.moves() || !frame) return scene.rest();
+  SCUMBLE_ASSIGN(const FrameRate rate, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
+  return scene.SceneAt(SecondsAt(*frame, rate));
+}
+
+// What is opened when the first way is measured.
+struct OpenedScene {
+  Scene scene;
+  Camera camera;
+  LayerSet layers;
+};
+
+Expected<OpenedScene> OpenToMeasure(const SceneOptions& options, std::optional<int> frame, StyleSet& styles,
+                                    const Globals& globals) {
+  BlenderFilm film;
+  SCUMBLE_ASSIGN(Scene scene, SceneToMeasure(options, frame, globals, film));
+  SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, WishesOf(scene.instances, scene), options.scene));
+  SCUMBLE_ASSIGN(PreparedView view, ViewScene(scene, options, layers));
+  return OpenedScene{std::move(scene), std::move(view.camera), layers};
+}
+
+}  // namespace
+
+void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
+  const std::string smaller = casts ? "smaller guides, " : "";
+  verb.add_option("--quality", options.quality,
+                  "final: the style as it is; preview and draft take less time, by " + smaller +
+                      "simpler ways to find the paint; what is taken is printed as options that repeat it. --set and "
+                      "--upsample win over it")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(kQualities));
+  verb.add_option(
+          "--budget-ms", options.budget_ms,
+          std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
+              " of one picture may take, without start-up, reading, preparing the style and writing: the most "
+              "accurate way that fits is taken, by times that are measured once on this machine and kept in the "
+              "user's cache folder; one way for all frames; the options that repeat it are printed. --set and "
+              "--upsample win over it")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  verb.add_flag("--recalibrate", options.recalibrate, "with --budget-ms: measure anew");
+}
+
+Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options) {
+  options.guides_are_fixed = verb.count("--upsample") > 0;
+  if (!options.quality.empty() && options.budget_ms > 0) {
+    return UsageError("--quality " + options.quality + " and --budget-ms exclude each other: give one of them");
+  }
+  if (!std::isfinite(options.budget_ms)) return UsageError("--budget-ms: expected a number of milliseconds");
+  if (options.recalibrate && !(options.budget_ms > 0)) {
+    return UsageError("--recalibrate is for --budget-ms: give both, or leave it out");
+  }
+  return Ok();
+}
+
+Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name, StyleSet& styles,
+                       PictureOptions& picture, const Globals& globals) {
+  if (!options.chooses()) return Ok();
+  const LadderFrame frame{false, guides.width(), guides.height(), true};
+  if (!options.quality.empty()) return TakeQuality(options, frame, styles, picture, globals);
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  const auto covered = std::count_if(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
+  // Frames of one shot are alike: how much is covered counts in 64ths.
+  const std::string circumstances =
+      fmt::format("transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
+                  64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
+                  guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
+  PaintTrial trial(styles, picture, name, globals);
+  return TakeWithin(options, frame, circumstances, styles, picture, globals,
+                    [&](const Way& way) { return trial.Paint(way, guides); });
+}
+
+Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame,
+                      StyleSet& styles, PictureOptions& picture, const Globals& globals) {
+  if (!options.chooses()) return Ok();
+  SCUMBLE_ASSIGN(const Size size, ParseSize(scene.size));
+  const LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed};
+  if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
+  SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(scene.scene));
+  const std::string circumstances =
+      fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
+                  HashText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}), scene.size,
+                  GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, globals));
+  Globals silent = globals;
+  silent.quiet = true, silent.timing = nullptr;
+  std::optional<OpenedScene> opened;
+  PaintTrial trial(styles, picture, scene.scene, globals);
+  return TakeWithin(options, ladder, circumstances, styles, picture, globals, [&](const Way& way) -> Expected<double> {
+    if (!opened) {
+      SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
+    }
+    SceneOptions small = scene;
+    small.size = fmt::format("{}x{}", size.width / UpsampleOf(way), size.height / UpsampleOf(way));
+    Stopwatch watch;
+    SCUMBLE_ASSIGN(const SceneGuides made,
+                   CastScene(opened->scene, opened->camera, nullptr, small, opened->layers, silent, {}, false));
+    const double ms = watch.Lap();
+    SCUMBLE_ASSIGN(const double painting, trial.Paint(way, made.guides));
+    return ms + painting;
+  });
+}
+
+}  // namespace scumble

@@ -1,0 +1,168 @@
+#include "cli/calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "image/check.h"
+#include "image/hash.h"
+
+namespace scumble {
+namespace {
+
+using Runs = std::vector<double>;
+
+double Median(Runs runs) {
+  std::sort(runs.begin(), runs.end());
+  const std::size_t half = runs.size() / 2;
+  return runs.size() % 2 ? runs[half] : 0.5 * (runs[half - 1] + runs[half]);
+}
+
+bool IsTime(const nlohmann::json& json, double& ms) {
+  if (!json.is_number()) return false;
+  ms = json.get<double>();
+  return ms >= 0.0 && std::isfinite(ms);
+}
+
+// Times by way, as {"circumstances": …, "cold_ms": 3.5, "ways": {"--upsample 4": [12.5, …], …}}. Nothing where the text is
+// none of ours, or of others: keys are hashes.
+struct Known {
+  std::map<std::string, Runs> ways;
+  double cold_ms = 0.0;
+};
+std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::string& circumstances) {
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || json.value("circumstances", nlohmann::json()) != circumstances) return std::nullopt;
+  const auto ways = json.find("ways");
+  const auto cold = json.find("cold_ms");
+  if (ways == json.end() || !ways->is_object() || cold == json.end()) return std::nullopt;
+  Known known;
+  if (!IsTime(*cold, known.cold_ms)) return std::nullopt;
+  for (const auto& [way, times] : ways->items()) {
+    if (!times.is_array() || times.size() > std::size_t(kCalibrationRuns)) return std::nullopt;
+    for (const auto& time : times) {
+      double ms = 0.0;
+      if (!IsTime(time, ms)) return std::nullopt;
+      known.ways[way].push_back(ms);
+    }
+  }
+  return known;
+}
+
+class Picker {
+ public:
+  Picker(const Calibration& calibration, double budget_ms, const MeasureWay& measure)
+      : calibration_(calibration), budget_ms_(budget_ms), measure_(measure), runs_(calibration.ways.size()) {}
+
+  void Load() {
+    if (!calibration_.cache || calibration_.anew) return;
+    const auto bytes = calibration_.cache->Load(Key());
+    if (!bytes) return;
+    const std::optional<Known> known = ParseTimes(*bytes, calibration_.circumstances);
+    if (!known) return;
+    cold_ms_ = known->cold_ms;
+    for (std::size_t way = 0; way < runs_.size(); ++way) {
+      const auto found = known->ways.find(calibration_.ways[way]);
+      if (found != known->ways.end()) runs_[way] = found->second;
+    }
+  }
+
+  void Store() const {
+    if (!calibration_.cache || measured_ == 0) return;
+    nlohmann::ordered_json json{{"circumstances", calibration_.circumstances},
+                                {"cold_ms", cold_ms_.value_or(0.0)},
+                                {"ways", nlohmann::ordered_json::object()}};
+    for (std::size_t way = 0; way < runs_.size(); ++way) {
+      if (!runs_[way].empty()) json["ways"][calibration_.ways[way]] = runs_[way];
+    }
+    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    calibration_.cache->Store(Key(), std::as_bytes(std::span(text)));
+  }
+
+  Expected<PickedWay> Pick() {
+    for (std::size_t way = 0; way < runs_.size(); ++way) {
+      SCUMBLE_ASSIGN(const bool fits, Fits(way));
+      if (fits) return Picked(way, true);
+    }
+    // What was given up at its first run may have been slow by chance: the least of its runs says how quick it can be.
+    const auto least = [](const Runs& runs) { return *std::min_element(runs.begin(), runs.end()); };
+    const auto quickest =
+        std::min_element(runs_.begin(), runs_.end(), [&](const Runs& a, const Runs& b) { return least(a) < least(b); });
+    const auto way = static_cast<std::size_t>(quickest - runs_.begin());
+    while (runs_[way].size() < std::size_t(kCalibrationRuns)) SCUMBLE_RETURN_IF_ERROR(RunOnce(way));
+    return Picked(way, false);
+  }
+
+ private:
+  std::string Key() const { return fmt::format("{:016x}", HashText(calibration_.circumstances)); }
+
+  double Predicted(std::size_t way) const { return PredictedMs(runs_[way], cold_ms_.value_or(0.0)); }
+  PickedWay Picked(std::size_t way, bool fits) const { return {way, Predicted(way), fits, measured_}; }
+
+  Expected<bool> Fits(std::size_t way) {
+    const Runs& runs = runs_[way];
+    const auto too_slow = [&] {
+      return std::any_of(runs.begin(), runs.end(), [&](double ms) { return ms > budget_ms_; });
+    };
+    while (!too_slow() && runs.size() < std::size_t(kCalibrationRuns)) SCUMBLE_RETURN_IF_ERROR(RunOnce(way));
+    return !too_slow() && Predicted(way) <= budget_ms_;
+  }
+
+  Status RunOnce(std::size_t way) {
+    if (!cold_ms_) {
+      SCUMBLE_RETURN_IF_ERROR(WarmUp());
+    } else if (measured_ == 0) {
+      SCUMBLE_RETURN_IF_ERROR(measure_(runs_.size() - 1));  // this process is cold, too
+    }
+    return Measure(way);
+  }
+
+  Status WarmUp() {
+    const std::size_t last = runs_.size() - 1;
+    SCUMBLE_ASSIGN(const double cold, measure_(last));
+    SCUMBLE_RETURN_IF_ERROR(Measure(last));
+    SCUMBLE_RETURN_IF_ERROR(Measure(last));
+    cold_ms_ = std::max(0.0, cold - std::max(runs_[last][0], runs_[last][1]));
+    return Ok();
+  }
+
+  Status Measure(std::size_t way) {
+    SCUMBLE_ASSIGN(const double ms, measure_(way));
+    runs_[way].push_back(ms);
+    ++measured_;
+    return Ok();
+  }
+
+  const Calibration& calibration_;
+  const double budget_ms_;
+  const MeasureWay& measure_;
+  std::vector<Runs> runs_;  // by way
+  std::optional<double> cold_ms_;
+  int measured_ = 0;
+};
+
+}  // namespace
+
+double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
+  if (runs_ms.empty()) return std::numeric_limits<double>::infinity();
+  const double slowest = *std::max_element(runs_ms.begin(), runs_ms.end());
+  return slowest + std::max(slowest - Median({runs_ms.begin(), runs_ms.end()}), cold_ms);
+}
+
+Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure) {
+  SCUMBLE_CHECK(!calibration.ways.empty());
+  Picker picker(calibration, budget_ms, measure);
+  picker.Load();
+  Expected<PickedWay> picked = picker.Pick();
+  picker.Store();
+  return picked;
+}
+
+}  // namespace scumble

@@ -1,0 +1,49 @@
+// How long each way to paint a frame takes on this machine, and which is the most accurate that fits into a budget.
+//
+// A way is run kCalibrationRuns times. If runs are alike, whatever their distribution, one more is slower than the slowest
+// of nine in one case of ten: that is the share of frames that may miss their budget. Two things make later runs slower than
+// those: another moment of the machine, for which the slowest run's distance from the median is added, nothing on a quiet
+// machine and much on a busy one; and a process that has just begun, whose first run wakes threads and touches memory. What
+// that costs is measured once, by the last way, and added instead where it is more.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/status.h"
+#include "transfer/table_cache.h"
+
+namespace scumble {
+
+inline constexpr int kCalibrationRuns = 9;
+
+struct Calibration {
+  // Everything that times depend on, but for the ways themselves: machine, program, scene, style, size.
+  std::string circumstances;
+  std::vector<std::string> ways;  // by options, the most accurate first; at least one
+  TableCache* cache = nullptr;    // where times are kept between runs; null: nowhere
+  bool anew = false;              // what is kept does not count
+};
+
+// Milliseconds that the way, a place in Calibration::ways, takes once.
+using MeasureWay = std::function<Expected<double>(std::size_t way)>;
+
+struct PickedWay {
+  std::size_t way = 0;        // in Calibration::ways
+  double predicted_ms = 0.0;  // nine frames of ten take no longer
+  bool fits = false;          // otherwise it is the quickest there is
+  int measured = 0;           // runs that were made for it now; 0: all times were known
+};
+
+// What is predicted from times of equal runs, where the first run of a process takes `cold_ms` longer; infinity without any.
+double PredictedMs(std::span<const double> runs_ms, double cold_ms);
+
+// The first of the ways whose predicted time is within the budget; where none is, the quickest. A way is given up at its
+// first run beyond the budget, so what is too slow costs one run. The first of all runs is one of the last way, and is
+// compared with the slower of two more. What was kept and makes no sense is measured again. Errors are those of `measure`.
+Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure);
+
+}  // namespace scumble

@@ -1,0 +1,48 @@
+// The ladder of --quality and --budget-ms: ways to do it with less, from the style itself down to the quickest.
+//
+// A rung takes from the style what makes accuracy, never what makes its look: guides may be cast smaller and the
+// paint's places be found more simply; colours, thresholds, edges and sizes are the artist's. The order is that of the
+// measured energy (measure/energy.h); bench/ladder_bench measures it, and docs/budget.md has the table.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/style_set.h"
+#include "cli/ways.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// What the guides leave to choose.
+struct LadderFrame {
+  bool casts = false;  // guides are made, so they may be smaller than the picture
+  // Of the picture. Guides are 2, 4 or 8 times smaller where that divides both, else not as small as a rung asks.
+  int width = 0, height = 0;
+  bool fixed_guides = false;  // the user has said how large they are
+};
+
+// The most accurate first: the style as it is. What a --set of the user decides stays so, and ways that then come to
+// the same, or that change nothing of any of the styles, are left out. Never empty.
+std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame);
+
+// Named points of it.
+enum class Quality {
+  kDraft,    // the last rung: for finding a camera
+  kPreview,  // guides of a quarter of the size; where they cannot be smaller, no blending instead
+  kFinal,    // the first: the style as it is
+};
+Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame);
+
+// So many times is the picture as wide and high as the way's guides.
+int UpsampleOf(const Way& way);
+
+// The options of stylize and transfer that repeat it: "--upsample 4 --set transfer.method=litsphere"; empty for the
+// style as it is.
+std::string OptionsOf(const Way& way);
+
+// Puts the way's settings into all styles, and into those that the scene asks for later, as --set options before the
+// user's would: the same bytes.
+Status ApplyWay(const Way& way, StyleSet& styles);
+
+}  // namespace scumble

@@ -1,0 +1,36 @@
+// How many pixels all pictures of a scene may hold together.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "image/picture.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// A picture of a few bytes can hold any number of pixels, up to 2^28, and a scene any number of such pictures: this
+// refuses those beyond what a machine can be expected to hold.
+class PictureBudget {
+ public:
+  static constexpr std::uint64_t kMaxPixels = std::uint64_t(1) << 30;  // 8 GiB, 64 pictures of 4096 × 4096
+
+  explicit PictureBudget(std::uint64_t max_pixels = kMaxPixels) : max_pixels_(max_pixels) {}
+
+  // One more picture; kInput, naming the file, where it is one too many.
+  Status Take(const std::string& file, const Picture& picture) {
+    const std::uint64_t pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    if (pixels <= max_pixels_ - taken_) {
+      taken_ += pixels;
+      return Ok();
+    }
+    return InputError(file + " has textures of at least " + std::to_string(taken_ + pixels) +
+                      " pixels together; expected at most " + std::to_string(max_pixels_) + ": make them smaller");
+  }
+
+ private:
+  std::uint64_t max_pixels_;
+  std::uint64_t taken_ = 0;
+};
+
+}  // namespace scumble

@@ -1,0 +1,80 @@
+#include "guidegen/scene_textures.h"
+
+#include <memory>
+#include <utility>
+
+#include "guidegen/bsdf.h"
+#include "guidegen/loader_util.h"
+#include "guidegen/path_layers.h"
+#include "guidegen/picture_budget.h"
+#include "guidegen/surface.h"
+
+namespace scumble {
+namespace {
+
+bool IsEncoded(const Scene& scene, std::size_t texture) {
+  return texture < scene.encoded_textures.size() && scene.encoded_textures[texture];
+}
+
+// Decodes those that `wanted(scene)` names. What is left out may change materials, and with them what is wanted.
+template <class Wanted>
+Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
+  DecodedTextures done;
+  WarningCounter warnings;
+  PictureBudget budget;
+  for (const Picture& picture : scene.textures) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, picture));
+  for (bool again = true; std::exchange(again, false);) {
+    const std::vector<bool> needed = wanted(scene);
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+      if (!needed[i] || !IsEncoded(scene, i)) continue;
+      const std::shared_ptr<const EncodedTexture> encoded = scene.encoded_textures[i];
+      Expected<Picture> picture = encoded->decode();
+      if (!picture && !encoded->leave_out) return picture.error();
+      if (picture) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *picture));
+      scene.encoded_textures[i].reset();
+      if (picture) {
+        ++done.count;
+        done.bytes += picture->rgba.size() * sizeof(picture->rgba[0]);
+        scene.textures[i] = *std::move(picture);
+      } else {
+        warnings.Add("a texture cannot be read and is left out", Excerpt(picture.error().message));
+        encoded->leave_out(scene);
+        again = true;
+      }
+    }
+  }
+  warnings.MoveTo(done.warnings);
+  return done;
+}
+
+}  // namespace
+
+std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& options) {
+  std::vector<bool> needed(scene.textures.size(), false);
+  const bool paths = !PathFollower(options.layers, SupplyOf(scene), options.max_bounces).empty();
+  const bool lit = paths || options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
+  const bool colored = paths || options.layers.Has(Layer::kAlbedo);
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+    const Material& material = scene.materials[std::size_t(mesh.material)];
+    const auto need = [&](bool asked, const TextureUse& use) {
+      if (asked && use.texture >= 0 && !mesh.uvs[std::size_t(use.uv_set)].empty()) needed[std::size_t(use.texture)] = true;
+    };
+    need(!mesh.tangents.empty(), material.normal_texture);
+    need(colored || MayHaveHoles(material), material.base_color_texture);
+    need(paths && material.bsdf != Bsdf::kDiffuse && material.bsdf != Bsdf::kEmission,
+         material.metallic_roughness_texture);
+    need(lit && MayEmit(material), material.emission_texture);
+  }
+  return needed;
+}
+
+Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options) {
+  return Decode(scene, [&](const Scene& now) { return NeededTextures(now, options); });
+}
+
+Expected<DecodedTextures> DecodeAllTextures(Scene& scene) {
+  return Decode(scene, [](const Scene& now) { return std::vector<bool>(now.textures.size(), true); });
+}
+
+}  // namespace scumble

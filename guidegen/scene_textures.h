@@ -1,0 +1,33 @@
+// Pictures of a scene's materials, decoded when a layer needs them and not before. A style that asks for normals alone
+// never waits for the paint of the model, nor does it fail where that paint is missing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "guidegen/guidegen.h"
+#include "guidegen/scene.h"
+#include "image/status.h"
+
+namespace scumble {
+
+// By the number of Scene::textures: whether RenderGuides with these options may look at it. Normal maps always; base
+// colours for albedo, for light paths that can exist, and where they may leave holes; roughness and metalness for light
+// paths; emission wherever light is asked for. Only what instances show counts, with texture coordinates for it.
+std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& options);
+
+struct DecodedTextures {
+  int count = 0;
+  std::size_t bytes = 0;              // of the decoded pictures
+  std::vector<std::string> warnings;  // of textures that are left out
+};
+
+// Decodes what RenderGuides needs with these options and is not decoded yet. A picture that is missing or broken is an
+// error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than PictureBudget
+// has are an error that names the scene. After an error nothing that was decoded is lost.
+Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options);
+
+// The same of all there are.
+Expected<DecodedTextures> DecodeAllTextures(Scene& scene);
+
+}  // namespace scumble

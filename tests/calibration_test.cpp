@@ -1,0 +1,244 @@
+// Which way is picked by times that a fake clock tells: nothing here depends on the machine.
+#include "cli/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace scumble {
+namespace {
+
+class MemoryCache : public TableCache {
+ public:
+  std::optional<std::vector<std::byte>> Load(const std::string& key) override {
+    const auto found = kept.find(key);
+    if (found == kept.end()) return std::nullopt;
+    return found->second;
+  }
+  void Store(const std::string& key, std::span<const std::byte> bytes) override {
+    kept[key] = {bytes.begin(), bytes.end()};
+    ++stores;
+  }
+  void Overwrite(const std::string& text) {
+    for (auto& [key, bytes] : kept) {
+      const auto as_bytes = std::as_bytes(std::span(text));
+      bytes = {as_bytes.begin(), as_bytes.end()};
+    }
+  }
+  std::map<std::string, std::vector<std::byte>> kept;
+  int stores = 0;
+};
+
+// Ways whose runs take what is listed, over and over.
+struct FakeClock {
+  std::vector<std::vector<double>> ms;
+  std::vector<int> runs = std::vector<int>(ms.size(), 0);
+
+  MeasureWay Measure() {
+    return [this](std::size_t way) -> Expected<double> {
+      const auto run = static_cast<std::size_t>(runs[way]++);
+      return ms[way][run % ms[way].size()];
+    };
+  }
+  int Total() const { return std::accumulate(runs.begin(), runs.end(), 0); }
+};
+
+Calibration Ladder(std::size_t ways, TableCache* cache = nullptr) {
+  Calibration calibration{"a machine and a scene", {}, cache, false};
+  for (std::size_t way = 0; way < ways; ++way) calibration.ways.push_back("way " + std::to_string(way));
+  return calibration;
+}
+
+PickedWay MustPick(const Calibration& calibration, double budget_ms, FakeClock& clock) {
+  const auto picked = PickWay(calibration, budget_ms, clock.Measure());
+  EXPECT_TRUE(picked.ok());
+  return picked.ok() ? *picked : PickedWay();
+}
+
+// slowest + (slowest − median), by hand; or what a cold start adds, where that is more.
+TEST(Calibration, WhatIsPredictedLiesAsFarBeyondTheSlowestAsThatIsBeyondTheMedian) {
+  EXPECT_EQ(PredictedMs(std::vector<double>{7.0}, 0.0), 7.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{4.0, 4.0, 4.0}, 0.0), 4.0) << "no spread, no margin";
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 0.0), 13.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 20.0}, 0.0), 25.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 1.0), 13.0);
+  EXPECT_EQ(PredictedMs(std::vector<double>{10.0, 12.0, 11.0}, 3.0), 15.0);
+  EXPECT_EQ(PredictedMs({}, 1.0), std::numeric_limits<double>::infinity());
+}
+
+// The last way's first run takes 35 ms, its later ones 10: 25 ms are the process's, and come to any way's time.
+TEST(Calibration, AProcessThatHasJustBegunTakesLonger) {
+  std::vector<double> last(30, 10.0);
+  last.front() = 35.0;
+  FakeClock clock{{{20.0}, last}};
+  EXPECT_EQ(MustPick(Ladder(2), 45.0, clock).predicted_ms, 45.0);
+  FakeClock again{clock.ms};
+  const PickedWay picked = MustPick(Ladder(2), 44.0, again);
+  EXPECT_EQ(picked.way, 1u);
+  EXPECT_EQ(picked.predicted_ms, 35.0);
+  EXPECT_EQ(again.runs[1], 1 + kCalibrationRuns) << "the cold one is not one of the nine";
+}
+
+// In the next process the first run is as cold: it is made, and does not count.
+TEST(Calibration, WhatIsMeasuredLaterIsMeasuredWarmToo) {
+  MemoryCache cache;
+  FakeClock clock{{{50.0}, {10.0}}};
+  MustPick(Ladder(2, &cache), 20.0, clock);
+  std::vector<double> last(30, 10.0);
+  last.front() = 1000.0;
+  FakeClock later{{{50.0}, last}};
+  EXPECT_EQ(MustPick(Ladder(2, &cache), 60.0, later).predicted_ms, 50.0);
+  EXPECT_EQ(later.runs, (std::vector<int>{kCalibrationRuns - 1, 1}));
+}
+
+// Of n + 1 equal draws each is the slowest with equal chance: one more run is beyond the slowest of nine in 1 of 10. So
+// in 4,000 trials of runs of any spread at most 400 miss, and 3.3 standard deviations of √(4000 · 0.1 · 0.9) = 19 more.
+TEST(Calibration, NineRunsOfTenAreWithinTheSlowestOfNineWhateverTheirSpread) {
+  std::uint64_t state = 1;
+  const auto next = [&] {
+    state = state * 6364136223846793005ull + 1442695040888963407ull;
+    return double(state >> 40) / double(1 << 24);
+  };
+  int missed = 0, beyond = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    std::vector<double> runs;
+    for (int run = 0; run <= kCalibrationRuns; ++run) runs.push_back(10.0 / (0.05 + next()));  // a long tail
+    const double later = runs.back();
+    runs.pop_back();
+    beyond += later > *std::max_element(runs.begin(), runs.end());
+    missed += later > PredictedMs(runs, 0.0);
+  }
+  EXPECT_NEAR(beyond, 400, 63);
+  EXPECT_LE(missed, beyond);
+}
+
+TEST(Calibration, TheMostAccurateThatFitsIsTakenAndNothingBelowItIsMeasured) {
+  FakeClock clock{{{50.0}, {30.0}, {20.0}, {5.0}}};
+  const PickedWay picked = MustPick(Ladder(4), 30.0, clock);
+  EXPECT_EQ(picked.way, 1u);
+  EXPECT_TRUE(picked.fits);
+  EXPECT_EQ(picked.predicted_ms, 30.0);
+  EXPECT_EQ(picked.measured, 1 + kCalibrationRuns + 2) << "what is too slow costs one run";
+  EXPECT_EQ(clock.runs, (std::vector<int>{1, kCalibrationRuns, 0, 3})) << "the last one tells what a cold start costs";
+}
+
+// Times need not fall along the ladder: a way further down that is slower is passed over like any other.
+TEST(Calibration, ASlowerWayFurtherDownIsPassedOver) {
+  FakeClock clock{{{50.0}, {70.0}, {20.0}}};
+  EXPECT_EQ(MustPick(Ladder(3), 40.0, clock).way, 2u);
+}
+
+TEST(Calibration, AWayThatFitsButForItsSpreadIsTooSlow) {
+  // Nine runs: 20 seven times, 29 twice; slowest 29, median 20, predicted 38.
+  FakeClock clock{{{20.0, 20.0, 20.0, 29.0, 20.0, 20.0, 29.0, 20.0, 20.0}, {10.0}}};
+  EXPECT_EQ(MustPick(Ladder(2), 30.0, clock).way, 1u);
+  FakeClock again{clock.ms};
+  const PickedWay enough = MustPick(Ladder(2), 38.0, again);
+  EXPECT_EQ(enough.way, 0u);
+  EXPECT_EQ(enough.predicted_ms, 38.0);
+}
+
+TEST(Calibration, WhereNothingFitsTheQuickestIsTakenAndItsTimeNamed) {
+  FakeClock clock{{{50.0}, {9.0}, {20.0}}};
+  const PickedWay picked = MustPick(Ladder(3), 5.0, clock);
+  EXPECT_EQ(picked.way, 1u) << "the quickest, wherever it stands";
+  EXPECT_FALSE(picked.fits);
+  EXPECT_EQ(picked.predicted_ms, 9.0);
+  EXPECT_EQ(clock.runs[1], kCalibrationRuns);
+}
+
+TEST(Calibration, KnownTimesAreNotMeasuredAgain) {
+  MemoryCache cache;
+  FakeClock clock{{{50.0}, {30.0}, {5.0}}};
+  MustPick(Ladder(3, &cache), 30.0, clock);
+  const int first = clock.Total();
+  const PickedWay again = MustPick(Ladder(3, &cache), 30.0, clock);
+  EXPECT_EQ(again.way, 1u);
+  EXPECT_EQ(again.predicted_ms, 30.0);
+  EXPECT_EQ(again.measured, 0);
+  EXPECT_EQ(clock.Total(), first);
+  EXPECT_EQ(cache.stores, 1) << "nothing new, nothing written";
+  // A larger budget: what was given up at its first run is measured to the end, the others are known.
+  const PickedWay more = MustPick(Ladder(3, &cache), 60.0, clock);
+  EXPECT_EQ(more.way, 0u);
+  EXPECT_EQ(more.measured, kCalibrationRuns - 1);
+  // A smaller one: 30 is known to be too much.
+  EXPECT_EQ(MustPick(Ladder(3, &cache), 10.0, clock).way, 2u);
+}
+
+TEST(Calibration, OtherCircumstancesHaveOtherTimes) {
+  MemoryCache cache;
+  FakeClock clock{{{50.0}, {30.0}}};
+  Calibration ladder = Ladder(2, &cache);
+  MustPick(ladder, 40.0, clock);
+  FakeClock quicker{{{20.0}, {10.0}}};
+  ladder.circumstances = "another machine";
+  EXPECT_EQ(MustPick(ladder, 40.0, quicker).way, 0u);
+  EXPECT_EQ(cache.kept.size(), 2u);
+}
+
+TEST(Calibration, AnewForgetsWhatWasKept) {
+  MemoryCache cache;
+  FakeClock slow{{{50.0}, {30.0}}}, quick{{{20.0}, {10.0}}};
+  Calibration ladder = Ladder(2, &cache);
+  EXPECT_EQ(MustPick(ladder, 40.0, slow).way, 1u);
+  EXPECT_EQ(MustPick(ladder, 40.0, quick).way, 1u) << "times are kept";
+  ladder.anew = true;
+  EXPECT_EQ(MustPick(ladder, 40.0, quick).way, 0u);
+  ladder.anew = false;
+  FakeClock never{{{1e9}, {1e9}}};
+  EXPECT_EQ(MustPick(ladder, 40.0, never).way, 0u) << "the new times are kept";
+  EXPECT_EQ(never.Total(), 0);
+}
+
+TEST(Calibration, ABrokenCacheIsMeasuredOver) {
+  const std::string runs10 = "[1,1,1,1,1,1,1,1,1,1]";
+  for (const std::string& text :
+       {std::string(), std::string("{"), std::string("[]"), std::string("{\"ways\": {}}"),
+        std::string(R"({"circumstances": "others", "cold_ms": 0, "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0})"),
+        std::string(R"({"circumstances": "a machine and a scene", "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": 1}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": ["x"]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [-1]}})"),
+        R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": )" + runs10 + "}}"}) {
+    MemoryCache cache;
+    FakeClock clock{{{50.0}, {30.0}}};
+    MustPick(Ladder(2, &cache), 40.0, clock);
+    cache.Overwrite(text);
+    FakeClock again{{{20.0}, {10.0}}};
+    EXPECT_EQ(MustPick(Ladder(2, &cache), 40.0, again).way, 0u) << text;
+    EXPECT_EQ(again.runs[0], kCalibrationRuns) << text;
+  }
+}
+
+// A way that the ladder has had and has no more does not matter.
+TEST(Calibration, TimesOfWaysThatThereAreNoMoreDoNotCount) {
+  MemoryCache cache;
+  FakeClock clock{{{50.0}, {30.0}, {5.0}}};
+  MustPick(Ladder(3, &cache), 10.0, clock);
+  Calibration less = Ladder(3, &cache);
+  less.ways = {"way 1"};
+  FakeClock one{{{30.0}}};
+  EXPECT_EQ(MustPick(less, 100.0, one).way, 0u);
+}
+
+TEST(Calibration, WhatCannotBeMeasuredIsAnError) {
+  MemoryCache cache;
+  int left = 3;
+  const auto picked = PickWay(Ladder(2, &cache), 10.0, [&](std::size_t) -> Expected<double> {
+    if (--left < 0) return InputError("the scene is gone");
+    return 5.0;
+  });
+  ASSERT_FALSE(picked.ok());
+  EXPECT_EQ(picked.error().message, "the scene is gone");
+}
+
+}  // namespace
+}  // namespace scumble

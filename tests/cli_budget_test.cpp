@@ -1,0 +1,154 @@
+// --budget-ms as its users run it. What the clock decides is not looked at, only what must hold whatever it decides.
+#include "cli_harness.h"
+
+namespace scumble {
+namespace {
+
+class CliBudget : public CliTest {
+ protected:
+  CliBudget() {
+    WriteStyle("style");
+    WriteGuideFile("ball.exr", Ball(48));
+  }
+
+  static Arguments Options(const nlohmann::json& budget) { return budget.at("options").get<Arguments>(); }
+
+  Arguments Stylize() const { return {"stylize", Scene("suzanne.glb"), "--style", "style", "--size", "128x72"}; }
+  Arguments Transfer() const { return {"transfer", "ball.exr", "--style", "style"}; }
+
+  nlohmann::json Budget(const Arguments& command, const std::string& ms, const Arguments& more = {}) {
+    const nlohmann::json report =
+        RunOk(With(With(command, {"--budget-ms", ms, "--json", "-o", "picked.png"}), more)).Json();
+    return report.value("budget", nlohmann::json());
+  }
+  std::vector<std::filesystem::path> Kept() const {
+    std::vector<std::filesystem::path> files;
+    const std::filesystem::path folder = Cache() / "scumble" / "times";
+    if (!std::filesystem::exists(folder)) return files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
+    return files;
+  }
+};
+
+// An hour is enough for anything: the style itself.
+TEST_F(CliBudget, AnHourIsEnoughForTheStyleAsItIs) {
+  for (const Arguments& command : {Stylize(), Transfer()}) {
+    const nlohmann::json budget = Budget(command, "3600000");
+    EXPECT_EQ(budget.at("ms"), 3600000.0);
+    EXPECT_EQ(budget.at("picked"), "the style");
+    EXPECT_EQ(budget.at("fits"), true);
+    EXPECT_GT(budget.at("predicted_ms").get<double>(), 0.0);
+    EXPECT_GT(budget.at("measured_runs").get<int>(), 0);
+    EXPECT_EQ(Options(budget), Arguments());
+    RunOk(With(command, {"-o", "plain.png"}));
+    EXPECT_EQ(Bytes("picked.png"), Bytes("plain.png"));
+  }
+}
+
+// What calibrating takes stands by itself in --timing, and is no part of reading or casting.
+TEST_F(CliBudget, CalibrationIsAStageOfItsOwn) {
+  for (const Arguments& command : {Stylize(), Transfer()}) {
+    const nlohmann::json report =
+        RunOk(With(command, {"--budget-ms", "3600000", "--timing", "--json", "-o", "picked.png"})).Json();
+    int found = 0;
+    for (const auto& stage : report.at("timing")) found += stage.at("stage") == "calibration";
+    EXPECT_EQ(found, 1);
+  }
+}
+
+// A nanosecond is enough for nothing: the quickest, with a warning that says what it needs, and no failure.
+TEST_F(CliBudget, WhereNothingFitsTheQuickestIsTakenWithAWarning) {
+  for (const Arguments& command : {Stylize(), Transfer()}) {
+    const CommandResult result = RunOk(With(command, {"--budget-ms", "0.000001", "--json", "-o", "picked.png"}));
+    const nlohmann::json budget = result.Json().at("budget");
+    EXPECT_EQ(budget.at("fits"), false);
+    EXPECT_NE(result.Warning().find("nothing fits"), std::string::npos) << result.err;
+    EXPECT_NE(result.Warning().find("needs about"), std::string::npos) << result.err;
+    RunOk(With(With(command, Options(budget)), {"-o", "again.png"}));
+    EXPECT_EQ(Bytes("again.png"), Bytes("picked.png"));
+  }
+}
+
+TEST_F(CliBudget, WhateverIsPickedIsRepeatedByTheOptionsThatAreNamed) {
+  for (const Arguments& command : {Stylize(), Transfer()}) {
+    for (const char* const ms : {"1", "4", "16", "64"}) {
+      const nlohmann::json budget = Budget(command, ms);
+      RunOk(With(With(command, Options(budget)), {"-o", "again.png"}));
+      EXPECT_EQ(Bytes("again.png"), Bytes("picked.png")) << budget;
+      EXPECT_LE(budget.at("predicted_ms").get<double>(), budget.at("fits") == true ? std::stod(ms) : 1e9);
+    }
+  }
+}
+
+TEST_F(CliBudget, TimesAreKeptUntilTheyAreMeasuredAnew) {
+  for (const Arguments& command : {Stylize(), Transfer()}) {
+    const nlohmann::json first = Budget(command, "3600000");
+    const std::size_t kept = Kept().size();
+    EXPECT_GT(kept, 0u);
+    const nlohmann::json second = Budget(command, "3600000");
+    EXPECT_EQ(second.at("measured_runs"), 0);
+    EXPECT_EQ(second.at("predicted_ms"), first.at("predicted_ms"));
+    EXPECT_GT(Budget(command, "3600000", {"--recalibrate"}).at("measured_runs").get<int>(), 0);
+    EXPECT_GT(Budget(command, "3600000", {"--set", "transfer.threshold=0.3"}).at("measured_runs").get<int>(), 0)
+        << "another style has other times";
+    EXPECT_EQ(Kept().size(), kept + 1);
+  }
+}
+
+TEST_F(CliBudget, ABrokenCacheIsMeasuredAgain) {
+  Budget(Transfer(), "3600000");
+  ASSERT_EQ(Kept().size(), 1u);
+  std::ofstream(Kept().front(), std::ios::binary) << "scumble table 1\nnot at all";
+  EXPECT_GT(Budget(Transfer(), "3600000").at("measured_runs").get<int>(), 0);
+  EXPECT_EQ(Budget(Transfer(), "3600000").at("measured_runs"), 0) << "and is whole again";
+}
+
+TEST_F(CliBudget, ACacheThatCannotBeWrittenDoesNoHarm) {
+  WriteText("file", "in the way");
+  ::setenv("XDG_CACHE_HOME", At("file").c_str(), 1);
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_GT(Budget(Transfer(), "3600000").at("measured_runs").get<int>(), 0);
+    EXPECT_EQ(Bytes("file"), "in the way");
+  }
+}
+
+TEST_F(CliBudget, TwoAtOnceAreBothServed) {
+  CommandSettings other;
+  other.stdout_file = At("other.json").string();
+  const pid_t one = Start(With(Stylize(), {"--budget-ms", "50", "--json", "-o", "one.png"}), other);
+  const nlohmann::json budget = Budget(Stylize(), "50");
+  EXPECT_EQ(Finish(one, other).code, 0);
+  EXPECT_FALSE(budget.is_null());
+  EXPECT_FALSE(nlohmann::json::parse(Bytes("other.json"), nullptr, false).is_discarded());
+}
+
+// All frames by the way that suits the first, also those that are made later.
+TEST_F(CliBudget, ASequenceHasOneWay) {
+  const Arguments stylize = With(Stylize(), {"--frames", "1-3"});
+  const CommandResult result = RunOk(With(stylize, {"--budget-ms", "0.000001", "--json", "-o", "p.#.png"}));
+  const nlohmann::json budget = result.Json().at("budget");
+  RunOk(With(With(stylize, Options(budget)), {"-o", "o.#.png"}));
+  for (const char* const frame : {"1", "2", "3"}) {
+    EXPECT_EQ(Bytes(std::string("p.") + frame + ".png"), Bytes(std::string("o.") + frame + ".png"));
+  }
+  std::filesystem::remove(At("p.2.png"));
+  const auto made = std::filesystem::last_write_time(At("p.1.png"));
+  RunOk(With(With(stylize, Options(budget)), {"--resume", "-o", "p.#.png"}));
+  EXPECT_EQ(std::filesystem::last_write_time(At("p.1.png")), made);
+  EXPECT_EQ(Bytes("p.2.png"), Bytes("o.2.png"));
+  for (const char* const frame : {"g.1.exr", "g.2.exr"}) WriteGuideFile(frame, Ball(32));
+  const nlohmann::json of_files = RunOk({"transfer", "g.#.exr", "--style", "style", "--frames", "1-2", "--budget-ms",
+                                         "3600000", "--json", "-o", "t.#.png"})
+                                      .Json()
+                                      .at("budget");
+  EXPECT_EQ(of_files.at("picked"), "the style");
+}
+
+TEST_F(CliBudget, GuidesThatCannotBeReadAreToldOfAsEver) {
+  ExpectError({"transfer", "no.exr", "--style", "style", "--budget-ms", "50", "-o", "out.png"}, 3, {"no.exr"});
+  ExpectError({"stylize", "no.glb", "--style", "style", "--budget-ms", "50", "-o", "out.png"}, 3, {"no.glb"});
+  EXPECT_FALSE(Exists("out.png"));
+}
+
+}  // namespace
+}  // namespace scumble

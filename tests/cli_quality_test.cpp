@@ -1,0 +1,110 @@
+// --quality: fixed points of the ladder, the same on any machine.
+#include "cli_harness.h"
+
+namespace scumble {
+namespace {
+
+class CliQuality : public CliTest {
+ protected:
+  // The options that a report names, as arguments.
+  static Arguments Options(const nlohmann::json& chosen) { return chosen.at("options").get<Arguments>(); }
+
+  Arguments Stylize(const std::string& style) const {
+    return {"stylize", Scene("suzanne.glb"), "--style", style, "--size", "128x72"};
+  }
+};
+
+TEST_F(CliQuality, EachPointIsRepeatedByTheOptionsThatItNames) {
+  WriteStyle("style");
+  for (const std::string quality : {"draft", "preview", "final"}) {
+    const std::string picture = quality + ".png";
+    const CommandResult result = RunOk(With(Stylize("style"), {"--quality", quality, "--json", "-o", picture}));
+    const nlohmann::json chosen = result.Json().at("quality");
+    EXPECT_EQ(chosen.at("name"), quality);
+    EXPECT_NE(result.err.find("quality " + quality), std::string::npos) << result.err;
+    RunOk(With(With(Stylize("style"), Options(chosen)), {"-o", "again.png"}));
+    EXPECT_EQ(Bytes("again.png"), Bytes(picture)) << quality << " " << chosen;
+    RunOk(With(Stylize("style"), {"--quality", quality, "--threads", "1", "--quiet", "-o", "one.png"}));
+    EXPECT_EQ(Bytes("one.png"), Bytes(picture)) << "no clock, no threads in it";
+  }
+  RunOk(With(Stylize("style"), {"-o", "plain.png"}));
+  EXPECT_EQ(Bytes("final.png"), Bytes("plain.png")) << "final is the style as it is";
+  EXPECT_NE(Bytes("draft.png"), Bytes("preview.png"));
+  EXPECT_NE(Bytes("preview.png"), Bytes("final.png"));
+}
+
+TEST_F(CliQuality, SetAndUpsampleWin) {
+  WriteStyle("style");
+  const nlohmann::json chosen =
+      RunOk(With(Stylize("style"), {"--quality", "draft", "--set", "transfer.method=styleblit", "--set",
+                                    "transfer.blend_radius=1", "--upsample", "2", "--json", "-o", "draft.png"}))
+          .Json()
+          .at("quality");
+  EXPECT_EQ(Options(chosen), Arguments());
+  RunOk(With(Stylize("style"), {"--upsample", "2", "-o", "plain.png"}));
+  EXPECT_EQ(Bytes("draft.png"), Bytes("plain.png"));
+  // Said even where it is what it would be anyway.
+  const nlohmann::json one =
+      RunOk(With(Stylize("style"), {"--quality", "draft", "--upsample", "1", "--json", "-o", "one.png"})).Json();
+  EXPECT_EQ(one.at("upsample"), 1);
+}
+
+TEST_F(CliQuality, GuidesThatAreThereKeepTheirSize) {
+  WriteStyle("style");
+  WriteGuideFile("ball.exr", Ball(48));
+  const Arguments transfer{"transfer", "ball.exr", "--style", "style"};
+  const nlohmann::json report = RunOk(With(transfer, {"--quality", "draft", "--json", "-o", "draft.png"})).Json();
+  const Arguments options{"--set", "transfer.method=litsphere", "--set", "transfer.blend_radius=0"};
+  EXPECT_EQ(Options(report.at("quality")), options);
+  EXPECT_EQ(report.at("width"), 48);
+  RunOk(With(With(transfer, options), {"-o", "again.png"}));
+  EXPECT_EQ(Bytes("again.png"), Bytes("draft.png"));
+}
+
+// 121 is divided by none of the factors, so the guides are as large as the picture.
+TEST_F(CliQuality, SizesThatHaveNoFactorAreCastWhole) {
+  WriteStyle("style");
+  const nlohmann::json report = RunOk({"stylize", Scene("suzanne.glb"), "--style", "style", "--size", "121x72",
+                                       "--quality", "draft", "--json", "-o", "draft.png"})
+                                    .Json();
+  EXPECT_EQ(report.at("upsample"), 1);
+  EXPECT_EQ(report.at("width"), 121);
+}
+
+// The rung's value holds in all frames, as that of --set does, whatever the style says of them; and it is part of what
+// --resume compares.
+TEST_F(CliQuality, SequencesArePaintedByOneWayAndResumed) {
+  WritePainted("style/lit.png", 64, 64);
+  WriteText("style/style.toml",
+            "[transfer]\nreference_height = 0\nlevels = 4\nmethod = [[1, \"styleblit\"], [3, \"litsphere\"]]\n"
+            "[[exemplar]]\nimage = \"lit.png\"\n");
+  const Arguments stylize = With(Stylize("style"), {"--frames", "1-3"});
+  const CommandResult result = RunOk(With(stylize, {"--quality", "draft", "--json", "-o", "d.#.png"}));
+  const Arguments options = Options(result.Json().at("quality"));
+  RunOk(With(With(stylize, options), {"-o", "o.#.png"}));
+  for (const char* const frame : {"1", "2", "3"}) {
+    EXPECT_EQ(Bytes(std::string("d.") + frame + ".png"), Bytes(std::string("o.") + frame + ".png"));
+  }
+  const auto made = std::filesystem::last_write_time(At("d.1.png"));
+  RunOk(With(stylize, {"--quality", "draft", "--resume", "-o", "d.#.png"}));
+  EXPECT_EQ(std::filesystem::last_write_time(At("d.1.png")), made) << "the same settings: kept";
+  const std::string draft = Bytes("d.1.png");
+  RunOk(With(stylize, {"--quality", "preview", "--resume", "-o", "d.#.png"}));
+  EXPECT_NE(Bytes("d.1.png"), draft) << "another quality: made again";
+}
+
+TEST_F(CliQuality, WhatMakesNoSenseIsRefused) {
+  WriteStyle("style");
+  const Arguments stylize = With(Stylize("style"), {"-o", "out.png"});
+  ExpectError(With(stylize, {"--quality", "best"}), 2, {"--quality", "best"});
+  ExpectError(With(stylize, {"--quality", "draft", "--budget-ms", "20"}), 2, {"--quality draft", "--budget-ms"});
+  ExpectError(With(stylize, {"--recalibrate"}), 2, {"--recalibrate", "--budget-ms"});
+  ExpectError(With(stylize, {"--quality", "draft", "--recalibrate"}), 2, {"--recalibrate", "--budget-ms"});
+  for (const char* const budget : {"0", "-5", "soon", "nan"}) {
+    ExpectError(With(stylize, {"--budget-ms", budget}), 2, {"--budget-ms"});
+  }
+  EXPECT_FALSE(Exists("out.png"));
+}
+
+}  // namespace
+}  // namespace scumble

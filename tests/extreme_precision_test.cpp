@@ -1,0 +1,322 @@
+// What guides of 8 bits, half floats and floats lose: normals, where they find their source, and which pieces of paint
+// grow across them. Every limit is derived here from the size of a step; "measured against it" says that it is no idle
+// one. Rounding is written out once more, plainly.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "guidegen/guidegen.h"
+#include "guidegen/load_scene.h"
+#include "image/hash.h"
+#include "io/guide_storage.h"
+#include "tests/transfer_fixtures.h"
+
+namespace scumble::testing {
+namespace {
+
+enum class Kept { kEightBits, kHalf, kFloat };
+constexpr std::array<Kept, 3> kAllKept = {Kept::kEightBits, Kept::kHalf, Kept::kFloat};
+const char* NameOf(Kept kept) { return kept == Kept::kEightBits ? "8 bits" : kept == Kept::kHalf ? "half" : "float"; }
+
+// Half a step at a value of [-1, 1]: the most that rounding to the nearest moves it. In 8 bits (v + 1) / 2 is a
+// multiple of 1/255. Of a binary number with b bits the last counts 2^-b of the power of two above it; half floats have
+// 11, and below 2^-14 no more than 2^-24 of 1; floats have 24.
+double HalfStep(Kept kept, double value) {
+  if (kept == Kept::kEightBits) return 1.0 / 255.0;
+  int exponent = 0;
+  std::frexp(value, &exponent);  // |value| < 2^exponent
+  return kept == Kept::kHalf ? std::ldexp(0.5, std::max(exponent, -13) - 11) : std::ldexp(0.5, exponent - 24);
+}
+constexpr double LargestHalfStep(Kept kept) {  // anywhere in [-1, 1]
+  return kept == Kept::kEightBits ? 1.0 / 255.0 : kept == Kept::kHalf ? 0x1p-12 : 0x1p-25;
+}
+
+double Rounded(Kept kept, double value) {
+  if (kept == Kept::kEightBits) return std::nearbyint((value + 1.0) * 127.5) / 127.5 - 1.0;
+  const double step = 2.0 * HalfStep(kept, value);
+  return std::nearbyint(value / step) * step;
+}
+glm::dvec3 Rounded(Kept kept, const glm::dvec3& v) {
+  return {Rounded(kept, v.x), Rounded(kept, v.y), Rounded(kept, v.z)};
+}
+
+double Angle(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+// Rings of the sphere's picture, by their radius.
+constexpr std::array<double, 7> kRings = {0.0, 0.5, 0.8, 0.95, 0.99, 0.999, 1.0};
+
+// Directions evenly over the picture of a ring, at the places (t of [0, 1), angle) of a hash.
+void ForDirections(int ring, int count, const std::function<void(const glm::dvec3&)>& see) {
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t hash = Hash(std::uint64_t(ring), std::uint64_t(i));
+    const double from = kRings[std::size_t(ring)] * kRings[std::size_t(ring)];
+    const double to = kRings[std::size_t(ring) + 1] * kRings[std::size_t(ring) + 1];
+    const double radius = std::sqrt(from + (to - from) * (double(hash >> 11) * 0x1p-53));
+    const double around = 2.0 * M_PI * (double(Mix64(hash) >> 11) * 0x1p-53);
+    see({radius * std::cos(around), radius * std::sin(around), std::sqrt(1.0 - radius * radius)});
+  }
+}
+
+// --- Normals ------------------------------------------------------------------------------------------------------
+
+// A stored normal is n + d, |d_i| at most half a step e_i. Its direction is off by what of d stands across n: at most
+// the largest of the eight corners of that box does, over 1 - |d|. Inside the box d is evenly spread, so the square of
+// what stands across is the sum of e_i² / 3 · (1 - n_i²) in the mean. Neither knows a silhouette: stored whole, a
+// normal is as good there as in the middle.
+TEST(Precision, TheDirectionOfAStoredNormal) {
+  for (const Kept kept : kAllKept) {
+    for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+      double worst = 0.0, closest = 0.0, squares = 0.0, expected = 0.0;
+      ForDirections(ring, 100000, [&](const glm::dvec3& n) {
+        const glm::dvec3 stored = Rounded(kept, n);
+        double limit = 0.0;
+        glm::dvec3 half;
+        for (int i = 0; i < 3; ++i) half[i] = HalfStep(kept, n[i]);
+        for (int i = 0; i < 3; ++i) ASSERT_LE(std::abs(stored[i] - n[i]), half[i] * (1.0 + 1e-12));
+        for (int corner = 0; corner < 4; ++corner) {
+          const glm::dvec3 d = half * glm::dvec3(1.0, corner & 1 ? -1.0 : 1.0, corner & 2 ? -1.0 : 1.0);
+          limit = std::max(limit, glm::length(d - n * glm::dot(n, d)) / (1.0 - glm::length(d)));
+        }
+        const double angle = Angle(stored, n);
+        ASSERT_LE(angle, limit * (1.0 + 1e-12) + 1e-15);
+        worst = std::max(worst, angle);
+        closest = std::max(closest, angle / limit);
+        squares += angle * angle;
+        for (int i = 0; i < 3; ++i) expected += half[i] * half[i] / 3.0 * (1.0 - n[i] * n[i]);
+      });
+      EXPECT_GT(closest, 0.9) << NameOf(kept) << ", ring " << ring;
+      EXPECT_NEAR(std::sqrt(squares / expected), 1.0, 0.05) << NameOf(kept) << ", ring " << ring;
+      std::printf("normal, %s, ring %.3f: worst %.3g deg, rms %.3g deg, %.2f of its limit\n", NameOf(kept),
+                  kRings[std::size_t(ring) + 1], glm::degrees(worst), glm::degrees(std::sqrt(squares / 1e5)), closest);
+    }
+  }
+}
+
+// --- Sources ------------------------------------------------------------------------------------------------------
+
+// The most that a place in the disc's plane can turn its normal when it moves by `step`, ending inside radius `to`:
+// arcsine is steepest at the rim, so it is the move straight in from there. At the rim it is acos(1 - step), about
+// √(2 step): this is where 8 bits are "fuzzy".
+double LargestTurn(double to, double step) {
+  const double end = std::min(1.0, to + step);
+  return std::asin(end) - std::asin(std::max(end - step, -1.0));
+}
+
+// The source of the analytic search is R · (n.x, n.y), cut to the usable disc. Rounding moves it by √2 · R · e at the
+// most, everywhere alike, for cutting to a disc brings no two places further apart; float's sums add 2^-22 R. The paint
+// found there was made for a normal that is further off the closer to the silhouette it is: the turn of above.
+struct SourceError {
+  double moved = 0.0;   // of the radius
+  double turned = 0.0;  // radians, of the normal that was painted there
+};
+SourceError ErrorOf(const PreparedExemplar& sphere, const glm::dvec3& n, const glm::dvec3& stored) {
+  const glm::dvec2 at(sphere.OnDisc(glm::vec3(n))), found(sphere.OnDisc(glm::vec3(stored)));
+  const auto lifted = [](const glm::dvec2& p) { return glm::dvec3(p, std::sqrt(std::max(0.0, 1.0 - glm::dot(p, p)))); };
+  return {glm::distance(at, found), Angle(lifted(at), lifted(found))};
+}
+
+// Not for floats, whose half step is less than what float's sums lose.
+TEST(Precision, TheSourceOfAStoredNormal) {
+  const PreparedExemplar sphere(NoisePicture(2048), 0.0, 2048);
+  for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
+    const double step = std::sqrt(2.0) * LargestHalfStep(kept) + 0x1p-21;
+    for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+      SourceError worst;
+      ForDirections(ring, 100000, [&](const glm::dvec3& n) {
+        const SourceError error = ErrorOf(sphere, n, Rounded(kept, n));
+        worst.moved = std::max(worst.moved, error.moved);
+        worst.turned = std::max(worst.turned, error.turned);
+      });
+      const double turn = LargestTurn(kRings[std::size_t(ring) + 1], step);
+      EXPECT_LE(worst.moved, step);
+      EXPECT_LE(worst.turned, turn) << NameOf(kept) << ", ring " << ring;
+      // A step of half floats is full for values above 1/2 only, and half as large in the middle; at the very rim the
+      // usable disc ends half a pixel early, and of the steep last stretch that half pixel is the steepest.
+      EXPECT_GT(worst.moved, 0.45 * step) << NameOf(kept) << ", ring " << ring;
+      EXPECT_GT(worst.turned, 0.4 * turn) << NameOf(kept) << ", ring " << ring;
+      std::printf(
+          "source, %s, ring %.3f: moved %.3g px of R 256, %.3g px of R 4096 (limit %.3g); turned %.3g deg (%.3g)\n",
+          NameOf(kept), kRings[std::size_t(ring) + 1], 256 * worst.moved, 4096 * worst.moved, 4096 * step,
+          glm::degrees(worst.turned), glm::degrees(turn));
+    }
+  }
+}
+
+// As guides are read from a file: brought to unit length. Then x and y are those of a direction that is off by √3 e at
+// the most over the whole sphere, and so is the place found: cutting to the hemisphere and to the usable disc brings no
+// two directions further apart. No silhouette shows.
+TEST(Precision, TheSourceOfANormalBroughtToUnitLength) {
+  const PreparedExemplar sphere(NoisePicture(2048), 0.0, 2048);
+  for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
+    const double off = std::sqrt(3.0) * LargestHalfStep(kept);
+    for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+      std::vector<glm::dvec3> normals;
+      ForDirections(ring, 100000, [&](const glm::dvec3& n) { normals.push_back(n); });
+      GuideSet guides = MakeGuides(
+          400, 250, [&](int x, int y) { return glm::vec3(Rounded(kept, normals[std::size_t(y * 400 + x)])); });
+      internal::NormalizeNormals(guides);
+      SourceError worst;
+      for (std::size_t i = 0; i < normals.size(); ++i) {
+        const SourceError error = ErrorOf(sphere, normals[i], guides.Vec3(Layer::kNormal, i));
+        worst.moved = std::max(worst.moved, error.moved);
+        worst.turned = std::max(worst.turned, error.turned);
+      }
+      // Where floats lift a place of the rim they lose √(2 · 2^-22).
+      const double limit = off / (1.0 - off) + (ring < 4 ? 0x1p-18 : 7e-4);
+      EXPECT_LE(worst.moved, limit);
+      EXPECT_LE(worst.turned, limit) << NameOf(kept) << ", ring " << ring;
+      EXPECT_GT(worst.turned, 0.45 * off) << NameOf(kept) << ", ring " << ring;
+      std::printf("unit source, %s, ring %.3f: moved %.3g px of R 256, %.3g px of R 4096; turned %.3g deg (%.3g)\n",
+                  NameOf(kept), kRings[std::size_t(ring) + 1], 256 * worst.moved, 4096 * worst.moved,
+                  glm::degrees(worst.turned), glm::degrees(limit));
+    }
+  }
+}
+
+// The same in whole pixels. A place is moved to the centre of the pixel it falls in, by √½ pixel at the most, or, where
+// that pixel is outside the disc, to the nearest inside: another pixel at the most along each axis.
+TEST(Precision, TheSourceInPixels) {
+  for (const int radius : {256, 1024}) {
+    const PreparedExemplar sphere(NoisePicture(256), 0.0, 2 * radius);
+    for (const Kept kept : kAllKept) {
+      const double limit = std::sqrt(2.0) * LargestHalfStep(kept) * radius + 2.0 * (std::sqrt(0.5) + std::sqrt(2.0));
+      double worst = 0.0;
+      int changed = 0;
+      for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+        ForDirections(ring, 20000, [&](const glm::dvec3& n) {
+          const Source at = sphere.NearestNeighbour(glm::vec3(n));
+          const Source found = sphere.NearestNeighbour(glm::vec3(Rounded(kept, n)));
+          worst = std::max(worst, std::hypot(double(at.x - found.x), double(at.y - found.y)));
+          changed += !(at == found);
+        });
+      }
+      EXPECT_LE(worst, limit) << NameOf(kept) << ", radius " << radius;
+      EXPECT_GE(worst, 0.9 * std::sqrt(2.0) * LargestHalfStep(kept) * radius - std::sqrt(2.0));
+      // On an axis a place crosses the border of a pixel with the chance of its move, R · e / 2 of a pixel in the mean,
+      // counting a whole one at the most; cut to the disc it may do so twice.
+      EXPECT_LE(changed, 120000 * 4.0 * std::min(0.5, LargestHalfStep(kept) * radius / 2.0 + 0x1p-22 * radius))
+          << NameOf(kept) << ", radius " << radius;
+      std::printf("pixels, %s, R %d: worst %.2f (limit %.2f), other pixel %.3f %%\n", NameOf(kept), radius, worst,
+                  limit, changed / 1200.0);
+    }
+  }
+}
+
+// --- A scene ------------------------------------------------------------------------------------------------------
+
+GuideSet Suzanne() {
+  auto scene = LoadScene(std::string(SCUMBLE_SOURCE_DIR) + "/scenes/suzanne.glb");
+  EXPECT_TRUE(scene.ok());
+  const auto view = PrepareView(*scene, "", ViewAngles{35, 25, 0}, 4.0 / 3.0, true);
+  EXPECT_TRUE(view.ok());
+  GuidegenOptions options;
+  options.width = 480, options.height = 360;
+  auto rendered = RenderGuides(*scene, view->camera, options);
+  EXPECT_TRUE(rendered.ok());
+  return std::move(rendered->guides);
+}
+
+GuideSet RoundedNormals(Kept kept, GuideSet guides) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (float& value : guides.Plane(Layer::kNormal, axis)) value = float(Rounded(kept, value));
+  }
+  return guides;
+}
+
+// The sphere's limits hold for whatever a camera sees, backs of smooth normals included: those with z < 0 take the rim
+// along (x, y), at a distance of 1 over their length; only normals straight away from the viewer have none, and a
+// picture holds them seldom. They are left out below a length of 1/2, where the way to the rim doubles an error.
+TEST(Precision, ASceneKeepsTheSpheresLimits) {
+  const GuideSet guides = Suzanne();
+  const PreparedExemplar sphere(NoisePicture(512), 0.0, 2048);
+  for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
+    const GuideSet rounded = RoundedNormals(kept, guides);
+    const double step = std::sqrt(2.0) * LargestHalfStep(kept) + 0x1p-21;
+    SourceError worst;
+    double worst_angle = 0.0, squares = 0.0;
+    int seen = 0, rim = 0;
+    for (std::size_t i = 0; i < std::size_t(480) * 360; ++i) {
+      if (guides.Plane(Layer::kCoverage)[i] == 0.0f) continue;
+      const glm::dvec3 n(guides.Vec3(Layer::kNormal, i)), stored(rounded.Vec3(Layer::kNormal, i));
+      const double angle = Angle(n, stored);
+      worst_angle = std::max(worst_angle, angle);
+      squares += angle * angle;
+      ++seen;
+      rim += std::hypot(n.x, n.y) > 0.95;
+      if (n.z < 0.0 || stored.z < 0.0) continue;
+      const SourceError error = ErrorOf(sphere, n, stored);
+      worst.moved = std::max(worst.moved, error.moved);
+      worst.turned = std::max(worst.turned, error.turned);
+    }
+    const double off = std::sqrt(3.0) * LargestHalfStep(kept);
+    EXPECT_LE(worst_angle, off / (1.0 - off));
+    EXPECT_LE(worst.moved, step);
+    EXPECT_LE(worst.turned, LargestTurn(1.0, step));
+    EXPECT_GT(worst_angle, 0.6 * off);
+    EXPECT_GT(worst.moved, 0.6 * step);
+    EXPECT_GT(worst.turned, 0.4 * LargestTurn(1.0, step));
+    EXPECT_GT(rim, seen / 100);
+    std::printf(
+        "suzanne, %s: normals %.3g deg, rms %.3g; moved %.3g px of R 1024 (limit %.3g); turned %.3g deg (%.3g)\n",
+        NameOf(kept), glm::degrees(worst_angle), glm::degrees(std::sqrt(squares / seen)), 1024 * worst.moved,
+        1024 * step, glm::degrees(worst.turned), glm::degrees(LargestTurn(1.0, step)));
+  }
+}
+
+// A pixel's place in a chunk is decided by ‖n - s‖ < threshold. Rounding n by d changes the distance by |d| at the
+// most, so it can change the decision only where the distance is within √3 e of the threshold; there d's part along n -
+// s, evenly spread, decides: half of e in the mean against a strip of 2 √3 e, one in seven. The sources compared are
+// those of a match with twice the threshold: distances lie on both sides of it then.
+TEST(Precision, DecisionsAtTheThreshold) {
+  const GuideSet guides = Suzanne();
+  Style style = PlainStyle(NoisePicture(512));
+  style.transfer.rim = 0;
+  style.transfer.blend_radius = 0;
+  const float threshold = style.transfer.threshold;
+  style.transfer.threshold = 2.0f * threshold;
+  const SourceField field = MustTransfer(style, guides).field;
+  const PreparedExemplar sphere(style.exemplars[0].picture, 0.0, 512);
+  const GuideTest test(threshold, ThresholdMetric::kL2);
+  style.transfer.threshold = threshold;
+  const SourceField plain = MustTransfer(style, guides).field;
+  for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
+    const GuideSet rounded = RoundedNormals(kept, guides);
+    const double reach = std::sqrt(3.0) * LargestHalfStep(kept) + 0x1p-20;
+    const SourceField after = MustTransfer(style, rounded).field;
+    int seen = 0, near = 0, flipped = 0, other_level = 0, other_offset = 0;
+    for (int i = 0; i < 480 * 360; ++i) {
+      const auto p = std::size_t(i);
+      if (field.level[p] < 0) continue;
+      ++seen;
+      const glm::vec3 n = guides.Vec3(Layer::kNormal, p), stored = rounded.Vec3(Layer::kNormal, p);
+      const glm::vec3 s = sphere.Normal(field.x[p], field.y[p]);
+      const bool close = std::abs(glm::distance(glm::dvec3(n), glm::dvec3(s)) - threshold) <= reach;
+      const bool flips = test.Alike(n, s) != test.Alike(stored, s);
+      ASSERT_TRUE(close || !flips) << NameOf(kept) << ", pixel " << i;
+      near += close, flipped += flips;
+      other_level += plain.level[p] != after.level[p];
+      other_offset += plain.x[p] != after.x[p] || plain.y[p] != after.y[p];
+    }
+    EXPECT_GT(near, 100);
+    EXPECT_GT(flipped, 0);
+    // Half floats' steps are smaller than the largest for all but one of the three components.
+    if (kept == Kept::kEightBits) {
+      EXPECT_NEAR(double(flipped) / near, 1.0 / 7.0, 0.3 / 7.0);
+    }
+    EXPECT_LT(flipped, near / 5);
+    std::printf("threshold, %s: %.3f %% near, %.3f %% decided otherwise; level %.3f %%, source %.3f %% of %d pixels\n",
+                NameOf(kept), 100.0 * near / seen, 100.0 * flipped / seen, 100.0 * other_level / seen,
+                100.0 * other_offset / seen, seen);
+  }
+}
+
+}  // namespace
+}  // namespace scumble::testing

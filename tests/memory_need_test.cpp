@@ -1,0 +1,97 @@
+// What a run says it takes at most, against what the system counted; and what is refused before anything is taken.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+class MemoryNeedTest : public CliTest {
+ protected:
+  // The estimate is the most that there may be: pixels that are covered from edge to edge, paint and guides that do not pack at
+  // all, threads that are all at work. So what is counted is below it. It is no idle one either: above a quarter.
+  void ExpectHonest(const Arguments& arguments) {
+    const nlohmann::json json = RunOk(With(arguments, {"--json", "--threads", "2"})).Json()["memory"];
+    ASSERT_TRUE(json.is_object()) << Joined(arguments);
+    const double estimated = json["estimated_peak_bytes"], peak = json["peak_bytes"];
+    double sum = 0;
+    for (const auto& [name, bytes] : json["parts"].items()) sum += bytes.get<double>();
+    EXPECT_EQ(sum, estimated) << Joined(arguments);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    EXPECT_LE(peak, estimated) << Joined(arguments);
+    EXPECT_GE(peak, 0.25 * estimated) << Joined(arguments);
+#endif
+  }
+};
+
+TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
+  WriteStyle("style");
+  for (const char* size : {"16", "400", "1100x900"}) {
+    ExpectHonest({"guidegen", Scene("suzanne.glb"), "--size", size, "-o", "g.exr"});
+    ExpectHonest({"transfer", "g.exr", "--style", "style", "-o", "p.png"});
+    ExpectHonest({"stylize", Scene("suzanne.glb"), "--size", size, "--style", "style", "-o", "p.exr"});
+  }
+  ExpectHonest({"guidegen", Scene("ball.glb"), "--size", "700", "--compression", "none", "--layers", "albedo,position", "-o", "g.exr"});
+  ExpectHonest({"guidegen", Scene("ball.glb"), "--size", "400", "--layers", "lpe.full", "--samples", "1", "-o", "g.exr"});
+  const Arguments stylize = {"stylize", Scene("ball.glb"), "--size", "800", "--style", "style"};
+  ExpectHonest(With(stylize, {"-o", "p.tif"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--upsample", "2"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.coherent=true"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.match_step=2", "--set", "transfer.hybrid=3"}));
+  ExpectHonest(With(stylize, {"-o", "p.png", "--set", "transfer.blend_radius=20", "--show", "error"}));
+  ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
+}
+
+// Guides are seven floats a pixel, the picture four 16-bit integers: the parts are those numbers.
+TEST_F(MemoryNeedTest, ThePlanSaysHowMuchAndForWhat) {
+  WriteStyle("style");
+  const Arguments plan = {"stylize", Scene("suzanne.glb"), "--size", "1000x500", "--style", "style", "--explain"};
+  EXPECT_NE(RunOk(plan).out.find("memory  up to "), std::string::npos);
+  const nlohmann::json memory = RunOk(With(plan, {"--json"})).Json()["memory"];
+  EXPECT_EQ(memory["parts"]["guides"], 28 * 1000 * 500);
+  EXPECT_EQ(memory["parts"]["picture"], 8 * 1000 * 500);
+  EXPECT_FALSE(memory.contains("peak_bytes")) << "nothing was taken";
+  EXPECT_NE(RunOk({"guidegen", Scene("suzanne.glb"), "--explain"}).out.find("guides"), std::string::npos);
+}
+
+// The largest picture that there may be, under a gigabyte: 16384² pixels of guides alone are 7.5 GB. It is refused before
+// they are taken, which is why this test is quick, and nothing is written.
+TEST_F(MemoryNeedTest, TheLargestPictureIsRefusedUnderAGigabyte) {
+  WriteStyle("style");
+  WriteText("p.png", "old");
+  const Arguments huge = {"stylize", Scene("suzanne.glb"), "--size", "16384", "--style", "style", "-o", "p.png", "--max-memory", "1G"};
+  ExpectError(huge, 2, {"this takes up to ", " GiB of memory (program ", "guides 7.0 GiB", "picture 2.0 GiB", "--max-memory allows 1.0 GiB",
+                        "take a smaller --size, or fewer layers, or allow more"});
+  EXPECT_EQ(Bytes("p.png"), "old");
+  ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "16384", "-o", "g.exr", "--max-memory", "1G"}, 2, {"guides 7.0 GiB"});
+  EXPECT_FALSE(Exists("g.exr"));
+  ExpectError({"sphere", "--size", "8192", "-o", "kit", "--max-memory", "1G"}, 2, {"guides ", "--only png"});
+  EXPECT_FALSE(Exists("kit"));
+  ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "9000", "--frames", "1-3", "-o", "f.#.exr", "--max-memory", "1G"}, 2,
+              {"frame that is written"});
+  EXPECT_FALSE(Exists("f.1.exr"));
+}
+
+TEST_F(MemoryNeedTest, GuidesOfAFileAreLookedAtBeforeTheyAreRead) {
+  WriteStyle("style");
+  WriteGuideFile("g.exr", Ball(300));
+  const Arguments transfer = {"transfer", "g.exr", "--style", "style", "-o", "p.png"};
+  ExpectError(With(transfer, {"--max-memory", "1M"}), 2, {"take smaller guides", "--max-memory allows 1.0 MiB"});
+  ExpectError(With(transfer, {"--max-memory", "100M", "--upsample", "8"}), 2, {"upsampled guides", "--upsample"});
+  EXPECT_FALSE(Exists("p.png"));
+  RunOk(With(transfer, {"--max-memory", "1G"}));
+}
+
+TEST_F(MemoryNeedTest, AmountsThatAreNone) {
+  WriteStyle("style");
+  for (const char* wrong : {"0", "-1G", "4X", "", "nan"}) {
+    ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "16", "-o", "g.exr", "--max-memory=" + std::string(wrong)}, 2,
+                {"--max-memory"});
+  }
+}
+
+}  // namespace
+}  // namespace scumble

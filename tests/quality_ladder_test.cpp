@@ -1,0 +1,136 @@
+// The rungs of --quality and --budget-ms, by style and by what the user has decided.
+#include "cli/quality_ladder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "cli/picture_settings.h"
+
+namespace scumble {
+namespace {
+
+constexpr LadderFrame kCast{true, 1280, 720, false}, kGiven{false, 1280, 720, true};
+
+StyleSet Open(const std::string& style, const std::vector<std::string>& sets = {}) {
+  StyleOptions options;
+  options.style = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + style, options.sets = sets;
+  auto opened = OpenStyles(options);
+  EXPECT_TRUE(opened.ok()) << (opened.ok() ? "" : opened.error().message);
+  return opened.ok() ? std::move(*opened) : StyleSet();
+}
+
+std::vector<std::string> Names(const std::vector<Way>& ways) {
+  std::vector<std::string> names;
+  for (const Way& way : ways) names.push_back(way.name);
+  return names;
+}
+
+bool Sets(const std::vector<Way>& ways, const std::string& key) {
+  return std::any_of(ways.begin(), ways.end(), [&](const Way& way) {
+    return std::any_of(way.settings.begin(), way.settings.end(),
+                       [&](const std::string& setting) { return setting.starts_with(key + "="); });
+  });
+}
+
+TEST(QualityLadder, BeginsWithTheStyleItselfAndNamesEachWayOnce) {
+  for (const char* const style : {"oil", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
+    const StyleSet styles = Open(style);
+    for (const LadderFrame& frame : {kCast, kGiven}) {
+      const std::vector<Way> ways = QualityLadder(styles, frame);
+      ASSERT_GE(ways.size(), 2u) << style;
+      EXPECT_EQ(ways.front().name, "the style");
+      EXPECT_EQ(OptionsOf(ways.front()), "");
+      std::vector<std::string> names = Names(ways);
+      std::sort(names.begin(), names.end());
+      EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end()) << style;
+    }
+  }
+}
+
+// Guides may be smaller where they are made, and where the picture's sides are multiples.
+TEST(QualityLadder, GuidesAreSmallerOnlyWhereTheyMayBe) {
+  const StyleSet styles = Open("oil");
+  const auto factors = [&](const LadderFrame& frame) {
+    std::vector<int> all;
+    for (const Way& way : QualityLadder(styles, frame)) all.push_back(UpsampleOf(way));
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  };
+  EXPECT_EQ(factors(kCast), (std::vector<int>{1, 2, 4, 8}));
+  EXPECT_EQ(factors({true, 960, 540, false}), (std::vector<int>{1, 2, 4})) << "540 is no multiple of 8";
+  EXPECT_EQ(factors({true, 961, 540, false}), (std::vector<int>{1}));
+  EXPECT_EQ(factors({true, 1280, 720, true}), (std::vector<int>{1})) << "--upsample was given";
+  EXPECT_EQ(factors(kGiven), (std::vector<int>{1}));
+}
+
+// Rungs hold nothing that the style has anyway, and nothing that makes its look.
+TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
+  EXPECT_FALSE(Sets(QualityLadder(Open("oil"), kCast), "transfer.hybrid")) << "oil is not split";
+  EXPECT_TRUE(Sets(QualityLadder(Open("sumi-e"), kCast), "transfer.hybrid"));
+  EXPECT_FALSE(Sets(QualityLadder(Open("ink"), kCast), "transfer.blend_radius")) << "ink is crisp";
+  EXPECT_FALSE(Sets(QualityLadder(Open("oil", {"transfer.method=litsphere"}), kCast), "transfer.method"));
+  StyleSet slow = Open("oil");
+  slow.styles.front().transfer.method = Method::kBruteForce;
+  EXPECT_EQ(QualityLadder(slow, kGiven)[1].name, "--set transfer.method=styleblit");
+  for (const char* const key : {"transfer.threshold", "transfer.colorize", "transfer.edge", "transfer.edge_aware",
+                                "transfer.variety", "transfer.scale", "transfer.levels", "transfer.rim"}) {
+    for (const char* const style : {"sumi-e", "tinted-oil", "scene-oil"}) {
+      EXPECT_FALSE(Sets(QualityLadder(Open(style), kCast), key)) << style << " " << key;
+    }
+  }
+}
+
+TEST(QualityLadder, WhatTheUserSetsStays) {
+  EXPECT_FALSE(Sets(QualityLadder(Open("oil", {"transfer.blend_radius=3"}), kCast), "transfer.blend_radius"));
+  const StyleSet decided = Open("oil", {"transfer.method=styleblit", "transfer.blend_radius=1"});
+  EXPECT_EQ(Names(QualityLadder(decided, kGiven)), (std::vector<std::string>{"the style"}))
+      << "nothing is left to take";
+  // For one style by its name, the others may change.
+  const std::string oil = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/oil";
+  StyleSet named = Open("oil", {oil + ":transfer.method=styleblit"});
+  EXPECT_FALSE(Sets(QualityLadder(named, kCast), "transfer.method"));
+}
+
+TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
+  for (const char* const style : {"oil", "sumi-e"}) {
+    for (const std::vector<std::string>& sets :
+         {std::vector<std::string>{"transfer.threshold=0.2"}, {"transfer.blend_radius=2"}}) {
+      const StyleSet opened = Open(style, sets);
+      for (const Way& way : QualityLadder(opened, kGiven)) {
+        StyleSet applied = opened;
+        ASSERT_TRUE(ApplyWay(way, applied).ok());
+        std::vector<std::string> all = way.settings;
+        all.insert(all.end(), sets.begin(), sets.end());
+        const StyleSet given = Open(style, all);
+        ExemplarHashes one, other;
+        EXPECT_EQ(SettingsText(applied, {}, one), SettingsText(given, {}, other)) << style << " " << way.name;
+      }
+    }
+  }
+}
+
+TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
+  for (const char* const style : {"oil", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
+    const StyleSet styles = Open(style);
+    for (const LadderFrame& frame :
+         {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false}}) {
+      const std::vector<std::string> names = Names(QualityLadder(styles, frame));
+      const auto place = [&](Quality quality) {
+        const Way way = WayOf(quality, styles, frame);
+        const auto found = std::find(names.begin(), names.end(), way.name);
+        EXPECT_NE(found, names.end()) << style << " " << way.name;
+        return found - names.begin();
+      };
+      EXPECT_EQ(place(Quality::kFinal), 0);
+      EXPECT_GE(place(Quality::kPreview), place(Quality::kFinal));
+      EXPECT_GE(place(Quality::kDraft), place(Quality::kPreview));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scumble
