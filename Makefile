@@ -1,6 +1,6 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo test test-asan test-tsan fuzz bench bench-budget bench-cycles exemplars traits scenes gallery format clean
+.PHONY: help build demo test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -53,6 +53,10 @@ bench-cycles: build ## our speed beside Cycles' on the same scene, into out/benc
 
 bench-budget: build ## whether --budget-ms keeps its budgets (docs/budget.md)
 	@/usr/bin/python3 bench/budget.py --scumble build/scumble $(BENCH_ARGS)
+
+tradeoff: build ## speed against accuracy on the sample scenes, into out/tradeoff/; WRITE_DOCS=1 puts it into docs/tradeoff.md
+	@.ci/install test
+	@/usr/bin/python3 bench/tradeoff.py $(if $(WRITE_DOCS),--write-docs) $(TRADEOFF_ARGS)
 
 exemplars: ## repaint the bundled styles (libmypaint), their thumbnails and docs/exemplars.md
 	@.ci/install test

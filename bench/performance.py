@@ -17,6 +17,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
+from marked_pages import replaced
 from performance_chart import chart
 from performance_runs import measure_guides, measure_process, measure_sequence
 from runs import processor, run, say
@@ -27,8 +28,6 @@ TRANSFER_PARTS = ["yardstick", "rates", "radius", "extensions", "light-paths", "
 OTHER_PARTS = {"guides": measure_guides, "process": measure_process, "sequence": measure_sequence}
 TITLES = {"1": "The engine against the yardstick", "2": "Nanoseconds a pixel, frames a second", "3": "Large radius",
           "4": "What extensions cost", "5": "Large pictures", "6": "Guides", "7": "A whole process", "8": "A sequence"}
-# What --write-docs replaces in the page stands between two such lines.
-BEGIN, END = "<!-- %s: begin, written by make bench -->", "<!-- %s: end -->"
 
 
 def measure_transfer(options, part):
@@ -145,18 +144,10 @@ def stages_text(report):
     return "\n".join(transfer_stages(report) + process_stages(report))
 
 
-def replaced(page, text, block, content):
-    begin, end = BEGIN % block, END % block
-    if begin not in text or end not in text:
-        sys.exit("%s: the lines «%s» and «%s» are not there: put them back around what they mark" % (page, begin, end))
-    head, rest = text.split(begin, 1)
-    return "%s%s\n%s%s%s" % (head, begin, content, end, rest.split(end, 1)[1])
-
-
 def write_docs(report):
     page = ROOT / "docs/performance.md"
-    text = replaced(page, page.read_text(encoding="utf-8"), "figures", markdown(report))
-    page.write_text(replaced(page, text, "stages", stages_text(report)), encoding="utf-8")
+    text = replaced(page, page.read_text(encoding="utf-8"), "figures", "make bench", markdown(report))
+    page.write_text(replaced(page, text, "stages", "make bench", stages_text(report)), encoding="utf-8")
     (ROOT / "docs/gallery/performance.svg").write_text(chart(report), encoding="utf-8")
 
 

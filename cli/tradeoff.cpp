@@ -43,7 +43,7 @@ Status PrepareFolder(const TradeoffVerb& verb) {
   style.scene_styles = false;
   SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style));
   files.ReadsStyles(styles);
-  for (const char* name : {"report.html", "tradeoff.csv", "tradeoff.json"}) {
+  for (const char* name : {"report.html", "tradeoff.csv", "tradeoff.json", "chart.svg"}) {
     SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
   }
   return files.CheckOutput((pictures / "00.png").string());
@@ -57,6 +57,7 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
   }
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.csv", TradeCsv(report)));
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.json", TradeJson(report)));
+  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "chart.svg", TradeChart(report)));
   return WriteFileAtomically(fs::path(folder) / "report.html", TradeHtml(report));
 }
 
@@ -113,7 +114,7 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->capture_default_str();
   sub->add_flag("!--no-memory", verb->setup.memory, "do not measure memory, which takes a process for each way");
   sub->add_option("-o,--output", verb->folder,
-                  "folder to write to: report.html, tradeoff.csv, tradeoff.json, pictures/*.png; left out: the table alone")
+                  "folder to write to: report.html, chart.svg, tradeoff.csv, tradeoff.json, pictures/*.png; left out: the table alone")
       ->type_name("FOLDER")
       ->check(RefuseEmpty);
   sub->add_option("--peak-of", verb->peak_of)->group("");

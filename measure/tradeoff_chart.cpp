@@ -214,10 +214,10 @@ std::string Names(const Chart& chart, const TradeReport& report) {
       taken.push_back(*free);
       const double near_x = std::clamp(point.x, free->x, free->x + width);
       const double near_y = std::clamp(point.y, free->y + 2, free->y + kLetterHeight - 2);
-      svg += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"bar\"/>", point.x,
-                         point.y, near_x, near_y);
-      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"name\">{}</text>\n", free->x,
-                         free->y + kLetterHeight - 3, EscapeHtml(name));
+      svg += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"bar axis-{}\"/>",
+                         point.x, point.y, near_x, near_y, point.axis + 1);
+      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"name axis-{}\">{}</text>\n", free->x,
+                         free->y + kLetterHeight - 3, point.axis + 1, EscapeHtml(name));
       break;
     }
   }

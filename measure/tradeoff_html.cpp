@@ -35,7 +35,7 @@ std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& 
   const std::size_t place = static_cast<std::size_t>(own - report.ways.begin());
   std::string text = "The style as it is takes " + Costs(*own);
   if (std::find(front.begin(), front.end(), place) != front.end()) return text + ", and is on the front.";
-  text += ". Faster, and no farther from the exemplar:";
+  text += ". Faster, and no farther from the exemplar by “both”:";
   const char* comma = " ";
   for (const std::size_t i : front) {
     const TradeMeasure& way = report.ways[i];
@@ -81,7 +81,7 @@ std::string Choices(const TradeReport& report) {
 
 // What is chosen is shown by style sheet alone, so that it works without scripts.
 std::string ChoiceStyle(const TradeReport& report) {
-  std::string css = "@supports selector(:has(*)) {\n.plot { display: none; }\n";
+  std::string css = "@supports selector(:has(*)) {\n.plot, .plot.first { display: none; }\n";
   for (std::size_t t = 0; t < std::size(kTimes); ++t) {
     for (std::size_t e = 0; e < std::size(kErrors); ++e) {
       css += fmt::format(

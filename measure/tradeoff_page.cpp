@@ -34,7 +34,8 @@ dialog button[aria-pressed=true] { border-color: var(--text); }
 @media print {
   :root { color-scheme: light; --text: #000; --soft: #444; --ground: #fff; --card: #fff; --line: #ccc; --good: #1f7a4a; }
   body { margin: 0; max-width: none; font-size: 9pt; } .choose, dialog { display: none; } section { border: 0; padding: 0; overflow: visible; }
-  #ways { font-size: 6.5pt; } #ways th, #ways td { padding-right: .5em; } #ways th, #ways td.number { white-space: normal; } #told { min-height: 0; }
+  @page { size: landscape; } #ways, #ways th { font-size: 6pt; } #ways th, #ways td { padding: 1pt .6em 1pt 0; } #ways thead th { white-space: normal; }
+  #told { min-height: 0; } svg.chart { max-width: 20cm; }
   .ways { grid-template-columns: 1fr 1fr; } figure.way, tr { break-inside: avoid; }
 }
 )";
@@ -89,22 +90,26 @@ const char* const kTradePageScript = R"(
     stage.classList.toggle("flip", !on);
     byId("flip-side").setAttribute("aria-pressed", on);
   };
+  const say = way => {
+    byId("flip-name").textContent = nameOf(way);
+    byId("flip-words").textContent = way.querySelector("figcaption").innerText.split("\n").slice(1).join(" · ");
+  };
   const turn = () => {
     if (stage.children.length < 2) return;
     if (!stage.classList.contains("flip")) return sideBySide(false);
     for (const shown of stage.children) shown.classList.toggle("on");
-    byId("flip-name").textContent = stage.querySelector(".on figcaption").textContent;
+    say(stage.querySelector(".on").way);
   };
   const show = index => {
     at = (index + ways.length) % ways.length;
     const way = ways[at];
-    byId("flip-name").textContent = nameOf(way);
-    byId("flip-words").textContent = way.querySelector("figcaption").innerText.split("\n").slice(1).join(" · ");
+    say(way);
     stage.replaceChildren(...(own && own !== way ? [way, own] : [way]).filter(pictureOf).map((shown, i) => {
       const figure = document.createElement("figure"), image = new Image(), caption = document.createElement("figcaption");
       image.src = pictureOf(shown).src;
       image.alt = nameOf(shown);
       caption.textContent = nameOf(shown);
+      figure.way = shown;
       figure.append(image, caption);
       figure.classList.toggle("on", i === 0);
       return figure;

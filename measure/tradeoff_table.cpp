@@ -87,12 +87,12 @@ std::array<std::size_t, kColumns> WidthsOf(const std::vector<Row>& rows) {
   return widths;
 }
 
-// The error of the guides as such, of the few ways that have one.
+// The error of the guides as such, of the few ways whose guides are not the exact ones.
 std::string GuideTable(const TradeReport& report) {
   std::string text;
   for (const std::size_t i : ByAxis(report)) {
     const TradeMeasure& way = report.ways[i];
-    if (!way.guide_rms && !way.guide_flip) continue;
+    if (way.guide_rms.value_or(0.0) == 0.0 && way.guide_flip.value_or(0.0) == 0.0) continue;
     if (text.empty()) text = "\nGuides against the exact ones: root mean square, and FLIP (0 to 1)\n";
     text += fmt::format("  {:<30} {:>10} {:>10}\n", CutTo(way.name, 30), ShortFigure(way.guide_rms),
                         ShortFigure(way.guide_flip));

@@ -193,7 +193,7 @@ TEST(TradePage, PicturesAreTheBytesGivenAndEqualOnesAreThereOnce) {
 TEST(TradePage, SaysWhatIsFasterAndNoWorseThanTheStyle) {
   // "radius 0" takes 30 ms where the style takes 40, for the same error.
   const std::string html = TradeHtml(MadeUpReport());
-  EXPECT_NE(html.find("Faster, and no farther from the exemplar: <a href=\"#way-3\">radius 0</a> (30.0 ms"),
+  EXPECT_NE(html.find("Faster, and no farther from the exemplar by “both”: <a href=\"#way-3\">radius 0</a> (30.0 ms"),
             std::string::npos);
   EXPECT_NE(html.find("<p>5 of 6 ways are on the front"), std::string::npos);
   TradeReport report = MadeUpReport();

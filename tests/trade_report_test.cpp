@@ -274,9 +274,13 @@ TEST(TradeReport, TheTableHasALineForEachWayMarksTheFrontAndFitsATerminal) {
 TEST(TradeReport, TheTableSaysNotesAndTheErrorOfGuides) {
   TradeReport report = MadeUpReport();
   report.ways[2].note = "left out";
+  report.ways[2].guide_rms = report.ways[2].guide_flip = 0.0;  // the exact ones themselves need no line
   const std::string table = TradeTable(report);
   EXPECT_NE(table.find("  radius 0: left out\n"), std::string::npos);
   EXPECT_NE(table.find("0.0200"), std::string::npos) << "FLIP";
+  const std::string guides =
+      table.substr(table.find("Guides against"), table.find("\nNotes") - table.find("Guides against"));
+  EXPECT_EQ(std::count(guides.begin(), guides.end(), '\n'), 2) << guides;
   EXPECT_EQ(TradeTable(HalfMeasured()).find("nan ("), std::string::npos);
 }
 

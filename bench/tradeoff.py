@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Speed against accuracy on the sample scenes: `make tradeoff`.
+
+    /usr/bin/python3 bench/tradeoff.py [--only suzanne-oil,toys-graphite] [--show] [--write-docs] [-- OPTION …]
+
+Runs `scumble tradeoff` on each sample, one after the other, into out/tradeoff/NAME/; open report.html there. What stands
+after -- goes to the verb, such as --quick or --repeat 9.
+"""
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+from marked_pages import replaced
+from runs import say
+
+ROOT = Path(__file__).resolve().parent.parent
+# A scene and a style, what is special about it, the size, and options of its own.
+SAMPLES = {
+    "suzanne-oil": ("suzanne", "oil", "strokes of paint, normals alone", "960x540", []),
+    "stilllife-plein-air": ("stilllife", "plein-air", "three exemplars that the light chooses from", "960x540", []),
+    "toys-graphite": ("toys", "graphite", "hatching, normals alone", "960x540", []),
+    "snail-scene-oil": ("snail", "scene-oil", "a painted scene whose light is matched, four guides", "960x540", []),
+    # Small, as 1024 samples take their time.
+    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights", "320x180",
+                            ["--set", "transfer.guide_weights.lpe.LDDE=1", "--set", "transfer.guide_weights.lpe.LSE=0",
+                             "--only", "samples,exact"]),
+}
+NONE = "–"
+
+
+def measure(options, name):
+    scene, style, _, size, own_options = SAMPLES[name]
+    # The scene's path as it is anywhere: the report says how to repeat it, on any machine.
+    command = [options.build / "scumble", "tradeoff", "scenes/%s.glb" % scene, "--style", style,
+               "--size", options.size or size, "-o", options.output / name] + own_options + options.verb_options
+    # The verb's own table and progress go where ours would.
+    if subprocess.run([str(part) for part in command], cwd=ROOT).returncode != 0:
+        sys.exit("%s: scumble tradeoff failed, see above" % name)
+
+
+def figure(value):
+    """Three digits that count, as the verb's own table has them."""
+    if value is None or isinstance(value, str):
+        return value or NONE
+    return "%.0f" % value if abs(value) >= 100 else "%.3g" % value
+
+
+def estimate(value):
+    if value is None:
+        return NONE
+    error = value["standard_error"]
+    return "%.3f" % value["mean"] + (" ± %.3f" % error if error else "")
+
+
+def time(value):
+    if value is None:
+        return NONE
+    return "%s (%s–%s)" % tuple(figure(value[key]) for key in ("median", "lower_quartile", "upper_quartile"))
+
+
+def row(way):
+    name = way["way"] + (", **the style as it is**" if way["chosen"] and way["way"] != "the style" else "")
+    megabytes = None if way["memory_bytes"] is None else way["memory_bytes"] * 1e-6
+    coherence = None if way["coherence"] is None else 100.0 * way["coherence"]
+    cells = ["★" if way["front"] else "", name, time(way["total_ms"]), figure(megabytes), estimate(way["both"]),
+             estimate(way["energy"]), estimate(way["missing"])]
+    cells += [figure(value) for value in (way["guide_degrees"], coherence, way["chunk_area_pixels"], way["seam_excess"],
+                                          way["repetition"])]
+    return "| %s |" % " | ".join(cells)
+
+
+def table(ways):
+    head = ["", "way", "time, ms (quartiles)", "memory, MB", "both", "energy", "missing", "off by, °", "coherence, %",
+            "chunk, px", "seam excess", "repetition"]
+    return ["| %s |" % " | ".join(head), "|---" * len(head) + "|"] + [row(way) for way in ways]
+
+
+def guide_table(ways):
+    """Of the ways whose guides differ from the exact ones: by how much."""
+    measured = [way for way in ways if way["guide_rms"] or way["guide_flip"]]
+    if not measured:
+        return []
+    lines = ["", "Guides against the exact ones:", "", "| way | RMS | FLIP |", "|---|---|---|"]
+    return lines + ["| %s | %s | %s |" % (way["way"], figure(way["guide_rms"]), figure(way["guide_flip"])) for way in measured]
+
+
+def by_axis(ways):
+    axes = list(dict.fromkeys(way["axis"] for way in ways))
+    return sorted(ways, key=lambda way: axes.index(way["axis"]))  # a stable sort keeps the order within an axis
+
+
+def section(name, report):
+    scene, style, what = SAMPLES[name][:3]
+    front = [next(way for way in report["ways"] if way["way"] == each) for each in report["front"]]
+    own = [way for way in report["ways"] if way["chosen"] and not way["front"]]
+    lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
+        what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "", report["width"],
+        report["height"], report["machine"], report["repeats"]), ""]
+    lines += ["![time against error of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]
+    lines += ["The front%s:" % (", and below it the style as it is" if own else ""), ""] + table(front + own)
+    lines += ["", "<details><summary>All ways</summary>", ""] + table(by_axis(report["ways"]))
+    return "\n".join(lines + guide_table(report["ways"]) + ["", "</details>", ""])
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder that CMake built in")
+    parser.add_argument("--output", type=Path, default=ROOT / "out/tradeoff", help="folder for the reports")
+    parser.add_argument("--size", help="of the pictures; left out: as large as the page has them")
+    parser.add_argument("--only", help="samples with commas between; left out: " + ", ".join(SAMPLES))
+    parser.add_argument("--show", action="store_true", help="measure nothing: use the reports that are there")
+    parser.add_argument("--docs", type=Path, default=ROOT / "docs", help="folder of the page")
+    parser.add_argument("--write-docs", action="store_true", help="put charts and tables into the page")
+    parser.add_argument("verb_options", nargs="*", metavar="OPTION", help="after --: options of scumble tradeoff")
+    options = parser.parse_args()
+    options.only = options.only.split(",") if options.only else list(SAMPLES)
+    for name in options.only:
+        if name not in SAMPLES:
+            parser.error("--only %s: there are %s" % (name, ", ".join(SAMPLES)))
+    options.output, options.build = options.output.resolve(), options.build.resolve()
+    return options
+
+
+def main():
+    options = parse()
+    page = options.docs / "tradeoff.md"
+    for name in options.only:
+        if not options.show:
+            say("measuring: " + name)
+            measure(options, name)
+        file = options.output / name / "tradeoff.json"
+        if not file.exists():
+            sys.exit("%s is not there: run without --show first" % file)
+        if options.write_docs:
+            report = json.loads(file.read_text(encoding="utf-8"))
+            text = replaced(page, page.read_text(encoding="utf-8"), name, "make tradeoff", section(name, report))
+            page.write_text(text, encoding="utf-8")
+            shutil.copyfile(options.output / name / "chart.svg", options.docs / ("gallery/tradeoff-%s.svg" % name))
+        print(options.output / name / "report.html")
+
+
+main()
