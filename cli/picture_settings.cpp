@@ -27,7 +27,7 @@ std::uint64_t HashBytes(std::span<const T> values) {
 
 std::string TextOf(const TransferSettings& settings) {
   // All members by name: one more does not compile until it is written below.
-  const auto& [method, nearest, guide_weights, threshold, threshold_metric, levels, jitter, jitter_fps, coherent, blend_radius, edge_aware, crease,
+  const auto& [method, nearest, nearest_error, guide_weights, threshold, threshold_metric, levels, jitter, jitter_fps, coherent, blend_radius, edge_aware, crease,
                depth_tolerance, luminance_weight, luminance_error, colorize, colorize_mode, variety, hybrid,
                match_step, scale, rim, edge,
                shadow, reference_height] = settings;
@@ -40,6 +40,7 @@ std::string TextOf(const TransferSettings& settings) {
                               double(luminance_weight), colorize, variety, hybrid, scale, rim}) {
     text += fmt::format("{} ", number);
   }
+  if (nearest_error > 0.0) text += fmt::format("nearest_error {} ", nearest_error);
   for (const LayerInfo& info : AllLayers()) text += fmt::format("{} ", double(guide_weights[info.layer]));
   return text;
 }

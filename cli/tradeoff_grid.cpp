@@ -62,6 +62,7 @@ class Grid {
     way.name = "the exact way", way.axis = kExactAxis, way.value = "";
     if (style_.method == Method::kStyleBlit && BruteForceFits()) way.settings.push_back("transfer.method=bruteforce");
     if (!sphere_ && IsPlain()) way.settings.push_back("transfer.nearest=tree");
+    if (style_.nearest_error > 0.0) way.settings.push_back("transfer.nearest_error=0");
     if (style_.match_step > 1) way.settings.push_back("transfer.match_step=1");
     if (options_.chance && options_.samples < kConverged) way.samples = kConverged;
     grid_.ways.push_back(std::move(way));
@@ -105,8 +106,19 @@ class Grid {
     }
   }
 
+  // Of a tree, which may be off by such shares.
+  void AddErrors(const std::vector<std::string>& settings) {
+    for (const double error : {0.1, 0.5, 2.0}) {
+      if (error == style_.nearest_error || (options_.quick && error != 0.5)) continue;
+      std::vector<std::string> all = settings;
+      all.push_back(fmt::format("transfer.nearest_error={:g}", error));
+      Add("nearest", fmt::format("tree within {:g}%", 100.0 * error), std::move(all));
+    }
+  }
+
   void AddNearest() {
-    if (!IsPlain()) return;  // the tree is used in any case
+    // Where light is weighed, the tree is used in any case.
+    if (!IsPlain()) return AddErrors({});
     NearestSearch own = style_.nearest;
     if (own == NearestSearch::kAuto) own = sphere_ ? NearestSearch::kAnalytic : NearestSearch::kTable;
     if (sphere_ && own != NearestSearch::kAnalytic) AddKey("nearest", "analytic");
@@ -117,6 +129,7 @@ class Grid {
       way.table_resolution = resolution;
     }
     if (own != NearestSearch::kTree) AddKey("nearest", "tree");
+    AddErrors({"transfer.nearest=tree"});
   }
 
   void AddGuides() {

@@ -84,6 +84,7 @@ class GuideWeights {
 struct TransferSettings {
   Method method = Method::kStyleBlit;
   NearestSearch nearest = NearestSearch::kAuto;
+  double nearest_error = 0.0;  // 0 … 10: a source that a tree finds may be farther than the nearest by this share of its distance
   GuideWeights guide_weights;
   float threshold = 0.125f;  // largest guide distance inside a chunk, at least 0, infinity allowed; the test is strict
   ThresholdMetric threshold_metric = ThresholdMetric::kL2;

@@ -37,6 +37,7 @@ Picture RandomPicture(int width, int height) {
 void ExpectEqual(const TransferSettings& a, const TransferSettings& b) {
   EXPECT_EQ(a.method, b.method);
   EXPECT_EQ(a.nearest, b.nearest);
+  EXPECT_EQ(a.nearest_error, b.nearest_error);
   EXPECT_EQ(a.threshold, b.threshold);
   EXPECT_EQ(a.threshold_metric, b.threshold_metric);
   EXPECT_EQ(a.levels, b.levels);
@@ -114,12 +115,15 @@ TEST_F(StyleFile, ValuesUpToTheirBoundariesAreTaken) {
   const auto edge = [](const T& t) { return double(t.edge); };
   const auto shadow = [](const T& t) { return double(t.shadow); };
   const auto crease = [](const T& t) { return t.crease; };
+  const auto nearest_error = [](const T& t) { return t.nearest_error; };
   const auto tolerance = [](const T& t) { return t.depth_tolerance; };
   const auto edges = [](const T& t) { return double(t.edge_aware); };
   const Valid cases[] = {
       {"method = 'litsphere'", method, double(Method::kLitSphere)},
       {"method = \"styleblit\"", method, double(Method::kStyleBlit)},
       {"method = 'bruteforce'", method, double(Method::kBruteForce)},
+      {"nearest_error = 0.25", nearest_error, 0.25},
+      {"nearest_error = 10", nearest_error, 10},
       {"threshold = 0", threshold, 0},
       {"threshold = 0.25", threshold, 0.25},
       {"threshold = inf", threshold, std::numeric_limits<double>::infinity()},

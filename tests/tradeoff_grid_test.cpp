@@ -71,10 +71,11 @@ TEST(TradeGrid, OfASphereIsEveryAxisWithoutTheStylesOwnValues) {
   EXPECT_EQ(ValuesOf(grid, "edge_aware"), (Values{"false"}));
   EXPECT_EQ(ValuesOf(grid, "match_step"), (Values{"2", "4"}));
   const Values nearest = ValuesOf(grid, "nearest");
-  for (const char* value : {"table 32", "table 64", "table 128", "table 256", "table 512", "table 1024", "tree"}) {
+  for (const char* value : {"table 32", "table 64", "table 128", "table 256", "table 512", "table 1024", "tree",
+                            "tree within 10%", "tree within 50%", "tree within 200%"}) {
     EXPECT_TRUE(std::count(nearest.begin(), nearest.end(), value)) << value;
   }
-  EXPECT_EQ(nearest.size(), 7u);
+  EXPECT_EQ(nearest.size(), 10u);
   EXPECT_EQ(ValuesOf(grid, "precision"), (Values{"8 bits", "half floats"}));
   EXPECT_EQ(ValuesOf(grid, "resolution"), (Values{"0.5", "2"}));
   EXPECT_EQ(ValuesOf(grid, "robust"), Values{"no"});
@@ -112,7 +113,7 @@ TEST(TradeGrid, OfGuidesOfLightHasNoTablesAndAsksForSamplesWhereTheyCount) {
   options.chance = true;
   const TradeGrid grid = MakeTradeGrid(LitStyle(), options);
   EXPECT_EQ(ValuesOf(grid, "samples"), (Values{"1", "4", "16", "256", "1024"})) << "64 are the style's";
-  EXPECT_TRUE(ValuesOf(grid, "nearest").empty()) << "the tree is used in any case";
+  EXPECT_EQ(ValuesOf(grid, "nearest"), (Values{"tree within 10%", "tree within 50%", "tree within 200%"}));
   EXPECT_EQ(Named(grid, "samples 4").samples, 4);
   EXPECT_EQ(grid.ways[1].samples, 1024) << "converged";
   EXPECT_EQ(grid.ways[1].settings, Values{"transfer.method=bruteforce"});

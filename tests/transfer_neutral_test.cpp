@@ -127,6 +127,7 @@ std::vector<Neutral> Neutrals() {
        }},
       {"shadows that nothing catches", set(&T::shadow, ShadowMode::kPaint), [](Style&) {}, true},
       {"a map of one style", [](Style&) {}, [](Style&) {}, true},
+      {"an error of a tree that is not there", set(&T::nearest_error, 2.0)},
       {"the search by formula", set(&T::nearest, NearestSearch::kAnalytic)},
       {"a reference height that is the picture's", set(&T::reference_height, kHeight)},
       {"a scale of 1 of the picture's height",

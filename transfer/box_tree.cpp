@@ -117,4 +117,8 @@ std::uint32_t BoxTree::Nearest(const float* query, std::uint32_t& place) const {
   return index_[place];
 }
 
+std::uint32_t BoxTree::NearlyNearest(const float* query, double error) const {
+  return index_[SearchBoxesRoughly(*this, query, error)];
+}
+
 }  // namespace scumble::internal

@@ -1,4 +1,4 @@
-// Exact nearest neighbours in many dimensions: a tree of boxes, sixteen to a node, whose distances are found together.
+// Nearest neighbours in many dimensions, exact or nearly so: a tree of boxes, sixteen to a node, whose distances are found together.
 //
 // Guides of a scene lie on surfaces in their space, however many dimensions it has. A kd-tree that bounds what it leaves
 // out by its splitting planes, as nanoflann's does, sees little of that: where queries are off the surface, which noise of
@@ -28,6 +28,12 @@ class BoxTree {
   // `place` says where to look first, and gets the place of the answer: a query that resembles the last is quicker with the
   // last one's. It never changes the answer; any number will do to begin with.
   std::uint32_t Nearest(const float* query, std::uint32_t& place) const;
+
+  // The index of a point that is at most (1 + error) times as far as the nearest, error 0 or more: boxes that cannot hold one
+  // nearer than its distance / (1 + error) are left out (Arya et al., "An Optimal Algorithm for Approximate Nearest Neighbor
+  // Searching in Fixed Dimensions", JACM 1998). With error 0 it is one of the nearest; which, where several are, is not said.
+  // The answer depends on points and query alone: not on the searches before, nor on the machine.
+  std::uint32_t NearlyNearest(const float* query, double error) const;
 
   // What the search reads, in every instruction set. Leaf j holds places 16 j … 16 j + 15; node j of a level holds the
   // boxes of 16 j … of the level below.

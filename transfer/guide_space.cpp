@@ -48,10 +48,11 @@ std::size_t Sample(const GuideSet& guides, int x, int y, int width, int height) 
 }  // namespace
 
 Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<const Exemplar> exemplars,
-                                       std::shared_ptr<const PreparedExemplar> prepared) {
+                                       std::shared_ptr<const PreparedExemplar> prepared, double nearest_error) {
   SCUMBLE_CHECK_EQ(static_cast<int>(exemplars.size()), prepared->count());
   GuideSpace space;
   space.exemplar_ = std::move(prepared);
+  space.nearest_error_ = nearest_error;
   space.normal_weight_ = weights[Layer::kNormal];
   for (const LayerInfo& info : AllLayers()) {
     if (!(weights[info.layer] > 0.0f) || info.layer == Layer::kNormal) continue;
@@ -125,7 +126,7 @@ Source GuideSpace::Nearest(int k, glm::vec3 normal, const float* rest) const {
   const Tree& tree = trees_[std::size_t(k)];
   // Pixels come in rows, and neighbours resemble each other. Where a search begins does not change what it finds.
   thread_local std::uint32_t place = 0;
-  return tree.sources[tree.points.Nearest({query.data(), n + static_cast<std::size_t>(rest_)}, place)];
+  return tree.sources[tree.points.Nearest({query.data(), n + static_cast<std::size_t>(rest_)}, place, nearest_error_)];
 }
 
 void GuideSpace::Blend(int k, float share, float* rest) const {

@@ -38,10 +38,10 @@ class GuideSpace {
   static constexpr int kMaxRest = 20;
 
   // Over the usable pixels of each exemplar, which must hold the layers that have a weight above 0: their guides are
-  // sampled at pixel centres. A kInput error names an exemplar whose guides lack one. One thread, O(pixels · log) an
+  // sampled at pixel centres. What Nearest finds may be (1 + nearest_error) times as far as the nearest. A kInput error names an exemplar whose guides lack one. One thread, O(pixels · log) an
   // exemplar; 4 bytes a coordinate of each pixel, and a PointTree.
   static Expected<GuideSpace> Build(const GuideWeights& weights, std::span<const Exemplar> exemplars,
-                                    std::shared_ptr<const PreparedExemplar> prepared);
+                                    std::shared_ptr<const PreparedExemplar> prepared, double nearest_error = 0.0);
 
   float normal_weight() const { return normal_weight_; }
   int rest() const { return rest_; }  // coordinates beside the normal's
@@ -81,7 +81,7 @@ class GuideSpace {
   // Those of a pixel of exemplar k.
   const float* RestAt(int k, Source at) const { return values_[std::size_t(k)].data() + Offset(at); }
 
-  // The usable pixel of exemplar k that is nearest, exactly; ties to the lowest (y, x). `normal` has no weight yet, `rest`
+  // The usable pixel of exemplar k that is nearest, exactly unless an error is allowed; ties to the lowest (y, x). `normal` has no weight yet, `rest`
   // has.
   Source Nearest(int k, glm::vec3 normal, const float* rest) const;
 
@@ -124,6 +124,7 @@ class GuideSpace {
 
   std::shared_ptr<const PreparedExemplar> exemplar_;
   float normal_weight_ = 1.0f;
+  double nearest_error_ = 0.0;
   std::vector<Layer> layers_;
   std::vector<float> weights_;
   std::vector<Part> parts_;

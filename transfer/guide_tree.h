@@ -1,4 +1,4 @@
-// Exact nearest neighbours among guides of any number of dimensions (transfer/guide_space.h makes them), in the spirit of
+// Nearest neighbours among guides of any number of dimensions (transfer/guide_space.h makes them), in the spirit of
 // Friedman, Bentley, Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected Time", ACM TOMS 1977. The tree
 // is our own, transfer/box_tree.h says why.
 #pragma once
@@ -36,6 +36,10 @@ class PointTree {
 
   // The same, quicker where the query resembles the one that left `place` as it is; any number will do to begin with.
   std::uint32_t Nearest(std::span<const float> query, std::uint32_t& place) const;
+
+  // A point at most (1 + error) times as far as the nearest, error above 0; or for error 0 what Nearest has. Which one
+  // depends on points, query and error alone.
+  std::uint32_t Nearest(std::span<const float> query, std::uint32_t& place, double error) const;
 
  private:
   int dimensions_;

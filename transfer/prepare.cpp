@@ -50,6 +50,9 @@ Status CheckWeights(const GuideWeights& weights) {
 
 Status CheckSettings(const TransferSettings& settings) {
   if (!(settings.threshold >= 0.0f)) return UsageError("transfer.threshold must be 0 or more, infinity included");
+  if (!(settings.nearest_error >= 0.0 && settings.nearest_error <= 10.0)) {
+    return UsageError("transfer.nearest_error must be 0 to 10");
+  }
   SCUMBLE_RETURN_IF_ERROR(CheckWeights(settings.guide_weights));
   if (settings.levels < 1 || settings.levels > 16) return UsageError("transfer.levels must be 1 to 16");
   if (!(settings.jitter >= 0.0f && settings.jitter <= 1.0f)) return UsageError("transfer.jitter must be 0 to 1");
@@ -172,7 +175,7 @@ Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& s
                    PreparedExemplar::OfScene(pictures, *first.guides, settings.rim, width, height, first.name));
     prepared = std::make_shared<PreparedExemplar>(std::move(scene));
   }
-  SCUMBLE_RETURN_IF_ERROR(prepared->SearchBy(settings.nearest, options.table_resolution, options.cache));
+  SCUMBLE_RETURN_IF_ERROR(prepared->SearchBy(settings.nearest, options.table_resolution, options.cache, settings.nearest_error));
   return std::shared_ptr<const PreparedExemplar>(std::move(prepared));
 }
 
@@ -193,7 +196,8 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
   if (!settings.guide_weights.ArePlain()) {
-    SCUMBLE_ASSIGN(GuideSpace space, GuideSpace::Build(settings.guide_weights, style.exemplars, prepared.exemplar));
+    SCUMBLE_ASSIGN(GuideSpace space, GuideSpace::Build(settings.guide_weights, style.exemplars, prepared.exemplar,
+                                                           settings.nearest_error));
     prepared.space = std::make_shared<GuideSpace>(std::move(space));
   }
   prepared.illumination = Illumination(luminances, settings.luminance_weight, settings.luminance_error);

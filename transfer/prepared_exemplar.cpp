@@ -22,11 +22,13 @@ class ExemplarSearch {
   std::optional<LookUpTable> table;
   std::vector<Source> sources;  // of the tree's points
   std::optional<PointTree> normals;
+  double error = 0.0;  // that is allowed to the tree
 
   Source Find(glm::vec3 direction) const {
     if (table) return table->Find(direction);
     const float query[3] = {direction.x, direction.y, direction.z};
-    return sources[normals->Nearest(query)];
+    std::uint32_t place = 0;
+    return sources[normals->Nearest(query, place, error)];
   }
 };
 
@@ -199,7 +201,7 @@ std::string PreparedExemplar::TableKey(std::span<const Source> sources, int reso
   return key;
 }
 
-Status PreparedExemplar::SearchBy(NearestSearch search, int resolution, TableCache* cache) {
+Status PreparedExemplar::SearchBy(NearestSearch search, int resolution, TableCache* cache, double error) {
   if (search == NearestSearch::kAuto) search = is_sphere() ? NearestSearch::kAnalytic : NearestSearch::kTable;
   if (search == NearestSearch::kAnalytic) {
     if (!is_sphere()) {
@@ -212,6 +214,7 @@ Status PreparedExemplar::SearchBy(NearestSearch search, int resolution, TableCac
   }
   auto found = std::make_shared<ExemplarSearch>();
   found->sources = UsablePixels();
+  found->error = error;
   std::string key;
   if (search == NearestSearch::kTable && cache) {
     key = TableKey(found->sources, resolution);

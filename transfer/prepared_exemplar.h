@@ -58,8 +58,9 @@ class PreparedExemplar {
 
   // How NearestNeighbour searches from now on, before the exemplar is shared: kAuto is the formula for a sphere and a
   // table for a scene. kAnalytic is a kUsage error for a scene. Tables have `resolution`² cells and are looked for in
-  // `cache` first, which may be null. O(usable pixels · log) where something is built.
-  Status SearchBy(NearestSearch search, int resolution, TableCache* cache);
+  // `cache` first, which may be null. Sources of a tree may be (1 + error) times as far as the nearest. O(usable pixels · log)
+  // where something is built.
+  Status SearchBy(NearestSearch search, int resolution, TableCache* cache, double error = 0.0);
 
   bool is_sphere() const { return !scene_; }
   int width() const { return scene_ ? scene_->width : size_; }
@@ -88,7 +89,7 @@ class PreparedExemplar {
   // - analytic: within one pixel of the exact one; ties to the lowest (y, x). A normal beyond the rim, or with z < 0,
   //   takes the usable pixel nearest to the point of the rim along its (x, y), and (0, 0, -1) that at +Y. (The exact
   //   argmin would jump along the rim's staircase of pixels there, by many at once, for no gain that anyone can see.)
-  // - tree: exact for FacingDirection(normal); ties to the lowest (y, x).
+  // - tree: exact for FacingDirection(normal), unless an error was allowed; ties to the lowest (y, x).
   // - table: at most LookUpTable::Quantisation further away than the tree's.
   // Any finite or NaN input gives a usable pixel.
   Source NearestNeighbour(glm::vec3 normal) const { return search_ ? Searched(normal) : Analytic(normal); }
