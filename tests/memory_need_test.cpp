@@ -54,6 +54,7 @@ TEST_F(MemoryNeedTest, ThePlanSaysHowMuchAndForWhat) {
   EXPECT_EQ(memory["parts"]["guides"], 28 * 1000 * 500);
   EXPECT_EQ(memory["parts"]["picture"], 8 * 1000 * 500);
   EXPECT_FALSE(memory.contains("peak_bytes")) << "nothing was taken";
+  EXPECT_FALSE(memory["parts"].contains("writer")) << "a plan has no output";
   EXPECT_NE(RunOk({"guidegen", Scene("suzanne.glb"), "--explain"}).out.find("guides"), std::string::npos);
 }
 
