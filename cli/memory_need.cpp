@@ -121,7 +121,7 @@ void AddSources(const PictureWork& work, const PictureOptions& options, const Si
   const Bytes pixels = PixelsOf(size);
   bool keeps = work.keeps_field || options.upsample > 1, lit = false;
   Bytes of_pixel = 0, briefly = 0;
-  int step = options.upsample;
+  int step = 1;
   for (const Style& style : work.styles) {
     keeps = keeps || KeepsSources(style, RadiusOf(style, size.height));
     lit = lit || LooksAtLight(style);

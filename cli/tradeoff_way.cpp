@@ -93,7 +93,6 @@ Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way
   painter.options_.exposure = stops.value_or(0.0);
   painter.options_.seed = setup.scene.seed;
   painter.options_.threads = globals.threads;
-  painter.options_.match_step = UpsamplingOf(way);
   painter.factor_ = SupersamplingOf(way);
   return painter;
 }

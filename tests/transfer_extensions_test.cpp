@@ -95,7 +95,7 @@ TEST(Illumination, ChoosesTheNearestAndTheFirstOfEquals) {
   EXPECT_EQ(light.Choose(0.45f), 3);
   EXPECT_EQ(light.Choose(100.0f), 1);
   EXPECT_EQ(light.Choose(std::numeric_limits<float>::quiet_NaN()), 0);
-  EXPECT_EQ(light.Choose(std::numeric_limits<float>::infinity()), 0);  // infinitely far from all of them
+  EXPECT_EQ(light.Choose(std::numeric_limits<float>::infinity()), 1);  // as whatever is brighter than all of them
 }
 
 TEST(Illumination, BothErrorsByTheirFormulas) {
