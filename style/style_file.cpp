@@ -12,6 +12,7 @@
 #include "style/sphere_template.h"
 #include "style/style_keyframes.h"
 #include "style/style_keys.h"
+#include "style/toml_keys.h"
 
 namespace scumble {
 namespace {
@@ -37,6 +38,7 @@ std::string NameFor(const fs::path& path, bool is_folder) {
 
 // Debian's toml++ throws; nothing else here does.
 Expected<toml::table> ParseToml(std::string_view text, const std::string& file) {
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckKeyParts(text, file));
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
