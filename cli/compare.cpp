@@ -4,42 +4,18 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <set>
+#include <string>
 
-#include "cli/command.h"
-#include "cli/json_text.h"
+#include "cli/compare_verb.h"
 #include "cli/options.h"
 #include "cli/run_files.h"
 #include "io/channel_file.h"
-#include "io/guide_file.h"
 #include "io/picture_file.h"
-#include "measure/flicker.h"
-#include "measure/flip.h"
 #include "measure/heat_map.h"
 
 namespace scumble {
 namespace {
-
-struct CompareVerb {
-  std::string a;
-  std::string b;
-  CompareOptions options;
-  std::string heat_map;
-  std::string motion;
-  std::string motion_next;
-  bool flip = false;
-  FlipOptions flip_options;
-};
-
-// The guides that flicker is measured along; what is not there is not looked at.
-Expected<GuideSet> ReadMotionGuides(const std::string& path, LayerSet required) {
-  GuideReadOptions options;
-  options.required = required.Add(Layer::kCoverage).Add(Layer::kNormal);
-  options.optional = {Layer::kDepth, Layer::kObject, Layer::kPref};
-  return ReadGuides(path, options);
-}
-
-// Steps of 255 that a map of flicker shows in full yellow: always the same, so that maps can be laid side by side.
-constexpr double kMostFlicker = 64.0;
 
 Status CheckHeatMap(const CompareVerb& verb) {
   if (verb.heat_map.empty()) return Ok();
@@ -51,57 +27,10 @@ Status CheckHeatMap(const CompareVerb& verb) {
   return files.CheckOutput(verb.heat_map);
 }
 
-Expected<ExitCode> RunFlicker(const CompareVerb& verb, const Globals& globals) {
-  SCUMBLE_ASSIGN(const Picture a, ReadPicture(verb.a));
-  SCUMBLE_ASSIGN(const Picture b, ReadPicture(verb.b));
-  SCUMBLE_ASSIGN(const GuideSet guides, ReadMotionGuides(verb.motion, {Layer::kMotion}));
-  GuideSet next;
-  if (!verb.motion_next.empty()) {
-    SCUMBLE_ASSIGN(next, ReadMotionGuides(verb.motion_next, {}));
-  }
-  SCUMBLE_ASSIGN(const FlickerReport report, MeasureFlicker(a, b, guides, verb.motion_next.empty() ? nullptr : &next));
-  if (!verb.heat_map.empty()) {
-    const Picture map = ValueHeatMap(report.changes, guides.width(), guides.height(), kMostFlicker);
-    SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map));
-    Say(globals, fmt::format("{}: yellow is a change of {:.0f} of 255", verb.heat_map, kMostFlicker));
-  }
-  const nlohmann::ordered_json json = {{"a", verb.a},
-                                       {"b", verb.b},
-                                       {"flicker", report.mean},
-                                       {"floor", report.floor},
-                                       {"pixels", report.pixels},
-                                       {"hidden", report.hidden}};
-  Print(globals.json ? JsonText(json)
-                     : fmt::format("flicker {:.3f} of 255 along the motion; {:.3f} is what resampling alone costs\n"
-                                   "{} pixels stay in sight, {} do not\n",
-                                   report.mean, report.floor, report.pixels, report.hidden));
-  return ExitCode::kOk;
-}
-
-Expected<ExitCode> RunFlip(const CompareVerb& verb, const Globals& globals) {
-  SCUMBLE_ASSIGN(const Picture a, ReadPicture(verb.a));
-  SCUMBLE_ASSIGN(const Picture b, ReadPicture(verb.b));
-  FlipOptions options = verb.flip_options;
-  options.threads = globals.threads;
-  SCUMBLE_ASSIGN(const FlipReport report, MeasureFlip(a, b, options));
-  if (!verb.heat_map.empty()) {
-    SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, ValueHeatMap(report.map, a.width, a.height, 1.0)));
-    Say(globals, verb.heat_map + ": yellow is a FLIP of 1");
-  }
-  const nlohmann::ordered_json json = {{"a", verb.a},         {"b", verb.b},
-                                       {"flip", report.mean}, {"flip_max", report.max},
-                                       {"rms", report.rms},   {"pixels_per_degree", options.pixels_per_degree}};
-  Print(globals.json ? JsonText(json)
-                     : fmt::format("FLIP mean {:.6f}, most {:.6f}, at {:.2f} pixels per degree\n"
-                                   "RMS  {:.6f} of 1\n",
-                                   report.mean, report.max, options.pixels_per_degree, report.rms));
-  return ExitCode::kOk;
-}
-
 Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckHeatMap(verb));
-  if (verb.flip) return RunFlip(verb, globals);
-  if (!verb.motion.empty()) return RunFlicker(verb, globals);
+  if (verb.flip) return CompareByFlip(verb, globals);
+  if (!verb.motion.empty()) return CompareByFlicker(verb, globals);
   SCUMBLE_ASSIGN(const ChannelImage a, ReadChannels(verb.a));
   SCUMBLE_ASSIGN(const ChannelImage b, ReadChannels(verb.b));
   SCUMBLE_ASSIGN(const CompareReport report, Compare(a, b, verb.options));
@@ -127,11 +56,12 @@ void AddThresholds(CLI::App& sub, const std::string& name, DifferenceThresholds&
   add("hard" + name, thresholds.hard, "no value may differ by more than this, whatever the percentage");
 }
 
-// Another measure looks at none of the options that thresholds and layers are set by, nor at those of a third one.
-void ExcludeOthers(CLI::App& sub, CLI::Option* measure, const std::string& own) {
+// Another measure looks at none of the options that thresholds and layers are set by, nor at those of a third one; save
+// those in `shared`.
+void ExcludeOthers(CLI::App& sub, CLI::Option* measure, const std::string& own, const std::set<std::string>& shared) {
   for (const CLI::Option* option : sub.get_options()) {
     const std::string name = option->get_name();
-    if (!name.starts_with("--") || name.starts_with(own) || name == "--help" || name == "--heat-map") continue;
+    if (!name.starts_with("--") || name.starts_with(own) || shared.contains(name)) continue;
     measure->excludes(sub.get_option(name));
   }
 }
@@ -160,7 +90,8 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
       sub->add_option(
              "--motion", verb->motion,
              "guides of the first picture's frame, with layer motion: measure how the colours of what stays in "
-             "sight change on the way to the second picture, the next frame, and nothing else")
+             "sight change on the way to the second picture, the next frame, and nothing else; it only measures, "
+             "exit code 0")
           ->type_name("FILE");
   sub->add_option("--motion-next", verb->motion_next,
                   "guides of the second picture's frame: what is hidden there is left out")
@@ -168,17 +99,23 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->needs(motion);
   CLI::Option* flip = sub->add_flag("--flip", verb->flip,
                                     "how visible the difference of two pictures is to who flips between them, 0 to 1 "
-                                    "(FLIP, Andersson et al. 2020), and nothing else");
+                                    "(FLIP, Andersson et al. 2020), and nothing else; of one layer of light with --layer, "
+                                    "values clamped to 0 … 1; exit code 1 where --fail is given and the mean is above it");
   sub->add_option("--flip-ppd", verb->flip_options.pixels_per_degree,
                   "pixels of the display in one degree of sight; 67 is 4K, 0.7 m wide and 0.7 m away")
       ->type_name("N")
       ->needs(flip)
       ->capture_default_str();
-  ExcludeOthers(*sub, motion, "--motion"), ExcludeOthers(*sub, flip, "--flip");
+  ExcludeOthers(*sub, motion, "--motion", {"--help", "--heat-map"});
+  ExcludeOthers(*sub, flip, "--flip", {"--help", "--heat-map", "--fail", "--layer"});
   sub->footer("Thresholds are idiff's, which may be written with one dash: -fail 0.01 -failpercent 1.\n\n" +
               app.get_footer());
   AddGlobalOptions(*sub, globals);
-  sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunCompareVerb(*verb, globals); }; });
+  const CLI::Option* const fail = sub->get_option("--fail");
+  sub->callback([verb, fail, &globals, &chosen] {
+    if (verb->flip && fail->count() > 0) verb->flip_fail = verb->options.fail.absolute;
+    chosen = [verb, &globals] { return RunCompareVerb(*verb, globals); };
+  });
 }
 
 }  // namespace scumble

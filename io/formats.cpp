@@ -16,6 +16,7 @@
 #include "io/channel_file.h"
 #include "io/library.h"
 #include "io/plain_guides.h"
+#include "io/readable_file.h"
 
 namespace scumble {
 namespace {
@@ -89,14 +90,26 @@ Expected<const Formats*> Load() {
 
 }  // namespace
 
-Expected<const Formats*> LoadFormats() {
-  static const Expected<const Formats*> kFormats = [] {
-    const Expected<const Formats*> loaded = Load();
-    if (loaded) (*loaded)->set_threads(io_threads);
-    is_loaded = loaded.ok();
-    return loaded;
-  }();
-  return kFormats;
+Expected<const Formats*> LoadFormats(const std::string& file) {
+  try {
+    static const Expected<const Formats*> kFormats = [] {
+      const Expected<const Formats*> loaded = Load();
+      if (loaded) (*loaded)->set_threads(io_threads);
+      is_loaded = loaded.ok();
+      return loaded;
+    }();
+    return kFormats;
+  } catch (const std::bad_alloc&) {
+    return MemoryError("out of memory for " + file + ": the library that reads and writes its format takes " +
+                       std::to_string(kModuleAddresses >> 20) +
+                       " MB of addresses, whatever the picture's size; allow so much more (ulimit -v), or use a plain PNG, " +
+                       "or the EXR files that scumble itself writes, wherever a picture or guides are read or written");
+  }
+}
+
+Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path) {
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckReadable(path));
+  return LoadFormats(path.string());
 }
 
 void SetIoThreads(int threads) { io_threads = threads; }
@@ -106,19 +119,19 @@ bool IsLibraryLoaded() { return is_loaded; }
 int internal::IoThreads() { return io_threads; }
 
 Expected<ChannelImage> ReadChannels(const std::filesystem::path& path) {
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->read_channels(path);
 }
 
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
   if (auto plain = internal::ReadPlainGuides(path, options)) return *std::move(plain);
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->read_guides(path, options);
 }
 
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   if (auto plain = internal::InspectPlainGuides(path)) return *std::move(plain);
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->inspect_guides(path);
 }
 

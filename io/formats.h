@@ -76,9 +76,12 @@ struct Formats {
   decltype(&formats::SetThreads) set_threads;
 };
 
-// Loads the module, once in the life of the process; it stays. kUnavailable where it is missing or of another version.
-// Thread-safe.
-Expected<const Formats*> LoadFormats();
+// Loads the module, once in the life of the process; it stays. kUnavailable where it is missing or of another version,
+// kMemory where a limit leaves it too few addresses; the next call tries again then. `file`, for the message, is what it
+// is needed for. Thread-safe.
+Expected<const Formats*> LoadFormats(const std::string& file);
+// The same to read a file, which is looked for first: what is wrong with it (kInput) is said whatever the module needs.
+Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path);
 
 namespace internal {
 

@@ -1,14 +1,11 @@
 #include "io/oiio.h"
 
-#include <unistd.h>
-
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 
 #include "image/guides.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
+#include "io/readable_file.h"
 #include "io/whole_exr.h"
 #include "io/whole_png.h"
 
@@ -57,20 +54,7 @@ Status CheckIfPng(const std::filesystem::path& path) {
 }  // namespace
 
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path) {
-  std::error_code failed;
-  const auto status = std::filesystem::status(path, failed);
-  if (status.type() == std::filesystem::file_type::none) {
-    return InputError("cannot read " + path.string() + ": " + failed.message());
-  }
-  if (!std::filesystem::exists(status)) return InputError("cannot read " + path.string() + ": there is no such file");
-  if (std::filesystem::is_directory(status)) return InputError("cannot read " + path.string() + ": it is a folder");
-  // A pipe would be waited for without end, and the readers seek.
-  if (!std::filesystem::is_regular_file(status))
-    return InputError("cannot read " + path.string() + ": it is no regular file");
-  if (::access(path.c_str(), R_OK) != 0) return InputError("cannot read " + path.string() + ": " + std::strerror(errno));
-  if (std::filesystem::file_size(path, failed) == 0) {
-    return InputError("cannot read " + path.string() + ": the file is empty");
-  }
+  SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
   if (LooksLikeScene(path)) {
     return InputError("cannot read " + path.string() + ": it is a scene, and a picture or guides are expected here; " +
                       "scumble stylize and scumble guidegen take scenes");

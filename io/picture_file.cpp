@@ -54,7 +54,7 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
     if (auto picture = ReadIfPlainPng(bytes, path.string())) return *std::move(picture);
   }
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->read_picture(path);
 }
 
@@ -63,14 +63,14 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
     SCUMBLE_ASSIGN(const MergedHeader merged, InspectMergedLayers(path));
     return PictureHeader{merged.width, merged.height, merged.bits, 0};
   }
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->inspect_picture(path);
 }
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.empty()) return InputError("cannot read " + name + ": it is empty");
   if (auto picture = ReadIfPlainPng(bytes, name)) return *std::move(picture);
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(name));
   return formats->decode_picture(bytes, name);
 }
 
@@ -84,7 +84,7 @@ Status WritePicture(const std::filesystem::path& path, const Picture& picture, c
     SCUMBLE_ASSIGN(const auto encoded, Exr(path.string(), picture, options));
     return WriteFileAtomically(path, encoded);
   }
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(path.string()));
   SCUMBLE_ASSIGN(const std::vector<std::byte> encoded, formats->encode_picture(path, picture, options));
   return WriteFileAtomically(path, encoded);
 }

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string_view>
 #include <utility>
 
 #include "image/color.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
+#include "io/guide_header.h"
 #include "io/oiio.h"
 #include "io/picture_file.h"
 #include "io/picture_rules.h"
@@ -22,24 +24,44 @@ struct ColorChannels {
   int r = -1, g = -1, b = -1, a = -1;
 };
 
-// By name first (OpenImageIO sorts EXR channels), by position where the names say nothing.
-ColorChannels FindColorChannels(const OIIO::ImageSpec& spec) {
-  const auto find = [&](std::initializer_list<const char*> names) {
-    for (const char* name : names) {
+// The whole picture of the only view layer of a render, "NAME.Combined."; empty where there is none, or several.
+std::string CombinedLayer(const OIIO::ImageSpec& spec) {
+  constexpr std::string_view kFirst = ".COMBINED.R";
+  std::string found;
+  for (const std::string& channel : spec.channelnames) {
+    const std::string name = Upper(channel);
+    if (!name.ends_with(kFirst)) continue;
+    if (!found.empty()) return {};
+    found = name.substr(0, name.size() - 1);
+  }
+  return found;
+}
+
+// By name first (OpenImageIO sorts EXR channels), by position where the names say nothing. Names with a dot say of which
+// layer a channel is: guides are no colours, whatever their order.
+Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std::string& file) {
+  const std::string combined = CombinedLayer(spec);
+  const auto find = [&](std::initializer_list<std::string> names) {
+    for (const std::string& name : names) {
       for (int c = 0; c < spec.nchannels; ++c) {
         if (Upper(spec.channelnames[c]) == name) return c;
       }
     }
     return -1;
   };
-  ColorChannels found{find({"R", "RED", "COMPOSITE.COMBINED.R", "VIEWLAYER.COMBINED.R"}),
-                      find({"G", "GREEN", "COMPOSITE.COMBINED.G", "VIEWLAYER.COMBINED.G"}),
-                      find({"B", "BLUE", "COMPOSITE.COMBINED.B", "VIEWLAYER.COMBINED.B"}),
-                      find({"A", "ALPHA", "COMPOSITE.COMBINED.A", "VIEWLAYER.COMBINED.A"})};
+  ColorChannels found{find({"R", "RED", "COMPOSITE.COMBINED.R", "VIEWLAYER.COMBINED.R", combined + "R"}),
+                      find({"G", "GREEN", "COMPOSITE.COMBINED.G", "VIEWLAYER.COMBINED.G", combined + "G"}),
+                      find({"B", "BLUE", "COMPOSITE.COMBINED.B", "VIEWLAYER.COMBINED.B", combined + "B"}),
+                      find({"A", "ALPHA", "COMPOSITE.COMBINED.A", "VIEWLAYER.COMBINED.A", combined + "A"})};
   if (found.r >= 0 && found.g >= 0 && found.b >= 0) return found;
-  if (const int grey = find({"Y", "I", "L"}); grey >= 0) return {grey, grey, grey, found.a};
-  if (spec.nchannels >= 3) return {0, 1, 2, spec.nchannels >= 4 ? 3 : -1};
-  return {0, 0, 0, spec.nchannels == 2 ? 1 : -1};
+  if (const int grey = find({"Y", "I", "L"}); grey >= 0) return ColorChannels{grey, grey, grey, found.a};
+  const auto& names = spec.channelnames;
+  if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.find('.') != name.npos; })) {
+    return InputError(file + " holds layers and no picture: its channels are " + internal::ListOfChannels(names) +
+                      ", expected R, G and B, or Y; name a picture");
+  }
+  if (spec.nchannels >= 3) return ColorChannels{0, 1, 2, spec.nchannels >= 4 ? 3 : -1};
+  return ColorChannels{0, 0, 0, spec.nchannels == 2 ? 1 : -1};
 }
 
 bool IsLinear(const OIIO::ImageSpec& spec) {
@@ -122,7 +144,7 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
   OIIO::ImageSpec display = spec;
   display.width = spec.full_width, display.height = spec.full_height;
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
-  const ColorChannels channels = FindColorChannels(spec);
+  SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name));
   const Decoder decoder{channels, spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};
   Picture picture(display.width, display.height);
   if (IsLinear(spec)) {

@@ -99,18 +99,21 @@ bool UnfinishedFile::Make(const std::string& wanted) {
     --being_made;
   }
   if (must_wait) WaitForTheEnd();
-  if (descriptor_ >= 0 && !Hold()) {
-    Forget();
-    ::close(std::exchange(descriptor_, -1));
-    return false;
+  bool is_taken = false;
+  if (descriptor_ >= 0) {
+    lock_ = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
+    failure = errno;
+    is_taken = lock_ >= 0 && !Hold();
+    if (lock_ < 0 || is_taken) {  // unlocked, another run would take it away while it is written
+      Forget();
+      ::close(std::exchange(descriptor_, -1));
+    }
   }
   errno = failure;
-  return true;
+  return !is_taken;
 }
 
 bool UnfinishedFile::Hold() {
-  lock_ = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
-  if (lock_ < 0) return true;
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;  // others: no locks on that file system
   struct stat file;
   return ::fstat(lock_, &file) != 0 || file.st_nlink > 0;

@@ -19,7 +19,7 @@ namespace internal {
 class UnfinishedFile {
  public:
   // Makes a new file that nobody else has beside `target`: hidden, with a random name, short enough where the target's
-  // own name is as long as a name may be, and locked as long as this lives. descriptor() is -1 where it cannot, and
+  // own name is as long as a name may be, and locked as long as this lives. descriptor() is -1 where it cannot (it takes two descriptors), and
   // errno says why; otherwise the caller's to close. The first in a folder takes away what killed runs left there
   // (io/leftover_files.h).
   explicit UnfinishedFile(const std::filesystem::path& target);
@@ -34,7 +34,7 @@ class UnfinishedFile {
 
  private:
   bool Make(const std::string& wanted);  // false: once more
-  bool Hold();
+  bool Hold();                           // locks it; false: another run has it
   void Forget();
 
   std::string name_;

@@ -7,9 +7,10 @@
 #include <istream>
 #include <map>
 #include <optional>
-#include <sstream>
+#include <streambuf>
 #include <string_view>
-#include <vector>
+
+#include "io/packed_bounds.h"
 
 namespace scumble::internal {
 namespace {
@@ -18,14 +19,26 @@ constexpr std::array<char, 4> kMagic = {0x76, 0x2f, 0x31, 0x01};
 constexpr std::uint32_t kManyParts = 0x1000;
 constexpr std::size_t kLongestName = 255;
 
-// Deflate writes at least 2 bits for a run of 258 bytes: 1032 to 1. RLE does 64, PIZ's Huffman code 510 bytes in 9
-// bits.
-constexpr std::uint64_t kMostDeflated = 1032;
-// By the number in the header: none, rle, zips, zip, piz; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32
-// bytes in 3; dwaa and dwab, which leave at least 4 bytes of a block of 8 × 8 floats to it.
+// By the number in the header: none; rle, 64 to 1; zips, zip; piz, whose Huffman code of 510 bytes in 9 bits is below
+// Deflate's bound; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32 bytes in 3; dwaa and dwab, which leave at
+// least 4 bytes of a block of 8 × 8 floats to it.
 constexpr std::uint64_t kMostPacked[] = {
     1,  64, kMostDeflated,      kMostDeflated,     kMostDeflated, kMostDeflated * 4 / 3,
     11, 11, 64 * kMostDeflated, 64 * kMostDeflated};
+
+// Bytes in memory as a stream that knows where it stands; nothing is copied, and none goes elsewhere.
+class SpanBuffer : public std::streambuf {
+ public:
+  explicit SpanBuffer(std::span<const std::byte> bytes) {
+    char* const begin = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));  // is only read
+    setg(begin, begin, begin + bytes.size());
+  }
+
+ protected:
+  pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override {
+    return offset == 0 && from == std::ios_base::cur ? pos_type(gptr() - eback()) : pos_type(off_type(-1));
+  }
+};
 
 struct Part {
   std::uint64_t width = 0, height = 0, tile_pixels = 0;
@@ -198,7 +211,8 @@ Status CheckExrPromises(const std::filesystem::path& path) {
 Status CheckExrPromises(std::span<const std::byte> bytes, const std::string& name) {
   const char* const begin = reinterpret_cast<const char*>(bytes.data());
   if (bytes.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), begin)) return Ok();
-  std::istringstream file(std::string(begin, bytes.size()));
+  SpanBuffer buffer(bytes);
+  std::istream file(&buffer);
   return Check(file, bytes.size(), name);
 }
 

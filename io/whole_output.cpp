@@ -61,7 +61,7 @@ Expected<StoredPicture> Inspect(const std::filesystem::path& path) {
     SCUMBLE_RETURN_IF_ERROR(internal::CheckPngIsWhole(bytes, path.string()));
     if (auto stored = internal::InspectPlainPng(bytes)) return *std::move(stored);
   }
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   return formats->inspect_stored(path);
 }
 

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "io/packed_bounds.h"
+
 namespace scumble::internal {
 namespace {
 
@@ -23,10 +25,8 @@ std::uint32_t Number(std::span<const std::byte> bytes) {
   return number;
 }
 
-// Whether so many bytes of Deflate, which writes at least 2 bits for a run of 258, can unpack to the picture's pixels. A
-// reader takes the memory for those first.
+// Whether so many bytes of Deflate can unpack to the picture's pixels. A reader takes the memory for those first.
 bool CanHold(std::uint64_t packed, const PngHeader& header) {
-  constexpr std::uint64_t kMostDeflated = 1032;
   // Divided first, because the product may not fit: the sides are below 2³².
   const std::uint64_t pixels = std::uint64_t(header.width) * header.height;
   return pixels / 8 / kMostDeflated * static_cast<std::uint64_t>(header.bits * header.channels) <= packed;

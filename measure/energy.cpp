@@ -10,6 +10,7 @@
 #include "image/hash.h"
 #include "io/parallel.h"
 #include "measure/patch_search.h"
+#include "measure/stratified_sample.h"
 
 namespace scumble {
 namespace {
@@ -154,50 +155,23 @@ class ShownNormals {
   std::vector<std::uint8_t> shown_;
 };
 
-// Which spots are looked at, and how many each pair of them stands for.
+// Which spots are looked at.
 struct Sample {
+  internal::StratifiedSample drawn;
   std::vector<Spot> spots;
-  std::vector<std::size_t> strata;  // sizes, one for each two spots; empty: every spot is there
 };
 
 Sample Choose(const std::vector<Spot>& all, std::size_t samples, std::uint64_t seed) {
-  Sample sample;
-  const std::size_t strata = samples / 2 + samples % 2;
-  if (samples == 0 || strata >= (all.size() + 1) / 2) {
-    sample.spots = all;
-    return sample;
-  }
-  for (std::size_t s = 0; s < strata; ++s) {
-    const std::size_t begin = s * all.size() / strata, size = (s + 1) * all.size() / strata - begin;
-    const std::size_t one = Hash(seed, s, 0) % size;
-    std::size_t other = Hash(seed, s, 1) % (size - 1);
-    if (other >= one) ++other;
-    sample.spots.push_back(all[begin + one]), sample.spots.push_back(all[begin + other]);
-    sample.strata.push_back(size);
-  }
+  Sample sample{internal::ChooseStratified(all.size(), samples, seed), {}};
+  for (const std::size_t place : sample.drawn.places) sample.spots.push_back(all[place]);
   return sample;
 }
 
-// The mean over all spots from those of the sample: two of each stratum, drawn without replacement [Cochran 1977,
-// §5.5].
 template <class Value>
 Estimate MeanOf(const Sample& sample, const std::vector<EnergySample>& samples, const Value& value) {
-  Estimate estimate;
-  if (samples.empty()) return estimate;
-  if (sample.strata.empty()) {
-    for (const EnergySample& one : samples) estimate.mean += value(one);
-    estimate.mean /= static_cast<double>(samples.size());
-    return estimate;
-  }
-  double total = 0.0, variance = 0.0;
-  for (std::size_t s = 0; s < sample.strata.size(); ++s) {
-    const double size = static_cast<double>(sample.strata[s]), a = value(samples[2 * s]), b = value(samples[2 * s + 1]);
-    total += size;
-    estimate.mean += size * 0.5 * (a + b);
-    variance += size * size * (1.0 - 2.0 / size) * 0.25 * (a - b) * (a - b);
-  }
-  estimate.mean /= total, estimate.standard_error = std::sqrt(variance) / total;
-  return estimate;
+  std::vector<double> values;
+  for (const EnergySample& one : samples) values.push_back(value(one));
+  return internal::MeanOf(sample.drawn, values);
 }
 
 // Where the pixels around (x, y) took their paint, moved back by their distance: in the middle of a copy all of them

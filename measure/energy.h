@@ -38,6 +38,7 @@
 #include "image/picture.h"
 #include "image/status.h"
 #include "measure/coherence.h"
+#include "measure/stratified_sample.h"
 
 namespace scumble {
 
@@ -69,11 +70,6 @@ struct EnergyOptions {
   // Where the picture took its paint from, if known: good first guesses. They do not matter to the result, and
   // positions that are not usable are passed over. Only covered pixels are read.
   const SourcePlanes* sources = nullptr;
-};
-
-struct Estimate {
-  double mean = 0.0;
-  double standard_error = 0.0;  // of the sample; 0 where every pixel was looked at
 };
 
 // What was found at one pixel.

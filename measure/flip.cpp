@@ -242,7 +242,7 @@ struct Seen {
 FlipReport Flip(const LinearColors& reference, const LinearColors& test, const FlipOptions& options) {
   const Filters filters(options.pixels_per_degree);
   const Seen r(reference, filters, options.threads), t(test, filters, options.threads);
-  FlipReport report;
+  FlipReport report{.width = reference.width, .height = reference.height, .map = {}};
   report.map.resize(r.edges.values.size());
   internal::ForEachIndex(reference.height, options.threads, [&](int row) {
     const std::size_t end = std::size_t(row + 1) * reference.width;

@@ -30,7 +30,9 @@ struct FlipOptions {
 };
 
 struct FlipReport {
-  double mean = 0.0;  // of the map
+  int width = 0;  // of the map
+  int height = 0;
+  double mean = 0.0;
   double max = 0.0;
   double rms = 0.0;        // root mean square of the differences of R, G and B, as they were given
   std::vector<float> map;  // 0 … 1 by pixel, rows from the top

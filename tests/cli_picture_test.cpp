@@ -232,36 +232,6 @@ TEST_F(CliCompare, WhatCannotBeCompared) {
   EXPECT_EQ(Run({"compare", "g.exr", "g.exr", "--layer", "normal"}).code, 0);
 }
 
-TEST_F(CliCompare, FlipOfPictures) {
-  WritePainted("a.png", 24, 16);
-  Picture black(24, 16), white(24, 16);
-  for (std::size_t i = 3; i < black.rgba.size(); i += 4) black.rgba[i] = 65535;
-  std::fill(white.rgba.begin(), white.rgba.end(), std::uint16_t{65535});
-  ASSERT_TRUE(WritePicture(At("black.png"), black) && WritePicture(At("white.png"), white));
-  const CommandResult same = RunOk({"compare", "a.png", "a.png", "--flip", "--json"});
-  EXPECT_EQ(same.Json()["flip"], 0.0);
-  EXPECT_EQ(same.Json()["rms"], 0.0);
-  EXPECT_NEAR(double(same.Json()["pixels_per_degree"]), 67.02, 0.001);
-  // The paper's formula for two flat colours whose lightness is 100 apart; flip_test.cpp has it.
-  const CommandResult apart = RunOk({"compare", "black.png", "white.png", "--flip", "--json", "-o", "map.png"});
-  EXPECT_NEAR(double(apart.Json()["flip"]), 0.9674, 2e-4);
-  EXPECT_EQ(apart.Json()["rms"], 1.0);
-  EXPECT_TRUE(Contains(RunOk({"compare", "a.png", "a.png", "--flip"}).out, "FLIP mean 0.000000"));
-  const Expected<Picture> map = ReadPicture(At("map.png"));
-  ASSERT_TRUE(map);
-  EXPECT_EQ(map->width, 24);
-  EXPECT_GT(map->At(3, 3)[0], 50000) << "yellow";
-  EXPECT_EQ(map->At(3, 3)[3], 65535);
-  const CommandResult near = RunOk({"compare", "a.png", "white.png", "--flip", "--flip-ppd", "20", "--json"});
-  EXPECT_NE(near.Json()["flip"], RunOk({"compare", "a.png", "white.png", "--flip", "--json"}).Json()["flip"]);
-  ExpectError({"compare", "a.png", "white.png", "--flip", "--flip-ppd", "0"}, 2, {"pixels per degree", "more than 0"});
-  ExpectError({"compare", "a.png", "white.png", "--flip-ppd", "20"}, 2, {"--flip-ppd", "--flip"});
-  ExpectError({"compare", "a.png", "white.png", "--flip", "-fail", "1"}, 2, {"--flip", "--fail"});
-  ExpectError({"compare", "a.png", "white.png", "--flip", "--motion", "a.exr"}, 2, {"--flip", "--motion"});
-  WritePainted("wide.png", 25, 16);
-  ExpectError({"compare", "a.png", "wide.png", "--flip"}, 3, {"24×16", "25×16", "one size"});
-}
-
 TEST_F(CliCompare, FlickerAlongTheMotion) {
   WritePainted("a.png", 24, 24);
   GuideSet guides = Ball(24);

@@ -109,7 +109,7 @@ TEST(ExrFile, PicturesAreTheBytesOfOpenImageIO) {
 
 TEST(ExrFile, PlainGuidesAreReadAsTheModuleReadsThem) {
   const TemporaryFolder folder;
-  const auto formats = LoadFormats();
+  const auto formats = LoadFormats("a test");
   ASSERT_TRUE(formats) << formats.error().message;
   const fs::path file = folder / "g.exr";
   for (const auto& [width, height] : kSizes) {

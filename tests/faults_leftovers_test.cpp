@@ -1,10 +1,12 @@
 // Temporary files that killed runs leave: which are taken away, and which are not.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -65,6 +67,30 @@ TEST(LeftoverFiles, AreThoseOfProcessesThatAreNoMore) {
   EXPECT_TRUE(Names(folder).front().starts_with(".mine.png."));
   EXPECT_EQ(const_cast<UnfinishedFile&>(alive).Finish(folder / "mine.png"), 0);
   EXPECT_EQ(Names(folder), std::vector<std::string>{"mine.png"});
+}
+
+// With one descriptor left the file can be made and cannot be locked: another run would take it for a leftover.
+TEST(LeftoverFiles, AFileThatCannotBeLockedIsNotWritten) {
+  const TemporaryFolder folder;
+  RemoveLeftoversOnce(folder.path());
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int next = ::dup(0);
+  ASSERT_GE(next, 0);
+  ::close(next);  // the lowest that is free
+  const auto descriptor_with = [&](int descriptors) {
+    const rlimit limit{static_cast<rlim_t>(next + descriptors), before.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+    const UnfinishedFile file(folder / "p.png");
+    const int reason = file.descriptor() < 0 ? errno : 0;
+    if (file.descriptor() >= 0) ::close(file.descriptor());
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+    return reason;
+  };
+  EXPECT_EQ(descriptor_with(1), EMFILE);
+  EXPECT_EQ(Names(folder), std::vector<std::string>{}) << "and nothing is left";
+  EXPECT_EQ(descriptor_with(0), EMFILE);
+  EXPECT_EQ(descriptor_with(2), 0);
 }
 
 TEST(LeftoverFiles, OfAnotherMachineStayForADay) {

@@ -9,6 +9,8 @@ import pathlib
 import resource
 import sys
 
+import numpy
+
 import faults
 
 MB = 1024  # in kB, as ulimit counts
@@ -34,6 +36,23 @@ def first_loaded(program):
     return high
 
 
+def few_addresses(program, failures):
+    """Enough for all but OpenImageIO: what it is for, what is missing and the way out are said, and no other reason."""
+    limit = limits_for(800000)
+    code, said = program.run("compare", "g.exr", "p.png", preexec_fn=limit)
+    error = faults.error_in(said)
+    failures.check(code == 6 and all(words in error for words in ("g.exr", "768 MB of addresses", "ulimit -v", "PNG")),
+                   f"few addresses: {code}: {said}")
+    failures.check("smaller picture" not in error, f"few addresses: no size of it helps: {said}")
+    for missing in (["compare", "missing.exr", "p.png"], ["compare", "missing.jpg", "p.png", "--flip"],
+                    ["transfer", "missing.exr", "--style", "style", "-o", "x.png"]):
+        code, said = program.run(*missing, preexec_fn=limit)
+        error = faults.error_in(said)
+        failures.check(code == 3 and "missing." in error and "no such file" in error, f"few addresses, {missing}: {code}: {said}")
+    code, said = program.run("compare", "p.png", "p.png", "--flip", preexec_fn=limit)
+    failures.check(code == 0, f"few addresses, plain PNGs: {code}: {said}")
+
+
 def main():
     path, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     step = int(sys.argv[3]) if len(sys.argv) > 3 else 6007  # kB; no multiple of a page, so that runs differ
@@ -43,6 +62,7 @@ def main():
         program = faults.Program(path, folder)
         faults.write_style(folder / "style")
         textured = faults.textured_scene(folder / "scene")
+        faults.write_picture(folder / "p.png", numpy.zeros((64, 64, 3), numpy.uint8))
         scene = source / "scenes" / "suzanne.glb"
         code, said = program.run("guidegen", scene, "--size", 128, "-o", "g.exr")
         failures.check(code == 0, said)
@@ -57,7 +77,12 @@ def main():
             "a sequence": ["guidegen", scene, "--size", 48, "--frames", "1-3", "-o", "out/g.#.exr"],
             "stylize": ["stylize", scene, "--style", source / "exemplars" / "charcoal", "--size", 96, "-o", "out/p.png"],
             "sphere": ["sphere", "--size", 96, "-o", "out"],
+            "info": ["info", "g.exr"],
+            "styles": ["styles", "check", source / "exemplars" / "charcoal", "--quiet"],
+            "compare": ["compare", "g.exr", "g.exr", "-o", "out/map.png"],
+            "compare, by FLIP": ["compare", "p.png", "p.png", "--flip", "-o", "out/map.png"],
         }
+        few_addresses(program, failures)
         least = first_loaded(program)
         runs = refused = 0
         for verb in sys.argv[4:] or verbs:

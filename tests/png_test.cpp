@@ -54,7 +54,7 @@ Picture Grey(Picture picture) {
 
 // By the picture library, whatever the file is.
 Expected<Picture> ReadByLibrary(const fs::path& path) {
-  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats());
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats("a test"));
   return formats->read_picture(path);
 }
 
@@ -247,7 +247,7 @@ TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
       EXPECT_EQ(plain->width, library->width);
       EXPECT_TRUE(plain->rgba == library->rgba);
       const auto head = internal::InspectPlainPng(*ReadWholeFile(folder / "p.png"));
-      const auto stored = (*LoadFormats())->inspect_stored(folder / "p.png");
+      const auto stored = (*LoadFormats("a test"))->inspect_stored(folder / "p.png");
       ASSERT_TRUE(head && stored);
       EXPECT_EQ(std::tie(head->width, head->height, head->channels, head->bits, head->settings),
                 std::tie(stored->width, stored->height, stored->channels, stored->bits, stored->settings));

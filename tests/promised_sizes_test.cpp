@@ -1,9 +1,12 @@
 // What a file promises and cannot hold is refused before memory is taken for it; what is packed as tightly as it can be
 // is read all the same.
 #include <gmock/gmock.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cstring>
+#include <span>
+#include <vector>
 
 #include "image/guides.h"
 #include "io/atomic_file.h"
@@ -92,6 +95,23 @@ TEST_F(Promises, ExrWindowsThatNoFileOfThatSizeHolds) {
       }
     }
   }
+}
+
+// A header at the beginning of a terabyte of addresses, of which a copy could not be made.
+TEST_F(Promises, ExrHeadersAreReadWhereTheyStand) {
+  const auto file = Guides("zip", 8);
+  constexpr std::size_t kTerabyte = std::size_t(1) << 40;
+  void* const start = ::mmap(nullptr, kTerabyte, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (start == MAP_FAILED) GTEST_SKIP() << "the system gives no terabyte of addresses";
+  std::memcpy(start, file.data(), file.size());
+  const std::span<const std::byte> bytes(static_cast<const std::byte*>(start), kTerabyte);
+  EXPECT_NO_THROW(EXPECT_TRUE(internal::CheckExrPromises(bytes, "g.exr")));
+  // Cut short at every place, in the header and behind it: never read beyond, which the sanitizers see.
+  for (std::size_t length = 0; length < file.size(); ++length) {
+    const std::vector<std::byte> cut(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(length));
+    static_cast<void>(internal::CheckExrPromises(cut, "g.exr"));
+  }
+  ::munmap(start, kTerabyte);
 }
 
 TEST_F(Promises, ExrAttributesOfAnotherSize) {

@@ -24,7 +24,7 @@ void CheckSame(const GuideSet& a, const GuideSet& b) {
 
 void Run(Bytes input) {
   const auto path = InFile("any.exr", input);
-  const auto formats = LoadFormats();
+  const auto formats = LoadFormats("a test");
   SCUMBLE_CHECK(formats.ok());
   const auto info = (*formats)->inspect_guides(path);
   CheckRefusal(info, 100000);  // lists what there is

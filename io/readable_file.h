@@ -1,0 +1,13 @@
+// Whether a file can be read at all, before a library is asked to.
+#pragma once
+
+#include <filesystem>
+
+#include "image/status.h"
+
+namespace scumble::internal {
+
+// Ok, or why not (kInput): it is missing, a folder, no regular file, empty, or not for this user. Thread-safe.
+Status CheckReadable(const std::filesystem::path& path);
+
+}  // namespace scumble::internal
