@@ -4,7 +4,7 @@ sentence with the file's name and the system's reason, an older file as it was, 
 cannot be kept is no failure at all.
 
 Runs in a mount namespace of its own, where it mounts a small disk in memory and a folder for reading only. Exit code 77
-(skipped) where the system allows no namespaces.
+(skipped) where the system allows no namespaces, or where no other user may run the program.
 
 Usage: faults_disk.py PROGRAM SOURCE
 """
@@ -109,7 +109,7 @@ def caches(program, failures, disk, read_only):
 
 
 def permissions(program, failures, scene):
-    """As a user whom the folder does not belong to; root may write anywhere."""
+    """As a user whom the folder does not belong to; root may write anywhere. False: there is no such user to be had."""
     closed = program.folder / "closed"
     closed.mkdir()
     (closed / "p.png").write_text("an older one")
@@ -119,14 +119,15 @@ def permissions(program, failures, scene):
         user = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
         if subprocess.run([*user, "true"], stderr=subprocess.DEVNULL).returncode != 0:
             print("no other user to be had: permissions are not tested")
-            return
+            return False
         program.folder.chmod(0o755)
     plain = program.path
     wrapper = program.folder / "as_user"
     wrapper.write_text("#!/bin/sh\nexec " + " ".join(user) + f" '{plain}' \"$@\"\n")
     wrapper.chmod(0o755)
     program.path = str(wrapper)
-    if program.run("--version")[0] != 0:
+    may_run = program.run("--version")[0] == 0
+    if not may_run:
         print("another user may not run the program where it is: permissions are not tested")
     else:
         refuses(program, failures, closed, scene, "Permission denied",
@@ -137,6 +138,7 @@ def permissions(program, failures, scene):
         code, said = program.run("info", secret)
         failures.check(code == 3 and "Permission denied" in faults.error_in(said), f"unreadable guides: {code}: {said}")
     program.path = plain
+    return may_run
 
 
 def main():
@@ -165,9 +167,11 @@ def main():
         refuses(program, failures, read_only, scene, "Read-only file system")
         caches(program, failures, disk, read_only)
         standard_output(program, failures)
-        permissions(program, failures, scene)
+        all_tried = permissions(program, failures, scene)
         for mounted in (disk, read_only):
             subprocess.run(["umount", str(mounted)])
+    if not failures.lines and not all_tried:
+        raise SystemExit(77)  # skipped: what could be tried is right
     failures.end()
 
 
