@@ -167,7 +167,15 @@ Status TradeReference::MeasureMosaic(const Picture& picture, const SourceField& 
 
 Expected<GuideDifference> TradeReference::Compare(const GuideSet& guides, double exposure) const {
   const GuideSpace* const space = style_.space.get();
-  if (space && space->has_radiance()) return CompareLight(guides, exposure, space->radiance(), space->white());
+  if (space && space->has_radiance()) {  // the layer that is farthest off: light that needs chance, where some does
+    GuideDifference worst;
+    for (const LayerInfo& info : AllLayers()) {
+      if (!GuideWeights::IsRadiance(info.layer) || !(style_.settings.guide_weights[info.layer] > 0.0f)) continue;
+      SCUMBLE_ASSIGN(const GuideDifference off, CompareLight(guides, exposure, info.layer, space->white()));
+      if (off.rms > worst.rms) worst = off;
+    }
+    return worst;
+  }
   if (!style_.illumination.active()) return CompareNormals(guides);
   const auto luminances = style_.illumination.luminances();
   const float brightest = *std::max_element(luminances.begin(), luminances.end());

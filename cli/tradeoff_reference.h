@@ -33,7 +33,7 @@ class TradeReference {
   Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
 
   // Over pixels that both cover: of normals the root of the mean squared distance, and FLIP of (n + 1) / 2 as a picture;
-  // where the style weighs light, of that light instead, exposed so that 1 is the exemplar's brightest tenth, and cut there.
+  // where the style weighs light, of its layer that is farthest off instead, exposed so that 1 is the exemplar's brightest tenth, and cut there.
   // The guides must have one size.
   Expected<GuideDifference> Compare(const GuideSet& guides, double exposure) const;
 

@@ -41,7 +41,7 @@ inline std::string_view AsText(Bytes bytes) { return {reinterpret_cast<const cha
 inline const std::filesystem::path& Folder() {
   struct Owner {
     std::filesystem::path path =
-        std::filesystem::temp_directory_path() / ("scumble-fuzz-" + std::to_string(::getpid()));
+        std::filesystem::temp_directory_path() / ("scumble_fuzz_" + std::to_string(::getpid()));
     Owner() { std::filesystem::create_directories(path); }
     ~Owner() {
       std::error_code ignored;
