@@ -75,7 +75,7 @@ class Picker {
   }
 
   void Store() const {
-    if (!calibration_.cache || measured_ == 0) return;
+    if (!calibration_.cache || measured_ == 0 || !cold_ms_) return;
     nlohmann::ordered_json json{{"circumstances", calibration_.circumstances},
                                 {"cold_ms", cold_ms_.value_or(0.0)},
                                 {"ways", nlohmann::ordered_json::object()}};

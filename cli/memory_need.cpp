@@ -119,7 +119,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
 // The sources of all pixels and what their match and votes look at.
 void AddSources(const PictureWork& work, const PictureOptions& options, const Size& size, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
-  bool keeps = work.keeps_field || options.upsample > 1, lit = false;
+  bool keeps = work.keeps_field, lit = false;
   Bytes of_pixel = 0, briefly = 0;
   int step = 1;
   for (const Style& style : work.styles) {
@@ -189,7 +189,7 @@ void AddPicture(const PictureWork& work, const PictureOptions& options, MemoryNe
   const Size size{work.guides.width * options.upsample, work.guides.height * options.upsample};
   const Bytes pixels = PixelsOf(size), encoded = EncodedBytes(options);
   if (work.is_sequence) need.Take("frame that is written", (kPaint + encoded) * pixels);
-  if (options.upsample > 1) need.Take("upsampled guides", kFloat * ChannelsOf(work.layers) * pixels);
+  if (options.upsample > 1) need.Take("upsampled guides", kFloat * ChannelsOf(Made(work.layers)) * pixels);
   if (!options.over.empty()) {
     need.Take("picture underneath", kPaint * pixels);
     need.Briefly("reading it", 2 * kPaint * pixels + kFormatsModule);

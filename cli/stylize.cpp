@@ -224,6 +224,7 @@ Status ChooseForSequence(TransferVerb& verb, const Sequence& sequence, StyleSet&
   const std::string file = name.At(frame);
   SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, read));
   read.blender_camera = camera.At(frame);
+  SCUMBLE_RETURN_IF_ERROR(CheckMemoryOfFile(verb, file, styles, read, true, globals));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
   EndStage(globals, "read");
   return ChooseForGuides(verb.budget, guides, file, styles, verb.picture, globals);
@@ -394,6 +395,7 @@ Expected<ExitCode> PrintPlan(const StylizeVerb& verb, StyleSet& styles, const Gl
 Status ChooseForStylize(StylizeVerb& verb, const std::optional<Sequence>& sequence, StyleSet& styles, const Globals& globals) {
   SceneOptions scene = verb.scene;
   scene.seed = verb.picture.seed, scene.fps = verb.picture.fps;
+  scene.more_memory = PaintingOf(styles, verb.picture, sequence.has_value(), globals);  // pictures are painted on trial
   const std::optional<int> frame = sequence ? sequence->frames.front() : verb.picture.frame;
   const int before = verb.picture.upsample;
   SCUMBLE_RETURN_IF_ERROR(ChooseForScene(verb.budget, scene, frame, styles, verb.picture, globals));
@@ -408,6 +410,7 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
     }
     SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.scene));
     SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
+    SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(verb, std::nullopt, styles, globals));
     verb.scene.more_memory = PaintingOf(styles, verb.picture, false, globals);
     return PrintPlan(verb, styles, globals);
   }

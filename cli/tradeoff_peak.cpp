@@ -2,21 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/blender_process.h"
 
 namespace scumble {
-
-std::size_t PeakOfThisProcess() {
-  std::ifstream file("/proc/self/status");
-  constexpr std::string_view kName = "VmHWM:";
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with(kName)) return std::stoull(line.substr(kName.size())) * 1024;
-  }
-  return 0;
-}
 
 std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals) {
   std::vector<std::string> words = {"tradeoff"};

@@ -10,10 +10,6 @@
 
 namespace scumble {
 
-// What this process has held at most so far, in bytes: libraries, scene and exemplars included. 0 where the system does not
-// tell. (getrusage would count what the parent held when it started this one.)
-std::size_t PeakOfThisProcess();
-
 // The verb's arguments that set this up, behind the program's name. No option of output is among them.
 std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals);
 

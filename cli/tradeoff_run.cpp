@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cli/machine.h"
+#include "cli/memory_limit.h"
 #include "cli/shell_word.h"
 #include "cli/tradeoff_peak.h"
 #include "cli/tradeoff_reference.h"
@@ -171,6 +172,9 @@ class Trade {
       if (!setup_.memory) continue;
       if (measure.total_ms.median <= 2.0 * kSlowMs) {
         SCUMBLE_ASSIGN(measure.memory_bytes, AskForPeak(setup_, ways[i].name, globals_));
+        if (measure.memory_bytes == 0) {
+          measure.note += std::string(measure.note.empty() ? "" : "; ") + "the process that was to tell its memory failed";
+        }
       }
       Finished(kMemoryWork);
     }
@@ -257,7 +261,7 @@ Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name
   auto guides = std::make_shared<const WayGuides>(std::move(made));
   SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup, *way, style, std::move(guides), globals));
   SCUMBLE_RETURN_IF_ERROR(painter.Paint());
-  return PeakOfThisProcess();
+  return static_cast<std::size_t>(PeakMemory());
 }
 
 }  // namespace scumble

@@ -56,6 +56,29 @@ TEST_F(CliBudget, CalibrationIsAStageOfItsOwn) {
   }
 }
 
+// A plan alone is that of the way that was picked: in a nanosecond guides of a quarter of the size.
+TEST_F(CliBudget, APlanIsOfWhatIsPicked) {
+  const auto guides_of = [&](const Arguments& more) {
+    const nlohmann::json report = RunOk(With(With(Stylize(), {"--explain", "--json"}), more)).Json();
+    for (const auto& part : report.at("memory").at("parts").items()) {
+      if (part.key() == "guides") return part.value().get<double>();
+    }
+    return 0.0;
+  };
+  EXPECT_GT(guides_of({}), 0.0);
+  EXPECT_EQ(guides_of({"--quality", "draft"}) * 16.0, guides_of({}));
+  EXPECT_LT(guides_of({"--budget-ms", "1e-6"}), guides_of({}));
+}
+
+// Memory is checked before anything is painted on trial.
+TEST_F(CliBudget, TrialsKeepToTheMemoryThatThereIs) {
+  const CommandResult run = Run(With(Stylize(), {"--budget-ms", "60", "--max-memory", "1M", "-o", "p.png"}));
+  EXPECT_EQ(run.code, 2) << run.err;
+  EXPECT_NE(run.err.find("--max-memory allows 1.0 MiB"), std::string::npos) << run.err;
+  EXPECT_TRUE(Kept().empty()) << "something was measured";
+  EXPECT_FALSE(Exists("p.png"));
+}
+
 // A nanosecond is enough for nothing: the quickest, with a warning that says what it needs, and no failure.
 TEST_F(CliBudget, WhereNothingFitsTheQuickestIsTakenWithAWarning) {
   for (const Arguments& command : {Stylize(), Transfer()}) {
