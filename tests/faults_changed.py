@@ -50,6 +50,21 @@ def both_ends(failures, ends, what):
     failures.check(ends.get(0, 0) > 0 and ends.get(3, 0) > 0, f"{what}: runs ended only with {ends}")
 
 
+def whole_or_refused(program, failures, run, times, output, whole, blamed, what):
+    """Every run ends with the whole bytes, or says what is wrong with the file that it blames; both must occur."""
+    ends = {}
+    for i in range(times):
+        output.unlink(missing_ok=True)
+        code, said = program.run(*run)
+        ends[code] = ends.get(code, 0) + 1
+        if code == 0:
+            failures.check(output.read_bytes() == whole, f"run {i}: other bytes: {said}")
+        else:
+            failures.check(is_refusal(code, said, blamed), f"run {i}: {code}: {said}")
+    print(f"{what}, exit codes:", ends, flush=True)
+    both_ends(failures, ends, what)
+
+
 def texture_that_vanishes(program, failures, chance):
     scene = faults.textured_scene(program.folder / "scene")
     run = ["guidegen", scene, "--size", 32, "--layers", "albedo", "-o", "square.exr"]
@@ -71,18 +86,8 @@ def texture_that_vanishes(program, failures, chance):
         os.rename(away, picture)
         time.sleep(chance.random() * 0.004)
 
-    ends = {}
     with Meanwhile(come_and_go):
-        for i in range(25):
-            output.unlink(missing_ok=True)
-            code, said = program.run(*run)
-            ends[code] = ends.get(code, 0) + 1
-            if code == 0:
-                failures.check(output.read_bytes() == whole, f"run {i}: other bytes: {said}")
-            else:
-                failures.check(is_refusal(code, said, "paint.png"), f"run {i}: {code}: {said}")
-    print("a texture that comes and goes, exit codes:", ends, flush=True)
-    both_ends(failures, ends, "a texture that comes and goes")
+        whole_or_refused(program, failures, run, 25, output, whole, "paint.png", "a texture that comes and goes")
     for damaged in (b"", b"\x89PNG", picture.read_bytes()[:200]):
         good = picture.read_bytes()
         picture.write_bytes(damaged)
@@ -116,18 +121,8 @@ def guides_cut_short(program, failures, chance):
         time.sleep(chance.random() * 0.004)
 
     guides.write_bytes(good)
-    ends = {}
     with Meanwhile(cut_and_mend):
-        for i in range(40):
-            output.unlink(missing_ok=True)
-            code, said = program.run(*run)
-            ends[code] = ends.get(code, 0) + 1
-            if code == 0:
-                failures.check(output.read_bytes() == whole, f"run {i}: other bytes")
-            else:
-                failures.check(is_refusal(code, said, "guides.exr"), f"run {i}: {code}: {said}")
-    both_ends(failures, ends, "guides cut and mended")
-    print("guides cut and mended while they are read, exit codes:", ends, flush=True)
+        whole_or_refused(program, failures, run, 40, output, whole, "guides.exr", "guides cut and mended while they are read")
 
 
 def pipes_nobody_reads(program, failures):

@@ -50,14 +50,14 @@ TEST_F(MemoryLimitTest, AMachineThatDoesNotTellRefusesNothing) {
 // Version 2: the group's limit without what it has, files that can be dropped apart; a parent's, where that is less.
 TEST_F(MemoryLimitTest, TheLeastOfItsControlGroups) {
   Machine();
-  Write("proc/self/cgroup", "0::/work/job\n");
-  Write("sys/fs/cgroup/work/job/memory.max", "max\n");
+  Write("proc/self/cgroup", "0::/farm/job\n");
+  Write("sys/fs/cgroup/farm/job/memory.max", "max\n");
   EXPECT_EQ(Limit().bytes, 4 * kGiga + 100 * kMega) << "no limit";
-  Write("sys/fs/cgroup/work/job/memory.max", "1073741824\n");
-  Write("sys/fs/cgroup/work/job/memory.current", "314572800\n");
-  Write("sys/fs/cgroup/work/job/memory.stat", "anon 1\ninactive_file 104857600\n");
+  Write("sys/fs/cgroup/farm/job/memory.max", "1073741824\n");
+  Write("sys/fs/cgroup/farm/job/memory.current", "314572800\n");
+  Write("sys/fs/cgroup/farm/job/memory.stat", "anon 1\ninactive_file 104857600\n");
   EXPECT_EQ(Limit().bytes, (1024 - 300 + 100 + 100) * kMega);
-  Write("sys/fs/cgroup/work/memory.max", "524288000\n");
+  Write("sys/fs/cgroup/farm/memory.max", "524288000\n");
   EXPECT_EQ(Limit().bytes, (500 + 100) * kMega);
   Write("sys/fs/cgroup/memory.max", "104857600\n");
   EXPECT_EQ(Limit().bytes, 200 * kMega) << "in a container the mounted folder is the group's own";
