@@ -22,15 +22,16 @@ test: ## install what is missing (Blender too), build everything, run all tests
 	@cmake --build build -j $(JOBS)
 	@ctest --test-dir build --output-on-failure -j $(JOBS)
 
-test-asan: ## unit tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
+test-asan: ## all tests but Blender's under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
 	@.ci/install test
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)
-	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -L unit
+	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -LE "blender|paint"
 
 test-tsan: ## unit tests under ThreadSanitizer, in build-tsan/
-	@.ci/install test
+	@.ci/install tsan
 	@cmake --preset tsan
+	@.ci/tsan_tbb build-tsan/onetbb
 	@cmake --build build-tsan -j $(JOBS)
 	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -L unit
 

@@ -9,15 +9,16 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "bench/or_stop.h"
 #include "bench/repeats.h"
+#include "cli/tradeoff_reference.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "image/stopwatch.h"
-#include "measure/energy.h"
 #include "measure/pareto.h"
 #include "style/style_file.h"
 #include "transfer/transfer.h"
@@ -67,94 +68,6 @@ std::vector<Candidate> Candidates(const Style& style, const Arguments& arguments
   return all;
 }
 
-// Guides that count beside normals, as the energy takes them: what the style weighs, or where it is painted for several
-// lights the luminance, by its weight.
-struct MoreGuides {
-  std::vector<std::vector<float>> target;
-  std::vector<std::vector<std::vector<float>>> exemplars;
-};
-
-MoreGuides MoreGuidesOf(const PreparedStyle& style, const GuideSet& guides, double exposure) {
-  const PreparedExemplar& exemplar = *style.exemplar;
-  const std::size_t pixels = std::size_t(exemplar.width()) * exemplar.height();
-  const float brightness = float(std::exp2(exposure));
-  MoreGuides more;
-  more.exemplars.resize(std::size_t(exemplar.count()));
-  if (style.space) {
-    const int rest = style.space->rest();
-    std::vector<float> point(std::size_t(std::max(rest, 1)));
-    more.target.assign(std::size_t(rest), std::vector<float>(guides.pixel_count()));
-    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-      style.space->Read(guides, i, brightness, point.data());
-      for (int d = 0; d < rest; ++d) more.target[std::size_t(d)][i] = point[std::size_t(d)];
-    }
-    for (int k = 0; k < exemplar.count(); ++k) {
-      auto& planes = more.exemplars[std::size_t(k)];
-      planes.assign(std::size_t(rest), std::vector<float>(pixels));
-      for (const Source at : exemplar.UsablePixels()) {
-        for (int d = 0; d < rest; ++d) {
-          planes[std::size_t(d)][std::size_t(at.y) * exemplar.width() + at.x] = style.space->RestAt(k, at)[d];
-        }
-      }
-    }
-  } else if (style.illumination.active()) {
-    const float weight = style.illumination.weight();
-    const auto luminance = guides.Plane(Layer::kLuminance);
-    more.target.emplace_back();
-    for (const float value : luminance) more.target.back().push_back(weight * std::min(1.0f, brightness * value));
-    for (int k = 0; k < exemplar.count(); ++k) {
-      const float painted = std::min(1.0f, style.illumination.luminances()[std::size_t(k)]);
-      more.exemplars[std::size_t(k)].emplace_back(pixels, weight * painted);
-    }
-  }
-  return more;
-}
-
-// The energy of pictures by one style of one scene, by the guides of the picture's own size.
-class Judge {
- public:
-  Judge(const PreparedStyle& style, const GuideSet& guides, double exposure)
-      : guides_(guides), more_(MoreGuidesOf(style, guides, exposure)) {
-    const PreparedExemplar& exemplar = *style.exemplar;
-    const std::size_t pixels = std::size_t(exemplar.width()) * exemplar.height();
-    usable_.assign(pixels, 0);
-    for (auto& plane : normal_) plane.assign(pixels, 0.0f);
-    for (const Source at : exemplar.UsablePixels()) {
-      const std::size_t i = std::size_t(at.y) * exemplar.width() + at.x;
-      const glm::vec3 normal = exemplar.Normal(at.x, at.y);
-      usable_[i] = 1;
-      for (int c = 0; c < 3; ++c) normal_[std::size_t(c)][i] = normal[c];
-    }
-    for (int k = 0; k < exemplar.count(); ++k) {
-      EnergyExemplar one{&exemplar.picture(k), {normal_[0], normal_[1], normal_[2]}, usable_};
-      for (const auto& plane : more_.exemplars[std::size_t(k)]) one.more_guides.emplace_back(plane);
-      exemplars_.push_back(std::move(one));
-    }
-  }
-
-  EnergyReport Measure(const Picture& picture, const SourceField& field, std::size_t samples) const {
-    EnergyTarget target{
-        &picture,
-        {guides_.Plane(Layer::kNormal, 0), guides_.Plane(Layer::kNormal, 1), guides_.Plane(Layer::kNormal, 2)},
-        guides_.Plane(Layer::kCoverage)};
-    for (const auto& plane : more_.target) target.more_guides.emplace_back(plane);
-    std::vector<std::uint8_t> covered(field.level.size());
-    std::transform(field.level.begin(), field.level.end(), covered.begin(),
-                   [](std::int8_t level) { return level != SourceField::kNoSource; });
-    const SourcePlanes sources{field.width, field.height, field.x, field.y, covered, field.exemplar};
-    EnergyOptions options;
-    options.samples = samples, options.sources = &sources;
-    return OrStop(MeasureEnergy(target, exemplars_, options));
-  }
-
- private:
-  const GuideSet& guides_;
-  MoreGuides more_;
-  std::vector<std::uint8_t> usable_;
-  std::array<std::vector<float>, 3> normal_;
-  std::vector<EnergyExemplar> exemplars_;
-};
-
 struct MadeGuides {
   GuideSet guides;
   std::vector<double> ms;
@@ -190,9 +103,9 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
   }
   TransferOptions options;
   options.exposure = MeasureExposure({prepared.data(), 1}, guides[1].guides).value_or(0.0);
-  const Judge judge(prepared.front(), guides[1].guides, options.exposure);
+  const TradeReference judge(std::make_shared<const GuideSet>(guides[1].guides), prepared.front(), options.exposure, 0);
   std::vector<std::vector<double>> ms(candidates.size());
-  std::vector<EnergyReport> energy(candidates.size());
+  std::vector<TradeMeasure> energy(candidates.size());
   for (int run = 0; run <= arguments.runs; ++run) {  // in turns, so that what else the machine does meets all of them
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       TransferScratch scratch;
@@ -201,7 +114,9 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
       Stopwatch watch;
       OrStop(Transfer(prepared[i], guides[candidates[i].upsample].guides, options, scratch, picture));
       if (run > 0) ms[i].push_back(watch.Lap());
-      if (run == 0) energy[i] = judge.Measure(picture, scratch.field, arguments.samples);
+      EnergyOptions patches;
+      patches.samples = arguments.samples;
+      if (run == 0) OrStop(judge.MeasurePaint(picture, &scratch.field, patches, energy[i]));
     }
   }
   std::vector<TradePoint> whole, transfer_alone;

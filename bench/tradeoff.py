@@ -36,9 +36,11 @@ NONE = "–"
 
 def measure(options, name):
     scene, style, _, size, own_options = SAMPLES[name]
+    # An axis that only the whole grid has is measured with --quick, too.
+    verb_options = [one for one in options.verb_options if one != "--quick" or "--only" not in own_options]
     # The scene's path as it is anywhere: the report says how to repeat it, on any machine.
     command = [options.build / "scumble", "tradeoff", "scenes/%s.glb" % scene, "--style", style,
-               "--size", options.size or size, "-o", options.output / name] + own_options + options.verb_options
+               "--size", options.size or size, "-o", options.output / name] + own_options + verb_options
     # The verb's own table and progress go where ours would.
     if subprocess.run([str(part) for part in command], cwd=ROOT).returncode != 0:
         sys.exit("%s: scumble tradeoff failed, see above" % name)

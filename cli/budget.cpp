@@ -10,6 +10,7 @@
 #include "cli/cache.h"
 #include "cli/calibration.h"
 #include "cli/machine.h"
+#include "cli/memory_need.h"
 #include "cli/needed_textures.h"
 #include "cli/picture_settings.h"
 #include "cli/quality_ladder.h"
@@ -94,8 +95,10 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
 // What times depend on in either verb, as text. Not the frame: all frames of a scene are to look alike.
 std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture, const Globals& globals) {
   ExemplarHashes hashes;
-  return fmt::format("{}; {}{}", MachineName(globals.threads),
+  const std::size_t all = styles.styles.size();
+  return fmt::format("{}; {}{}{}", MachineName(globals.threads),
                      SettingsText(styles, SettingsOf(picture, {}, {}), hashes),
+                     all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
                      KeepsField(picture, globals) ? "; keeps the field" : "");
 }
 
@@ -127,6 +130,10 @@ Expected<OpenedScene> OpenToMeasure(const SceneOptions& options, std::optional<i
   SCUMBLE_ASSIGN(Scene scene, SceneToMeasure(options, frame, globals, film));
   SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, WishesOf(scene.instances, scene), options.scene));
   SCUMBLE_ASSIGN(PreparedView view, ViewScene(scene, options, layers));
+  MemoryNeed need;
+  AddProgram(globals.threads, need);
+  AddScene(scene, CountNeededPixels(scene, options, layers), need);
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals, "give the scene smaller textures"));
   // Which is reading, and counts as little as that of the scene.
   SCUMBLE_RETURN_IF_ERROR(DecodeNeededTextures(scene, options, layers));
   return OpenedScene{std::move(scene), std::move(view.camera), layers};
@@ -166,11 +173,11 @@ Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options) {
   return Ok();
 }
 
-Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name, StyleSet& styles,
-                       PictureOptions& picture, const Globals& globals) {
+Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name,
+                       std::optional<int> frame, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
   if (!options.chooses()) return Ok();
-  const LadderFrame frame{false, guides.width(), guides.height(), true};
-  if (!options.quality.empty()) return TakeQuality(options, frame, styles, picture, globals);
+  const LadderFrame ladder{false, guides.width(), guides.height(), true};
+  if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
   const auto coverage = guides.Plane(Layer::kCoverage);
   const auto covered = std::count_if(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
   // Frames of one shot are alike: how much is covered counts in 64ths.
@@ -178,8 +185,8 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, con
       fmt::format("transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
                   guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
-  PaintTrial trial(styles, picture, name, globals);
-  return TakeWithin(options, frame, circumstances, styles, picture, globals,
+  PaintTrial trial(styles, picture, name, frame, globals);
+  return TakeWithin(options, ladder, circumstances, styles, picture, globals,
                     [&](const Way& way) { return trial.Paint(way, guides); });
 }
 
@@ -197,7 +204,7 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
   Globals silent = globals;
   silent.quiet = true, silent.timing = nullptr;
   std::optional<OpenedScene> opened;
-  PaintTrial trial(styles, picture, scene.scene, globals);
+  PaintTrial trial(styles, picture, scene.scene, frame, globals);
   return TakeWithin(options, ladder, circumstances, styles, picture, globals, [&](const Way& way) -> Expected<double> {
     if (!opened) {
       SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));

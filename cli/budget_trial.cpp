@@ -1,9 +1,11 @@
 #include "cli/budget_trial.h"
 
 #include "cli/cache.h"
+#include "cli/frames.h"
 #include "cli/quality_ladder.h"
 #include "cli/show.h"
 #include "image/stopwatch.h"
+#include "io/picture_file.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -26,6 +28,16 @@ Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample)
   return Ok();
 }
 
+Expected<const Picture*> PaintTrial::Over(const GuideSet& guides) {
+  if (picture_.over.empty()) return static_cast<const Picture*>(nullptr);
+  if (!over_) {
+    SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(picture_.over));
+    SCUMBLE_ASSIGN(over_, ReadPicture(frame_ ? name.At(*frame_) : picture_.over));
+  }
+  const bool fits = over_->width == guides.width() && over_->height == guides.height();
+  return fits ? &*over_ : nullptr;
+}
+
 Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
   const int upsample = picture_.upsample * UpsampleOf(way);
   SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample));
@@ -45,7 +57,8 @@ Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
   }
   TransferOptions options;
   options.seed = picture_.seed, options.exposure = exposure_, options.threads = globals_.threads;
-  options.frame = picture_.frame.value_or(0);
+  options.frame = frame_.value_or(0);
+  SCUMBLE_ASSIGN(options.over, Over(guides));
   options.keep_field = KeepsField(picture_, globals_);
   TransferScratch scratch;
   Picture picture;

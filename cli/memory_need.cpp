@@ -143,10 +143,11 @@ void AddSources(const PictureWork& work, const PictureOptions& options, const Si
 
 void AddProgram(int threads, MemoryNeed& need) { need.Take("program", kProgram + kThread * ThreadsOf(threads)); }
 
-void AddScene(const Scene& scene, MemoryNeed& need) {
-  Bytes bytes = 0;
+void AddScene(const Scene& scene, std::uint64_t more_pixels, MemoryNeed& need) {
+  Bytes bytes = kPaint * more_pixels;
   for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size();
   for (const Picture& texture : scene.textures) bytes += kPaint * Bytes(texture.width) * Bytes(texture.height);
+  for (const auto& texture : scene.encoded_textures) bytes += texture ? Bytes(texture->bytes) : 0;
   need.Take("scene", bytes);
 }
 

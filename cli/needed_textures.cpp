@@ -4,12 +4,23 @@
 #include "guidegen/scene_textures.h"
 
 namespace scumble {
+namespace {
 
-Expected<SceneCost> DecodeNeededTextures(Scene& scene, const SceneOptions& options, const LayerSet& layers) {
+GuidegenOptions NeedsOf(const SceneOptions& options, const LayerSet& layers) {
   GuidegenOptions needs;  // nothing else of them says which textures are looked at
   needs.layers = layers;
   needs.max_bounces = options.max_bounces;
-  SCUMBLE_ASSIGN(const DecodedTextures decoded, DecodeTextures(scene, needs));
+  return needs;
+}
+
+}  // namespace
+
+std::uint64_t CountNeededPixels(const Scene& scene, const SceneOptions& options, const LayerSet& layers) {
+  return CountNeededPixels(scene, NeedsOf(options, layers));
+}
+
+Expected<SceneCost> DecodeNeededTextures(Scene& scene, const SceneOptions& options, const LayerSet& layers) {
+  SCUMBLE_ASSIGN(const DecodedTextures decoded, DecodeTextures(scene, NeedsOf(options, layers)));
   for (const std::string& warning : decoded.warnings) Warn(options.scene + ": " + warning);
   SceneCost cost;
   cost.textures_decoded = decoded.count;

@@ -5,6 +5,9 @@
 
 namespace scumble {
 
+// How many pixels that will be; by the files' headers.
+std::uint64_t CountNeededPixels(const Scene& scene, const SceneOptions& options, const LayerSet& layers);
+
 // Decodes what casting these layers needs and is not decoded yet; it stays in the scene. Warns of what is left out.
 // Returns what it took; the rest of the cost is 0.
 Expected<SceneCost> DecodeNeededTextures(Scene& scene, const SceneOptions& options, const LayerSet& layers);

@@ -292,16 +292,15 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   if (options.samples_given) guidegen.max_samples = options.samples;
   result.plan = PlanGuides(scene, guidegen);
   AddProgram(globals.threads, result.memory);
+  AddScene(scene, CountNeededPixels(scene, options, layers), result.memory);
   AddGuides(size, layers, options, result.memory);
   if (options.more_memory) options.more_memory(size, layers, result.memory);
-  if (plan_only) return AddScene(scene, result.memory), result;
-
+  if (plan_only) return result;
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, globals, "take a smaller --size, or fewer layers"));
   Stopwatch watch;
   SCUMBLE_ASSIGN(result.cost, DecodeNeededTextures(scene, options, layers));
   const double textures_ms = watch.Lap();
-  AddScene(scene, result.memory);
   EndStage(globals, "scene");
-  SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, globals, "take a smaller --size, or fewer layers"));
   SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
                                                : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);

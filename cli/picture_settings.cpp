@@ -63,9 +63,11 @@ std::uint64_t HashOfExemplar(const Exemplar& exemplar) {
   return exemplar.guides ? Hash(hash, HashOfGuides(*exemplar.guides)) : hash;
 }
 
-std::uint64_t HashOfStyles(const StyleSet& styles, ExemplarHashes& known) {
+}  // namespace
+
+std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known) {
   std::uint64_t hash = 0;
-  for (std::size_t i = 0; i < styles.chosen; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const Style& style = styles.styles[i];
     hash = Hash(hash, HashText(TextOf(style.transfer)), style.exemplars.size());
     for (std::size_t e = 0; e < style.exemplars.size(); ++e) {
@@ -83,11 +85,9 @@ std::uint64_t HashOfStyles(const StyleSet& styles, ExemplarHashes& known) {
   return hash;
 }
 
-}  // namespace
-
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}", SCUMBLE_VERSION,
-                                 HashOfStyles(styles, known), settings.seed, settings.over ? "a picture" : "nothing",
+                                 HashOfStyles(styles, styles.chosen, known), settings.seed, settings.over ? "a picture" : "nothing",
                                  settings.show.empty() ? "result" : settings.show);
   if (settings.upsample > 1) text += fmt::format("; upsample {}", settings.upsample);
   if (settings.fps) text += fmt::format("; fps {}", double(settings.fps->numerator) / double(settings.fps->denominator));

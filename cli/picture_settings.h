@@ -24,6 +24,9 @@ struct PictureSettings {
   std::optional<double> exposure;  // where it is known; counts for styles of several exemplars
 };
 
+// Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.
+std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known);
+
 // The text: parts "name value" with semicolons between, as io/whole_output.h compares them. It holds nothing that stylize
 // and transfer do not both know, and nothing that makes no other picture, so that equal pictures stay equal files. The
 // styles must be at the picture's frame (SetStyleFrame); those that a scene asks for are not told of.

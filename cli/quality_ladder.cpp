@@ -20,12 +20,14 @@ struct Lever {
   const char* text;
   KeyValue value;
   bool (*changes)(const TransferSettings& settings);
+  bool (*raises)(const TransferSettings& settings) = nullptr;  // to more than the style itself has; null: never
 };
 
 std::span<const Lever> Levers() {
   static const std::vector<Lever> kLevers = {
       {"transfer.method", "styleblit", std::string("styleblit"),
-       [](const TransferSettings& settings) { return settings.method == Method::kBruteForce; }},
+       [](const TransferSettings& settings) { return settings.method == Method::kBruteForce; },
+       [](const TransferSettings& settings) { return settings.method == Method::kLitSphere; }},
       {"transfer.method", "litsphere", std::string("litsphere"),
        [](const TransferSettings& settings) { return settings.method != Method::kLitSphere; }},
       {"transfer.blend_radius", "0", std::int64_t(0),
@@ -83,12 +85,16 @@ bool HasTrack(const Style& style, const std::string& key) {
   return std::any_of(style.tracks.begin(), style.tracks.end(), [&](const StyleTrack& one) { return one.name == key; });
 }
 
+// Of several styles, which take one setting, none may come to more than it has.
 bool ChangesSomething(const Lever& lever, const StyleSet& styles) {
+  bool changes = false;
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     if (IsSetByUser(styles, i, lever.key)) continue;
-    if (HasTrack(styles.styles[i], lever.key) || lever.changes(styles.styles[i].transfer)) return true;
+    const TransferSettings& own = styles.styles[i].transfer;
+    if (lever.raises && lever.raises(own)) return false;
+    changes = changes || HasTrack(styles.styles[i], lever.key) || lever.changes(own);
   }
-  return false;
+  return changes;
 }
 
 // How much smaller the guides can be, where so much is wanted.

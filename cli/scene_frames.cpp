@@ -109,8 +109,9 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
   const auto camera_of = [this](const Scene& scene) -> const Camera& {
     return by_file_ ? scene.cameras[static_cast<std::size_t>(*by_file_)] : camera_;
   };
-  const NextFrame next{next_, camera_of(next_)};
-  SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), motion_ ? &next : nullptr, options_, layers_,
+  // Without motion the next scene is empty: it has no camera either.
+  const auto next = motion_ ? std::optional(NextFrame{next_, camera_of(next_)}) : std::nullopt;
+  SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_,
                                                globals_, progress, false));
   guides.times.insert(guides.times.begin(), {"move", move_ms});
   if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});

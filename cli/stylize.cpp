@@ -227,7 +227,7 @@ Status ChooseForSequence(TransferVerb& verb, const Sequence& sequence, StyleSet&
   SCUMBLE_RETURN_IF_ERROR(CheckMemoryOfFile(verb, file, styles, read, true, globals));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
   EndStage(globals, "read");
-  return ChooseForGuides(verb.budget, guides, file, styles, verb.picture, globals);
+  return ChooseForGuides(verb.budget, guides, file, frame, styles, verb.picture, globals);
 }
 
 // Fills places for a frame's number in the names of a single picture.
@@ -284,7 +284,7 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   const double read_ms = watch.Lap();
   EndStage(globals, "read");
-  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.guides, styles, verb.picture, globals));
+  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.guides, verb.picture.frame, styles, verb.picture, globals));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", read_ms}}, {}, {}, memory};
   return RunTransfer(styles, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));

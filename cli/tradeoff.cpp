@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 
 #include "cli/command.h"
@@ -26,7 +28,7 @@ struct TradeoffVerb {
   std::string peak_of;  // a way's name: its memory alone, for the process that AskForPeak starts
 };
 
-constexpr const char* kPictures = "pictures";
+constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json";
 
 // Told before minutes of work: whether the folder can be made and written to, and takes the place of nothing that is read.
 Status PrepareFolder(const TradeoffVerb& verb) {
@@ -43,20 +45,52 @@ Status PrepareFolder(const TradeoffVerb& verb) {
   style.scene_styles = false;
   SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style));
   files.ReadsStyles(styles);
-  for (const char* name : {"report.html", "tradeoff.csv", "tradeoff.json", "chart.svg"}) {
+  for (const char* name : {"report.html", "tradeoff.csv", kJson, "chart.svg"}) {
     SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
+  }
+  // How pictures will be called is known only later: none of those that are there may be one that is read.
+  for (const fs::directory_entry& entry : fs::directory_iterator(pictures, failed)) {
+    if (entry.path().extension() == ".png") SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(entry.path().string()));
   }
   return files.CheckOutput((pictures / "00.png").string());
 }
 
+// What PrepareFolder made and nothing was written into.
+void RemoveEmptyFolder(const std::string& folder) {
+  std::error_code ignored;
+  if (fs::is_empty(fs::path(folder) / kPictures, ignored)) fs::remove(fs::path(folder) / kPictures, ignored);
+  if (fs::is_empty(folder, ignored)) fs::remove(folder, ignored);
+}
+
+// Those that an earlier report names and this one does not; nobody else's.
+void RemoveOldPictures(const std::string& folder, const TradeReport& report) {
+  const auto bytes = ReadWholeFile(fs::path(folder) / kJson);
+  if (!bytes) return;
+  const auto* const text = reinterpret_cast<const char*>(bytes->data());
+  const auto old = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
+  if (!old.is_object() || !old.contains("ways") || !old["ways"].is_array()) return;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < report.ways.size(); ++i) names.insert(TradePictureName(report, i));
+  for (const auto& way : old["ways"]) {
+    const auto picture = way.is_object() ? way.find("picture") : way.end();
+    if (picture == way.end() || !picture->is_string()) continue;
+    const fs::path name = picture->get<std::string>();
+    std::error_code ignored;
+    if (name.extension() == ".png" && name == name.filename() && !names.contains(name.string())) {
+      fs::remove(fs::path(folder) / kPictures / name, ignored);
+    }
+  }
+}
+
 // The page last: where it is, all that it tells of is there.
 Status WriteFolder(const std::string& folder, const TradeReport& report) {
+  RemoveOldPictures(folder, report);
   for (std::size_t i = 0; i < report.ways.size(); ++i) {
     const fs::path file = fs::path(folder) / kPictures / TradePictureName(report, i);
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.ways[i].picture_png))));
   }
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.csv", TradeCsv(report)));
-  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.json", TradeJson(report)));
+  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / kJson, TradeJson(report)));
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "chart.svg", TradeChart(report)));
   return WriteFileAtomically(fs::path(folder) / "report.html", TradeHtml(report));
 }
@@ -70,8 +104,13 @@ Expected<ExitCode> RunTradeoffVerb(const TradeoffVerb& verb, const Globals& glob
   }
   if (!verb.folder.empty()) SCUMBLE_RETURN_IF_ERROR(PrepareFolder(verb));
   ProgressBar bar("tradeoff", globals.quiet);
-  SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals, bar));
+  const Expected<TradeReport> measured = MeasureTradeoff(verb.setup, globals, bar);
   bar.Clear();
+  if (!measured) {
+    if (!verb.folder.empty()) RemoveEmptyFolder(verb.folder);
+    return measured.error();
+  }
+  const TradeReport& report = *measured;
   if (!verb.folder.empty()) {
     SCUMBLE_RETURN_IF_ERROR(WriteFolder(verb.folder, report));
     Say(globals, (fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");

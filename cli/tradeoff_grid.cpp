@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "cli/assignments.h"
+#include "transfer/transfer.h"
 
 namespace scumble {
 namespace {
 
-constexpr int kBruteForcePixels = 1 << 20;  // more are refused by the transfer
-constexpr int kConverged = 1024;            // samples
+constexpr int kConverged = 1024;  // samples
 
 const char* NameOf(Method method) {
   switch (method) {
@@ -44,7 +44,7 @@ class Grid {
 
  private:
   bool BruteForceFits() const {
-    return std::int64_t(options_.width) * options_.height <= kBruteForcePixels;
+    return std::size_t(options_.width) * std::size_t(options_.height) <= kMostBruteForcePixels;
   }
   bool HalfFits() const { return options_.width % 2 == 0 && options_.height % 2 == 0; }
   bool IsPlain() const { return style_.guide_weights.ArePlain(); }
@@ -73,7 +73,7 @@ class Grid {
       if (method == style_.method) continue;
       if (method == Method::kBruteForce && (options_.quick || !BruteForceFits())) {
         if (!options_.quick) {
-          grid_.left_out.push_back(fmt::format("method bruteforce, which is for pictures of at most {} pixels", kBruteForcePixels));
+          grid_.left_out.push_back(fmt::format("method bruteforce, which is for pictures of at most {} pixels", kMostBruteForcePixels));
         }
         continue;
       }

@@ -81,13 +81,14 @@ struct EncodedPicture {
   std::filesystem::path beside;  // the file that has them instead; empty: none
 };
 
-Expected<Picture> Decode(const EncodedPicture& encoded) {
+// Reads it with a function of its bytes and of a name for messages.
+template <class Read>
+auto ReadWith(const EncodedPicture& encoded, const Read& read) -> decltype(read({}, "")) {
   std::span<const unsigned char> bytes(encoded.bytes);
-  std::vector<std::byte> read;
+  std::vector<std::byte> whole;
   if (!encoded.beside.empty()) {
-    Expected<std::vector<std::byte>> whole = ReadRegularFile(encoded.beside);
-    if (whole) read = *std::move(whole);
-    bytes = AsChars(read);
+    if (auto file = ReadRegularFile(encoded.beside)) whole = *std::move(file);
+    bytes = AsChars(whole);
   }
   if (bytes.empty()) {
     return InputError(encoded.file + ": " + encoded.label + ", used by " + encoded.owner +
@@ -100,9 +101,9 @@ Expected<Picture> Decode(const EncodedPicture& encoded) {
   }
   // The decoder goes by the ending of the name.
   const std::string name = encoded.file + ": image " + std::to_string(encoded.number) + *ending;
-  Expected<Picture> picture = DecodePicture(std::as_bytes(bytes), name);
-  if (!picture) return Error{picture.error().kind, picture.error().message + " (" + encoded.label + ")"};
-  return picture;
+  auto result = read(std::as_bytes(bytes), name);
+  if (!result) return Error{result.error().kind, result.error().message + " (" + encoded.label + ")"};
+  return result;
 }
 
 // Keeps each picture once, to be decoded later, and gives the indices of Scene::textures.
@@ -170,7 +171,15 @@ class TextureLoader {
       encoded.beside = PictureFile(file_, image.uri);
     }
     auto kept_texture = std::make_shared<EncodedTexture>();
-    kept_texture->decode = [kept = std::make_shared<const EncodedPicture>(std::move(encoded))] { return Decode(*kept); };
+    kept_texture->bytes = encoded.bytes.size();
+    const auto kept = std::make_shared<const EncodedPicture>(std::move(encoded));
+    using Bytes = std::span<const std::byte>;
+    kept_texture->decode = [kept] {
+      return ReadWith(*kept, [](Bytes bytes, const std::string& name) { return DecodePicture(bytes, name); });
+    };
+    kept_texture->count_pixels = [kept] {
+      return ReadWith(*kept, [](Bytes bytes, const std::string& name) { return CountPixels(bytes, name); });
+    };
     scene_.textures.emplace_back();
     scene_.encoded_textures.push_back(std::move(kept_texture));
     const int index = static_cast<int>(scene_.textures.size()) - 1;

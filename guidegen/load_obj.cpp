@@ -253,6 +253,7 @@ class ObjLoader {
     if (!mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size())).second) return;
     auto texture = std::make_shared<EncodedTexture>();
     texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file); };
+    texture->count_pixels = [file = BesideScene(path_, name)] { return CountPixels(file); };
     texture->leave_out = [mtl = mtl_](Scene& scene) {
       for (std::size_t i = 0; i < mtl->materials.size(); ++i) {
         Material made = MakeMaterial(*mtl, i, scene);

@@ -19,7 +19,9 @@ class PictureBudget {
 
   // One more picture; kInput, naming the file, where it is one too many.
   Status Take(const std::string& file, const Picture& picture) {
-    const std::uint64_t pixels = std::uint64_t(picture.width) * std::uint64_t(picture.height);
+    return Take(file, std::uint64_t(picture.width) * std::uint64_t(picture.height));
+  }
+  Status Take(const std::string& file, std::uint64_t pixels) {
     if (pixels <= max_pixels_ - taken_) {
       taken_ += pixels;
       return Ok();

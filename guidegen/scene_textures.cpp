@@ -1,6 +1,7 @@
 #include "guidegen/scene_textures.h"
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "guidegen/bsdf.h"
@@ -16,6 +17,13 @@ bool IsEncoded(const Scene& scene, std::size_t texture) {
   return texture < scene.encoded_textures.size() && scene.encoded_textures[texture];
 }
 
+// Nothing where it cannot be read.
+std::optional<std::uint64_t> CountPixels(const EncodedTexture& texture) {
+  if (!texture.count_pixels) return std::nullopt;
+  const Expected<std::uint64_t> pixels = texture.count_pixels();
+  return pixels ? std::optional(*pixels) : std::nullopt;
+}
+
 // Decodes those that `wanted(scene)` names. What is left out may change materials, and with them what is wanted.
 template <class Wanted>
 Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
@@ -28,9 +36,11 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!needed[i] || !IsEncoded(scene, i)) continue;
       const std::shared_ptr<const EncodedTexture> encoded = scene.encoded_textures[i];
+      const std::optional<std::uint64_t> promised = CountPixels(*encoded);
+      if (promised) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *promised));
       Expected<Picture> picture = encoded->decode();
       if (!picture && !encoded->leave_out) return picture.error();
-      if (picture) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *picture));
+      if (picture && !promised) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *picture));
       scene.encoded_textures[i].reset();
       if (picture) {
         ++done.count;
@@ -67,6 +77,15 @@ std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& opti
     need(lit && MayEmit(material), material.emission_texture);
   }
   return needed;
+}
+
+std::uint64_t CountNeededPixels(const Scene& scene, const GuidegenOptions& options) {
+  const std::vector<bool> needed = NeededTextures(scene, options);
+  std::uint64_t pixels = 0;
+  for (std::size_t i = 0; i < needed.size(); ++i) {
+    if (needed[i] && IsEncoded(scene, i)) pixels += CountPixels(*scene.encoded_textures[i]).value_or(0);
+  }
+  return pixels;
 }
 
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options) {

@@ -22,6 +22,10 @@ struct DecodedTextures {
   std::vector<std::string> warnings;  // of textures that are left out
 };
 
+// How many pixels those would have that are not decoded yet, by their headers; of one that cannot be read none: decoding it
+// says why.
+std::uint64_t CountNeededPixels(const Scene& scene, const GuidegenOptions& options);
+
 // Decodes what RenderGuides needs with these options and is not decoded yet. A picture that is missing or broken is an
 // error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than PictureBudget
 // has are an error that names the scene. After an error nothing that was decoded is lost.

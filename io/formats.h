@@ -39,6 +39,7 @@ namespace formats {
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
+Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name);  // in memory
 Expected<StoredPicture> InspectStored(const std::filesystem::path& path);
 Expected<std::vector<std::byte>> EncodePicture(const std::filesystem::path& path, const Picture& picture,
                                                const PictureWriteOptions& options);
@@ -68,6 +69,7 @@ struct Formats {
   decltype(&formats::ReadPicture) read_picture;
   decltype(&formats::DecodePicture) decode_picture;
   decltype(&formats::InspectPicture) inspect_picture;
+  decltype(&formats::InspectEncoded) inspect_encoded;
   decltype(&formats::InspectStored) inspect_stored;
   decltype(&formats::EncodePicture) encode_picture;
   decltype(&formats::ReadChannels) read_channels;

@@ -10,9 +10,9 @@ namespace scumble {
 extern "C" {
 __attribute__((visibility("default"))) extern const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL);
 const Formats SCUMBLE_JOINED(scumble_formats_, SCUMBLE_MODULE_SYMBOL) = {
-    kFormatsLayout,        formats::ReadPicture,  formats::DecodePicture, formats::InspectPicture,
-    formats::InspectStored, formats::EncodePicture, formats::ReadChannels,  formats::ReadGuides,
-    formats::InspectGuides,   formats::SetThreads,
+    kFormatsLayout,          formats::ReadPicture,   formats::DecodePicture, formats::InspectPicture,
+    formats::InspectEncoded, formats::InspectStored, formats::EncodePicture, formats::ReadChannels,
+    formats::ReadGuides,     formats::InspectGuides, formats::SetThreads,
 };
 }
 

@@ -51,6 +51,20 @@ Status CheckIfPng(const std::filesystem::path& path) {
   return CheckPngIsWhole(bytes, path.string());
 }
 
+Error OpenFailure(const std::string& reason, const std::string& name) {
+  return InputError("cannot read " + name + ": " + LibraryReason(reason, name));
+}
+
+// Where a reader turns a file down, OpenImageIO lets all the others try it, video and raw photographs among them. What
+// begins as EXR is for EXR's reader alone: the others could only waste time on it, or trip over it.
+Expected<std::unique_ptr<OIIO::ImageInput>> OpenExr(const std::string& name, const OIIO::ImageSpec& config) {
+  auto input = OIIO::ImageInput::create("openexr");
+  if (!input) return OpenFailure(OIIO::geterror(), name);
+  OIIO::ImageSpec spec;
+  if (!input->open(name, spec, config)) return OpenFailure(input->geterror(), name);
+  return input;
+}
+
 }  // namespace
 
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path) {
@@ -62,8 +76,9 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   if (auto whole = CheckIfPng(path); !whole) return whole.error();
   if (auto kept = CheckExrPromises(path); !kept) return kept.error();
   const OIIO::ImageSpec config = StraightAlpha();
+  if (IsExrFile(path)) return OpenExr(path.string(), config);
   auto input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) return InputError("cannot read " + path.string() + ": " + LibraryReason(OIIO::geterror(), path.string()));
+  if (!input) return OpenFailure(OIIO::geterror(), path.string());
   return input;
 }
 
@@ -76,7 +91,7 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemRea
   void* pointer = &proxy;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
   auto input = OIIO::ImageInput::open(name, &config, &proxy);
-  if (!input) return InputError("cannot read " + name + ": " + LibraryReason(OIIO::geterror(), name));
+  if (!input) return OpenFailure(OIIO::geterror(), name);
   return input;
 }
 

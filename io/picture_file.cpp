@@ -1,6 +1,7 @@
 #include "io/picture_file.h"
 
 #include <array>
+#include <fstream>
 #include <utility>
 
 #include "image/color.h"
@@ -22,6 +23,11 @@ namespace {
 std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name) {
   if (!internal::IsPng(bytes) || !internal::CheckPngIsWhole(bytes, name)) return std::nullopt;
   return internal::ReadPlainPng(bytes);
+}
+
+template <class Header>
+std::uint64_t PixelsOf(const Header& header) {
+  return std::uint64_t(header.width) * std::uint64_t(header.height);
 }
 
 std::vector<std::byte> Png(const Picture& picture, const PictureWriteOptions& options) {
@@ -72,6 +78,30 @@ Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::str
   if (auto picture = ReadIfPlainPng(bytes, name)) return *std::move(picture);
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(name));
   return formats->decode_picture(bytes, name);
+}
+
+Expected<std::uint64_t> CountPixels(const std::filesystem::path& path) {
+  if (internal::IsPngFile(path)) {
+    std::array<std::byte, internal::kPngHeaderBytes> start;
+    std::ifstream file(path, std::ios::binary);
+    if (file.read(reinterpret_cast<char*>(start.data()), start.size())) {
+      if (const auto header = internal::ReadPngHeader(start)) return PixelsOf(*header);
+    }
+  }
+  if (IsZip(path)) {
+    SCUMBLE_ASSIGN(const MergedHeader merged, InspectMergedLayers(path));
+    return PixelsOf(merged);
+  }
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
+  SCUMBLE_ASSIGN(const StoredPicture stored, formats->inspect_stored(path));
+  return PixelsOf(stored);
+}
+
+Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name) {
+  if (const auto header = internal::ReadPngHeader(bytes)) return PixelsOf(*header);
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(name));
+  SCUMBLE_ASSIGN(const PictureHeader header, formats->inspect_encoded(bytes, name));
+  return PixelsOf(header);
 }
 
 Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {

@@ -30,6 +30,11 @@ struct PictureHeader {
 };
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 
+// How many pixels ReadPicture would make, by as little of the file as tells: to be asked before they take memory. Errors
+// are those of reading it, as far as the header shows them. Thread-safe.
+Expected<std::uint64_t> CountPixels(const std::filesystem::path& path);
+Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name);
+
 // ReadPicture from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
 // messages.
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);

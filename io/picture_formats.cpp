@@ -234,6 +234,18 @@ Status CheckJpegIsWhole(std::span<const std::byte> bytes, const std::string& nam
   return InputError("cannot read " + name + ": the JPEG file ends before its picture does; copy or save it again");
 }
 
+PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
+  const double per_unit = spec.get_float_attribute("XResolution", 0.0f);
+  const std::string unit(spec.get_string_attribute("ResolutionUnit"));
+  PictureHeader header{spec.width, spec.height, static_cast<int>(spec.format.size() * 8), 0};
+  if (unit == "in" || unit == "inch") header.dpi = per_unit;
+  if (unit == "cm") header.dpi = per_unit * 2.54;
+  if (unit == "m") header.dpi = per_unit * 0.0254;
+  constexpr double kLeast = 97, kMost = 20000;
+  if (!(header.dpi >= kLeast && header.dpi <= kMost)) header.dpi = 0;
+  return header;
+}
+
 }  // namespace
 
 Expected<Picture> ReadPicture(const std::filesystem::path& path) {
@@ -247,17 +259,14 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path) {
 }
 
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
-  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
-  const OIIO::ImageSpec& spec = input->spec();
-  const double per_unit = spec.get_float_attribute("XResolution", 0.0f);
-  const std::string unit(spec.get_string_attribute("ResolutionUnit"));
-  PictureHeader header{spec.width, spec.height, static_cast<int>(spec.format.size() * 8), 0};
-  if (unit == "in" || unit == "inch") header.dpi = per_unit;
-  if (unit == "cm") header.dpi = per_unit * 2.54;
-  if (unit == "m") header.dpi = per_unit * 0.0254;
-  constexpr double kLeast = 97, kMost = 20000;
-  if (!(header.dpi >= kLeast && header.dpi <= kMost)) header.dpi = 0;
-  return header;
+  SCUMBLE_ASSIGN(const auto input, internal::OpenInput(path));
+  return HeaderOf(input->spec());
+}
+
+Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name) {
+  OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
+  SCUMBLE_ASSIGN(const auto input, internal::OpenInput(proxy, name));
+  return HeaderOf(input->spec());
 }
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {

@@ -80,6 +80,7 @@ struct EnergySample {
   double color = 0.0;    // the sum over the patch, times 25 / n
   double guide = 0.0;    // without λ
   double degrees = 0.0;  // between the normals in the middle of both
+  bool operator==(const EnergySample&) const = default;
 };
 
 struct EnergyReport {

@@ -118,6 +118,36 @@ TEST_F(CliBudget, TimesAreKeptUntilTheyAreMeasuredAnew) {
   }
 }
 
+// Styles that the guides name are painted, too: when one of them changes, what was measured holds no longer.
+TEST_F(CliBudget, StylesThatGuidesNameCount) {
+  GuideSet guides = Ball(48);
+  guides.object_names[1] = "Ball";
+  guides.object_styles[1] = "other";
+  WriteGuideFile("ball.exr", guides);
+  WriteStyle("other");
+  EXPECT_GT(Budget(Transfer(), "3600000").at("measured_runs").get<int>(), 0);
+  EXPECT_EQ(Budget(Transfer(), "3600000").at("measured_runs"), 0);
+  WriteText("other/style.toml", "[transfer]\nblend_radius = 9\n[[exemplar]]\nimage = \"lit.png\"\n");
+  EXPECT_GT(Budget(Transfer(), "3600000").at("measured_runs").get<int>(), 0);
+}
+
+// What lies underneath is part of the work, so trials read it: of a sequence the first frame's.
+TEST_F(CliBudget, TrialsPaintOverWhatLiesUnderneath) {
+  WritePainted("under.0007.png", 48, 48);
+  for (const char* const name : {"ball.0007.exr", "ball.0008.exr"}) WriteGuideFile(name, Ball(48));
+  const Arguments range = {"transfer", "ball.####.exr", "--style", "style", "--frames", "7-8", "--budget-ms", "3600000",
+                           "--over", "under.####.png", "-o", "p.####.png"};
+  const CommandResult missing = Run(range);
+  EXPECT_EQ(missing.code, 3);
+  EXPECT_NE(missing.err.find("under.0008.png"), std::string::npos) << missing.err;
+  EXPECT_TRUE(Exists("p.0007.png")) << "the first was found and painted over";
+  ExpectError({"transfer", "ball.exr", "--style", "style", "--budget-ms", "3600000", "--over", "none.png", "-o", "q.png"}, 3,
+              {"none.png"});
+  RunOk({"transfer", "ball.exr", "--style", "style", "--budget-ms", "3600000", "--over", "under.0007.png", "-o", "q.png"});
+  RunOk({"transfer", "ball.exr", "--style", "style", "--over", "under.0007.png", "-o", "r.png"});
+  EXPECT_EQ(Bytes("q.png"), Bytes("r.png"));
+}
+
 TEST_F(CliBudget, ABrokenCacheIsMeasuredAgain) {
   Budget(Transfer(), "3600000");
   ASSERT_EQ(Kept().size(), 1u);

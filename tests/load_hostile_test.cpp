@@ -393,5 +393,21 @@ TEST(PictureBudget, HoldsForAScenesTextures) {
   EXPECT_THAT(refused.error().message, HasSubstr("bomb.glb has textures of at least 1342177280 pixels together"));
 }
 
+// Where the header tells, what is too much is never decoded.
+TEST(PictureBudget, RefusesByTheHeader) {
+  const auto encoded = std::make_shared<EncodedTexture>();
+  int decoded = 0;
+  encoded->count_pixels = [] { return Expected<std::uint64_t>(std::uint64_t(1) << 29); };
+  encoded->decode = [&]() -> Expected<Picture> { return ++decoded, Picture(); };
+  Scene scene;
+  scene.name = "bomb.glb";
+  scene.textures.resize(3);
+  scene.encoded_textures.assign(3, encoded);
+  const auto refused = DecodeAllTextures(scene);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("bomb.glb has textures of at least 1610612736 pixels together"));
+  EXPECT_EQ(decoded, 2);
+}
+
 }  // namespace
 }  // namespace scumble

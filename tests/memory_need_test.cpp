@@ -86,6 +86,28 @@ TEST_F(MemoryNeedTest, GuidesOfAFileAreLookedAtBeforeTheyAreRead) {
   RunOk(With(transfer, {"--max-memory", "1G"}));
 }
 
+// Pictures of materials are counted by their headers, eight bytes a pixel, where a layer needs them, and refused before they
+// are decoded.
+TEST_F(MemoryNeedTest, TexturesAreCountedBeforeTheyAreDecoded) {
+  WriteText("t.obj", "mtllib t.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
+  WriteText("t.mtl", "newmtl m\nmap_Kd t.png\n");
+  const std::uint64_t pixels = 2000 * 1500;
+  ASSERT_TRUE(WritePicture(At("t.png"), Picture(2000, 1500)));
+  ASSERT_TRUE(WritePicture(At("t.jpg"), Picture(2000, 1500)));
+  const auto scene_bytes = [&](const std::string& layers) -> std::uint64_t {
+    return RunOk({"guidegen", "t.obj", "--layers", layers, "--explain", "--json"}).Json()["memory"]["parts"]["scene"];
+  };
+  const std::uint64_t bare = scene_bytes("normal");
+  EXPECT_LT(bare, 8 * pixels);
+  EXPECT_EQ(scene_bytes("albedo") - bare, 8 * pixels);
+  const Arguments guidegen = {"guidegen", "t.obj", "--size", "64", "-o", "g.exr"};
+  ExpectError(With(guidegen, {"--layers", "albedo", "--max-memory", "50M"}), 2, {"scene 22.9 MiB", "--max-memory allows"});
+  EXPECT_FALSE(Exists("g.exr"));
+  RunOk(With(guidegen, {"--max-memory", "50M"}));
+  WriteText("t.mtl", "newmtl m\nmap_Kd t.jpg\n");
+  EXPECT_EQ(scene_bytes("albedo") - bare, 8 * pixels) << "by OpenImageIO";
+}
+
 TEST_F(MemoryNeedTest, AmountsThatAreNone) {
   WriteStyle("style");
   for (const char* wrong : {"0", "-1G", "4X", "", "nan"}) {

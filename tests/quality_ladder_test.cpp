@@ -84,6 +84,23 @@ TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
   }
 }
 
+// One setting is for all styles of a picture: a rung that takes from one must not give to another.
+TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
+  StyleSet two = Open("oil");
+  two.styles.push_back(Open("charcoal").styles.front());
+  two.styles[0].transfer.method = Method::kBruteForce;
+  const auto has = [&](const char* setting) {
+    for (const Way& way : QualityLadder(two, kGiven)) {
+      if (std::find(way.settings.begin(), way.settings.end(), setting) != way.settings.end()) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(has("transfer.method=styleblit"));
+  two.styles[1].transfer.method = Method::kLitSphere;
+  EXPECT_FALSE(has("transfer.method=styleblit")) << "charcoal would be painted by chunks, which takes more time";
+  EXPECT_TRUE(has("transfer.method=litsphere"));
+}
+
 TEST(QualityLadder, WhatTheUserSetsStays) {
   EXPECT_FALSE(Sets(QualityLadder(Open("oil", {"transfer.blend_radius=3"}), kCast), "transfer.blend_radius"));
   const StyleSet decided = Open("oil", {"transfer.method=styleblit", "transfer.blend_radius=1"});

@@ -2,6 +2,7 @@
 #include <csignal>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -168,6 +169,35 @@ TEST_F(Tradeoff, SaysWhatIsWrongAndHowToMendIt) {
   ExpectError(Small("away.gltf", {"-o", "out"}), 3, {"away.gltf", "nothing", "--view"});
   EXPECT_FALSE(Exists("out/report.html"));
   EXPECT_FALSE(Exists("out/tradeoff.csv"));
+}
+
+// A folder holds one report: pictures that an earlier one names are gone with it, and nobody else's.
+TEST_F(Tradeoff, AFolderIsTakenAgainAndLeftAsItWasFound) {
+  const auto pictures = [&] {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(At("out/pictures"))) names.insert(entry.path().filename().string());
+    return names;
+  };
+  const std::string scene = Scene("suzanne.glb");
+  RunOk(Small(scene, {"--only", "levels 1,levels 2", "-o", "out"}));
+  EXPECT_EQ(pictures().size(), 3u);
+  WriteText("out/pictures/04-holiday.png", "mine");
+  RunOk(Small(scene, {"--only", "levels 2", "-o", "out"}));
+  EXPECT_EQ(pictures(), (std::set<std::string>{"01-the-style.png", "02-levels-2.png", "04-holiday.png"}));
+  // A report that is none names nothing.
+  WriteText("out/tradeoff.json", R"({"ways": [{"picture": "../../mine/lit.png"}, {"picture": 3}, 4]})");
+  RunOk(Small(scene, {"--only", "levels 2", "-o", "out"}));
+  EXPECT_TRUE(Exists("mine/lit.png"));
+  // What is wrong is told before any folder stays.
+  ExpectError(Small(scene, {"--only", "levles", "-o", "new/deep"}), 2, {"--only levles"});
+  EXPECT_FALSE(Exists("new/deep"));
+  EXPECT_EQ(pictures().size(), 3u);
+  // An exemplar among the pictures would be painted over.
+  fs::copy_file(At("mine/lit.png"), At("out/pictures/01-the-style.png"), fs::copy_options::overwrite_existing);
+  WriteText("out/pictures/style.toml", "[[exemplar]]\nimage = \"01-the-style.png\"\n");
+  const std::string before = Bytes("out/pictures/01-the-style.png");
+  ExpectError({"tradeoff", scene, "--style", "out/pictures", "--size", "96x54", "-o", "out"}, 2, {"01-the-style.png"});
+  EXPECT_EQ(Bytes("out/pictures/01-the-style.png"), before);
 }
 
 TEST_F(Tradeoff, InterruptedLeavesNothingHalfWritten) {

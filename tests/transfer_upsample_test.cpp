@@ -142,25 +142,9 @@ TEST(MatchStep, OneIsThePlainEngine) {
   Style style = TwoLights(64);
   const Transferred plain = MustTransfer(style, guides);
   style.transfer.match_step = 1;
-  TransferOptions options;
-  options.match_step = 1;
-  const Transferred one = MustTransfer(style, guides, options);
+  const Transferred one = MustTransfer(style, guides);
   EXPECT_EQ(one.picture.rgba, plain.picture.rgba);
   EXPECT_TRUE(SameField(one.field, plain.field));
-}
-
-TEST(MatchStep, TheLargerOfStyleAndOptionHolds) {
-  const GuideSet guides = ThinGuides(70, 50);
-  Style style = TwoLights(64);
-  TransferOptions options;
-  style.transfer.match_step = 4;
-  const SourceField four = MustTransfer(style, guides, options).field;
-  options.match_step = 2;
-  EXPECT_TRUE(SameField(MustTransfer(style, guides, options).field, four));
-  style.transfer.match_step = 2, options.match_step = 4;
-  EXPECT_TRUE(SameField(MustTransfer(style, guides, options).field, four));
-  style.transfer.match_step = 1, options.match_step = 1;
-  EXPECT_FALSE(SameField(MustTransfer(style, guides, options).field, four));
 }
 
 double SameSources(const SourceField& a, const SourceField& b) {

@@ -24,7 +24,6 @@
 namespace scumble {
 namespace {
 
-constexpr std::size_t kBruteForcePixels = 1 << 20;
 // Around a seed so many pixels must be flat before `variety` gives it freedom, at the reference height.
 constexpr int kFlatReach = 16;
 
@@ -45,9 +44,9 @@ Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap*
       }
     }
     SCUMBLE_CHECK_EQ(guides.height(), style->output_height);
-    if (style->settings.method == Method::kBruteForce && guides.pixel_count() > kBruteForcePixels) {
+    if (style->settings.method == Method::kBruteForce && guides.pixel_count() > kMostBruteForcePixels) {
       return UsageError("method bruteforce takes time quadratic in the pixels and is meant for pictures of at most " +
-                        std::to_string(kBruteForcePixels) + " pixels; use styleblit");
+                        std::to_string(kMostBruteForcePixels) + " pixels; use styleblit");
     }
   }
   if (map) SCUMBLE_CHECK_EQ(map->style.size(), guides.pixel_count());
@@ -130,7 +129,7 @@ class Run {
   }
 
   bool GoesByBands(std::span<const PreparedStyle* const> styles) const {
-    return !options_.keep_field && options_.match_step <= 1 && SeedsOfBandsFit(styles.size()) &&
+    return !options_.keep_field && SeedsOfBandsFit(styles.size()) &&
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
       const TransferSettings& settings = style->settings;
       return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 && !style->space &&
@@ -256,7 +255,7 @@ class Run {
     const internal::MatchInput input = InputOf(style, matched);
     Stopwatch watch;
     const auto part = [&](double share) { return from + (to - from) * share; };
-    const int step = std::max(settings.match_step, options_.match_step);
+    const int step = settings.match_step;
     const Status done = step > 1 ? MatchCoarsely(settings, input, step, part(0.0), part(kMatchShare))
                                  : MatchAll(settings, input, part(0.0), part(kMatchShare));
     if (!done) return done;

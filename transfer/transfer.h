@@ -72,6 +72,9 @@ double LuminanceOf(const Exemplar& exemplar, double rim);
 // result.
 std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides, int threads = 0);
 
+// The brute force takes time quadratic in the pixels; larger pictures are refused.
+inline constexpr std::size_t kMostBruteForcePixels = 1 << 20;
+
 struct TransferOptions {
   std::uint64_t seed = 0;
   std::int64_t frame = 0;           // with the rate, which jitter; see JitterStep
@@ -79,8 +82,6 @@ struct TransferOptions {
   std::int64_t fps_denominator = 1;
   double exposure = 0.0;            // stops by which the scene's luminance is brightened; see MeasureExposure
   int threads = 0;                  // 0: all
-  int match_step = 1;               // the least step of the match, whatever the style's is: for guides that UpsampleGuides
-                                    // made, which hold nothing finer
   const Picture* over = nullptr;    // composited underneath instead of the paper; the guides' size
   std::optional<Region> region;     // only these pixels of the result are made; empty: all
   bool keep_field = false;          // TransferScratch::field and `active` are wanted afterwards; costs some time
