@@ -101,7 +101,7 @@ TEST_F(MemoryNeedTest, TexturesAreCountedBeforeTheyAreDecoded) {
   EXPECT_LT(bare, 8 * pixels);
   EXPECT_EQ(scene_bytes("albedo") - bare, 8 * pixels);
   const Arguments guidegen = {"guidegen", "t.obj", "--size", "64", "-o", "g.exr"};
-  ExpectError(With(guidegen, {"--layers", "albedo", "--max-memory", "50M"}), 2, {"scene 22.9 MiB", "--max-memory allows"});
+  ExpectError(With(guidegen, {"--layers", "albedo", "--max-memory", "50M"}), 2, {"scene 23 MiB", "--max-memory allows"});
   EXPECT_FALSE(Exists("g.exr"));
   RunOk(With(guidegen, {"--max-memory", "50M"}));
   WriteText("t.mtl", "newmtl m\nmap_Kd t.jpg\n");
