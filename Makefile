@@ -26,7 +26,11 @@ test-asan: ## all tests but Blender's under AddressSanitizer and UndefinedBehavi
 	@.ci/install test
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)
-	@LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -LE "blender|paint"
+	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -LE "blender|paint"
+
+# GCC 12's sanitizer guesses where the C library keeps what libraries have for each thread, wrongly once one is loaded late, and
+# then dies of looking for leaks there.
+NO_GUESSED_TLS := intercept_tls_get_addr=0
 
 test-tsan: ## unit tests under ThreadSanitizer, in build-tsan/
 	@.ci/install tsan
