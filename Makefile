@@ -34,8 +34,8 @@ NO_GUESSED_TLS := intercept_tls_get_addr=0
 
 test-tsan: ## unit tests under ThreadSanitizer, in build-tsan/
 	@.ci/install tsan
-	@cmake --preset tsan
 	@.ci/tsan_tbb build-tsan/onetbb
+	@cmake --preset tsan
 	@cmake --build build-tsan -j $(JOBS)
 	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -L unit
 

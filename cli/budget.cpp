@@ -133,7 +133,7 @@ Expected<OpenedScene> OpenToMeasure(const SceneOptions& options, std::optional<i
   MemoryNeed need;
   AddProgram(globals.threads, need);
   AddScene(scene, CountNeededPixels(scene, options, layers), need);
-  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals, "give the scene smaller textures"));
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals, "make the scene or its textures smaller"));
   // Which is reading, and counts as little as that of the scene.
   SCUMBLE_RETURN_IF_ERROR(DecodeNeededTextures(scene, options, layers));
   return OpenedScene{std::move(scene), std::move(view.camera), layers};
@@ -174,7 +174,7 @@ Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options) {
 }
 
 Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name,
-                       std::optional<int> frame, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
+                       const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
   if (!options.chooses()) return Ok();
   const LadderFrame ladder{false, guides.width(), guides.height(), true};
   if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
@@ -185,13 +185,13 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, con
       fmt::format("transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
                   guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
-  PaintTrial trial(styles, picture, name, frame, globals);
+  PaintTrial trial(styles, picture, name, over, globals);
   return TakeWithin(options, ladder, circumstances, styles, picture, globals,
                     [&](const Way& way) { return trial.Paint(way, guides); });
 }
 
 Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame,
-                      StyleSet& styles, PictureOptions& picture, const Globals& globals) {
+                      const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
   if (!options.chooses()) return Ok();
   SCUMBLE_ASSIGN(const Size size, ParseSize(scene.size));
   const LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed};
@@ -204,7 +204,7 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
   Globals silent = globals;
   silent.quiet = true, silent.timing = nullptr;
   std::optional<OpenedScene> opened;
-  PaintTrial trial(styles, picture, scene.scene, frame, globals);
+  PaintTrial trial(styles, picture, scene.scene, over, globals);
   return TakeWithin(options, ladder, circumstances, styles, picture, globals, [&](const Way& way) -> Expected<double> {
     if (!opened) {
       SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));

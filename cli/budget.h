@@ -30,15 +30,15 @@ void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts);
 Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options);
 
 // Chooses and puts what was chosen into `styles` and `picture`; says so on stderr, and in picture.chosen for JSON.
-// Nothing changes where nothing is to be chosen. Of the guides only size and coverage count, and their times. `frame`:
-// theirs; none: the scene at rest.
+// Nothing changes where nothing is to be chosen. Of the guides only size and coverage count, and their times. `over`:
+// the picture underneath theirs; empty: none.
 Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name,
-                       std::optional<int> frame, StyleSet& styles, PictureOptions& picture, const Globals& globals);
+                       const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals);
 
 // The same where the guides are cast, too, and may be smaller than the picture; scene.size is that of the picture, or
-// of its guides where --upsample was given. `frame` is that of the scene. Where times
+// of its guides where --upsample was given. `frame` is that of the scene; none: at rest. Where times
 // are not known, the scene is read for measuring them.
 Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame,
-                      StyleSet& styles, PictureOptions& picture, const Globals& globals);
+                      const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals);
 
 }  // namespace scumble

@@ -1,7 +1,6 @@
 #include "cli/budget_trial.h"
 
 #include "cli/cache.h"
-#include "cli/frames.h"
 #include "cli/quality_ladder.h"
 #include "cli/show.h"
 #include "image/stopwatch.h"
@@ -29,10 +28,9 @@ Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample)
 }
 
 Expected<const Picture*> PaintTrial::Over(const GuideSet& guides) {
-  if (picture_.over.empty()) return static_cast<const Picture*>(nullptr);
+  if (over_file_.empty()) return static_cast<const Picture*>(nullptr);
   if (!over_) {
-    SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(picture_.over));
-    SCUMBLE_ASSIGN(over_, ReadPicture(frame_ ? name.At(*frame_) : picture_.over));
+    SCUMBLE_ASSIGN(over_, ReadPicture(over_file_));
   }
   const bool fits = over_->width == guides.width() && over_->height == guides.height();
   return fits ? &*over_ : nullptr;
@@ -57,7 +55,7 @@ Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
   }
   TransferOptions options;
   options.seed = picture_.seed, options.exposure = exposure_, options.threads = globals_.threads;
-  options.frame = frame_.value_or(0);
+  options.frame = picture_.frame.value_or(0);
   SCUMBLE_ASSIGN(options.over, Over(guides));
   options.keep_field = KeepsField(picture_, globals_);
   TransferScratch scratch;

@@ -18,11 +18,11 @@ namespace scumble {
 
 class PaintTrial {
  public:
-  // All are borrowed. `styles` as the user has them, without any way. `name`: of the guides' file or scene. `frame`: the
-  // one that is painted, whose picture of --over is underneath; none: the scene at rest.
-  PaintTrial(StyleSet& styles, const PictureOptions& picture, const std::string& name, std::optional<int> frame,
+  // All are borrowed. `styles` as the user has them, without any way. `name`: of the guides' file or scene. `over`: the
+  // file of the picture underneath; empty: none.
+  PaintTrial(StyleSet& styles, const PictureOptions& picture, const std::string& name, const std::string& over,
              const Globals& globals)
-      : styles_(styles), picture_(picture), name_(name), frame_(frame), globals_(globals) {}
+      : styles_(styles), picture_(picture), name_(name), over_file_(over), globals_(globals) {}
 
   // Upsamples the guides, if the way or the picture's options say so, and paints with memory that is new, as the first
   // picture of a run is. What is underneath is read once and not counted; one of another size is left out, the run will
@@ -36,7 +36,7 @@ class PaintTrial {
   StyleSet& styles_;
   const PictureOptions& picture_;
   const std::string& name_;
-  const std::optional<int> frame_;
+  const std::string& over_file_;
   const Globals& globals_;
   std::string prepared_for_;  // that way's name
   std::vector<PreparedStyle> prepared_;

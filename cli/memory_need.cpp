@@ -19,6 +19,7 @@ constexpr Bytes kPaint = 8;  // of a pixel of a Picture
 
 constexpr Bytes kProgram = 30 * kMega, kThread = 4 * kMega;
 constexpr Bytes kFormatsModule = 125 * kMega;  // OpenImageIO and what it loads
+constexpr Bytes kDecoded = 16;                 // of a pixel of a JPEG or WebP, beside the picture that comes of it
 constexpr Bytes kTriangle = 340;               // ours, Embree's, and what reading a text of it leaves behind
 
 // Of transfer/: what one pixel takes.
@@ -143,12 +144,14 @@ void AddSources(const PictureWork& work, const PictureOptions& options, const Si
 
 void AddProgram(int threads, MemoryNeed& need) { need.Take("program", kProgram + kThread * ThreadsOf(threads)); }
 
-void AddScene(const Scene& scene, std::uint64_t more_pixels, MemoryNeed& need) {
-  Bytes bytes = kPaint * more_pixels;
+void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
+  Bytes bytes = kPaint * more.all;
   for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size();
   for (const Picture& texture : scene.textures) bytes += kPaint * Bytes(texture.width) * Bytes(texture.height);
   for (const auto& texture : scene.encoded_textures) bytes += texture ? Bytes(texture->bytes) : 0;
+  if (more.largest > 0) need.Take("reader", kFormatsModule);
   need.Take("scene", bytes);
+  need.Briefly("decoding a texture", kDecoded * more.largest);
 }
 
 void AddGuides(const Size& size, const LayerSet& layers, const SceneOptions& options, MemoryNeed& need) {

@@ -9,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/transfer_run.h"
 #include "guidegen/scene.h"
+#include "guidegen/scene_textures.h"
 #include "image/layers.h"
 #include "image/style.h"
 #include "io/guide_file.h"
@@ -18,9 +19,9 @@ namespace scumble {
 // The program itself, its libraries, and what each thread has for itself. `threads` 0: all.
 void AddProgram(int threads, MemoryNeed& need);
 
-// A scene in memory and Embree's of it, with the pictures that are decoded, the files of those that are not, and so many
-// pixels more that are to be decoded.
-void AddScene(const Scene& scene, std::uint64_t more_pixels, MemoryNeed& need);
+// A scene in memory and Embree's of it, with the pictures that are decoded, the files of those that are not, and pictures
+// that are to be decoded.
+void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need);
 
 // Guides as guidegen makes them: the planes of `layers` and of those that are always there; briefly the pixels whose light
 // paths are followed.

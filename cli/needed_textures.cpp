@@ -1,7 +1,6 @@
 #include "cli/needed_textures.h"
 
 #include "cli/command.h"
-#include "guidegen/scene_textures.h"
 
 namespace scumble {
 namespace {
@@ -15,7 +14,7 @@ GuidegenOptions NeedsOf(const SceneOptions& options, const LayerSet& layers) {
 
 }  // namespace
 
-std::uint64_t CountNeededPixels(const Scene& scene, const SceneOptions& options, const LayerSet& layers) {
+TexturePixels CountNeededPixels(const Scene& scene, const SceneOptions& options, const LayerSet& layers) {
   return CountNeededPixels(scene, NeedsOf(options, layers));
 }
 

@@ -2,11 +2,12 @@
 #pragma once
 
 #include "cli/options.h"
+#include "guidegen/scene_textures.h"
 
 namespace scumble {
 
 // How many pixels that will be; by the files' headers.
-std::uint64_t CountNeededPixels(const Scene& scene, const SceneOptions& options, const LayerSet& layers);
+TexturePixels CountNeededPixels(const Scene& scene, const SceneOptions& options, const LayerSet& layers);
 
 // Decodes what casting these layers needs and is not decoded yet; it stays in the scene. Warns of what is left out.
 // Returns what it took; the rest of the cost is 0.

@@ -42,7 +42,6 @@ std::string RefuseEmpty(const std::string& text) { return text.empty() ? "it is 
 namespace {
 
 // Larger pictures cannot be read back.
-constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;
 
 }  // namespace
 
@@ -60,8 +59,8 @@ Expected<Size> ParseSize(const std::string& text) {
     return UsageError("--size " + text + ": expected WIDTHxHEIGHT, as in 1920x1080, each 1 to " +
                       std::to_string(kMaxImageSide));
   }
-  if (std::int64_t(size.width) * size.height > kMaxPixels) {
-    return UsageError("--size " + text + ": expected at most " + std::to_string(kMaxPixels) +
+  if (std::int64_t(size.width) * size.height > kMaxPicturePixels) {
+    return UsageError("--size " + text + ": expected at most " + std::to_string(kMaxPicturePixels) +
                       " pixels in all, as in 16384x16384");
   }
   return size;

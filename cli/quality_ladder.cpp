@@ -85,16 +85,19 @@ bool HasTrack(const Style& style, const std::string& key) {
   return std::any_of(style.tracks.begin(), style.tracks.end(), [&](const StyleTrack& one) { return one.name == key; });
 }
 
-// Of several styles, which take one setting, none may come to more than it has.
 bool ChangesSomething(const Lever& lever, const StyleSet& styles) {
-  bool changes = false;
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
     if (IsSetByUser(styles, i, lever.key)) continue;
-    const TransferSettings& own = styles.styles[i].transfer;
-    if (lever.raises && lever.raises(own)) return false;
-    changes = changes || HasTrack(styles.styles[i], lever.key) || lever.changes(own);
+    if (HasTrack(styles.styles[i], lever.key) || lever.changes(styles.styles[i].transfer)) return true;
   }
-  return changes;
+  return false;
+}
+
+bool RaisesSomething(const Lever& lever, const StyleSet& styles) {
+  for (std::size_t i = 0; i < styles.styles.size(); ++i) {
+    if (lever.raises && !IsSetByUser(styles, i, lever.key) && lever.raises(styles.styles[i].transfer)) return true;
+  }
+  return false;
 }
 
 // How much smaller the guides can be, where so much is wanted.
@@ -107,8 +110,11 @@ int SmallerBy(int upsample, const LadderFrame& frame) {
 Way MakeWay(const Rung& rung, const StyleSet& styles, const LadderFrame& frame) {
   Way way;
   way.guide_scale = 1.0 / SmallerBy(rung.upsample, frame);
-  for (const std::string& setting : rung.settings) {
-    if (ChangesSomething(LeverOf(setting), styles)) way.settings.push_back(setting);
+  for (std::string setting : rung.settings) {
+    if (!ChangesSomething(LeverOf(setting), styles)) continue;
+    // All styles take one setting, and none may come to more than it has: then all take the least.
+    if (RaisesSomething(LeverOf(setting), styles)) setting = kLitSphere;
+    way.settings.push_back(std::move(setting));
   }
   way.name = way.value = OptionsOf(way);
   way.axis = "quality";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "cli/memory_need.h"
 #include "cli/needed_textures.h"
 
 namespace scumble {
@@ -68,6 +69,10 @@ Status SceneFrames::StartFile(const Progress& progress) {
       }
     }
     if (motion_) next_ = now_, next_.textures.clear(), next_.encoded_textures.clear();
+    MemoryNeed need;
+    AddProgram(globals_.threads, need);
+    AddScene(now_, CountNeededPixels(now_, options_, layers_), need);
+    SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals_, "make the scene or its textures smaller"));
     // Here, so that a picture which is missing ends the sequence, and not each of its frames.
     SCUMBLE_ASSIGN(decoded_, DecodeNeededTextures(now_, options_, layers_));
     load_ms_ = load_ms + watch.Lap();

@@ -214,6 +214,14 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   return RunSequence(sequence, work, bar, globals);
 }
 
+// What trials of --budget-ms paint over: a sequence's first. A plan alone may leave open which frame it is of, and then
+// nothing is underneath.
+Expected<std::string> OverOnTrial(const PictureOptions& picture, const std::optional<Sequence>& sequence) {
+  SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(picture.over));
+  if (sequence) return name.At(sequence->frames.front());
+  return name.must_have_frame() ? std::string() : picture.over;
+}
+
 // --quality and --budget-ms of a sequence: by its first frame.
 Status ChooseForSequence(TransferVerb& verb, const Sequence& sequence, StyleSet& styles, GuideReadOptions read,
                          const Globals& globals) {
@@ -227,7 +235,8 @@ Status ChooseForSequence(TransferVerb& verb, const Sequence& sequence, StyleSet&
   SCUMBLE_RETURN_IF_ERROR(CheckMemoryOfFile(verb, file, styles, read, true, globals));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
   EndStage(globals, "read");
-  return ChooseForGuides(verb.budget, guides, file, frame, styles, verb.picture, globals);
+  SCUMBLE_ASSIGN(const std::string over, OverOnTrial(verb.picture, sequence));
+  return ChooseForGuides(verb.budget, guides, file, over, styles, verb.picture, globals);
 }
 
 // Fills places for a frame's number in the names of a single picture.
@@ -284,7 +293,7 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   const double read_ms = watch.Lap();
   EndStage(globals, "read");
-  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.guides, verb.picture.frame, styles, verb.picture, globals));
+  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.guides, verb.picture.over, styles, verb.picture, globals));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", read_ms}}, {}, {}, memory};
   return RunTransfer(styles, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
@@ -398,7 +407,8 @@ Status ChooseForStylize(StylizeVerb& verb, const std::optional<Sequence>& sequen
   scene.more_memory = PaintingOf(styles, verb.picture, sequence.has_value(), globals);  // pictures are painted on trial
   const std::optional<int> frame = sequence ? sequence->frames.front() : verb.picture.frame;
   const int before = verb.picture.upsample;
-  SCUMBLE_RETURN_IF_ERROR(ChooseForScene(verb.budget, scene, frame, styles, verb.picture, globals));
+  SCUMBLE_ASSIGN(const std::string over, OverOnTrial(verb.picture, sequence));
+  SCUMBLE_RETURN_IF_ERROR(ChooseForScene(verb.budget, scene, frame, over, styles, verb.picture, globals));
   return verb.picture.upsample == before ? Ok() : ShrinkGuides(verb);
 }
 

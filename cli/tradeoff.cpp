@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <system_error>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/json_text.h"
@@ -30,11 +32,32 @@ struct TradeoffVerb {
 
 constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json";
 
-// Told before minutes of work: whether the folder can be made and written to, and takes the place of nothing that is read.
-Status PrepareFolder(const TradeoffVerb& verb) {
+// Folders that a run makes, with those above them, and that go again where nothing comes to stand in them.
+class MadeFolders {
+ public:
+  explicit MadeFolders(const fs::path& deepest) {
+    std::error_code failed;
+    for (fs::path folder = fs::absolute(deepest, failed).lexically_normal(); !folder.empty() && !fs::exists(folder, failed);
+         folder = folder.parent_path()) {
+      made_.push_back(folder);
+    }
+    fs::create_directories(deepest, failed);
+  }
+  ~MadeFolders() {
+    std::error_code ignored;
+    for (const fs::path& folder : made_) fs::remove(folder, ignored);  // the deepest first; fails where something is in it
+  }
+  MadeFolders(const MadeFolders&) = delete;
+  MadeFolders& operator=(const MadeFolders&) = delete;
+
+ private:
+  std::vector<fs::path> made_;
+};
+
+// Told before minutes of work: whether the folder is there and can be written to, and takes the place of nothing that is read.
+Status CheckFolder(const TradeoffVerb& verb) {
   const fs::path pictures = fs::path(verb.folder) / kPictures;
   std::error_code failed;
-  fs::create_directories(pictures, failed);
   if (!fs::is_directory(fs::status(pictures, failed))) {
     return OutputError(fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made; name another", verb.folder,
                                    kPictures));
@@ -55,36 +78,29 @@ Status PrepareFolder(const TradeoffVerb& verb) {
   return files.CheckOutput((pictures / "00.png").string());
 }
 
-// What PrepareFolder made and nothing was written into.
-void RemoveEmptyFolder(const std::string& folder) {
-  std::error_code ignored;
-  if (fs::is_empty(fs::path(folder) / kPictures, ignored)) fs::remove(fs::path(folder) / kPictures, ignored);
-  if (fs::is_empty(folder, ignored)) fs::remove(folder, ignored);
-}
-
-// Those that an earlier report names and this one does not; nobody else's.
-void RemoveOldPictures(const std::string& folder, const TradeReport& report) {
+// Pictures that an earlier report in the folder names and this one does not; nobody else's.
+std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& report) {
+  std::vector<fs::path> old;
   const auto bytes = ReadWholeFile(fs::path(folder) / kJson);
-  if (!bytes) return;
+  if (!bytes) return old;
   const auto* const text = reinterpret_cast<const char*>(bytes->data());
-  const auto old = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
-  if (!old.is_object() || !old.contains("ways") || !old["ways"].is_array()) return;
+  const auto json = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
+  if (!json.is_object() || !json.contains("ways") || !json["ways"].is_array()) return old;
   std::set<std::string> names;
   for (std::size_t i = 0; i < report.ways.size(); ++i) names.insert(TradePictureName(report, i));
-  for (const auto& way : old["ways"]) {
-    const auto picture = way.is_object() ? way.find("picture") : way.end();
-    if (picture == way.end() || !picture->is_string()) continue;
-    const fs::path name = picture->get<std::string>();
-    std::error_code ignored;
+  for (const auto& way : json["ways"]) {
+    if (!way.is_object() || !way.contains("picture") || !way["picture"].is_string()) continue;
+    const fs::path name = way["picture"].get<std::string>();
     if (name.extension() == ".png" && name == name.filename() && !names.contains(name.string())) {
-      fs::remove(fs::path(folder) / kPictures / name, ignored);
+      old.push_back(fs::path(folder) / kPictures / name);
     }
   }
+  return old;
 }
 
 // The page last: where it is, all that it tells of is there.
 Status WriteFolder(const std::string& folder, const TradeReport& report) {
-  RemoveOldPictures(folder, report);
+  const std::vector<fs::path> old = OldPictures(folder, report);
   for (std::size_t i = 0; i < report.ways.size(); ++i) {
     const fs::path file = fs::path(folder) / kPictures / TradePictureName(report, i);
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.ways[i].picture_png))));
@@ -92,7 +108,10 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.csv", TradeCsv(report)));
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / kJson, TradeJson(report)));
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "chart.svg", TradeChart(report)));
-  return WriteFileAtomically(fs::path(folder) / "report.html", TradeHtml(report));
+  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "report.html", TradeHtml(report)));
+  std::error_code ignored;
+  for (const fs::path& picture : old) fs::remove(picture, ignored);
+  return Ok();
 }
 
 Expected<ExitCode> RunTradeoffVerb(const TradeoffVerb& verb, const Globals& globals) {
@@ -102,15 +121,14 @@ Expected<ExitCode> RunTradeoffVerb(const TradeoffVerb& verb, const Globals& glob
     Print(fmt::format("{{\"peak_bytes\": {}}}\n", bytes));
     return ExitCode::kOk;
   }
-  if (!verb.folder.empty()) SCUMBLE_RETURN_IF_ERROR(PrepareFolder(verb));
-  ProgressBar bar("tradeoff", globals.quiet);
-  const Expected<TradeReport> measured = MeasureTradeoff(verb.setup, globals, bar);
-  bar.Clear();
-  if (!measured) {
-    if (!verb.folder.empty()) RemoveEmptyFolder(verb.folder);
-    return measured.error();
+  std::optional<MadeFolders> folders;
+  if (!verb.folder.empty()) {
+    folders.emplace(fs::path(verb.folder) / kPictures);
+    SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb));
   }
-  const TradeReport& report = *measured;
+  ProgressBar bar("tradeoff", globals.quiet);
+  SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals, bar));
+  bar.Clear();
   if (!verb.folder.empty()) {
     SCUMBLE_RETURN_IF_ERROR(WriteFolder(verb.folder, report));
     Say(globals, (fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");

@@ -178,6 +178,7 @@ class TextureLoader {
       return ReadWith(*kept, [](Bytes bytes, const std::string& name) { return DecodePicture(bytes, name); });
     };
     kept_texture->count_pixels = [kept] {
+      if (!kept->beside.empty()) return CountPixels(kept->beside);
       return ReadWith(*kept, [](Bytes bytes, const std::string& name) { return CountPixels(bytes, name); });
     };
     scene_.textures.emplace_back();

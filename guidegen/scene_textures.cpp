@@ -1,5 +1,6 @@
 #include "guidegen/scene_textures.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -36,11 +37,13 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!needed[i] || !IsEncoded(scene, i)) continue;
       const std::shared_ptr<const EncodedTexture> encoded = scene.encoded_textures[i];
-      const std::optional<std::uint64_t> promised = CountPixels(*encoded);
-      if (promised) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *promised));
+      // Asked by the header, and charged when it is there: one that is left out takes nothing.
+      if (const auto promised = CountPixels(*encoded)) {
+        SCUMBLE_RETURN_IF_ERROR(PictureBudget(budget).Take(scene.name, *promised));
+      }
       Expected<Picture> picture = encoded->decode();
       if (!picture && !encoded->leave_out) return picture.error();
-      if (picture && !promised) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *picture));
+      if (picture) SCUMBLE_RETURN_IF_ERROR(budget.Take(scene.name, *picture));
       scene.encoded_textures[i].reset();
       if (picture) {
         ++done.count;
@@ -79,11 +82,14 @@ std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& opti
   return needed;
 }
 
-std::uint64_t CountNeededPixels(const Scene& scene, const GuidegenOptions& options) {
+TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& options) {
   const std::vector<bool> needed = NeededTextures(scene, options);
-  std::uint64_t pixels = 0;
+  TexturePixels pixels;
   for (std::size_t i = 0; i < needed.size(); ++i) {
-    if (needed[i] && IsEncoded(scene, i)) pixels += CountPixels(*scene.encoded_textures[i]).value_or(0);
+    if (!needed[i] || !IsEncoded(scene, i)) continue;
+    const std::uint64_t one = CountPixels(*scene.encoded_textures[i]).value_or(0);
+    pixels.all += one;
+    pixels.largest = std::max(pixels.largest, one);
   }
   return pixels;
 }

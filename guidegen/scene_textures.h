@@ -2,6 +2,8 @@
 // never waits for the paint of the model, nor does it fail where that paint is missing.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,7 +26,11 @@ struct DecodedTextures {
 
 // How many pixels those would have that are not decoded yet, by their headers; of one that cannot be read none: decoding it
 // says why.
-std::uint64_t CountNeededPixels(const Scene& scene, const GuidegenOptions& options);
+struct TexturePixels {
+  std::uint64_t all = 0;
+  std::uint64_t largest = 0;  // of one
+};
+TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& options);
 
 // Decodes what RenderGuides needs with these options and is not decoded yet. A picture that is missing or broken is an
 // error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than PictureBudget

@@ -88,6 +88,7 @@ float BackgroundValue(Layer layer);
 
 // Largest width or height of any picture or guide set that is read or made.
 inline constexpr int kMaxImageSide = 32768;
+inline constexpr std::int64_t kMaxPicturePixels = std::int64_t(1) << 28;  // 16384²; files of more are refused
 
 // Ids for names, in the order given: 24-bit hashes in [1, 2^24), a collision moves the alphabetically later name to
 // the next free id. Adding a name does not change the others' ids, save in a collision. Equal names share an id.

@@ -111,9 +111,8 @@ std::optional<ExrHeader> PlainHeader(const Imf::Header& header) {
   // In 64 bits: a damaged header may hold any numbers.
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
-  constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;
   const bool fits = width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
-  if (!fits || width * height > kMaxPixels) return std::nullopt;
+  if (!fits || width * height > kMaxPicturePixels) return std::nullopt;
   ExrHeader plain{static_cast<int>(width), static_cast<int>(height), {}, {}};
   for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
     const Imf::Channel& found = channel.channel();

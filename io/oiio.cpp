@@ -126,13 +126,12 @@ Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::Ima
 }
 
 Status CheckSize(const OIIO::ImageSpec& spec, const std::string& name) {
-  constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;  // 16384²
   const bool fits = spec.width >= 1 && spec.height >= 1 && spec.width <= kMaxImageSide &&
-                    spec.height <= kMaxImageSide && std::int64_t(spec.width) * spec.height <= kMaxPixels;
+                    spec.height <= kMaxImageSide && std::int64_t(spec.width) * spec.height <= kMaxPicturePixels;
   if (fits && spec.depth <= 1) return Ok();
   return InputError(name + " is " + std::to_string(spec.width) + "×" + std::to_string(spec.height) + "×" +
                     std::to_string(spec.depth) + ": expected one flat picture of at least 1×1 and at most " +
-                    std::to_string(kMaxPixels) + " pixels, " + std::to_string(kMaxImageSide) + " a side");
+                    std::to_string(kMaxPicturePixels) + " pixels, " + std::to_string(kMaxImageSide) + " a side");
 }
 
 }  // namespace internal

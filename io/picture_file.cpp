@@ -25,9 +25,18 @@ std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const st
   return internal::ReadPlainPng(bytes);
 }
 
-template <class Header>
-std::uint64_t PixelsOf(const Header& header) {
-  return std::uint64_t(header.width) * std::uint64_t(header.height);
+Expected<std::uint64_t> PixelsOf(std::int64_t width, std::int64_t height, const std::string& name) {
+  if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxPicturePixels) {
+    return static_cast<std::uint64_t>(width * height);
+  }
+  return InputError("cannot read " + name + ": no picture of " + std::to_string(width) + "×" + std::to_string(height) +
+                    " is read, at most " + std::to_string(kMaxPicturePixels) + " pixels are");
+}
+
+// Of a PNG whose bytes are so many.
+Expected<std::uint64_t> PixelsOf(const internal::PngHeader& header, std::uint64_t bytes, const std::string& name) {
+  if (!internal::CanHold(bytes, header)) return InputError("cannot read " + name + ": it promises more than it can hold");
+  return PixelsOf(header.width, header.height, name);
 }
 
 std::vector<std::byte> Png(const Picture& picture, const PictureWriteOptions& options) {
@@ -84,24 +93,26 @@ Expected<std::uint64_t> CountPixels(const std::filesystem::path& path) {
   if (internal::IsPngFile(path)) {
     std::array<std::byte, internal::kPngHeaderBytes> start;
     std::ifstream file(path, std::ios::binary);
-    if (file.read(reinterpret_cast<char*>(start.data()), start.size())) {
-      if (const auto header = internal::ReadPngHeader(start)) return PixelsOf(*header);
+    std::error_code failed;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+    if (!failed && file.read(reinterpret_cast<char*>(start.data()), start.size())) {
+      if (const auto header = internal::ReadPngHeader(start)) return PixelsOf(*header, bytes, path.string());
     }
   }
   if (IsZip(path)) {
     SCUMBLE_ASSIGN(const MergedHeader merged, InspectMergedLayers(path));
-    return PixelsOf(merged);
+    return PixelsOf(merged.width, merged.height, path.string());
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
   SCUMBLE_ASSIGN(const StoredPicture stored, formats->inspect_stored(path));
-  return PixelsOf(stored);
+  return PixelsOf(stored.width, stored.height, path.string());
 }
 
 Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name) {
-  if (const auto header = internal::ReadPngHeader(bytes)) return PixelsOf(*header);
+  if (const auto header = internal::ReadPngHeader(bytes)) return PixelsOf(*header, bytes.size(), name);
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormats(name));
   SCUMBLE_ASSIGN(const PictureHeader header, formats->inspect_encoded(bytes, name));
-  return PixelsOf(header);
+  return PixelsOf(header.width, header.height, name);
 }
 
 Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {

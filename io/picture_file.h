@@ -30,8 +30,8 @@ struct PictureHeader {
 };
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 
-// How many pixels ReadPicture would make, by as little of the file as tells: to be asked before they take memory. Errors
-// are those of reading it, as far as the header shows them. Thread-safe.
+// How many pixels ReadPicture would make, by as little of the file as tells: to be asked before they take memory. An error
+// where reading would be one, as far as the header shows it: no such pixels will ever be there. Thread-safe.
 Expected<std::uint64_t> CountPixels(const std::filesystem::path& path);
 Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name);
 

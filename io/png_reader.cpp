@@ -60,8 +60,7 @@ bool IsPlain(png_structp png, png_infop info) {
 }
 
 bool IsOfASizeThatWeTake(std::int64_t width, std::int64_t height) {
-  constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;
-  return width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxPixels;
+  return width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxPicturePixels;
 }
 
 // libpng leaves by longjmp, which no destructor sees: what must be freed lives outside of these two.

@@ -25,14 +25,13 @@ std::uint32_t Number(std::span<const std::byte> bytes) {
   return number;
 }
 
-// Whether so many bytes of Deflate can unpack to the picture's pixels. A reader takes the memory for those first.
+}  // namespace
+
 bool CanHold(std::uint64_t packed, const PngHeader& header) {
   // Divided first, because the product may not fit: the sides are below 2³².
   const std::uint64_t pixels = std::uint64_t(header.width) * header.height;
   return pixels / 8 / kMostDeflated * static_cast<std::uint64_t>(header.bits * header.channels) <= packed;
 }
-
-}  // namespace
 
 std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes) {
   // Length, type, width, height, bits; the rest is the reader's.

@@ -27,6 +27,9 @@ struct PngHeader {
 // Nothing where they are no PNG's. Thread-safe.
 std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes);
 
+// Whether so many bytes of Deflate can unpack to the picture's pixels. A reader takes the memory for those first.
+bool CanHold(std::uint64_t packed, const PngHeader& header);
+
 // Follows the chunks (PNG specification, third edition, section 5) up to the one that ends the picture, and checks the
 // sums of those that a reader needs, and that the pixels are not more than so many bytes can unpack to. `name` is for the message. Thread-safe.
 Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name);

@@ -398,7 +398,11 @@ TEST(PictureBudget, RefusesByTheHeader) {
   const auto encoded = std::make_shared<EncodedTexture>();
   int decoded = 0;
   encoded->count_pixels = [] { return Expected<std::uint64_t>(std::uint64_t(1) << 29); };
-  encoded->decode = [&]() -> Expected<Picture> { return ++decoded, Picture(); };
+  encoded->decode = [&]() -> Expected<Picture> {
+    Picture picture;  // the pixels are not there: only the sizes count
+    picture.width = 1 << 14, picture.height = 1 << 15;
+    return ++decoded, picture;
+  };
   Scene scene;
   scene.name = "bomb.glb";
   scene.textures.resize(3);

@@ -100,7 +100,7 @@ TEST_F(MemoryNeedTest, TexturesAreCountedBeforeTheyAreDecoded) {
   const std::uint64_t bare = scene_bytes("normal");
   EXPECT_LT(bare, 8 * pixels);
   EXPECT_EQ(scene_bytes("albedo") - bare, 8 * pixels);
-  const Arguments guidegen = {"guidegen", "t.obj", "--size", "64", "-o", "g.exr"};
+  const Arguments guidegen = {"guidegen", "t.obj", "--size", "64", "-o", "g.exr", "--threads", "2"};
   ExpectError(With(guidegen, {"--layers", "albedo", "--max-memory", "50M"}), 2, {"scene 23 MiB", "--max-memory allows"});
   EXPECT_FALSE(Exists("g.exr"));
   RunOk(With(guidegen, {"--max-memory", "50M"}));

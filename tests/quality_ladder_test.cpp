@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/budget_trial.h"
 #include "cli/picture_settings.h"
 
 namespace scumble {
@@ -99,6 +100,11 @@ TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
   two.styles[1].transfer.method = Method::kLitSphere;
   EXPECT_FALSE(has("transfer.method=styleblit")) << "charcoal would be painted by chunks, which takes more time";
   EXPECT_TRUE(has("transfer.method=litsphere"));
+  for (const Quality quality : {Quality::kPreview, Quality::kDraft}) {
+    const Way way = WayOf(quality, two, kGiven);
+    EXPECT_NE(std::find(way.settings.begin(), way.settings.end(), "transfer.method=litsphere"), way.settings.end())
+        << "the other one would stay at brute force";
+  }
 }
 
 TEST(QualityLadder, WhatTheUserSetsStays) {
@@ -147,6 +153,26 @@ TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
       EXPECT_GE(place(Quality::kDraft), place(Quality::kPreview));
     }
   }
+}
+
+// What lies underneath is part of a trial's work.
+TEST(PaintTrial, ReadsWhatLiesUnderneath) {
+  StyleSet styles = Open("oil");
+  GuideSet guides(32, 32);
+  for (const LayerInfo& info : AllLayers()) {
+    if (AlwaysWritten().Has(info.layer)) guides.Add(info.layer);
+  }
+  for (float& a : guides.Plane(Layer::kCoverage)) a = 1.0f;
+  for (float& z : guides.Plane(Layer::kNormal, 2)) z = 1.0f;
+  const Way plain = QualityLadder(styles, kGiven).front();
+  const PictureOptions picture;
+  const Globals globals;
+  PaintTrial bare(styles, picture, "guides", "", globals);
+  EXPECT_TRUE(bare.Paint(plain, guides).ok());
+  PaintTrial over(styles, picture, "guides", "nowhere/under.png", globals);
+  const auto painted = over.Paint(plain, guides);
+  ASSERT_FALSE(painted.ok());
+  EXPECT_NE(painted.error().message.find("nowhere/under.png"), std::string::npos) << painted.error().message;
 }
 
 }  // namespace

@@ -188,9 +188,13 @@ TEST_F(Tradeoff, AFolderIsTakenAgainAndLeftAsItWasFound) {
   WriteText("out/tradeoff.json", R"({"ways": [{"picture": "../../mine/lit.png"}, {"picture": 3}, 4]})");
   RunOk(Small(scene, {"--only", "levels 2", "-o", "out"}));
   EXPECT_TRUE(Exists("mine/lit.png"));
-  // What is wrong is told before any folder stays.
+  // Where something is wrong no folder stays that was not there, and every one that was.
   ExpectError(Small(scene, {"--only", "levles", "-o", "new/deep"}), 2, {"--only levles"});
-  EXPECT_FALSE(Exists("new/deep"));
+  EXPECT_FALSE(Exists("new"));
+  fs::create_directories(At("empty"));
+  ExpectError(Small(scene, {"--only", "levles", "-o", "empty"}), 2, {"--only levles"});
+  ExpectError({"tradeoff", scene, "--style", "nobody", "-o", "empty"}, 3, {"nobody"});
+  EXPECT_TRUE(fs::is_empty(At("empty")));
   EXPECT_EQ(pictures().size(), 3u);
   // An exemplar among the pictures would be painted over.
   fs::copy_file(At("mine/lit.png"), At("out/pictures/01-the-style.png"), fs::copy_options::overwrite_existing);

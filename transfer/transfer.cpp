@@ -144,7 +144,8 @@ class Run {
     for (std::size_t s = 0; s < styles.size(); ++s) {
       const PreparedStyle& style = *styles[s];
       const Region matched = region_.GrownBy(style.blend_radius, guides_.width(), guides_.height());
-      internal::BandStyle& part = parts.emplace_back(InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style));
+      internal::BandStyle& part =
+          parts.emplace_back(internal::BandStyle{InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style)});
       part.match.active = {};
       part.match.covered = {guides_.Plane(Layer::kCoverage),
                             map_ ? std::span<const std::uint16_t>(map_->style) : std::span<const std::uint16_t>(),
