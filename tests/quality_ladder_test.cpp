@@ -167,12 +167,13 @@ TEST(PaintTrial, ReadsWhatLiesUnderneath) {
   const Way plain = QualityLadder(styles, kGiven).front();
   const PictureOptions picture;
   const Globals globals;
-  PaintTrial bare(styles, picture, "guides", "", globals);
+  const std::string name = "guides", none, missing = "nowhere/under.png";  // they are borrowed
+  PaintTrial bare(styles, picture, name, none, globals);
   EXPECT_TRUE(bare.Paint(plain, guides).ok());
-  PaintTrial over(styles, picture, "guides", "nowhere/under.png", globals);
+  PaintTrial over(styles, picture, name, missing, globals);
   const auto painted = over.Paint(plain, guides);
   ASSERT_FALSE(painted.ok());
-  EXPECT_NE(painted.error().message.find("nowhere/under.png"), std::string::npos) << painted.error().message;
+  EXPECT_NE(painted.error().message.find(missing), std::string::npos) << painted.error().message;
 }
 
 }  // namespace
