@@ -37,7 +37,7 @@ test-tsan: ## unit tests under ThreadSanitizer, in build-tsan/
 	@.ci/tsan_tbb build-tsan/onetbb
 	@cmake --preset tsan
 	@cmake --build build-tsan -j $(JOBS)
-	@TSAN_OPTIONS=suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -L unit
+	@TSAN_OPTIONS=history_size=7:suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -L unit
 
 fuzz: ## libFuzzer (clang) on everything that reads other people's files, 60 s each; FUZZ="600 gltf" 600 s of one
 	@.ci/install fuzz
