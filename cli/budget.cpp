@@ -13,6 +13,7 @@
 #include "cli/memory_need.h"
 #include "cli/needed_textures.h"
 #include "cli/picture_settings.h"
+#include "cli/progress_bar.h"
 #include "cli/quality_ladder.h"
 #include "cli/scene_frames.h"
 #include "cli/timing.h"
@@ -66,18 +67,22 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
   FileCache cache(CacheFolder() ? *CacheFolder() / "times" : std::filesystem::path());
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
   for (const Way& way : ways) calibration.ways.push_back(way.name);
-  bool said = false;
+  ProgressBar bar("calibration", globals.quiet);
+  const Progress progress = bar.Part(0.0, 1.0);
+  // Most are given up at their first run.
+  const double usual_runs = static_cast<double>(ways.size()) + kCalibrationRuns + 2.0;
+  int runs = 0;
   const MeasureWay measure = [&](std::size_t place) {
-    if (!std::exchange(said, true)) {
-      Say(globals, fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
-    }
+    if (runs == 0) Say(globals, fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
+    if (progress) progress(std::min(0.99, runs++ / usual_runs));
     return paint(ways[place]);
   };
   SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure));
+  bar.Clear();
   EndStage(globals, "calibration");
   const Way& way = ways[picked.way];
   Say(globals,
-      fmt::format("budget {:g} ms: about {:.0f} ms with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
+      fmt::format("budget {:g} ms: at most {:.0f} ms, nine times of ten, with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
                   WordsOf(way), OptionsOf(way).empty() ? "" : ", which repeats it"));
   if (!picked.fits) {
     Warn(fmt::format("--budget-ms {:g}: nothing fits; the quickest way is taken, which needs about {:.0f} ms",

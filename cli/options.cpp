@@ -39,12 +39,6 @@ std::string RefuseNegative(const std::string& text) {
 
 std::string RefuseEmpty(const std::string& text) { return text.empty() ? "it is empty: give a name, or leave it out" : ""; }
 
-namespace {
-
-// Larger pictures cannot be read back.
-
-}  // namespace
-
 Expected<Size> ParseSize(const std::string& text) {
   const std::size_t cross = text.find_first_of("xX");
   const std::string first = text.substr(0, cross);
@@ -132,14 +126,8 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
   verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
 }
 
-void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("--seed", options.seed, "another seed, other noise of the same size; the same seed, the same bytes")
-      ->type_name("N")
-      ->check(RefuseNegative)
-      ->capture_default_str();
-  verb.add_option("--samples", options.samples,
-                  "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most "
-                  "there may be")
+void AddSampleOptions(CLI::App& verb, SceneOptions& options) {
+  verb.add_option("--samples", options.samples, "paths a pixel, for lpe.* layers and under lights with extent")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxSamples))
       ->each([&options](const std::string&) { options.samples_given = true; })
@@ -148,6 +136,16 @@ void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(0, kMaxBounces))
       ->capture_default_str();
+}
+
+void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
+  verb.add_option("--seed", options.seed, "another seed, other noise of the same size; the same seed, the same bytes")
+      ->type_name("N")
+      ->check(RefuseNegative)
+      ->capture_default_str();
+  AddSampleOptions(verb, options);
+  verb.get_option("--samples")->description(
+      "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most there may be");
   verb.add_option("--noise", options.noise, "sample lpe.* layers, 16 times or more, until the estimated error, RMS over mean, is below this")
       ->type_name("X")
       ->check(CLI::PositiveNumber);
@@ -265,8 +263,9 @@ std::string GuideSettings(const SceneOptions& options) {
   };
   add("camera", options.camera), add("view", options.view), add("animation", options.animation);
   add("fps", options.fps == kUsualFps ? "" : options.fps);
-  if (!options.robust) text += "; robust no";
-  return text;
+  // All of them always: what a file does not name is not compared.
+  return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no", options.samples,
+                            options.max_bounces, options.noise);
 }
 
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next,

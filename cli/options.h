@@ -71,7 +71,9 @@ struct SceneOptions {
   std::function<void(const Size& size, const LayerSet& layers, MemoryNeed& need)> more_memory;
   bool key_light = true;  // let one shine where the file has no light and a layer needs some
 };
-// For guides with light paths, which no style reads.
+// How many paths a pixel of light takes, and how long they are.
+void AddSampleOptions(CLI::App& verb, SceneOptions& options);
+// The same with all else that guides with light paths need.
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options);
 // A scene, the picture's size and whence it is seen.
 void AddViewOptions(CLI::App& verb, SceneOptions& options);

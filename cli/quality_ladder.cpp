@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 
@@ -138,14 +137,14 @@ Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
   if (quality == Quality::kFinal) return MakeWay(Rungs().front(), styles, frame);
   Rung rung{4, {kLitSphere, kUnsplit}};
   if (quality == Quality::kPreview) {
+    // Guides of normals alone take so little that nothing is gained which would not be seen.
     const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-    rung = {lit ? 2 : 1, {kStyleBlit, kUnsplit}};
+    rung = {2, {kStyleBlit, kUnsplit}};
+    if (frame.casts && !lit) return MakeWay({1, rung.settings}, styles, frame);
   }
   if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
   return MakeWay(rung, styles, frame);
 }
-
-int UpsampleOf(const Way& way) { return static_cast<int>(std::lround(1.0 / way.guide_scale)); }
 
 std::string OptionsOf(const Way& way) {
   std::string text;

@@ -30,15 +30,12 @@ std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame)
 enum class Quality {
   // For finding a camera: guides of a quarter of the size, where they may be smaller, and the Lit Sphere.
   kDraft,
-  // For judging a style: guides of half the size where they hold light, which is what makes them slow; elsewhere the
-  // picture's own size, without blending.
+  // For judging a style: guides of half the size where they hold light, which is what makes them slow, or no blending where
+  // the guides are as they are. What casts normals alone is quick enough as it is, but for the split.
   kPreview,
   kFinal,  // the style as it is
 };
 Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame);
-
-// So many times is the picture as wide and high as the way's guides.
-int UpsampleOf(const Way& way);
 
 // The options of stylize and transfer that repeat it: "--upsample 4 --set transfer.method=litsphere"; empty for the
 // style as it is.

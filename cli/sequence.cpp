@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "cli/json_text.h"
+#include "cli/memory_limit.h"
 #include "cli/timing.h"
 #include "image/stopwatch.h"
 
@@ -170,7 +171,8 @@ class Tally {
                                   {"made", made_},
                                   {"kept", kept_},
                                   {"failed", failed_.size()},
-                                  {"total_ms", total_ms}};
+                                  {"total_ms", total_ms},
+                                  {"memory", {{"peak_bytes", PeakMemory()}}}};
       json.update(more);
       if (globals_.timing) json["timing"] = globals_.timing->ToJson();
       Print(JsonText(json));

@@ -483,6 +483,7 @@ void AddStylizeVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<StylizeVerb>();
   CLI::App* sub = app.add_subcommand("stylize", "scene + style -> picture: guidegen and transfer in one go");
   AddSceneOptions(*sub, verb->scene);
+  AddSampleOptions(*sub, verb->scene);
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, false);
   AddBudgetOptions(*sub, verb->budget, true);

@@ -121,15 +121,15 @@ Expected<ExitCode> RunTradeoffVerb(const TradeoffVerb& verb, const Globals& glob
     Print(fmt::format("{{\"peak_bytes\": {}}}\n", bytes));
     return ExitCode::kOk;
   }
-  std::optional<MadeFolders> folders;
   if (!verb.folder.empty()) {
-    folders.emplace(fs::path(verb.folder) / kPictures);
+    const MadeFolders folders(fs::path(verb.folder) / kPictures);  // gone again while minutes of work may be interrupted
     SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb));
   }
   ProgressBar bar("tradeoff", globals.quiet);
   SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals, bar));
   bar.Clear();
   if (!verb.folder.empty()) {
+    const MadeFolders folders(fs::path(verb.folder) / kPictures);
     SCUMBLE_RETURN_IF_ERROR(WriteFolder(verb.folder, report));
     Say(globals, (fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");
   }
@@ -145,11 +145,13 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "tradeoff", "what every way to stylise a scene costs on this machine, and how far off it is: a table, a chart, all pictures");
   sub->footer(
       "Each way changes one thing of the style, or a few; the energy says how far its picture is from what the exemplar shows:\n"
-      "`both` ranks. Times are of the guides (with the acceleration structure) and of the transfer, after a run to warm up;\n"
+      "`both` ranks, the less the better. Times are of the guides (with the acceleration structure) and of the transfer, after a run to warm up;\n"
       "loading, preparing the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak\n"
       "of a process that makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
-      "says; colorized styles are measured before the scene's colours are on them.\n");
+      "says; colorized styles are measured before the scene's colours are on them. More blending always scores better: it\n"
+      "takes seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each way.\n");
   AddViewOptions(*sub, verb->setup.scene);
+  AddSampleOptions(*sub, verb->setup.scene);
   AddOneStyleOptions(*sub, verb->setup.style, true);
   sub->add_option("--only", verb->setup.only,
                   "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "
@@ -160,10 +162,6 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
   sub->add_option("--repeat", verb->setup.repeats, "times to run each, for the median and its spread")
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  sub->add_option("--samples", verb->setup.scene.samples, "paths a pixel for guides of light, of the style itself")
-      ->type_name("N")
-      ->check(CLI::Range(1, kMaxSamples))
       ->capture_default_str();
   sub->add_option("--seed", verb->setup.scene.seed, "another seed, another pattern and other noise; the same seed, the same errors")
       ->type_name("N")

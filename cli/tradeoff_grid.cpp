@@ -38,6 +38,7 @@ class Grid {
     AddVotes();
     AddNearest();
     AddGuides();
+    AddSeeds();
     if (!options_.quick) AddCombinations();
     return std::move(grid_);
   }
@@ -62,6 +63,8 @@ class Grid {
     way.name = "the exact way", way.axis = kExactAxis, way.value = "";
     if (style_.method == Method::kStyleBlit && BruteForceFits()) way.settings.push_back("transfer.method=bruteforce");
     if (!sphere_ && IsPlain()) way.settings.push_back("transfer.nearest=tree");
+    // A ball's formula is exact to a pixel, which its table is not.
+    if (sphere_ && style_.nearest == NearestSearch::kTable) way.settings.push_back("transfer.nearest=analytic");
     if (style_.nearest_error > 0.0) way.settings.push_back("transfer.nearest_error=0");
     if (style_.match_step > 1) way.settings.push_back("transfer.match_step=1");
     if (options_.chance && options_.samples < kConverged) way.samples = kConverged;
@@ -147,6 +150,12 @@ class Grid {
     for (const int samples : {1, 4, 16, 64, 256, 1024}) {
       if (samples != options_.samples) Add("samples", std::to_string(samples)).samples = samples;
     }
+  }
+
+  // Other patterns of the same kind: what they differ by is chance.
+  void AddSeeds() {
+    if (style_.method == Method::kLitSphere) return;  // has no pattern
+    for (int more = 1; more <= (options_.quick ? 1 : 3); ++more) Add("seed", fmt::format("+{}", more)).more_seed = more;
   }
 
   void AddCombinations() {

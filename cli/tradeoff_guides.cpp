@@ -23,9 +23,10 @@ Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& option
                                   const LayerSet& layers, const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
   SceneOptions one = options;
-  const int up = UpsamplingOf(way), super = SupersamplingOf(way);
+  const int up = UpsampleOf(way), super = SupersampleOf(way);
   one.size = fmt::format("{}x{}", size.width * super / up, size.height * super / up);
   one.robust = way.robust;
+  one.seed += static_cast<std::uint64_t>(way.more_seed);
   if (way.samples > 0) one.samples = way.samples;
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(scene.scene, scene.view.camera, nullptr, one, layers, globals, {}, false));
   WayGuides result;
@@ -45,8 +46,9 @@ Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& option
 }
 
 std::string GuidesKey(const Way& way, const LayerSet& layers, bool rounded) {
-  return fmt::format("{} {} {} {} {}", way.guide_scale, way.samples, way.robust, layers.ToString(),
-                     rounded ? int(way.precision) : 0);
+  std::string key = fmt::format("{} {} {} {}", way.guide_scale, way.samples, way.robust, layers.ToString());
+  if (rounded) key += fmt::format(" {} {}", int(way.precision), way.more_seed);
+  return key;
 }
 
 }  // namespace scumble

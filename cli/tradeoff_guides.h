@@ -13,11 +13,6 @@ namespace scumble {
 // Whether guides of these layers need chance there, so that their samples matter.
 bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneOptions& options);
 
-// The guides' size against the picture's in whole steps: a way of half size is upsampled twice, one of twice the size is
-// painted so and averaged.
-inline int UpsamplingOf(const Way& way) { return way.guide_scale < 1.0 ? 2 : 1; }
-inline int SupersamplingOf(const Way& way) { return way.guide_scale > 1.0 ? 2 : 1; }
-
 struct WayGuides {
   GuideSet guides;  // as the transfer reads them
   GuideSet given;   // before they were upsampled, by which the exposure is measured; empty where they were not
@@ -30,7 +25,8 @@ struct WayGuides {
 Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
                                   const LayerSet& layers, const Globals& globals);
 
-// Ways with equal text have equal guides; with `rounded` false, guides that take the same time.
+// Ways with equal text have equal guides; with `rounded` false, guides that take the same time: no rounding and no
+// seed is asked for.
 std::string GuidesKey(const Way& way, const LayerSet& layers, bool rounded);
 
 }  // namespace scumble

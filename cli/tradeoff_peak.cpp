@@ -21,6 +21,7 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& 
   if (!setup.scene.camera.empty()) words.push_back("--camera=" + setup.scene.camera);
   if (!setup.scene.view.empty()) words.push_back("--view=" + setup.scene.view);
   if (setup.scene.samples != SceneOptions().samples) add("--samples", std::to_string(setup.scene.samples));
+  if (setup.scene.max_bounces != SceneOptions().max_bounces) add("--max-bounces", std::to_string(setup.scene.max_bounces));
   if (setup.scene.seed != 0) add("--seed", std::to_string(setup.scene.seed));
   if (!setup.only.empty()) add("--only", setup.only);
   if (setup.repeats != TradeSetup().repeats) add("--repeat", std::to_string(setup.repeats));

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <optional>
 #include <utility>
 
 #include "image/exact_math.h"
 #include "measure/coherence.h"
+#include "measure/flat_surfaces.h"
 #include "measure/flip.h"
 #include "measure/repetition.h"
 
@@ -86,6 +88,7 @@ TradeReference::TradeReference(std::shared_ptr<const GuideSet> guides, PreparedS
   more_of_exemplars_.resize(static_cast<std::size_t>(exemplar.count()));
   if (style_.space) AddWeighedGuides();
   if (style_.illumination.active()) AddConditions();
+  if (style_.settings.variety > 0.0) AddFreedom();
 }
 
 // Coordinates are what the transfer compares: weighed, so their squares are what they count.
@@ -127,11 +130,20 @@ void TradeReference::AddConditions() {
   }
 }
 
+// On flat surfaces a style's variety takes paint from so many degrees off, which is what the artist asks for.
+void TradeReference::AddFreedom() {
+  const auto chord = static_cast<float>(2.0 * std::sin(0.5 * glm::radians(style_.settings.variety)));
+  const std::vector<std::uint8_t> flat = FlatSurfaces(*guides_, style_.flat_reach);
+  free_.resize(flat.size());
+  std::transform(flat.begin(), flat.end(), free_.begin(), [chord](std::uint8_t is_flat) { return is_flat ? chord : 0.0f; });
+}
+
 EnergyTarget TradeReference::Target(const Picture& picture) const {
   return {&picture,
           {guides_->Plane(Layer::kNormal, 0), guides_->Plane(Layer::kNormal, 1), guides_->Plane(Layer::kNormal, 2)},
           guides_->Plane(Layer::kCoverage),
-          {more_.begin(), more_.end()}};
+          {more_.begin(), more_.end()},
+          free_};
 }
 
 std::vector<EnergyExemplar> TradeReference::Exemplars() const {

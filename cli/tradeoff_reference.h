@@ -42,6 +42,7 @@ class TradeReference {
   std::vector<EnergyExemplar> Exemplars() const;
   void AddWeighedGuides();
   void AddConditions();
+  void AddFreedom();
   Expected<GuideDifference> CompareNormals(const GuideSet& guides) const;
   Expected<GuideDifference> CompareLight(const GuideSet& guides, double exposure, Layer layer, float white) const;
 
@@ -53,6 +54,7 @@ class TradeReference {
   std::vector<std::uint8_t> usable_;                                 // likewise
   std::vector<std::vector<float>> more_;                             // guides beside normals, of the scene
   std::vector<std::vector<std::vector<float>>> more_of_exemplars_;  // by exemplar
+  std::vector<float> free_;  // of normals, what `variety` grants; empty without it
 };
 
 }  // namespace scumble

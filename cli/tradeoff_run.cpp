@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/blender.h"
 #include "cli/machine.h"
 #include "cli/memory_limit.h"
 #include "cli/shell_word.h"
@@ -52,19 +53,23 @@ class Trade {
       : setup_(setup), globals_(globals), progress_(bar.Part(0.0, 1.0)) {
     silent_ = globals;
     silent_.quiet = true;
+    asks_for_memory_ = setup.memory && !IsBlenderScene(setup.scene.scene);
   }
 
   Expected<TradeReport> Measure() {
     SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, globals_));
     SCUMBLE_ASSIGN(const std::vector<Way> ways, ChooseWays(stage_.grid.ways, setup_.only));
     for (const std::string& line : stage_.grid.left_out) Say(globals_, "left out: " + line);
+    if (setup_.memory && !asks_for_memory_) {
+      Say(globals_, "left out: memory, for which Blender would export the scene for each way; export it as .glb for that");
+    }
     SCUMBLE_RETURN_IF_ERROR(OpenStyles(ways));
     // Guides that differ only in how they are rounded take one time.
     std::map<std::string, bool> jobs;
     for (std::size_t i = 0; i < ways.size(); ++i) jobs[GuidesKey(ways[i], layers_[i], false)] = true;
     const double runs = setup_.repeats + 1;
     work_ = static_cast<double>(jobs.size()) * runs * kGuidesWork +
-            static_cast<double>(ways.size()) * (runs + kMeasureWork + (setup_.memory ? kMemoryWork : 0.0));
+            static_cast<double>(ways.size()) * (runs + kMeasureWork + (asks_for_memory_ ? kMemoryWork : 0.0));
     SCUMBLE_RETURN_IF_ERROR(MakeReference());
     SCUMBLE_RETURN_IF_ERROR(TimeGuides(ways));
     report_.scene = std::filesystem::path(setup_.scene.scene).stem().string();
@@ -169,7 +174,7 @@ class Trade {
       TradeMeasure& measure = report_.ways[i];
       measure.guides_ms = QuartilesOf(guides), measure.transfer_ms = QuartilesOf(times[i - begin]);
       measure.total_ms = TotalOf(guides, times[i - begin]);
-      if (!setup_.memory) continue;
+      if (!asks_for_memory_) continue;
       if (measure.total_ms.median <= 2.0 * kSlowMs) {
         SCUMBLE_ASSIGN(measure.memory_bytes, AskForPeak(setup_, ways[i].name, globals_));
         if (measure.memory_bytes == 0) {
@@ -186,9 +191,10 @@ class Trade {
     TradeMeasure measure;
     measure.name = way.name, measure.axis = way.axis, measure.value = way.value;
     measure.chosen = way.axis == kStyleAxis, measure.exact = way.axis == kExactAxis;
+    measure.by_chance = way.more_seed != 0;
     RepeatOptions repeat = RepeatWay(setup_, stage_, way);
     measure.options = std::move(repeat.options), measure.note = std::move(repeat.note);
-    if (SupersamplingOf(way) == 1) {
+    if (SupersampleOf(way) == 1) {
       SCUMBLE_ASSIGN(const GuideDifference off, reference_->Compare(painter.guides().guides, painter.exposure()));
       measure.guide_rms = off.rms, measure.guide_flip = off.flip;
     }
@@ -227,6 +233,7 @@ class Trade {
   const TradeSetup& setup_;
   const Globals& globals_;
   Globals silent_;
+  bool asks_for_memory_ = true;  // not of a .blend, which every process would have to export again
   Progress progress_;
   double work_ = 1.0, done_ = 0.0;
   TradeStage stage_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cli/cache.h"
+#include "cli/quality_ladder.h"
 #include "cli/shell_word.h"
 #include "cli/style_set.h"
 #include "image/stopwatch.h"
@@ -24,6 +25,23 @@ Expected<Style> OpenStyleWith(const StyleOptions& options, const std::vector<std
   Style style = std::move(styles.styles.front());
   SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, 0));
   return style;
+}
+
+std::uint64_t SeedOf(const TradeSetup& setup, const Way& way) { return setup.scene.seed + std::uint64_t(way.more_seed); }
+
+// The named qualities, which --quality and --budget-ms choose from, where they are not the style itself.
+Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
+  StyleOptions options = setup.style;
+  options.scene_styles = false;
+  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(options));
+  const std::pair<const char*, Quality> kNamed[] = {{"preview", Quality::kPreview}, {"draft", Quality::kDraft}};
+  for (const auto& [name, quality] : kNamed) {
+    Way way = WayOf(quality, styles, {.casts = true, .width = stage.width, .height = stage.height});
+    if (way.settings.empty() && way.guide_scale == 1.0) continue;
+    way.axis = "quality", way.value = name, way.name = std::string("quality ") + name;
+    stage.grid.ways.push_back(std::move(way));
+  }
+  return Ok();
 }
 
 }  // namespace
@@ -49,6 +67,7 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& glob
   SCUMBLE_ASSIGN(stage.scene, OpenSceneAtRest(setup.scene, layers, false, globals, false));
   stage.chance = NeedSamples(stage.scene.scene, stage.scene.layers, setup.scene);
   stage.grid = MakeTradeGrid(stage.style, {size.width, size.height, setup.quick, stage.chance, setup.scene.samples});
+  SCUMBLE_RETURN_IF_ERROR(AddQualities(setup, stage));
   return stage;
 }
 
@@ -56,10 +75,6 @@ RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const 
   if (way.precision != GuidePrecision::kFloat) return {"", "stylize has floats for guides, whatever is asked for"};
   if (way.guide_scale > 1.0) {
     return {"", fmt::format("stylize with --size {}x{}, then each 2 x 2 pixels averaged", 2 * stage.width, 2 * stage.height)};
-  }
-  const int samples = way.samples > 0 ? way.samples : setup.scene.samples;
-  if (stage.chance && samples != SceneOptions().samples) {
-    return {"", fmt::format("scumble guidegen with --samples {}, then scumble transfer", samples)};
   }
   if (way.table_resolution != LookUpTable::kResolution) {
     return {"", fmt::format("tables of stylize have {} cells a side", LookUpTable::kResolution)};
@@ -72,10 +87,15 @@ RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const 
   add("--size", fmt::format("{}x{}", stage.width, stage.height));
   if (!setup.scene.camera.empty()) add("--camera", setup.scene.camera);
   if (!setup.scene.view.empty()) add("--view", setup.scene.view);
-  if (UpsamplingOf(way) > 1) add("--upsample", std::to_string(UpsamplingOf(way)));
+  if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
+  const int samples = way.samples > 0 ? way.samples : setup.scene.samples;
+  if (stage.chance && samples != SceneOptions().samples) add("--samples", std::to_string(samples));
+  if (stage.chance && setup.scene.max_bounces != SceneOptions().max_bounces) {
+    add("--max-bounces", std::to_string(setup.scene.max_bounces));
+  }
   if (!way.robust) text += " --no-robust";
   if (stage.has_wishes) text += " --no-scene-styles";
-  if (setup.scene.seed != 0) add("--seed", std::to_string(setup.scene.seed));
+  if (const std::uint64_t seed = SeedOf(setup, way); seed != 0) add("--seed", std::to_string(seed));
   return {text, ""};
 }
 
@@ -91,9 +111,9 @@ Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
   const auto stops = MeasureExposure({&painter.prepared_, 1}, painter.guides_->ForExposure(), globals.threads);
   painter.options_.exposure = stops.value_or(0.0);
-  painter.options_.seed = setup.scene.seed;
+  painter.options_.seed = SeedOf(setup, way);
   painter.options_.threads = globals.threads;
-  painter.factor_ = SupersamplingOf(way);
+  painter.factor_ = SupersampleOf(way);
   return painter;
 }
 

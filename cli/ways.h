@@ -2,6 +2,7 @@
 // measures is a list of ways, and so is the ladder that --quality and --budget-ms choose from.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,13 @@ struct Way {
   double guide_scale = 1.0;  // width and height of the guides against the picture's: 0.5 is upsampled, 2 is thinned out
   int samples = 0;           // of a pixel, for guides of light; 0: as the verb's --samples
   bool robust = true;        // Embree's robust mode, GuidegenOptions::robust
+  int more_seed = 0;         // added to the verb's --seed
   int table_resolution = LookUpTable::kResolution;  // cells a side, where nearest neighbours come from a table
 };
+
+// The guides' size against the picture's in whole steps: smaller guides are upsampled so many times, larger ones painted as
+// they are and averaged.
+inline int UpsampleOf(const Way& way) { return way.guide_scale < 1.0 ? static_cast<int>(std::lround(1.0 / way.guide_scale)) : 1; }
+inline int SupersampleOf(const Way& way) { return way.guide_scale > 1.0 ? static_cast<int>(std::lround(way.guide_scale)) : 1; }
 
 }  // namespace scumble

@@ -70,6 +70,22 @@ Expected<PatchPlanes> MakePlanes(const std::string& name, const Picture& picture
   return planes;
 }
 
+Status AddFree(const EnergyTarget& target, PatchPlanes& planes) {
+  if (target.free.empty()) return Ok();
+  if (target.free.size() != target.coverage.size()) return InputError("what is free of normals is not of the target's size");
+  planes.free.assign(planes.mask.size(), 0.0f);
+  for (int y = 0; y < planes.height; ++y) {
+    for (int x = 0; x < planes.width; ++x) {
+      const float free = target.free[std::size_t(y) * planes.width + x];
+      if (!(free >= 0.0f && free <= 2.0f)) {
+        return InputError("of normals " + std::to_string(free) + " is free: expected 0 … 2, the distance of two");
+      }
+      planes.free[std::size_t(planes.Index(x, y))] = free;
+    }
+  }
+  return Ok();
+}
+
 double Degrees(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180.0 / std::numbers::pi;
 }
@@ -265,7 +281,8 @@ Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const
   SCUMBLE_RETURN_IF_ERROR(CheckInputs(target, guides, exemplars, options.sources));
   double largest = 0.0;
   const auto counts = [&](std::size_t i) { return target.coverage[i] >= options.least_coverage; };
-  SCUMBLE_ASSIGN(const PatchPlanes wanted, MakePlanes("the target", *target.picture, guides, counts, largest));
+  SCUMBLE_ASSIGN(PatchPlanes wanted, MakePlanes("the target", *target.picture, guides, counts, largest));
+  SCUMBLE_RETURN_IF_ERROR(AddFree(target, wanted));
   std::vector<PatchPlanes> planes;
   for (std::size_t e = 0; e < exemplars.size(); ++e) {
     const EnergyExemplar& exemplar = exemplars[e];

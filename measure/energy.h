@@ -5,7 +5,8 @@
 //   E(p, u) = Σ |C_T(p + o) − C_S(u + o)|²  +  λ · |G_T(p) − G_S(u)|²,    o in [−2, 2]²
 //
 // with C the colours as painted (R, G and B, sRGB-encoded, 0 … 1, straight: alpha does not matter) and G the guides:
-// unit normals, and whatever planes are added to them. It is what patch-based synthesis minimises, as StyLit does
+// unit normals, and whatever planes are added to them; of the distance of normals only what is beyond
+// what the target says is free at p. It is what patch-based synthesis minimises, as StyLit does
 // [Fišer et al. 2016, eq. 1]. Guides are compared in the middle: normals of 5×5 pixels of another form never agree,
 // whatever the method, and that would be most of the figure. Three means of it:
 //
@@ -49,6 +50,9 @@ struct EnergyTarget {
   std::span<const float> coverage;               // 0 … 1
   // Guides beside normals, multiplied by the square root of what each counts; as many as the exemplars have.
   std::vector<std::span<const float>> more_guides = {};
+  // By pixel, 0 … 2: how far from the pixel's own a normal may be, as the distance of the two, without cost. A style's
+  // `variety` grants it on flat surfaces; what an artist asked for is no error. Empty: 0 everywhere.
+  std::span<const float> free = {};
 };
 
 // At the size at which it was used, with the paint that was used.

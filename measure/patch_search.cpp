@@ -15,6 +15,7 @@ constexpr double kColorWeight = 1.0 / (65535.0 * 65535.0);
 // A sum of squares in float comes out too large by at most one rounding for each of them and each addition to it.
 constexpr int kMostNumbers = 60;
 constexpr float kSumSlack = 1.0f - (kMostNumbers + 4) * 0x1.0p-24f;
+constexpr std::size_t kNormal = 3;  // as many guides, the first ones
 
 // Smooth patterns hold most of what patches of paint differ by: the polynomials of the degrees 0, 1 and 2 that are
 // orthonormal on the grid.
@@ -32,6 +33,12 @@ std::array<std::array<double, 2 * kPatchRadius + 1>, 3> Polynomials(int radius) 
     for (double& value : out[std::size_t(degree)]) value = length > 0.0 ? value / std::sqrt(length) : 0.0;
   }
   return out;
+}
+
+// Of a squared distance, what counts of it where `free` of its root does not.
+double BeyondFree(double squared, double free) {
+  const double beyond = std::max(0.0, std::sqrt(squared) - free);
+  return beyond * beyond;
 }
 
 }  // namespace
@@ -56,6 +63,9 @@ PatchSearch::PatchSearch(std::span<const PatchPlanes> exemplars, double guide_we
   SCUMBLE_CHECK(!exemplars.empty() && exemplars[0].planes.size() >= std::size_t(kPatchColors));
   SCUMBLE_CHECK(guide_weight >= 0.0 && std::isfinite(guide_weight));
   guides_ = exemplars[0].planes.size() - kPatchColors;
+  for (const PatchPlanes& exemplar : exemplars) {
+    for (const float free : exemplar.free) most_free_ = std::max(most_free_, double(free));
+  }
   // Values are at most `scale`, and a patch has n of them. A number is at most 5 · scale (a pattern's length is 1 and a
   // plane of a patch has 25 places), or √n · scale where it is the length of what is left; both are rounded to float,
   // their difference is, and that less the slack: up to 6 · √n · scale · 2⁻²⁴. The square of that length is a sum of n
@@ -183,6 +193,7 @@ PatchQuery PatchSearch::QueryAt(const PatchPlanes& target, int x, int y) const {
   query.whole = double(kPatchPlaces) / static_cast<double>(query.offsets.size());
   const std::size_t middle = static_cast<std::size_t>(target.Index(x, y));
   for (std::size_t g = 0; g < guides_; ++g) query.guides.push_back(target.planes[kPatchColors + g][middle]);
+  if (!target.free.empty()) query.free = target.free[middle];
   return query;
 }
 
@@ -199,10 +210,13 @@ bool PatchSearch::Fits(const PatchPlanes& exemplar, const PatchQuery& query, int
 void PatchSearch::Try(const PatchQuery& query, const Place& place, Best& best) const {
   const PatchPlanes& exemplar = exemplars_[std::size_t(place.exemplar)];
   const std::ptrdiff_t middle = exemplar.Index(place.x, place.y), stride = exemplar.stride();
+  const double free =
+      exemplar.free.empty() ? query.free : std::max(query.free, double(exemplar.free[std::size_t(middle)]));
   double guide = 0.0, color = 0.0;
   for (std::size_t g = 0; g < guides_; ++g) {
     const double d = double(query.guides[g]) - exemplar.planes[kPatchColors + g][std::size_t(middle)];
     guide += d * d;
+    if (free > 0.0 && g + 1 == kNormal) guide = BeyondFree(guide, free);
   }
   double energy = guide_weight_ * guide;
   for (std::size_t c = 0; c < kPatchColors; ++c) {
@@ -220,17 +234,40 @@ void PatchSearch::Try(const PatchQuery& query, const Place& place, Best& best) c
   best.match = {place.exemplar, place.x, place.y, color * kColorWeight * query.whole, guide};
 }
 
+// Adds to bounds[i] the squares of distance(number, i) over all numbers, each less the slack; normals first, as what is
+// free comes off their length.
+template <class Distance>
+void PatchSearch::AddBounds(const Level& level, double free, std::span<float> bounds, const Distance& distance) const {
+  const auto add = [&](std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k) {
+      for (std::size_t i = 0; i < bounds.size(); ++i) {
+        const float d = std::max(distance(k, i) - slack_, 0.0f);
+        bounds[i] += d * d;
+      }
+    }
+  };
+  const std::size_t first_guide = kPatchColors * level.patterns.size();
+  const std::size_t normals_end = first_guide + (free > 0.0 ? kNormal : 0);
+  add(first_guide, normals_end);
+  if (free > 0.0) {
+    // Rounded up, and by the slack once more, as the root is off by less.
+    const float off = static_cast<float>(std::sqrt(guide_weight_) * free) * (1.0f + 0x1.0p-22f) + slack_;
+    for (float& bound : bounds) {
+      const float beyond = std::max(0.0f, std::sqrt(bound) - off);
+      bound = beyond * beyond;
+    }
+  }
+  add(0, first_guide);
+  add(normals_end, std::size_t(level.numbers));
+}
+
 void PatchSearch::SearchTile(const Level& level, std::size_t tile, const float* wanted, const PatchQuery& query,
                              Best& best) const {
   const std::size_t first = level.first[tile], count = level.first[tile + 1] - first;
   std::array<float, kTilePlaces> bounds{};
   const float* values = level.values.data() + tile * std::size_t(level.numbers) * kTilePlaces;
-  for (int k = 0; k < level.numbers; ++k, values += kTilePlaces) {
-    for (std::size_t i = 0; i < kTilePlaces; ++i) {
-      const float d = std::max(std::fabs(wanted[k] - values[i]) - slack_, 0.0f);
-      bounds[i] += d * d;
-    }
-  }
+  AddBounds(level, std::max(query.free, most_free_), bounds,
+            [&](std::size_t k, std::size_t i) { return std::fabs(wanted[k] - values[k * kTilePlaces + i]); });
   const bool is_whole = query.core == radius_;
   for (std::size_t i = 0; i < count; ++i) {
     if (bounds[i] * kSumSlack > best.energy) continue;
@@ -263,15 +300,10 @@ PatchMatch PatchSearch::Nearest(const PatchQuery& query, std::span<const Place> 
       level, color, [&](std::size_t g) { return query.guides[g]; }, wanted.data());
 
   std::vector<float> bounds(level.tiles, 0.0f);
-  for (int k = 0; k < level.numbers; ++k) {
-    const float* low = level.low.data() + std::size_t(k) * level.tiles;
-    const float* high = level.high.data() + std::size_t(k) * level.tiles;
-    for (std::size_t tile = 0; tile < level.tiles; ++tile) {
-      const float d =
-          std::max(std::max(low[tile] - wanted[std::size_t(k)], wanted[std::size_t(k)] - high[tile]) - slack_, 0.0f);
-      bounds[tile] += d * d;
-    }
-  }
+  AddBounds(level, std::max(query.free, most_free_), bounds, [&](std::size_t k, std::size_t tile) {
+    const std::size_t box = k * level.tiles + tile;
+    return std::max(level.low[box] - wanted[k], wanted[k] - level.high[box]);
+  });
   std::vector<std::pair<float, std::uint32_t>> order;
   for (std::size_t tile = 0; tile < level.tiles; ++tile) {
     if (bounds[tile] * kSumSlack <= best.energy) order.push_back({bounds[tile], static_cast<std::uint32_t>(tile)});

@@ -28,6 +28,9 @@ struct PatchPlanes {
   int height = 0;
   std::vector<std::vector<float>> planes;
   std::vector<std::uint8_t> mask;
+  // By place, 0 … 2: how far apart the first three guides, which are normals, may be without cost; of the two places
+  // compared the one that grants more. Empty: 0.
+  std::vector<float> free;
 
   PatchPlanes(int w, int h, std::size_t plane_count);
   std::ptrdiff_t stride() const { return width + 2 * kPatchRadius; }
@@ -42,6 +45,7 @@ struct PatchQuery {
   std::vector<Offset> offsets;                          // that count, in row order
   std::array<std::vector<float>, kPatchColors> colors;  // one for each offset
   std::vector<float> guides;                            // of the middle
+  double free = 0.0;                                    // likewise
   int core = 0;        // the largest radius, at most the search's, whose places all count
   double whole = 1.0;  // 25 / offsets, by which colour counts
 };
@@ -49,7 +53,7 @@ struct PatchQuery {
 struct PatchMatch {
   int exemplar = -1, x = 0, y = 0;
   double color = 0.0;  // squared differences of the places that count, as 0 … 1, times `whole`
-  double guide = 0.0;  // of the middle
+  double guide = 0.0;  // of the middle: the square of the distance of the normals beyond `free`, and those of the others
 };
 
 class PatchSearch {
@@ -97,6 +101,8 @@ class PatchSearch {
   void AddTile(Level& level, int exemplar, int tile_x, int tile_y) const;
   template <class Color, class Guide>
   void Project(const Level& level, const Color& color, const Guide& guide, float* numbers) const;
+  template <class Distance>
+  void AddBounds(const Level& level, double free, std::span<float> bounds, const Distance& distance) const;
   bool Fits(const PatchPlanes& exemplar, const PatchQuery& query, int x, int y) const;
   void Try(const PatchQuery& query, const Place& place, Best& best) const;
   void SearchTile(const Level& level, std::size_t tile, const float* wanted, const PatchQuery& query, Best& best) const;
@@ -104,6 +110,7 @@ class PatchSearch {
   std::span<const PatchPlanes> exemplars_;
   std::size_t guides_ = 0;
   double guide_weight_ = 0.0;
+  double most_free_ = 0.0;  // of all places of all exemplars
   float slack_ = 0.0f;  // by which each difference of two numbers may be too large
   int radius_ = -1;
   std::vector<Level> levels_;  // by radius

@@ -84,7 +84,8 @@ std::vector<std::size_t> FrontOf(const TradeReport& report) {
   constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   std::vector<TradePoint> points;
   for (const TradeMeasure& way : report.ways) {
-    points.push_back({internal::Taken(way.total_ms.median).value_or(kNotMeasured), way.both.mean});
+    const double time = internal::Taken(way.total_ms.median).value_or(kNotMeasured);
+    points.push_back({way.by_chance ? kNotMeasured : time, way.both.mean});
   }
   return ParetoFront(points);
 }

@@ -25,6 +25,7 @@ struct TradeMeasure {
   std::string note;     // for the reader; empty: none
   bool chosen = false;  // the style as it is
   bool exact = false;   // it is what the others are measured against
+  bool by_chance = false;  // the style as it is with another seed: by how much chance alone moves the figures
   Quartiles guides_ms, transfer_ms, total_ms;  // wall clock
   std::size_t memory_bytes = 0;                // the peak
   Estimate both, energy, missing;              // measure/energy.h; `both` ranks
@@ -50,7 +51,7 @@ struct TradeReport {
 };
 
 // Places in `ways` of the Pareto front of median total time and `both`, by rising time. What was not measured is not
-// there.
+// there, nor is what differs from the style by chance alone.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 
 // Places in `ways`, the axes in the order in which they first come, ways of one axis in the order given.

@@ -125,5 +125,17 @@ TEST_F(CliIdentity, HoweverARangeIsCut) {
   }
 }
 
+// Bounced light needs chance: so many paths in one step as in two, and another number is another picture.
+TEST_F(CliIdentity, SamplesAndBouncesOfLightInOneStepOrTwo) {
+  const Arguments view = {Scene("snail.glb"), "--style", "scene-oil", "--set", "transfer.guide_weights.lpe.LDDE=1", "--size", "96x54"};
+  for (const Arguments& light : {Arguments{"--samples", "2"}, {"--samples", "3", "--max-bounces", "1"}}) {
+    RunOk(With(With(With({"guidegen"}, view), light), {"-o", "g.exr"}));
+    RunOk({"transfer", "g.exr", "--style", "scene-oil", "--set", "transfer.guide_weights.lpe.LDDE=1", "-o", "two" + light[1] + ".png"});
+    RunOk(With(With(With({"stylize"}, view), light), {"-o", "one" + light[1] + ".png"}));
+    EXPECT_TRUE(Bytes("one" + light[1] + ".png") == Bytes("two" + light[1] + ".png")) << Joined(light);
+  }
+  EXPECT_FALSE(Bytes("one2.png") == Bytes("one3.png"));
+}
+
 }  // namespace
 }  // namespace scumble

@@ -42,7 +42,8 @@ Found Plain(const EnergyScene& target, const std::vector<EnergyScene>& exemplars
         }
       }
       const glm::dvec3 n = target.Normal(x, y) - exemplar.Normal(u, v);
-      guide = glm::dot(n, n);
+      const double beyond = std::max(0.0, glm::length(n) - std::max(target.FreeAt(x, y), exemplar.FreeAt(u, v)));
+      guide = beyond * beyond;
       for (std::size_t g = 0; g < target.more.size(); ++g) {
         guide += std::pow(double(target.more[g][target.Index(x, y)]) - exemplar.more[g][exemplar.Index(u, v)], 2);
       }
@@ -168,6 +169,28 @@ TEST(EnergyExact, CutPatchesAndPositionsThatDoNotFit) {
 TEST(EnergyExact, SeveralExemplarsOfSeveralSizesWithMoreGuides) {
   ExpectExact(Chance(5, 14, 12, 0.7, 0.05, 2), {Chance(6, 21, 18, 0.7, 0.01, 2), Chance(7, 30, 16, 0.7, 0.0, 2)}, 1.0,
               5);
+}
+
+// What is free of normals, of some pixels little and of some much: a half of them none, as on curved things.
+EnergyScene WithFreedom(EnergyScene scene, std::uint64_t seed, double most) {
+  scene.free.resize(scene.coverage.size());
+  for (std::size_t i = 0; i < scene.free.size(); ++i) {
+    scene.free[i] = static_cast<float>(std::max(0.0, most * (2.0 * UnitFloat(Hash(seed, i)) - 1.0)));
+  }
+  return scene;
+}
+
+TEST(EnergyExact, WithNormalsThatMayBeOff) {
+  for (const double lambda : {0.0, 0.1, 10.0, 3000.0}) {
+    for (const double most : {0.01, 0.26, 2.0}) {
+      const EnergyScene target = WithFreedom(Chance(1, 13, 11, 0.7, 0.05, 0), 21, most);
+      ExpectExact(target, {Chance(2, 37, 29, 0.7, 0.01, 0)}, lambda, 5);
+    }
+  }
+  const EnergyScene target = WithFreedom(Chance(5, 14, 12, 0.7, 0.05, 2), 22, 0.26);
+  ExpectExact(target, {Chance(6, 21, 18, 0.7, 0.01, 2), Chance(7, 30, 16, 0.7, 0.0, 2)}, 1.0, 5);
+  ExpectMissing(WithFreedom(Chance(1, 19, 14, 0.8, 0.0, 0), 23, 0.26), {Chance(2, 13, 12, 0.8, 0.0, 0)}, 10.0, 5);
+  ExpectMissing(target, {Chance(6, 9, 11, 0.7, 0.05, 2), Chance(7, 8, 7, 0.7, 0.0, 2)}, 1.0, 5);
 }
 
 TEST(EnergyExact, WhatIsMissing) {

@@ -24,6 +24,7 @@ struct EnergyScene {
   std::vector<float> coverage;
   std::vector<std::uint8_t> usable;
   std::vector<std::vector<float>> more;
+  std::vector<float> free;  // empty: none
 
   // Everything covered and usable, black, facing the viewer.
   EnergyScene(int width, int height) : picture(width, height) {
@@ -51,7 +52,8 @@ struct EnergyScene {
     });
   }
   std::vector<std::span<const float>> More() const { return {more.begin(), more.end()}; }
-  EnergyTarget Target() const { return {&picture, {normal[0], normal[1], normal[2]}, coverage, More()}; }
+  EnergyTarget Target() const { return {&picture, {normal[0], normal[1], normal[2]}, coverage, More(), free}; }
+  double FreeAt(int x, int y) const { return free.empty() ? 0.0 : free[Index(x, y)]; }
   EnergyExemplar Exemplar() const { return {&picture, {normal[0], normal[1], normal[2]}, usable, More()}; }
 };
 

@@ -25,13 +25,17 @@ class ExtremeFiles : public CliTest {
     WritePainted("style/lit.png", 16, 16);
     WriteText("style/style.toml", "[transfer]\n" + key + " = " + text + "\n[[exemplar]]\nimage = \"lit.png\"\n");
     const auto style = LoadStyle(At("style"));
-    if (!style) EXPECT_EQ(style.error().kind, ErrorKind::kInput) << "the file's mistake";
+    if (!style) {
+      EXPECT_EQ(style.error().kind, ErrorKind::kInput) << "the file's mistake";
+    }
     return style ? std::optional(style->transfer.*field) : std::nullopt;
   }
   std::optional<float> InOption(const std::string& key, const std::string& text, float TransferSettings::*field) {
     WritePainted("plain.png", 16, 16);
     const auto style = LoadStyle(At("plain.png"), {"transfer." + key + "=" + text});
-    if (!style) EXPECT_EQ(style.error().kind, ErrorKind::kUsage) << "the caller's mistake";
+    if (!style) {
+      EXPECT_EQ(style.error().kind, ErrorKind::kUsage) << "the caller's mistake";
+    }
     return style ? std::optional(style->transfer.*field) : std::nullopt;
   }
   // Guides with an albedo of our own.

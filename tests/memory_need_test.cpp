@@ -45,6 +45,25 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
 }
 
+// A frame is written while the next one is made, and the one peak of the process is below what each says it takes.
+TEST_F(MemoryNeedTest, SequencesTakeNoMoreThanTheirFramesSay) {
+  WriteStyle("style");
+  for (const Arguments& arguments :
+       {Arguments{"guidegen", Scene("ball.glb"), "--size", "500", "-o", "g.#.exr"},
+        Arguments{"stylize", Scene("ball.glb"), "--size", "500", "--style", "style", "-o", "p.#.png"}}) {
+    const nlohmann::json json = RunOk(With(arguments, {"--frames", "1-3", "--json", "--threads", "2"})).Json();
+    ASSERT_EQ(json["frames"].size(), 3u) << Joined(arguments);
+    const double peak = json["memory"]["peak_bytes"];
+    for (const nlohmann::json& frame : json["frames"]) {
+      const double estimated = frame["memory"]["estimated_peak_bytes"];
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+      EXPECT_LE(peak, estimated) << Joined(arguments);
+      EXPECT_GE(peak, 0.25 * estimated) << Joined(arguments);
+#endif
+    }
+  }
+}
+
 // Guides are seven floats a pixel, the picture four 16-bit integers: the parts are those numbers.
 TEST_F(MemoryNeedTest, ThePlanSaysHowMuchAndForWhat) {
   WriteStyle("style");

@@ -155,6 +155,19 @@ TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
   }
 }
 
+// Where only normals are cast, nothing quicker would go unseen but the split; light is cast at half the size, and guides that
+// are there are painted without blending.
+TEST(QualityLadder, PreviewTakesWhatIsDear) {
+  const auto preview = [](const char* style, const LadderFrame& frame) {
+    return OptionsOf(WayOf(Quality::kPreview, Open(style), frame));
+  };
+  EXPECT_EQ(preview("oil", kCast), "");
+  EXPECT_EQ(preview("sumi-e", kCast), "--set transfer.hybrid=0");
+  EXPECT_EQ(preview("chiaroscuro", kCast), "--upsample 2");
+  EXPECT_EQ(preview("chiaroscuro", {true, 961, 541, false}), "--set transfer.blend_radius=0");
+  EXPECT_EQ(preview("oil", kGiven), "--set transfer.blend_radius=0");
+}
+
 // What lies underneath is part of a trial's work.
 TEST(PaintTrial, ReadsWhatLiesUnderneath) {
   StyleSet styles = Open("oil");

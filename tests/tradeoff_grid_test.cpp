@@ -57,6 +57,28 @@ const Way& Named(const TradeGrid& grid, const std::string& name) {
   return found == grid.ways.end() ? none : *found;
 }
 
+// The table of a ball is no reference: its cells are wider than pixels.
+TEST(TradeGrid, TheExactWayOfABallNeverLooksInItsTable) {
+  Style style = SphereStyle();
+  style.transfer.nearest = NearestSearch::kTable;
+  const Values exact = MakeTradeGrid(style, Sized()).ways[1].settings;
+  EXPECT_EQ(std::count(exact.begin(), exact.end(), "transfer.nearest=analytic"), 1);
+}
+
+TEST(TradeGrid, OtherSeedsChangeNothingElse) {
+  for (const bool quick : {false, true}) {
+    TradeGridOptions options = Sized();
+    options.quick = quick;
+    const TradeGrid grid = MakeTradeGrid(SphereStyle(), options);
+    EXPECT_EQ(ValuesOf(grid, "seed"), quick ? Values{"+1"} : (Values{"+1", "+2", "+3"}));
+    EXPECT_TRUE(Named(grid, "seed +1").settings.empty());
+    EXPECT_EQ(Named(grid, "seed +1").more_seed, 1);
+  }
+  Style flat = SphereStyle();
+  flat.transfer.method = Method::kLitSphere;
+  EXPECT_EQ(ValuesOf(MakeTradeGrid(flat, Sized()), "seed"), Values{}) << "nothing is left to chance";
+}
+
 TEST(TradeGrid, OfASphereIsEveryAxisWithoutTheStylesOwnValues) {
   const TradeGrid grid = MakeTradeGrid(SphereStyle(), Sized());
   ASSERT_GE(grid.ways.size(), 2u);

@@ -53,7 +53,9 @@ TEST(RoughTree, IsNeverFartherThanAllowedAndSometimesFartherThanTheNearest) {
         }
         if (first.empty()) first = found;
         EXPECT_EQ(found, first) << "one answer on every machine";
-        if (error >= 2.0 && dimensions > 1) EXPECT_GT(farther, 0) << "nothing was left out: the error buys nothing";
+        if (error >= 2.0 && dimensions > 1) {
+          EXPECT_GT(farther, 0) << "nothing was left out: the error buys nothing";
+        }
       });
     }
   }

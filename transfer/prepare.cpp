@@ -27,6 +27,9 @@ int ScaledLevels(int levels, int reference_height, int output_height) {
   return levels;
 }
 
+// Around a seed so many pixels must be flat before `variety` gives it freedom, at the reference height.
+constexpr int kFlatReach = 16;
+
 int ScaledRadius(int radius, int reference_height, int output_height) {
   if (reference_height == 0) return radius;
   const double scaled = static_cast<double>(radius) * output_height / reference_height;
@@ -194,6 +197,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   prepared.output_height = output_height;
   prepared.levels = ScaledLevels(settings.levels, settings.reference_height, output_height);
   prepared.blend_radius = ScaledRadius(settings.blend_radius, settings.reference_height, output_height);
+  prepared.flat_reach = ScaledSize(kFlatReach, 1.0, settings.reference_height, output_height);
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
   if (!settings.guide_weights.ArePlain()) {
     SCUMBLE_ASSIGN(GuideSpace space, GuideSpace::Build(settings.guide_weights, style.exemplars, prepared.exemplar,

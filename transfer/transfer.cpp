@@ -24,9 +24,6 @@
 namespace scumble {
 namespace {
 
-// Around a seed so many pixels must be flat before `variety` gives it freedom, at the reference height.
-constexpr int kFlatReach = 16;
-
 // What threads may keep in seeds; see SeedsOfBandsFit.
 constexpr std::size_t kLeastSeedBytes = 64 << 20, kSeedBytesOfAPixel = 16;
 
@@ -56,12 +53,6 @@ Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap*
                       "×" + std::to_string(guides.height()) + ": render both at one size");
   }
   return Ok();
-}
-
-int FlatReach(const PreparedStyle& style) {
-  const int reference = style.settings.reference_height;
-  if (reference <= 0) return kFlatReach;
-  return std::max(1, static_cast<int>(std::lround(double(kFlatReach) * style.output_height / reference)));
 }
 
 // Styles are painted one after the other, each as if nothing else were there.
@@ -243,7 +234,7 @@ class Run {
         SeedsOf(style),
         style.levels,
         settings.variety,
-        FlatReach(style),
+        style.flat_reach,
         matched};
     input.space = style.space.get();
     input.brightness = static_cast<float>(Exp2(options_.exposure));
