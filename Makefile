@@ -22,7 +22,7 @@ test: ## install what is missing (Blender too), build everything, run all tests
 	@cmake --build build -j $(JOBS)
 	@ctest --test-dir build --output-on-failure -j $(JOBS)
 
-test-asan: ## all tests but Blender's under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
+test-asan: ## all tests but those of Blender and the painter under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
 	@.ci/install test
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)

@@ -6,6 +6,7 @@ process of its own, and counts how many were within their budget. Prints the tab
 """
 
 import argparse
+import itertools
 import json
 import os
 import pathlib
@@ -19,10 +20,17 @@ SOURCE = pathlib.Path(__file__).resolve().parent.parent
 COUNTED = ("build", "rays", "upsample", "match", "vote", "compose")
 
 
-def stylize(arguments, scene, style, more, folder):
+def paint(arguments, job, more, folder):
     """The report of one run, and what it took of what a budget counts, in milliseconds."""
-    command = [arguments.scumble, "stylize", SOURCE / "scenes" / (scene + ".glb"), "--style",
-               SOURCE / "exemplars" / style, "--size", arguments.size, "--quiet", "--json", "-o",
+    verb, scene, style = job
+    scene_file, style_folder = SOURCE / "scenes" / (scene + ".glb"), SOURCE / "exemplars" / style
+    source = [scene_file, "--size", arguments.size]
+    if verb == "transfer":
+        guides = os.path.join(folder, "%s-%s.exr" % (scene, style))
+        if not os.path.exists(guides):
+            runs.run([arguments.scumble, "guidegen", *source, "--style", style_folder, "--quiet", "-o", guides])
+        source = [guides]
+    command = [arguments.scumble, verb, *source, "--style", style_folder, "--quiet", "--json", "-o",
                os.path.join(folder, "picture.png"), *more]
     report = json.loads(runs.run(command)[2])
     return report, sum(report["ms"][step]["median"] for step in COUNTED if step in report["ms"])
@@ -32,6 +40,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scumble", default=SOURCE / "build" / "scumble")
     parser.add_argument("--size", default="1280x720")
+    parser.add_argument("--verbs", default="stylize,transfer")
     parser.add_argument("--scenes", default="suzanne,stilllife,toys,snail")
     parser.add_argument("--styles", default="oil,charcoal,sumi-e,chiaroscuro")
     parser.add_argument("--shares", default="0.6,0.8,1.2,2",
@@ -47,20 +56,19 @@ def main():
 def measure(arguments, folder):
     os.environ["XDG_CACHE_HOME"] = os.path.join(folder, "cache")
     jobs = []
-    for scene in arguments.scenes.split(","):
-        for style in arguments.styles.split(","):
-            first = statistics.median(stylize(arguments, scene, style, [], folder)[1] for _ in range(3))
-            for share in arguments.shares.split(","):
-                budget = "%.1f" % (first * float(share))
-                jobs.append((scene, style, float(share), budget))
-                runs.say("%s %s %s ms" % (scene, style, budget))
-                stylize(arguments, scene, style, ["--budget-ms", budget], folder)  # calibrates; not counted
+    for job in itertools.product(*(each.split(",") for each in (arguments.verbs, arguments.scenes, arguments.styles))):
+        first = statistics.median(paint(arguments, job, [], folder)[1] for _ in range(3))
+        for share in arguments.shares.split(","):
+            budget = "%.1f" % (first * float(share))
+            jobs.append((job, float(share), budget))
+            runs.say("%s %s ms" % (" ".join(job), budget))
+            paint(arguments, job, ["--budget-ms", budget], folder)  # calibrates; not counted
     rows = []
     for repeat in range(arguments.repeats):
-        for scene, style, share, budget in jobs:
-            report, took = stylize(arguments, scene, style, ["--budget-ms", budget], folder)
+        for job, share, budget in jobs:
+            report, took = paint(arguments, job, ["--budget-ms", budget], folder)
             told = report["budget"]
-            rows.append((scene, style, share, float(budget), told["picked"], told["predicted_ms"], told["fits"],
+            rows.append((*job, share, float(budget), told["picked"], told["predicted_ms"], told["fits"],
                          told["measured_runs"], took))
         runs.say("turn %d" % (repeat + 1))
     return rows
@@ -69,23 +77,23 @@ def measure(arguments, folder):
 def tell(arguments, rows):
     if arguments.csv:
         with open(arguments.csv, "w", encoding="utf-8") as file:
-            file.write("scene,style,share,budget_ms,picked,predicted_ms,fits,measured_runs,took_ms\n")
+            file.write("verb,scene,style,share,budget_ms,picked,predicted_ms,fits,measured_runs,took_ms\n")
             file.writelines(",".join(map(str, row)) + "\n" for row in rows)
 
     def line(name, some):
-        fitting = [row for row in some if row[6]]
-        within = [row for row in fitting if row[8] <= row[3]]
-        over = sorted(row[8] / row[3] for row in fitting if row[8] > row[3])
+        fitting = [row for row in some if row[7]]
+        shares = sorted(row[9] / row[4] for row in fitting)  # of the budget
+        within, over = [share for share in shares if share <= 1.0], [share for share in shares if share > 1.0]
         print("| %s | %d | %d | %s | %s | %s | %s |" % (
             name, len(some), len(fitting), "%.0f%%" % (100.0 * len(within) / len(fitting)) if fitting else "–",
-            "%.2f" % statistics.median(row[8] / row[3] for row in fitting) if fitting else "–",
+            "%.2f" % statistics.median(shares) if fitting else "–",
             "%.2f ×" % statistics.median(over) if over else "–", "%.2f ×" % over[-1] if over else "–"))
 
     print("| | runs | something fits | of these within the budget | time of budget, median | over-run, median | largest |")
     print("|---|---|---|---|---|---|---|")
-    for place, name in ((0, "scene"), (1, "style"), (2, "budget of the style's own time")):
+    for place in range(4):  # verb, scene, style, share of the style's own time
         for value in dict.fromkeys(row[place] for row in rows):
-            label = "%g ×" % value if place == 2 else value
+            label = "%g ×" % value if place == 3 else value
             line(label, [row for row in rows if row[place] == value])
     line("all", rows)
     print("\n%s, %d threads, load %.1f at the end; %s, %d runs of each." % (

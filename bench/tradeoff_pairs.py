@@ -36,7 +36,8 @@ FIGURES = ("both", "energy")
 
 def ways_of(reports, name):
     report = json.loads((reports / name / "tradeoff.json").read_text(encoding="utf-8"))
-    return {way["way"]: way for way in report["ways"] if way["both"] and way["picture"]}, report["front"]
+    ways = {way["way"]: way for way in report["ways"] if way["both"] and way["picture"] and way["axis"] != "seed"}
+    return ways, report["front"]
 
 
 def mean(way, figure):

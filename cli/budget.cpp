@@ -69,7 +69,7 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
   for (const Way& way : ways) calibration.ways.push_back(way.name);
   ProgressBar bar("calibration", globals.quiet);
   const Progress progress = bar.Part(0.0, 1.0);
-  // Most are given up at their first run.
+  // Each way once, the one that is taken nine times, and the last twice more for a cold start.
   const double usual_runs = static_cast<double>(ways.size()) + kCalibrationRuns + 2.0;
   int runs = 0;
   const MeasureWay measure = [&](std::size_t place) {
@@ -149,7 +149,7 @@ Expected<OpenedScene> OpenToMeasure(const SceneOptions& options, std::optional<i
 void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
   const std::string smaller = casts ? "smaller guides, " : "";
   verb.add_option("--quality", options.quality,
-                  "final: the style as it is; preview and draft take less time, by " + smaller +
+                  "final: the style as it is; preview and draft take less time where there is much to take, by " + smaller +
                       "simpler ways to find the paint; what is taken is printed as options that repeat it. --set and "
                       "--upsample win over it")
       ->type_name("NAME")

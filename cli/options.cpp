@@ -96,13 +96,7 @@ void AddViewOptions(CLI::App& verb, SceneOptions& options) {
       ->type_name("AZ,EL[,DIST]");
 }
 
-void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
-  AddViewOptions(verb, options);
-  verb.add_option("--animation", options.animation,
-                  "which animation of a .glb or .gltf scene to play, with --frame or --frames: its name, or * for all at "
-                  "once; left out: the first. scumble info lists them")
-      ->type_name("NAME")
-      ->check(RefuseEmpty);
+void AddCastOptions(CLI::App& verb, SceneOptions& options) {
   verb.add_option("--aa", options.aa, "N x N subsamples of the silhouette's coverage, 1 to 16")
       ->type_name("N")
       ->check(CLI::Range(1, 16))
@@ -116,12 +110,22 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine. "
                   "Name one where several machines must give the same bytes")
       ->type_name("NAME");
-  verb.add_flag("!--no-robust", options.robust,
-                "without Embree's robust mode: rays may pass where two triangles meet; scumble tradeoff shows what it gains");
   verb.add_option("--blender", options.blender.program,
                   "the Blender that exports a .blend scene; left out: blender in PATH")
       ->type_name("PATH")
       ->check(RefuseEmpty);
+}
+
+void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
+  AddViewOptions(verb, options);
+  verb.add_option("--animation", options.animation,
+                  "which animation of a .glb or .gltf scene to play, with --frame or --frames: its name, or * for all at "
+                  "once; left out: the first. scumble info lists them")
+      ->type_name("NAME")
+      ->check(RefuseEmpty);
+  AddCastOptions(verb, options);
+  verb.add_flag("!--no-robust", options.robust,
+                "without Embree's robust mode: rays may pass where two triangles meet; scumble tradeoff shows what it gains");
   verb.add_flag("--half", options.half, "16-bit half floats for colour layers; data layers stay 32-bit");
   verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
 }
@@ -264,8 +268,10 @@ std::string GuideSettings(const SceneOptions& options) {
   add("camera", options.camera), add("view", options.view), add("animation", options.animation);
   add("fps", options.fps == kUsualFps ? "" : options.fps);
   // All of them always: what a file does not name is not compared.
-  return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no", options.samples,
-                            options.max_bounces, options.noise);
+  const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
+  return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no",
+                            open_ended && !options.samples_given ? kMaxSamples : options.samples, options.max_bounces,
+                            options.noise);
 }
 
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next,

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <system_error>
 #include <vector>
@@ -148,9 +147,10 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "`both` ranks, the less the better. Times are of the guides (with the acceleration structure) and of the transfer, after a run to warm up;\n"
       "loading, preparing the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak\n"
       "of a process that makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
-      "says; colorized styles are measured before the scene's colours are on them. More blending always scores better: it\n"
-      "takes seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each way.\n");
+      "says; colorized styles are measured before the scene's colours are on them. Blending mostly scores better: it takes\n"
+      "seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each way.\n");
   AddViewOptions(*sub, verb->setup.scene);
+  AddCastOptions(*sub, verb->setup.scene);
   AddSampleOptions(*sub, verb->setup.scene);
   AddOneStyleOptions(*sub, verb->setup.style, true);
   sub->add_option("--only", verb->setup.only,

@@ -154,7 +154,7 @@ class Grid {
 
   // Other patterns of the same kind: what they differ by is chance.
   void AddSeeds() {
-    if (style_.method == Method::kLitSphere) return;  // has no pattern
+    if (style_.method != Method::kStyleBlit && !options_.chance) return;  // nothing is left to it
     for (int more = 1; more <= (options_.quick ? 1 : 3); ++more) Add("seed", fmt::format("+{}", more)).more_seed = more;
   }
 

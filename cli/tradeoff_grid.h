@@ -26,7 +26,7 @@ inline constexpr const char* kStyleAxis = "style";
 inline constexpr const char* kExactAxis = "exact";
 
 // One axis at a time around the style; without --quick also every combination of method, blend_radius, levels and resolution
-// of a few values. What the style has anyway is left out of its axis, and so is what would change nothing: levels of the Lit
+// of a few values, and the style itself with other seeds. What the style has anyway is left out of its axis, and so is what would change nothing: levels of the Lit
 // Sphere, tables where guides of light are weighed.
 TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options);
 

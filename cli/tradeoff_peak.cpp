@@ -8,6 +8,21 @@
 
 namespace scumble {
 
+std::vector<std::pair<std::string, std::string>> CastArguments(const SceneOptions& scene) {
+  std::vector<std::pair<std::string, std::string>> given;
+  const SceneOptions usual;
+  const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {
+    if (value != usual_value) given.emplace_back(option, value);
+  };
+  add("--camera", scene.camera, usual.camera);
+  add("--view", scene.view, usual.view);
+  add("--aa", std::to_string(scene.aa), std::to_string(usual.aa));
+  add("--normal-frame", scene.normal_frame, usual.normal_frame);
+  add("--isa", scene.isa, usual.isa);
+  add("--blender", scene.blender.program, usual.blender.program);
+  return given;
+}
+
 std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals) {
   std::vector<std::string> words = {"tradeoff"};
   const auto add = [&](const std::string& option, const std::string& value) {
@@ -18,8 +33,7 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& 
   add("--style", setup.style.style);
   for (const std::string& set : setup.style.sets) add("--set", set);
   add("--size", setup.scene.size);
-  if (!setup.scene.camera.empty()) words.push_back("--camera=" + setup.scene.camera);
-  if (!setup.scene.view.empty()) words.push_back("--view=" + setup.scene.view);
+  for (const auto& [option, value] : CastArguments(setup.scene)) words.push_back(option + "=" + value);
   if (setup.scene.samples != SceneOptions().samples) add("--samples", std::to_string(setup.scene.samples));
   if (setup.scene.max_bounces != SceneOptions().max_bounces) add("--max-bounces", std::to_string(setup.scene.max_bounces));
   if (setup.scene.seed != 0) add("--seed", std::to_string(setup.scene.seed));

@@ -4,11 +4,15 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/tradeoff_run.h"
 
 namespace scumble {
+
+// Options that say whence and how the scene is seen, with their values; only those that are not the usual ones.
+std::vector<std::pair<std::string, std::string>> CastArguments(const SceneOptions& scene);
 
 // The verb's arguments that set this up, behind the program's name. No option of output is among them.
 std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals);

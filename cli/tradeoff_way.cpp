@@ -9,6 +9,7 @@
 #include "cli/quality_ladder.h"
 #include "cli/shell_word.h"
 #include "cli/style_set.h"
+#include "cli/tradeoff_peak.h"
 #include "image/stopwatch.h"
 #include "style/style_keyframes.h"
 
@@ -29,7 +30,7 @@ Expected<Style> OpenStyleWith(const StyleOptions& options, const std::vector<std
 
 std::uint64_t SeedOf(const TradeSetup& setup, const Way& way) { return setup.scene.seed + std::uint64_t(way.more_seed); }
 
-// The named qualities, which --quality and --budget-ms choose from, where they are not the style itself.
+// What --quality names, where it is not the style itself.
 Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
   StyleOptions options = setup.style;
   options.scene_styles = false;
@@ -85,12 +86,11 @@ RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const 
   for (const std::string& set : way.settings) add("--set", set);
   if (stage.has_paper) add("--set", kNoPaper);
   add("--size", fmt::format("{}x{}", stage.width, stage.height));
-  if (!setup.scene.camera.empty()) add("--camera", setup.scene.camera);
-  if (!setup.scene.view.empty()) add("--view", setup.scene.view);
+  for (const auto& [option, value] : CastArguments(setup.scene)) add(option, value);
   if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
   const int samples = way.samples > 0 ? way.samples : setup.scene.samples;
   if (stage.chance && samples != SceneOptions().samples) add("--samples", std::to_string(samples));
-  if (stage.chance && setup.scene.max_bounces != SceneOptions().max_bounces) {
+  if (setup.scene.max_bounces != SceneOptions().max_bounces) {
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   }
   if (!way.robust) text += " --no-robust";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -72,13 +73,17 @@ Expected<PatchPlanes> MakePlanes(const std::string& name, const Picture& picture
 
 Status AddFree(const EnergyTarget& target, PatchPlanes& planes) {
   if (target.free.empty()) return Ok();
-  if (target.free.size() != target.coverage.size()) return InputError("what is free of normals is not of the target's size");
+  if (target.free.size() != target.coverage.size()) {
+    return InputError("the target's free distances are not of its size: expected one for each pixel, or none");
+  }
   planes.free.assign(planes.mask.size(), 0.0f);
   for (int y = 0; y < planes.height; ++y) {
     for (int x = 0; x < planes.width; ++x) {
-      const float free = target.free[std::size_t(y) * planes.width + x];
+      const std::size_t from = std::size_t(y) * planes.width + x;
+      const float free = target.free[from];
       if (!(free >= 0.0f && free <= 2.0f)) {
-        return InputError("of normals " + std::to_string(free) + " is free: expected 0 … 2, the distance of two");
+        return InputError("the target's free distance is " + std::to_string(free) + " at " + Place(from, planes.width) +
+                          ": expected 0 … 2");
       }
       planes.free[std::size_t(planes.Index(x, y))] = free;
     }
@@ -190,19 +195,20 @@ Estimate MeanOf(const Sample& sample, const std::vector<EnergySample>& samples, 
   return internal::MeanOf(sample.drawn, values);
 }
 
-// Where the pixels around (x, y) took their paint, moved back by their distance: in the middle of a copy all of them
-// agree.
-std::vector<PatchSearch::Place> Guesses(const PatchPlanes& target, const SourcePlanes* sources, int x, int y) {
-  std::vector<PatchSearch::Place> guesses;
-  if (!sources) return guesses;
+using Places = std::vector<PatchSearch::Place>;
+
+// Where the pixels of a patch have gone or come from, moved back by their distance from its middle: in a copy all of them
+// agree. `other_of(x, y)` is of a pixel of `planes` that counts; nothing where it is not known.
+template <class OtherOf>
+Places Guesses(const PatchPlanes& planes, int x, int y, const OtherOf& other_of) {
+  Places guesses;
   constexpr int kReach = internal::kPatchRadius;
   for (int dy = -kReach; dy <= kReach; ++dy) {
     for (int dx = -kReach; dx <= kReach; ++dx) {
-      if (!target.mask[std::size_t(target.Index(x + dx, y + dy))]) continue;
-      const std::size_t i = std::size_t(y + dy) * target.width + (x + dx);
-      if (!sources->covered[i]) continue;
-      const PatchSearch::Place place{sources->exemplar.empty() ? 0 : sources->exemplar[i], sources->source_x[i] - dx,
-                                     sources->source_y[i] - dy};
+      if (!planes.mask[std::size_t(planes.Index(x + dx, y + dy))]) continue;
+      const std::optional<PatchSearch::Place> other = other_of(x + dx, y + dy);
+      if (!other) continue;
+      const PatchSearch::Place place{other->exemplar, other->x - dx, other->y - dy};
       const auto is_known = [&](const PatchSearch::Place& p) {
         return p.exemplar == place.exemplar && p.x == place.x && p.y == place.y;
       };
@@ -211,6 +217,45 @@ std::vector<PatchSearch::Place> Guesses(const PatchPlanes& target, const SourceP
   }
   return guesses;
 }
+
+// Where the picture's pixels took their paint from, and the other way round.
+class KnownSources {
+ public:
+  KnownSources(const SourcePlanes* sources, std::span<const PatchPlanes> exemplars) : sources_(sources) {
+    if (!sources) return;
+    for (const PatchPlanes& exemplar : exemplars) shown_.emplace_back(exemplar.mask.size(), -1);
+    for (std::size_t i = sources->covered.size(); i-- > 0;) {  // of several the first
+      const std::optional<PatchSearch::Place> from = From(i);
+      if (!from || from->exemplar < 0 || std::size_t(from->exemplar) >= exemplars.size()) continue;
+      const PatchPlanes& exemplar = exemplars[std::size_t(from->exemplar)];
+      if (from->x < 0 || from->y < 0 || from->x >= exemplar.width || from->y >= exemplar.height) continue;
+      shown_[std::size_t(from->exemplar)][std::size_t(exemplar.Index(from->x, from->y))] = static_cast<std::ptrdiff_t>(i);
+    }
+  }
+
+  Places OfTarget(const PatchPlanes& target, int x, int y) const {
+    if (!sources_) return {};
+    return Guesses(target, x, y, [&](int u, int v) { return From(std::size_t(v) * target.width + u); });
+  }
+  Places OfExemplar(const PatchPlanes& exemplar, int which, int x, int y) const {
+    if (!sources_) return {};
+    return Guesses(exemplar, x, y, [&](int u, int v) -> std::optional<PatchSearch::Place> {
+      const std::ptrdiff_t i = shown_[std::size_t(which)][std::size_t(exemplar.Index(u, v))];
+      if (i < 0) return std::nullopt;
+      return PatchSearch::Place{0, static_cast<int>(i % sources_->width), static_cast<int>(i / sources_->width)};
+    });
+  }
+
+ private:
+  std::optional<PatchSearch::Place> From(std::size_t i) const {
+    if (!sources_->covered[i]) return std::nullopt;
+    return PatchSearch::Place{sources_->exemplar.empty() ? 0 : sources_->exemplar[i], sources_->source_x[i],
+                              sources_->source_y[i]};
+  }
+
+  const SourcePlanes* sources_;
+  std::vector<std::vector<std::ptrdiff_t>> shown_;  // by exemplar and place: a pixel of the picture; −1: none
+};
 
 Status CheckSources(const SourcePlanes& sources, int width, int height) {
   const std::size_t count = std::size_t(width) * height;
@@ -247,16 +292,17 @@ Status CheckInputs(const EnergyTarget& target, const Guides& guides, std::span<c
 double ColorOf(const EnergySample& sample) { return sample.color; }
 double GuideOf(const EnergySample& sample) { return sample.guide; }
 
-// The nearest patch of `there`, which `search` is of, to each spot of `here`.
+// The nearest patch of `there`, which `search` is of, to each spot of `here`. `guesses(spot)` are good first ones.
+template <class GuessesOf>
 std::vector<EnergySample> Look(const PatchSearch& search, std::span<const PatchPlanes> here,
                                std::span<const PatchPlanes> there, const Sample& sample, const EnergyOptions& options,
-                               const SourcePlanes* sources) {
+                               const GuessesOf& guesses) {
   std::vector<EnergySample> samples(sample.spots.size());
   internal::ForEachIndex(static_cast<int>(samples.size()), options.threads, [&](int i) {
     const Spot spot = sample.spots[std::size_t(i)];
     const PatchPlanes& planes = here[std::size_t(spot.image)];
     const internal::PatchMatch match =
-        search.Nearest(search.QueryAt(planes, spot.x, spot.y), Guesses(planes, sources, spot.x, spot.y));
+        search.Nearest(search.QueryAt(planes, spot.x, spot.y), guesses(spot));
     const glm::dvec3 found = NormalAt(there[std::size_t(match.exemplar)], match.x, match.y);
     samples[std::size_t(i)] = {.x = spot.x,
                                .y = spot.y,
@@ -301,7 +347,9 @@ Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const
   if (all.empty()) return report;
 
   const Sample sample = Choose(all, options.samples, Hash(options.seed, 0));
-  report.samples = Look(search, {&wanted, 1}, planes, sample, options, options.sources);
+  const KnownSources sources(options.sources, planes);
+  report.samples = Look(search, {&wanted, 1}, planes, sample, options,
+                        [&](const Spot& spot) { return sources.OfTarget(wanted, spot.x, spot.y); });
   const auto energy = [&](const EnergySample& s) { return s.color + options.lambda * s.guide; };
   report.energy = MeanOf(sample, report.samples, energy);
   report.color = MeanOf(sample, report.samples, ColorOf);
@@ -317,7 +365,10 @@ Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const
   report.asked_for = asked.size();
   const PatchSearch back({&wanted, 1}, options.lambda, largest);
   const Sample asked_sample = Choose(asked, options.samples, Hash(options.seed, 1));
-  const std::vector<EnergySample> missing = Look(back, planes, {&wanted, 1}, asked_sample, options, nullptr);
+  const std::vector<EnergySample> missing =
+      Look(back, planes, {&wanted, 1}, asked_sample, options, [&](const Spot& spot) {
+        return sources.OfExemplar(planes[std::size_t(spot.image)], spot.image, spot.x, spot.y);
+      });
   report.missing = MeanOf(asked_sample, missing, energy);
   report.missing_color = MeanOf(asked_sample, missing, ColorOf);
   report.missing_guide = MeanOf(asked_sample, missing, GuideOf);

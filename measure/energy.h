@@ -3,10 +3,10 @@
 // For a pixel p of the target and a position u of an exemplar,
 //
 //   E(p, u) = Σ |C_T(p + o) − C_S(u + o)|²  +  λ · |G_T(p) − G_S(u)|²,    o in [−2, 2]²
+//   |G_T(p) − G_S(u)|² = max(0, |N_T(p) − N_S(u)| − free(p))² + Σ (other guides)²
 //
 // with C the colours as painted (R, G and B, sRGB-encoded, 0 … 1, straight: alpha does not matter) and G the guides:
-// unit normals, and whatever planes are added to them; of the distance of normals only what is beyond
-// what the target says is free at p. It is what patch-based synthesis minimises, as StyLit does
+// unit normals N, of which the target may grant some distance, and whatever planes are added to them. It is what patch-based synthesis minimises, as StyLit does
 // [Fišer et al. 2016, eq. 1]. Guides are compared in the middle: normals of 5×5 pixels of another form never agree,
 // whatever the method, and that would be most of the figure. Three means of it:
 //
@@ -105,7 +105,8 @@ struct EnergyReport {
 // Samples are stratified: the places that count are cut along a Z-order curve into pieces of equal length, and a hash
 // of the seed picks two of each. The nearest patch is exact: whatever is not looked at has a lower bound above the
 // best. Nothing measured: all figures 0. Errors (kInput): planes of a wrong size, no exemplar, none with a usable
-// position, guides that are NaN or beyond ±1e6 where they count, different numbers of guides or more than 32; (kUsage):
+// position, guides that are NaN or beyond ±1e6 where they count, different numbers of guides or more than 32,
+// a free distance that is not 0 … 2; (kUsage):
 // a λ out of range. O(samples · (positions / 64 + those that bounds leave)); about 250 bytes for each usable position,
 // and each measured pixel.
 Expected<EnergyReport> MeasureEnergy(const EnergyTarget& target, std::span<const EnergyExemplar> exemplars,

@@ -7,7 +7,8 @@
 namespace scumble {
 namespace {
 
-constexpr float kHalfADegree = 0.99996192f;  // its cosine
+// Its cosine. The rule is that of the transfer's IsFlat (transfer/variety.cpp), which a test holds it to.
+constexpr float kHalfADegree = 0.99996192f;
 
 struct Step {
   int x = 0, y = 0;

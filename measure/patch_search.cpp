@@ -15,7 +15,7 @@ constexpr double kColorWeight = 1.0 / (65535.0 * 65535.0);
 // A sum of squares in float comes out too large by at most one rounding for each of them and each addition to it.
 constexpr int kMostNumbers = 60;
 constexpr float kSumSlack = 1.0f - (kMostNumbers + 4) * 0x1.0p-24f;
-constexpr std::size_t kNormal = 3;  // as many guides, the first ones
+constexpr std::size_t kNormalGuides = 3;  // x, y and z, before all other guides
 
 // Smooth patterns hold most of what patches of paint differ by: the polynomials of the degrees 0, 1 and 2 that are
 // orthonormal on the grid.
@@ -66,6 +66,7 @@ PatchSearch::PatchSearch(std::span<const PatchPlanes> exemplars, double guide_we
   for (const PatchPlanes& exemplar : exemplars) {
     for (const float free : exemplar.free) most_free_ = std::max(most_free_, double(free));
   }
+  SCUMBLE_CHECK(most_free_ == 0.0 || guides_ >= kNormalGuides);
   // Values are at most `scale`, and a patch has n of them. A number is at most 5 · scale (a pattern's length is 1 and a
   // plane of a patch has 25 places), or √n · scale where it is the length of what is left; both are rounded to float,
   // their difference is, and that less the slack: up to 6 · √n · scale · 2⁻²⁴. The square of that length is a sum of n
@@ -194,6 +195,7 @@ PatchQuery PatchSearch::QueryAt(const PatchPlanes& target, int x, int y) const {
   const std::size_t middle = static_cast<std::size_t>(target.Index(x, y));
   for (std::size_t g = 0; g < guides_; ++g) query.guides.push_back(target.planes[kPatchColors + g][middle]);
   if (!target.free.empty()) query.free = target.free[middle];
+  SCUMBLE_DCHECK(query.free == 0.0 || guides_ >= kNormalGuides);
   return query;
 }
 
@@ -216,7 +218,7 @@ void PatchSearch::Try(const PatchQuery& query, const Place& place, Best& best) c
   for (std::size_t g = 0; g < guides_; ++g) {
     const double d = double(query.guides[g]) - exemplar.planes[kPatchColors + g][std::size_t(middle)];
     guide += d * d;
-    if (free > 0.0 && g + 1 == kNormal) guide = BeyondFree(guide, free);
+    if (free > 0.0 && g + 1 == kNormalGuides) guide = BeyondFree(guide, free);
   }
   double energy = guide_weight_ * guide;
   for (std::size_t c = 0; c < kPatchColors; ++c) {
@@ -247,10 +249,10 @@ void PatchSearch::AddBounds(const Level& level, double free, std::span<float> bo
     }
   };
   const std::size_t first_guide = kPatchColors * level.patterns.size();
-  const std::size_t normals_end = first_guide + (free > 0.0 ? kNormal : 0);
+  const std::size_t normals_end = first_guide + (free > 0.0 ? kNormalGuides : 0);
   add(first_guide, normals_end);
   if (free > 0.0) {
-    // Rounded up, and by the slack once more, as the root is off by less.
+    // Rounded up, and by the slack once more: the root is too large by at most 10 · 2⁻²⁴ of the scale, the slack is 144.
     const float off = static_cast<float>(std::sqrt(guide_weight_) * free) * (1.0f + 0x1.0p-22f) + slack_;
     for (float& bound : bounds) {
       const float beyond = std::max(0.0f, std::sqrt(bound) - off);

@@ -3,7 +3,7 @@
 // Positions are kept in tiles of 8 × 8 with a few numbers each that bound distances from below: projections of the
 // patch onto orthonormal patterns, whose differences add up to no more than the patches' own squared distance, and the
 // length of what the projections leave, which by the triangle inequality may be added; the guides of the middle stand
-// for themselves. A tile's box of these numbers bounds all of its positions. Tiles are visited by rising bound until
+// for themselves, normals less what is free of them. A tile's box of these numbers bounds all of its positions. Tiles are visited by rising bound until
 // that exceeds the best distance found: branch and bound [Fukunaga & Narendra 1975], with projections as in [Hel-Or &
 // Hel-Or 2005]. All bounds are lowered by what rounding could have raised them, so that what comes out is the minimum
 // over all positions, to the bit.

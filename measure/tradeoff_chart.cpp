@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "measure/chart_colors.h"
 #include "measure/html_page.h"
@@ -95,7 +96,8 @@ Chart ChartOf(const TradeReport& report, const ChartLook& look) {
       const double error = point.error.mean + side * point.error.standard_error;
       if (std::isfinite(error)) errors.push_back(error);
     }
-    trade.push_back({point.time.median, point.error.mean});
+    const bool by_chance = report.ways[point.way].by_chance;
+    trade.push_back({by_chance ? std::numeric_limits<double>::quiet_NaN() : point.time.median, point.error.mean});
   }
   chart.across = ScaleFor(times, true, kLeft, chart.right);
   chart.up = ScaleFor(errors, false, kHeight - kBottom, chart.top);

@@ -56,8 +56,7 @@ std::string Header(const TradeReport& report) {
   html += fmt::format("<p>{} of {} ways are on the front: nothing else is as fast and nearer to the exemplar. ",
                       front.size(), report.ways.size());
   return html + OwnPlace(report, front) +
-         " More blending always scores better, as it takes seams away, and makes strokes soft: compare ways of one "
-         "<code>blend_radius</code>. What ways of the axis <code>seed</code> differ by is chance.</p>\n";
+         " " + internal::kMindBlending + " What ways of the axis <code>seed</code> differ by is chance.</p>\n";
 }
 
 std::string Choice(const char* name, std::size_t i, const char* label) {

@@ -27,6 +27,10 @@ std::string ShortPercent(const std::optional<double>& share);  // 0.897 is "89.7
 std::string TradeTitle(const TradeReport& report);  // "suzanne in oil"
 std::string TradeSetup(const TradeReport& report);  // "960×540 pixels, AMD …, 2 threads; medians of 5 runs; λ = 10"
 
+// To bear in mind wherever ways are ranked.
+inline constexpr const char* kMindBlending =
+    "Blending mostly scores better and makes strokes soft: compare ways of one blend_radius and one edge_aware.";
+
 // What a chart has on its axes.
 enum class ChartTime { kTotal, kTransfer, kMemory };
 enum class ChartError { kBoth, kEnergy, kMissing };

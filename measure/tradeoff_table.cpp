@@ -126,8 +126,8 @@ std::string TradeTable(const TradeReport& report) {
   text +=
       "\n* nothing else is as fast and nearer to the exemplar by `both`, the error: what of the picture is not the exemplar's\n"
       "  (energy) and what of the exemplar is not in the picture (missing). coher.: neighbours whose paint was side by side;\n"
-      "  seam: larger steps across pieces than inside; repetition: how often a shown pixel of the exemplar shows. Blending\n"
-      "  always scores better: compare ways of one blend_radius.\n";
+      "  seam: larger steps across pieces than inside; repetition: how often a shown pixel of the exemplar shows.\n  ";
+  text += internal::kMindBlending + std::string("\n");
   return text + GuideTable(report) + Notes(report);
 }
 

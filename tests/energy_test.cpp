@@ -358,6 +358,13 @@ TEST(Energy, RefusesWhatItCannotMeasure) {
   ExpectRefusal(measure(broken.Target(), exemplar), ErrorKind::kInput, "the target has a guide of nan at (3, 2)");
   ExpectRefusal(measure(scene.Target(), broken.Exemplar()), ErrorKind::kInput,
                 "exemplar 0 has a guide of nan at (3, 2)");
+  for (const float free : {-0.1f, 2.1f, std::nanf("")}) {
+    EnergyScene granting = scene;
+    granting.free.assign(48, 0.0f), granting.free[19] = free;
+    ExpectRefusal(measure(granting.Target(), exemplar), ErrorKind::kInput, "at (3, 2): expected 0 … 2");
+    granting.free.pop_back();
+    ExpectRefusal(measure(granting.Target(), exemplar), ErrorKind::kInput, "free distances are not of its size");
+  }
   EnergyScene more = scene;
   more.more.assign(1, std::vector<float>(48, 0.0f));
   ExpectRefusal(measure(more.Target(), exemplar), ErrorKind::kInput, "exemplar 0 has 3 guides, the target 4");

@@ -70,6 +70,22 @@ TEST(FlatSurfaces, EndWhereTheNormalOrTheObjectChanges) {
   }
 }
 
+// A board of three reaches on nothing, which has its normal and object but covers no pixel: all of the board, its corners too, and no more.
+TEST(FlatSurfaces, OfABoardAreItsPixelsUpToTheCorners) {
+  GuideSet guides = Empty(30, 26);
+  const auto on_board = [](int x, int y) { return x >= 8 && x < 20 && y >= 7 && y < 20; };
+  for (int y = 0; y < 26; ++y) {
+    for (int x = 0; x < 30; ++x) {
+      Put(guides, x, y, {0.0f, 0.0f, 1.0f}, 1.0f);
+      guides.Plane(Layer::kCoverage)[guides.Index(x, y)] = on_board(x, y) ? 1.0f : 0.0f;
+    }
+  }
+  const auto flat = FlatSurfaces(guides, kReach);
+  for (int y = 0; y < 26; ++y) {
+    for (int x = 0; x < 30; ++x) EXPECT_EQ(flat[guides.Index(x, y)], on_board(x, y)) << x << ", " << y;
+  }
+}
+
 TEST(FlatSurfaces, OfNothingAreNone) {
   for (const std::uint8_t is_flat : FlatSurfaces(Empty(7, 5), kReach)) EXPECT_EQ(is_flat, 0);
 }

@@ -101,7 +101,27 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
     EXPECT_TRUE(std::is_sorted(front.begin(), front.end(), [&](std::size_t a, std::size_t b) {
       return report.ways[a].total_ms.median < report.ways[b].total_ms.median;
     }));
+    // The best of all, by chance alone: it is not there, and pushes nothing off.
+    report.ways.push_back(MadeUpWay("seed", "+1", 1, 0));
+    report.ways.back().by_chance = true;
+    EXPECT_EQ(FrontOf(report), front);
   }
+}
+
+TEST(TradeReport, TheChartRingsNothingThatIsChance) {
+  TradeReport report = MadeUpReport();
+  const auto rings = [&report] {
+    const std::string svg = TradeChart(report);
+    int count = 0;
+    for (std::size_t at = svg.find("class=\"ring\""); at != std::string::npos; at = svg.find("class=\"ring\"", at + 1)) ++count;
+    return count;
+  };
+  const int before = rings();
+  report.ways.push_back(MadeUpWay("seed", "+1", 1, 0));
+  report.ways.back().by_chance = true;
+  EXPECT_EQ(rings(), before);
+  report.ways.back().by_chance = false;
+  EXPECT_LT(rings(), before) << "it would be better than all";
 }
 
 TEST(TradeReport, AxesComeInTheOrderInWhichTheyAreFirstNamed) {

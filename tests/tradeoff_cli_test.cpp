@@ -108,8 +108,8 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
 
 TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
   RunOk(Small(Scene("suzanne.glb"), {"--only", "method litsphere,levels 3,threshold 0.25,blend_radius 4,edge_aware,match_step 2,"
-                                               "nearest tree,nearest table 64,resolution,robust",
-                                     "--seed", "3", "-o", "out"}));
+                                               "nearest tree,nearest table 64,resolution,robust,seed,quality",
+                                     "--seed", "3", "--aa", "2", "--normal-frame", "eye", "-o", "out"}));
   const nlohmann::json json = nlohmann::json::parse(Bytes("out/tradeoff.json"));
   int repeated = 0;
   for (const auto& way : json["ways"]) {
@@ -122,7 +122,26 @@ TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
     EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << name << ": " << options;
     ++repeated;
   }
-  EXPECT_EQ(repeated, 10) << "all but the small table and twice the resolution";
+  EXPECT_EQ(repeated, 14) << "all but the small table and twice the resolution";
+}
+
+// Light that needs chance, and light that would without the limit on bounces.
+TEST_F(Tradeoff, OptionsRepeatLightPathsToo) {
+  struct Case {
+    std::string weight, only;
+    Arguments light;
+  };
+  for (const Case& c : {Case{"lpe.LDDE", "samples 1,blend_radius 4", {"--samples", "3", "--max-bounces", "1"}},
+                        Case{"lpe.full", "blend_radius 4", {"--max-bounces", "0"}}}) {
+    const Arguments trade = {"tradeoff", Scene("snail.glb"), "--style", "scene-oil", "--set",
+                             "transfer.guide_weights." + c.weight + "=1", "--size", "64x36", "--repeat", "1", "--no-memory"};
+    const nlohmann::json ways = RunOk(With(With(trade, c.light), {"--only", c.only, "--json", "-o", "out"})).Json()["ways"];
+    EXPECT_EQ(ways.size(), c.only.starts_with("samples") ? 3u : 2u);
+    for (const auto& way : ways) {
+      RunOk(With(With({"stylize", Scene("snail.glb")}, Words(way["options"])), {"-o", "again.png"}));
+      EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << way["options"];
+    }
+  }
 }
 
 TEST_F(Tradeoff, FiguresButTimesAreTheSameForAnyThreads) {
@@ -206,7 +225,7 @@ TEST_F(Tradeoff, AFolderIsTakenAgainAndLeftAsItWasFound) {
   EXPECT_EQ(Bytes("out/pictures/01-the-style.png"), before);
 }
 
-TEST_F(Tradeoff, InterruptedLeavesNothingHalfWritten) {
+TEST_F(Tradeoff, InterruptedLeavesNoFolder) {
   const pid_t child = Start({"tradeoff", Scene("suzanne.glb"), "--style", "mine", "--size", "96x54", "--repeat", "1000", "-o", "out"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));  // of the minutes that a thousand runs take
   ::kill(child, SIGINT);

@@ -74,9 +74,14 @@ TEST(TradeGrid, OtherSeedsChangeNothingElse) {
     EXPECT_TRUE(Named(grid, "seed +1").settings.empty());
     EXPECT_EQ(Named(grid, "seed +1").more_seed, 1);
   }
-  Style flat = SphereStyle();
-  flat.transfer.method = Method::kLitSphere;
-  EXPECT_EQ(ValuesOf(MakeTradeGrid(flat, Sized()), "seed"), Values{}) << "nothing is left to chance";
+  for (const Method method : {Method::kLitSphere, Method::kBruteForce}) {
+    Style flat = SphereStyle();
+    flat.transfer.method = method;
+    EXPECT_EQ(ValuesOf(MakeTradeGrid(flat, Sized()), "seed"), Values{}) << "nothing is left to chance";
+    TradeGridOptions noisy = Sized();
+    noisy.chance = true;
+    EXPECT_EQ(ValuesOf(MakeTradeGrid(flat, noisy), "seed").size(), 3u) << "the light is";
+  }
 }
 
 TEST(TradeGrid, OfASphereIsEveryAxisWithoutTheStylesOwnValues) {

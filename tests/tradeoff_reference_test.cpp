@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <memory>
 #include <utility>
 
@@ -157,6 +159,54 @@ TEST(TradeReference, PaintForOtherLightCosts) {
   const double expected = 10.0 * std::pow(0.3 * (0.5 - 0.1), 2);
   EXPECT_NEAR(Measured(reference, wrong).energy.mean, expected, 1e-5 * expected)
       << "noise of random colours has no nearer patch";
+}
+
+// A wall in paint that was copied from one place of a ball: noise has no nearer patch, so each pixel costs λ times the square
+// of what its source's normal is farther off than the chord of the variety.
+TEST(TradeReference, WhatVarietyGrantsOnAWallIsFree) {
+  constexpr int kWall = 20, kLeft = 14, kTop = 24;
+  auto wall = std::make_shared<GuideSet>(kWall, kWall);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kObject}) wall->Add(layer);
+  for (float& value : wall->Plane(Layer::kCoverage)) value = 1.0f;
+  for (float& value : wall->Plane(Layer::kNormal, 2)) value = 1.0f;
+  for (const double degrees : {0.0, 8.0, 15.0, 60.0}) {
+    Style style = LitSphereStyle(kSize);
+    style.transfer.variety = static_cast<float>(degrees);
+    const auto prepared = Prepare(style, kWall);
+    ASSERT_TRUE(prepared.ok());
+    const PreparedExemplar& ball = *prepared->exemplar;
+    ASSERT_EQ(ball.width(), kSize);
+    Picture copied(kWall, kWall);
+    const double chord = 2.0 * std::sin(degrees / 2.0 * 3.14159265358979323846 / 180.0);
+    double sum = 0.0;
+    for (int y = 0; y < kWall; ++y) {
+      for (int x = 0; x < kWall; ++x) {
+        std::copy_n(ball.picture().At(kLeft + x, kTop + y), 4, copied.At(x, y));
+        const glm::dvec3 off = glm::dvec3(ball.Normal(kLeft + x, kTop + y)) - glm::dvec3(0.0, 0.0, 1.0);
+        sum += 10.0 * std::pow(std::max(0.0, glm::length(off) - chord), 2);
+      }
+    }
+    TradeMeasure measure;
+    ASSERT_TRUE(TradeReference(wall, *prepared, 0.0, 0).MeasurePaint(copied, nullptr, {}, measure).ok());
+    EXPECT_NEAR(measure.energy.mean, sum / (kWall * kWall), 1e-5) << degrees;
+    EXPECT_EQ(sum == 0.0, degrees == 60.0) << "some costs, and at last nothing";
+  }
+}
+
+// Nothing on a ball is flat.
+TEST(TradeReference, VarietyGrantsNothingWhereSurfacesBend) {
+  const auto guides = SphereOf(kSize);
+  double energies[2];
+  for (const bool varied : {false, true}) {
+    Style style = LitSphereStyle(kSize);
+    style.transfer.variety = varied ? 15.0f : 0.0f;
+    const auto prepared = Prepare(style, kSize);
+    ASSERT_TRUE(prepared.ok());
+    TradeMeasure measure;
+    ASSERT_TRUE(TradeReference(guides, *prepared, 0.0, 0).MeasurePaint(Noise(kSize, 7), nullptr, {}, measure).ok());
+    energies[varied] = measure.both.mean;
+  }
+  EXPECT_EQ(energies[0], energies[1]);
 }
 
 }  // namespace

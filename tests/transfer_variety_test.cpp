@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "image/hash.h"
+#include "measure/flat_surfaces.h"
 #include "measure/repetition.h"
 #include "transfer/alternatives.h"
 #include "transfer/seeds.h"
@@ -205,6 +206,52 @@ TEST(Variety, APreviewShowsTheFinalPicturesPieces) {
   const double same_seeds = shared(field_at(256, 0)), other_seeds = shared(field_at(256, 1));
   EXPECT_GT(same_seeds, 0.6);
   EXPECT_LT(other_seeds, 0.3 * same_seeds);
+}
+
+// What measures call a flat surface (measure/flat_surfaces.h) is where the transfer finds one, there or a reach away.
+TEST(Variety, MeasuresFindTheSameFlatPlaces) {
+  constexpr int kSide = 40, kReach = 3;
+  GuideSet guides(kSide, kSide);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kObject}) guides.Add(layer);
+  std::vector<std::uint8_t> active(guides.pixel_count());
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {  // blocks of some normals and objects, some of them holes
+      const std::size_t i = guides.Index(x, y);
+      const std::uint64_t block = Hash(x / 9, y / 7), angle = block % 3;
+      active[i] = block % 5 != 0;
+      guides.Plane(Layer::kCoverage)[i] = active[i];
+      guides.Plane(Layer::kObject)[i] = float(block / 16 % 2);
+      guides.Plane(Layer::kNormal, 0)[i] = float(std::sin(0.4 * kRadians * double(angle)));  // 0.4 degrees are flat, 0.8 not
+      guides.Plane(Layer::kNormal, 2)[i] = float(std::cos(0.4 * kRadians * double(angle)));
+    }
+  }
+  const PreparedExemplar exemplar(NoisePicture(32), 2.0, 32);
+  const Illumination none;
+  const internal::MatchInput input{guides, active, exemplar, none, {}, GuideTest(0.1f, ThresholdMetric::kL2), {}, 4, 15.0, kReach,
+                                   {0, 0, kSide, kSide}};
+  const auto is_flat = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= kSide || y >= kSide || !active[guides.Index(x, y)]) return false;
+    return internal::IsFlat(input, {x, y}, kReach);
+  };
+  const auto found = FlatSurfaces(guides, kReach);
+  int flat = 0;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const std::size_t i = guides.Index(x, y);
+      if (is_flat(x, y)) {
+        EXPECT_EQ(found[i], 1);
+        ++flat;
+      }
+      if (!found[i]) continue;
+      bool near = false;
+      for (const int dy : {-kReach, 0, kReach}) {
+        for (const int dx : {-kReach, 0, kReach}) near = near || is_flat(x + dx, y + dy);
+      }
+      EXPECT_TRUE(near) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(flat, 50);
+  EXPECT_LT(flat, kSide * kSide / 2);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ struct PreparedStyle {
   int output_height = 0;
   int levels = 1;        // settings.levels at the output's height
   int blend_radius = 0;  // settings.blend_radius at the output's height
-  int flat_reach = 16;   // so many pixels around a seed must be flat before `variety` gives it freedom
+  int flat_reach = 16;   // pixels around a seed, at the output's height, that must be flat before `variety` gives it freedom
 };
 
 struct PrepareOptions {
