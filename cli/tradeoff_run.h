@@ -23,8 +23,8 @@ struct TradeSetup {
 // A run that takes longer than this is not repeated.
 inline constexpr double kSlowMs = 5000.0;
 
-// Everything that was measured. Guides are timed first, all ways' in turn, then transfers, those of a few ways in turn: what
-// else the machine does then is spread over ways. Wrong options are kUsage; a scene that shows nothing is kInput.
+// Everything that was measured. Guides are timed first, all ways' in turn, then transfers, those of a few ways in turn, quick ones
+// before slow ones: what else the machine does then is spread over ways. Wrong options are kUsage; a scene that shows nothing is kInput.
 Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const Globals& globals, ProgressBar& bar);
 
 // The command line that measures all this again.

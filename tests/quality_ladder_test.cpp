@@ -85,6 +85,15 @@ TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
   }
 }
 
+// A search for each pixel takes longer than one for each seed, where it is not by a formula or a table.
+TEST(QualityLadder, StylesThatWeighGuidesKeepTheirChunks) {
+  StyleSet weighed = Open("scene-oil");
+  EXPECT_FALSE(Sets(QualityLadder(weighed, kCast), "transfer.method"));
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, weighed, kCast)), "--upsample 4");
+  weighed.styles.front().transfer.method = Method::kBruteForce;
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, weighed, kCast)), "--upsample 4 --set transfer.method=styleblit");
+}
+
 // One setting is for all styles of a picture: a rung that takes from one must not give to another.
 TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
   StyleSet two = Open("oil");
