@@ -71,13 +71,15 @@ Expected<Part> ParsePart(const std::string& text, const std::string& part) {
 Expected<std::vector<int>> ParseFrames(const std::string& text) {
   std::vector<int> frames;
   std::unordered_set<int> seen;
+  std::int64_t named = 0;  // frames, some of them perhaps twice
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
     SCUMBLE_ASSIGN(const Part part, ParsePart(text, Trimmed(text.substr(begin, comma - begin))));
+    named += std::llabs(part.last - part.first) / std::llabs(part.step) + 1;
+    if (named > static_cast<std::int64_t>(kMaxFrames)) return BadFrames(text, text, fmt::format("more than {} frames", kMaxFrames));
     for (std::int64_t frame = part.first; part.step > 0 ? frame <= part.last : frame >= part.last; frame += part.step) {
       if (!seen.insert(static_cast<int>(frame)).second) continue;
       frames.push_back(static_cast<int>(frame));
-      if (frames.size() > kMaxFrames) return BadFrames(text, text, fmt::format("more than {} frames", kMaxFrames));
     }
     begin = comma + 1;
   }

@@ -67,7 +67,9 @@ TEST(Frames, WhatIsWrongIsSaid) {
                                                     {"1-9x-1", "counts down"},
                                                     {"1-1000000000", "999999999"},
                                                     {"99999999999999999999", "1-24"},
-                                                    {"1-2000000", "more than 1000000 frames"}};
+                                                    {"1-2000000", "more than 1000000 frames"},
+                                                    {"1-600000,1-600000", "more than 1000000 frames"},
+                                                    {"999999999--999999999", "more than 1000000 frames"}};
   for (const auto& [text, words] : wrong) {
     const auto frames = ParseFrames(text);
     ASSERT_FALSE(frames) << text;
