@@ -201,10 +201,12 @@ class Trade {
     measure.by_chance = way.more_seed != 0;
     RepeatOptions repeat = RepeatWay(setup_, stage_, way);
     measure.options = std::move(repeat.options), measure.note = std::move(repeat.note);
-    if (SupersampleOf(way) == 1) {
-      SCUMBLE_ASSIGN(const GuideDifference off, reference_->Compare(painter.guides().guides, painter.exposure()));
-      measure.guide_rms = off.rms, measure.guide_flip = off.flip;
-    }
+    const GuideSet& guides = painter.guides().guides;
+    const int super = SupersampleOf(way);
+    SCUMBLE_ASSIGN(const GuideDifference off,
+                   super == 1 ? reference_->Compare(guides, painter.exposure())
+                              : reference_->Compare(AveragedGuides(guides, super), painter.exposure()));
+    measure.guide_rms = off.rms, measure.guide_flip = off.flip;
     SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(painter.picture()));
     measure.picture_png.resize(png.size());
     std::transform(png.begin(), png.end(), measure.picture_png.begin(),

@@ -5,6 +5,7 @@
 #include "image/guides.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
+#include "io/picture_reader.h"
 #include "io/readable_file.h"
 #include "io/whole_exr.h"
 #include "io/whole_png.h"
@@ -55,10 +56,10 @@ Error OpenFailure(const std::string& reason, const std::string& name) {
   return InputError("cannot read " + name + ": " + LibraryReason(reason, name));
 }
 
-// Where a reader turns a file down, OpenImageIO lets all the others try it, video and raw photographs among them. What
-// begins as EXR is for EXR's reader alone: the others could only waste time on it, or trip over it.
-Expected<std::unique_ptr<OIIO::ImageInput>> OpenExr(const std::string& name, const OIIO::ImageSpec& config) {
-  auto input = OIIO::ImageInput::create("openexr");
+// Opens by one reader alone.
+Expected<std::unique_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, const std::string& name,
+                                                   const OIIO::ImageSpec& config) {
+  auto input = OIIO::ImageInput::create(reader);
   if (!input) return OpenFailure(OIIO::geterror(), name);
   OIIO::ImageSpec spec;
   if (!input->open(name, spec, config)) return OpenFailure(input->geterror(), name);
@@ -75,11 +76,8 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   }
   if (auto whole = CheckIfPng(path); !whole) return whole.error();
   if (auto kept = CheckExrPromises(path); !kept) return kept.error();
-  const OIIO::ImageSpec config = StraightAlpha();
-  if (IsExrFile(path)) return OpenExr(path.string(), config);
-  auto input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) return OpenFailure(OIIO::geterror(), path.string());
-  return input;
+  SCUMBLE_ASSIGN(const std::string reader, ReaderFor(path));
+  return OpenBy(reader, path.string(), StraightAlpha());
 }
 
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
@@ -90,9 +88,8 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemRea
   OIIO::ImageSpec config = StraightAlpha();
   void* pointer = &proxy;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
-  auto input = OIIO::ImageInput::open(name, &config, &proxy);
-  if (!input) return OpenFailure(OIIO::geterror(), name);
-  return input;
+  SCUMBLE_ASSIGN(const std::string reader, ReaderFor(bytes, name));
+  return OpenBy(reader, name, config);
 }
 
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name) {

@@ -199,13 +199,6 @@ Status Check(std::istream& file, std::uint64_t file_bytes, const std::string& na
 
 }  // namespace
 
-bool IsExrFile(const std::filesystem::path& path) {
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) return false;
-  std::array<char, 4> magic{};
-  return std::ifstream(path, std::ios::binary).read(magic.data(), magic.size()) && magic == kMagic;
-}
-
 Status CheckExrPromises(const std::filesystem::path& path) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return Ok();

@@ -9,9 +9,6 @@
 
 namespace scumble::internal {
 
-// Whether a regular file begins as every EXR file does.
-bool IsExrFile(const std::filesystem::path& path);
-
 // Follows the attributes of all parts (OpenEXR's "File Layout"): none is larger than what is left of the file, and the
 // pixels of no part are more than its compression can make of the whole file. Nothing is wrong with what is no EXR
 // file, or whose header ends too early: the library says what is. `name` is for the message. Thread-safe.

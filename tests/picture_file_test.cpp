@@ -373,6 +373,41 @@ TEST(PictureFile, AWrongEndingDoesNotMatter) {
   ExpectSame(Read(folder / "p.tif"), picture);
 }
 
+// Each format by its own reader, found by what is in the file: a name without an ending says nothing. TGA begins with nothing
+// of its own and needs its name. Tolerances of 16 bits: WebP and GIF lose, HDR has 8 bits of mantissa.
+TEST(PictureFile, FormatsAreKnownByHowTheyBegin) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> bytes(3 * 16 * 16, 200);
+  for (const auto& [ending, tolerance] : {std::pair{"bmp", 0}, {"tga", 0}, {"dpx", 0}, {"tif", 0}, {"webp", 600}, {"gif", 600},
+                                          {"hdr", 600}}) {
+    SCOPED_TRACE(ending);
+    const fs::path path = folder / ("a." + std::string(ending));
+    OIIO::ImageSpec spec(16, 16, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    std::vector<float> linear(bytes.size(), SrgbToLinear(200.0f / 255.0f));
+    if (std::string(ending) == "hdr") {
+      WriteWith(path, OIIO::ImageSpec(16, 16, 3, OIIO::TypeDesc::FLOAT), linear);
+    } else {
+      WriteWith(path, spec, bytes);
+    }
+    const fs::path bare = std::string(ending) == "tga" ? folder / "b.TGA" : folder / ("bare-" + std::string(ending));
+    fs::rename(path, bare);
+    const Picture picture = Read(bare);
+    ASSERT_EQ(picture.width, 16);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(picture.At(5, 7)[c], 200 * 257, tolerance);
+    EXPECT_EQ(picture.At(5, 7)[3], 65535);
+  }
+}
+
+// A reader of OpenImageIO's ends the process at some RLA files. Nobody paints in that format, and a file that turns out to be
+// nothing else must not come to it.
+TEST(PictureFile, FormatsThatNobodyPaintsInAreRefused) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "render.rla";
+  WriteWith(path, OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), std::vector<std::uint8_t>(3 * 8 * 8, 9));
+  ExpectRefusal(ReadPicture(path), {"render.rla", "does not begin as a picture", "PNG", "PSD"});
+}
+
 TEST(PictureFile, AJpegMayLackNothingButMayHoldMore) {
   const TemporaryFolder folder;
   ASSERT_TRUE(WritePicture(folder / "p.jpg", RandomPicture(37, 23, 8)));

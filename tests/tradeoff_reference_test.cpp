@@ -9,6 +9,7 @@
 #include <memory>
 #include <utility>
 
+#include "cli/tradeoff_guides.h"
 #include "guidegen/guidegen.h"
 #include "tests/transfer_fixtures.h"
 
@@ -114,6 +115,46 @@ TEST(TradeReference, TheDifferenceOfNormalsIsTheirRootMeanSquareDistance) {
   const double expected = 2.0 * std::sin(angle / 2.0) * std::sqrt(0.5);
   EXPECT_NEAR(off->rms, expected, 0.01 * expected) << "pixels on the rim are whole: a share of 4 / 200 or less of the area";
   EXPECT_GT(off->flip, 0.0);
+}
+
+// A block of three covered pixels and one beside the thing: means of the three, and three quarters of coverage; one whose
+// normals are opposite has no direction left; one of nothing is background.
+TEST(TradeReference, LargerGuidesAreComparedByTheirMeans) {
+  GuideSet large(6, 2);
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance, Layer::kObject}) large.Add(layer);
+  const auto set = [&](int x, int y, glm::vec3 normal, float light) {
+    const std::size_t i = large.Index(x, y);
+    large.Plane(Layer::kCoverage)[i] = 1.0f, large.Plane(Layer::kLuminance)[i] = light;
+    for (int c = 0; c < 3; ++c) large.Plane(Layer::kNormal, c)[i] = normal[c];
+  };
+  set(0, 0, {1.0f, 0.0f, 0.0f}, 0.25f), set(1, 0, {0.0f, 1.0f, 0.0f}, 0.5f), set(0, 1, {0.0f, 0.0f, 1.0f}, 0.75f);
+  set(2, 0, {0.0f, 0.0f, 1.0f}, 2.0f), set(3, 1, {0.0f, 0.0f, -1.0f}, 4.0f);
+  const GuideSet small = AveragedGuides(large, 2);
+  ASSERT_EQ(small.width(), 3);
+  ASSERT_EQ(small.height(), 1);
+  EXPECT_EQ(small.layers(), LayerSet({Layer::kCoverage, Layer::kNormal, Layer::kLuminance})) << "ids have no mean";
+  EXPECT_EQ(small.Plane(Layer::kCoverage)[0], 0.75f);
+  EXPECT_EQ(small.Plane(Layer::kLuminance)[0], 0.5f);
+  for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(small.Vec3(Layer::kNormal, 0)[c], float(std::sqrt(1.0 / 3.0)));
+  EXPECT_EQ(small.Plane(Layer::kLuminance)[1], 3.0f);
+  EXPECT_EQ(small.Vec3(Layer::kNormal, 1), glm::vec3(0.0f));
+  EXPECT_EQ(small.Plane(Layer::kCoverage)[2], 0.0f);
+  EXPECT_EQ(small.Plane(Layer::kLuminance)[2], 0.0f);
+}
+
+// A ball of twice the size says the same: its mean normals are those at the pixels' centres but for the second order of a
+// quarter of a pixel, and for the rim, where pixels are partly beside the ball.
+TEST(TradeReference, TwiceTheResolutionIsCloseToTheExactGuides) {
+  const auto guides = SphereOf(kSize), large = SphereOf(2 * kSize);
+  const Painted painted = Paint(LitSphereStyle(kSize), *guides);
+  const TradeReference reference(guides, painted.style, 0.0, 0);
+  const auto off = reference.Compare(AveragedGuides(*large, 2), 0.0);
+  const auto half = reference.Compare(AveragedGuides(*guides, 1), 0.0);
+  ASSERT_TRUE(off.ok() && half.ok());
+  EXPECT_LT(half->rms, 1e-6) << "blocks of one pixel are the guides themselves, but for their length's last bits";
+  EXPECT_GT(off->rms, 0.0);
+  EXPECT_LT(off->rms, 0.25 * std::sqrt(1.0 / 8.0))
+      << "a pixel in from the rim the normal is sqrt(2 / 32) = 0.25 off; an eighth of all pixels is so near to it";
 }
 
 // Light counts instead of normals where there are several conditions; it is exposed, and cut at the brightest exemplar's.
