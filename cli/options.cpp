@@ -116,13 +116,17 @@ void AddCastOptions(CLI::App& verb, SceneOptions& options) {
       ->check(RefuseEmpty);
 }
 
-void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
-  AddViewOptions(verb, options);
+void AddAnimationOption(CLI::App& verb, SceneOptions& options) {
   verb.add_option("--animation", options.animation,
-                  "which animation of a .glb or .gltf scene to play, with --frame or --frames: its name, or * for all at "
+                  "which animation of a .glb or .gltf scene to play, with a frame's number: its name, or * for all at "
                   "once; left out: the first. scumble info lists them")
       ->type_name("NAME")
       ->check(RefuseEmpty);
+}
+
+void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
+  AddViewOptions(verb, options);
+  AddAnimationOption(verb, options);
   AddCastOptions(verb, options);
   verb.add_flag("!--no-robust", options.robust,
                 "without Embree's robust mode: rays may pass where two triangles meet; scumble tradeoff shows what it gains");

@@ -77,6 +77,8 @@ void AddSampleOptions(CLI::App& verb, SceneOptions& options);
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options);
 // A scene, the picture's size and whence it is seen.
 void AddViewOptions(CLI::App& verb, SceneOptions& options);
+// Which of its animations plays.
+void AddAnimationOption(CLI::App& verb, SceneOptions& options);
 // How its rays are cast.
 void AddCastOptions(CLI::App& verb, SceneOptions& options);
 // With everything else but blender.frame, because verbs that make pictures have a frame already.

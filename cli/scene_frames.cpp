@@ -11,7 +11,8 @@ namespace scumble {
 namespace {
 
 // How a frame of a .blend is seen: as the scene's first frame says, where the file leaves camera or light to us.
-Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneOptions& options, const LayerSet& layers) {
+Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneOptions& options,
+                                   const LayerSet& layers) {
   if (!film.start) return ViewScene(scene, options, layers);
   Scene& start = *film.start;
   const std::size_t lights = start.lights.size();
@@ -26,12 +27,22 @@ Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneO
   return view;
 }
 
+// Of a file that moves: its camera that is looked through, by its place; none where we look for ourselves.
+std::optional<int> OwnCamera(const Scene& scene, const SceneOptions& options, const Camera& seen_by) {
+  std::optional<int> found;
+  if (!options.view.empty()) return found;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    if (scene.cameras[i].name == seen_by.name) found = static_cast<int>(i);
+  }
+  return found;
+}
+
+}  // namespace
+
 void TellRate(const SceneOptions& options, const BlenderFilm& film, GuideSet& guides) {
   const std::string& fps = options.fps.empty() ? film.fps : options.fps;
   if (!fps.empty()) guides.attributes["scumble:fps"] = fps;
 }
-
-}  // namespace
 
 Status SceneFrames::Start(std::span<const int> frames, const Progress& progress) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options_));
@@ -63,11 +74,7 @@ Status SceneFrames::StartFile(const Progress& progress) {
   const double load_ms = watch.Lap();
   camera_ = view.camera;
   if (film_->moves()) {
-    if (options_.view.empty()) {
-      for (std::size_t i = 0; i < now_.cameras.size(); ++i) {
-        if (now_.cameras[i].name == view.camera.name) by_file_ = static_cast<int>(i);
-      }
-    }
+    by_file_ = OwnCamera(now_, options_, view.camera);
     if (motion_) next_ = now_, next_.textures.clear(), next_.encoded_textures.clear();
     MemoryNeed need;
     AddProgram(globals_.threads, need);
@@ -79,8 +86,8 @@ Status SceneFrames::StartFile(const Progress& progress) {
     return Ok();
   }
   const NextFrame next{now_, camera_};
-  SCUMBLE_ASSIGN(*guides_, CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, globals_,
-                                     progress, false));
+  SCUMBLE_ASSIGN(*guides_,
+                 CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, globals_, progress, false));
   guides_->times.insert(guides_->times.begin(), {"load", load_ms});
   film_.reset();
   now_ = {};
@@ -133,9 +140,8 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
   SCUMBLE_ASSIGN(Scene* const loaded, BlenderFrame(frame));
   const int place = place_.at(frame);
   Scene scene = needed_by_.at(frame) <= place ? std::move(*loaded) : *loaded;
-  std::erase_if(scenes_, [&](const auto& kept) {
-    return kept.first != frame + 1 && needed_by_.at(kept.first) <= place;
-  });
+  std::erase_if(scenes_,
+                [&](const auto& kept) { return kept.first != frame + 1 && needed_by_.at(kept.first) <= place; });
   const double load_ms = watch.Lap();
   WarnOnce(scene);
   SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(WishesOf(scene.instances, scene)));
@@ -204,6 +210,33 @@ Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersF
   SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, rest.layers));
   for (const std::string& note : rest.view.notes) Say(globals, note);
   return rest;
+}
+
+Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& options, const LayersFor& layers_for,
+                                  const Globals& globals) {
+  if (!frame || IsBlenderScene(options.scene)) {
+    SceneOptions at = options;
+    at.blender.frame = frame;
+    return OpenSceneAtRest(at, layers_for, false, globals, false);
+  }
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
+  SCUMBLE_ASSIGN(const FrameRate rate, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(const AnimatedScene film,
+                 AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
+  SceneAtRest result;
+  SCUMBLE_ASSIGN(result.scene, film.SceneAt(0.0));
+  for (const std::string& warning : result.scene.warnings) Warn(options.scene + ": " + warning);
+  SCUMBLE_ASSIGN(result.layers, layers_for(WishesOf(film.objects(), film.rest())));
+  SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
+  for (const std::string& note : result.view.notes) Say(globals, note);
+  if (film.moves()) {
+    const std::optional<int> own = OwnCamera(result.scene, options, result.view.camera);
+    SCUMBLE_RETURN_IF_ERROR(film.MoveTo(SecondsAt(*frame, rate), result.scene));
+    if (own) result.view.camera = result.scene.cameras[static_cast<std::size_t>(*own)];
+  }
+  result.load_ms = watch.Lap();
+  return result;
 }
 
 Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,

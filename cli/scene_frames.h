@@ -88,11 +88,14 @@ class SceneFrames {
   std::set<std::string> warned_;
 };
 
+// Writes the frames' rate among the attributes, where the command line or the .blend names one.
+void TellRate(const SceneOptions& options, const BlenderFilm& film, GuideSet& guides);
+
 // One frame, as a sequence would have it.
 Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const LayersFor& layers_for, bool motion,
                                    const Globals& globals, const Progress& progress);
 
-// A scene as it stands without a frame's number, and how it is seen.
+// A scene that stands still, at a frame or without one's number, and how it is seen.
 struct SceneAtRest {
   Scene scene;
   PreparedView view;
@@ -104,6 +107,10 @@ struct SceneAtRest {
 // Says how it is seen. Errors as MakeGuidesAtRest has them.
 Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
                                       const Globals& globals, bool plan_only);
+
+// The same of a frame, seen as SceneFrames sees it; without a number, at rest.
+Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& options, const LayersFor& layers_for,
+                                  const Globals& globals);
 
 // The scene as it stands without a frame's number, as MakeGuidesOf has it. --animation and the layer motion are usage
 // errors.

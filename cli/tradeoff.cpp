@@ -13,6 +13,7 @@
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/run_files.h"
+#include "cli/sequence.h"
 #include "cli/style_set.h"
 #include "cli/tradeoff_run.h"
 #include "io/atomic_file.h"
@@ -150,6 +151,14 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "says; colorized styles are measured before the scene's colours are on them. Blending mostly scores better: it takes\n"
       "seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each way.\n");
   AddViewOptions(*sub, verb->setup.scene);
+  sub->add_option("--frame", verb->setup.frame,
+                  "the scene and the style at this frame of theirs; left out: as they stand, of a .blend the frame that it was "
+                  "saved at")
+      ->type_name("N");
+  AddFpsOption(*sub, verb->setup.scene.fps,
+               "frames a second, with --frame: of a glTF animation frame N is at N / RATE s; left out: of a .blend its own, "
+               "otherwise 24");
+  AddAnimationOption(*sub, verb->setup.scene);
   AddCastOptions(*sub, verb->setup.scene);
   AddSampleOptions(*sub, verb->setup.scene);
   AddOneStyleOptions(*sub, verb->setup.style, true);

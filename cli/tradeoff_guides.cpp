@@ -35,6 +35,7 @@ Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& option
   for (const auto& [step, ms] : made.times) {
     if (step != "textures") result.ms += ms;  // decoded once, whatever is cast first
   }
+  TellRate(options, scene.film, made.guides);
   RoundGuides(way.precision, made.guides);
   if (up == 1) {
     result.guides = std::move(made.guides);

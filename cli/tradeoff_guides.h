@@ -25,9 +25,10 @@ struct WayGuides {
 Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
                                   const LayerSet& layers, const Globals& globals);
 
-// Guides of 1/factor the sides, to be compared with guides of that size: of every block of factor × factor pixels the mean
-// coverage, and of its covered pixels the mean light and colours and the mean normal, at unit length again. Background where
-// none is covered; a mean normal of length 0 stays 0. Other layers are left out. The sides must be multiples of `factor`.
+// Guides of 1/factor the sides, to be compared with guides of that size: of every block of factor × factor pixels the
+// mean coverage, and of its covered pixels the mean light and colours and the mean normal, at unit length again.
+// Background where none is covered; a mean normal of length 0 stays 0. Other layers are left out. The sides must be
+// multiples of `factor`.
 GuideSet AveragedGuides(const GuideSet& guides, int factor);
 
 // Ways with equal text have equal guides; with `rounded` false, guides that take the same time: no rounding and no

@@ -8,7 +8,8 @@
 
 namespace scumble {
 
-std::vector<std::pair<std::string, std::string>> CastArguments(const SceneOptions& scene) {
+std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup) {
+  const SceneOptions& scene = setup.scene;
   std::vector<std::pair<std::string, std::string>> given;
   const SceneOptions usual;
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {
@@ -20,6 +21,9 @@ std::vector<std::pair<std::string, std::string>> CastArguments(const SceneOption
   add("--normal-frame", scene.normal_frame, usual.normal_frame);
   add("--isa", scene.isa, usual.isa);
   add("--blender", scene.blender.program, usual.blender.program);
+  if (setup.frame) given.emplace_back("--frame", std::to_string(*setup.frame));
+  add("--fps", scene.fps, usual.fps);
+  add("--animation", scene.animation, usual.animation);
   return given;
 }
 
@@ -33,9 +37,10 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& 
   add("--style", setup.style.style);
   for (const std::string& set : setup.style.sets) add("--set", set);
   add("--size", setup.scene.size);
-  for (const auto& [option, value] : CastArguments(setup.scene)) words.push_back(option + "=" + value);
+  for (const auto& [option, value] : SceneArguments(setup)) words.push_back(option + "=" + value);
   if (setup.scene.samples != SceneOptions().samples) add("--samples", std::to_string(setup.scene.samples));
-  if (setup.scene.max_bounces != SceneOptions().max_bounces) add("--max-bounces", std::to_string(setup.scene.max_bounces));
+  if (setup.scene.max_bounces != SceneOptions().max_bounces)
+    add("--max-bounces", std::to_string(setup.scene.max_bounces));
   if (setup.scene.seed != 0) add("--seed", std::to_string(setup.scene.seed));
   if (!setup.only.empty()) add("--only", setup.only);
   if (setup.repeats != TradeSetup().repeats) add("--repeat", std::to_string(setup.repeats));

@@ -61,7 +61,8 @@ class Trade {
     SCUMBLE_ASSIGN(const std::vector<Way> ways, ChooseWays(stage_.grid.ways, setup_.only));
     for (const std::string& line : stage_.grid.left_out) Say(globals_, "left out: " + line);
     if (setup_.memory && !asks_for_memory_) {
-      Say(globals_, "left out: memory, for which Blender would export the scene for each way; export it as .glb for that");
+      Say(globals_,
+          "left out: memory, for which Blender would export the scene for each way; export it as .glb for that");
     }
     SCUMBLE_RETURN_IF_ERROR(OpenStyles(ways));
     // Guides that differ only in how they are rounded take one time.
@@ -120,7 +121,8 @@ class Trade {
     SCUMBLE_RETURN_IF_ERROR(guides.Validate(setup_.scene.scene));
     const auto coverage = guides.Plane(Layer::kCoverage);
     if (std::none_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; })) {
-      return InputError(setup_.scene.scene + ": the camera sees nothing, so there is nothing to measure; try --view or another "
+      return InputError(setup_.scene.scene +
+                        ": the camera sees nothing, so there is nothing to measure; try --view or another "
                         "--camera");
     }
     SCUMBLE_ASSIGN(const WayPainter painter, WayPainter::Prepare(setup_, *exact, style, exact_guides_, globals_));
@@ -134,7 +136,8 @@ class Trade {
       std::map<std::string, bool> made;
       for (std::size_t i = 0; i < ways.size(); ++i) {
         const std::string key = GuidesKey(ways[i], layers_[i], false);
-        if (!std::exchange(made[key], true)) SCUMBLE_RETURN_IF_ERROR(TimeGuides(ways[i], layers_[i], run, guides_ms_[key]));
+        if (!std::exchange(made[key], true))
+          SCUMBLE_RETURN_IF_ERROR(TimeGuides(ways[i], layers_[i], run, guides_ms_[key]));
       }
     }
     return Ok();
@@ -185,7 +188,8 @@ class Trade {
       if (measure.total_ms.median <= 2.0 * kSlowMs) {
         SCUMBLE_ASSIGN(measure.memory_bytes, AskForPeak(setup_, ways[i].name, globals_));
         if (measure.memory_bytes == 0) {
-          measure.note += std::string(measure.note.empty() ? "" : "; ") + "the process that was to tell its memory failed";
+          measure.note +=
+              std::string(measure.note.empty() ? "" : "; ") + "the process that was to tell its memory failed";
         }
       }
       Finished(kMemoryWork);
@@ -270,7 +274,8 @@ std::string TradeCommand(const TradeSetup& setup, const Globals& globals) {
 
 Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const Globals& globals) {
   SCUMBLE_ASSIGN(TradeStage stage, OpenTradeStage(setup, globals));
-  const auto way = std::find_if(stage.grid.ways.begin(), stage.grid.ways.end(), [&](const Way& one) { return one.name == name; });
+  const auto way =
+      std::find_if(stage.grid.ways.begin(), stage.grid.ways.end(), [&](const Way& one) { return one.name == name; });
   if (way == stage.grid.ways.end()) return UsageError("--peak-of " + name + ": there is no such way");
   SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way));
   SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, RequiredLayers(style), globals));

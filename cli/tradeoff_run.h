@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "cli/command.h"
@@ -18,6 +19,7 @@ struct TradeSetup {
   bool quick = false;
   bool memory = true;
   std::string only;
+  std::optional<int> frame;  // as stylize has it
 };
 
 // A run that takes longer than this is not repeated.

@@ -10,6 +10,7 @@
 #include "cli/shell_word.h"
 #include "cli/style_set.h"
 #include "cli/tradeoff_peak.h"
+#include "cli/transfer_run.h"
 #include "image/stopwatch.h"
 #include "style/style_keyframes.h"
 
@@ -18,17 +19,19 @@ namespace {
 
 constexpr const char* kNoPaper = "transfer.paper=";
 
-Expected<Style> OpenStyleWith(const StyleOptions& options, const std::vector<std::string>& settings) {
-  StyleOptions one = options;
+Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::string>& settings) {
+  StyleOptions one = setup.style;
   one.scene_styles = false;
   one.sets.insert(one.sets.end(), settings.begin(), settings.end());
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(one));
   Style style = std::move(styles.styles.front());
-  SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, 0));
+  SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, setup.frame.value_or(0)));
   return style;
 }
 
-std::uint64_t SeedOf(const TradeSetup& setup, const Way& way) { return setup.scene.seed + std::uint64_t(way.more_seed); }
+std::uint64_t SeedOf(const TradeSetup& setup, const Way& way) {
+  return setup.scene.seed + std::uint64_t(way.more_seed);
+}
 
 // What --quality names, where it is not the style itself.
 Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
@@ -50,13 +53,13 @@ Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
 Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way) {
   std::vector<std::string> settings = way.settings;
   settings.push_back(kNoPaper);
-  return OpenStyleWith(setup.style, settings);
+  return OpenStyleWith(setup, settings);
 }
 
 Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(setup.scene));
   TradeStage stage;
-  SCUMBLE_ASSIGN(stage.style, OpenStyleWith(setup.style, {}));
+  SCUMBLE_ASSIGN(stage.style, OpenStyleWith(setup, {}));
   stage.has_paper = stage.style.paper.color || stage.style.paper.picture;
   stage.style.paper = {};
   SCUMBLE_ASSIGN(const Size size, ParseSize(setup.scene.size));
@@ -65,7 +68,7 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& glob
     stage.has_wishes = !wishes.objects.empty() || !wishes.materials.empty();
     return RequiredLayers(stage.style);
   };
-  SCUMBLE_ASSIGN(stage.scene, OpenSceneAtRest(setup.scene, layers, false, globals, false));
+  SCUMBLE_ASSIGN(stage.scene, OpenSceneAt(setup.frame, setup.scene, layers, globals));
   stage.chance = NeedSamples(stage.scene.scene, stage.scene.layers, setup.scene);
   stage.grid = MakeTradeGrid(stage.style, {size.width, size.height, setup.quick, stage.chance, setup.scene.samples});
   SCUMBLE_RETURN_IF_ERROR(AddQualities(setup, stage));
@@ -75,18 +78,21 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& glob
 RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const Way& way) {
   if (way.precision != GuidePrecision::kFloat) return {"", "stylize has floats for guides, whatever is asked for"};
   if (way.guide_scale > 1.0) {
-    return {"", fmt::format("stylize with --size {}x{}, then each 2 x 2 pixels averaged", 2 * stage.width, 2 * stage.height)};
+    return {"", fmt::format("stylize with --size {}x{}, then each 2 x 2 pixels averaged", 2 * stage.width,
+                            2 * stage.height)};
   }
   if (way.table_resolution != LookUpTable::kResolution) {
     return {"", fmt::format("tables of stylize have {} cells a side", LookUpTable::kResolution)};
   }
   std::string text = "--style " + Quoted(setup.style.style);
-  const auto add = [&](const std::string& option, const std::string& value) { text += " " + option + " " + Quoted(value); };
+  const auto add = [&](const std::string& option, const std::string& value) {
+    text += " " + option + " " + Quoted(value);
+  };
   for (const std::string& set : setup.style.sets) add("--set", set);
   for (const std::string& set : way.settings) add("--set", set);
   if (stage.has_paper) add("--set", kNoPaper);
   add("--size", fmt::format("{}x{}", stage.width, stage.height));
-  for (const auto& [option, value] : CastArguments(setup.scene)) add(option, value);
+  for (const auto& [option, value] : SceneArguments(setup)) add(option, value);
   if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
   const int samples = way.samples > 0 ? way.samples : setup.scene.samples;
   if (stage.chance && samples != SceneOptions().samples) add("--samples", std::to_string(samples));
@@ -111,6 +117,11 @@ Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
   const auto stops = MeasureExposure({&painter.prepared_, 1}, painter.guides_->ForExposure(), globals.threads);
   painter.options_.exposure = stops.value_or(0.0);
+  PictureOptions picture;
+  picture.fps = setup.scene.fps;
+  SCUMBLE_ASSIGN(const FrameRate rate, RateFor(picture, painter.guides_->guides));
+  painter.options_.frame = setup.frame.value_or(0);
+  painter.options_.fps_numerator = rate.numerator, painter.options_.fps_denominator = rate.denominator;
   painter.options_.seed = SeedOf(setup, way);
   painter.options_.threads = globals.threads;
   painter.factor_ = SupersampleOf(way);
@@ -151,7 +162,8 @@ Picture Averaged(const Picture& picture, int factor) {
         }
       }
       std::uint16_t* to = small.At(x, y);
-      for (std::size_t c = 0; c < 3 && alpha > 0; ++c) to[c] = static_cast<std::uint16_t>((color[c] + alpha / 2) / alpha);
+      for (std::size_t c = 0; c < 3 && alpha > 0; ++c)
+        to[c] = static_cast<std::uint16_t>((color[c] + alpha / 2) / alpha);
       to[3] = static_cast<std::uint16_t>((alpha + count / 2) / count);
     }
   }

@@ -49,7 +49,8 @@ Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::fil
     if (text.size() >= mark.at && text.substr(mark.at).starts_with(mark.bytes)) return std::string(mark.reader);
   }
   if (IsTga(name)) return std::string("targa");
-  return InputError("cannot read " + name.string() + ": " + (start.empty() ? "it is empty" : "it does not begin as a picture") +
+  return InputError("cannot read " + name.string() + ": " +
+                    (start.empty() ? "it is empty" : "it does not begin as a picture") +
                     "; EXR, PNG, TIFF, JPEG, WebP, PSD, TGA, HDR, BMP, GIF and DPX are read");
 }
 

@@ -9,9 +9,9 @@
 
 namespace scumble::internal {
 
-// OpenImageIO's name of the one reader that may open a file: by how it begins, and of TGA, which has no such mark, by its
-// name's ending. Else an error that says which formats are read. Left to itself OpenImageIO hands what one reader turns down
-// to all the others, video and raw photographs among them, and one of those ends the process at some bytes.
+// OpenImageIO's name of the one reader that may open a file: by how it begins, and of TGA, which has no such mark, by
+// its name's ending. Else an error that says which formats are read. Left to itself OpenImageIO hands what one reader
+// turns down to all the others, video and raw photographs among them, and one of those ends the process at some bytes.
 // `start` is the beginning of the file, 16 bytes if it has them. Thread-safe.
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name);
 

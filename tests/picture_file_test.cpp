@@ -373,13 +373,13 @@ TEST(PictureFile, AWrongEndingDoesNotMatter) {
   ExpectSame(Read(folder / "p.tif"), picture);
 }
 
-// Each format by its own reader, found by what is in the file: a name without an ending says nothing. TGA begins with nothing
-// of its own and needs its name. Tolerances of 16 bits: WebP and GIF lose, HDR has 8 bits of mantissa.
+// Each format by its own reader, found by what is in the file: a name without an ending says nothing. TGA begins with
+// nothing of its own and needs its name. Tolerances of 16 bits: WebP and GIF lose, HDR has 8 bits of mantissa.
 TEST(PictureFile, FormatsAreKnownByHowTheyBegin) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> bytes(3 * 16 * 16, 200);
-  for (const auto& [ending, tolerance] : {std::pair{"bmp", 0}, {"tga", 0}, {"dpx", 0}, {"tif", 0}, {"webp", 600}, {"gif", 600},
-                                          {"hdr", 600}}) {
+  for (const auto& [ending, tolerance] :
+       {std::pair{"bmp", 0}, {"tga", 0}, {"dpx", 0}, {"tif", 0}, {"webp", 600}, {"gif", 600}, {"hdr", 600}}) {
     SCOPED_TRACE(ending);
     const fs::path path = folder / ("a." + std::string(ending));
     OIIO::ImageSpec spec(16, 16, 3, OIIO::TypeDesc::UINT8);
@@ -399,8 +399,8 @@ TEST(PictureFile, FormatsAreKnownByHowTheyBegin) {
   }
 }
 
-// A reader of OpenImageIO's ends the process at some RLA files. Nobody paints in that format, and a file that turns out to be
-// nothing else must not come to it.
+// A reader of OpenImageIO's ends the process at some RLA files. Nobody paints in that format, and a file that turns out
+// to be nothing else must not come to it.
 TEST(PictureFile, FormatsThatNobodyPaintsInAreRefused) {
   const TemporaryFolder folder;
   const fs::path path = folder / "render.rla";

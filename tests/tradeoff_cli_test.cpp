@@ -64,8 +64,9 @@ class Tradeoff : public CliTest {
 };
 
 TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
-  const CommandResult result = RunOk({"tradeoff", Scene("suzanne.glb"), "--style", "mine", "--size", "96x54", "--repeat", "2",
-                                      "--only", "method,levels 1,precision,resolution", "-o", "out/deep", "--quick"});
+  const CommandResult result =
+      RunOk({"tradeoff", Scene("suzanne.glb"), "--style", "mine", "--size", "96x54", "--repeat", "2", "--only",
+             "method,levels 1,precision,resolution", "-o", "out/deep", "--quick"});
   EXPECT_NE(result.out.find("the style"), std::string::npos);
   EXPECT_NE(result.out.find("litsphere"), std::string::npos);
   EXPECT_NE(result.err.find("out/deep/report.html"), std::string::npos);
@@ -84,6 +85,7 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
     ASSERT_EQ(row.size(), rows[0].size());
     EXPECT_EQ(row[column["way"]], way["way"]);
     EXPECT_EQ(row[column["options"]], way["options"]);
+    if (way["axis"] == "resolution") EXPECT_GT(way["guide_rms"].get<double>(), 0.0) << way["way"];
     EXPECT_EQ(std::stod(row[column["both"]]), way["both"]["mean"].get<double>());
     EXPECT_EQ(std::stod(row[column["total_ms_median"]]), way["total_ms"]["median"].get<double>());
     EXPECT_EQ(std::stod(row[column["memory_bytes"]]), way["memory_bytes"].get<double>());
@@ -107,8 +109,9 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
 }
 
 TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
-  RunOk(Small(Scene("suzanne.glb"), {"--only", "method litsphere,levels 3,threshold 0.25,blend_radius 4,edge_aware,match_step 2,"
-                                               "nearest tree,nearest table 64,resolution,robust,seed,quality",
+  RunOk(Small(Scene("suzanne.glb"), {"--only",
+                                     "method litsphere,levels 3,threshold 0.25,blend_radius 4,edge_aware,match_step 2,"
+                                     "nearest tree,nearest table 64,resolution,robust,seed,quality",
                                      "--seed", "3", "--aa", "2", "--normal-frame", "eye", "-o", "out"}));
   const nlohmann::json json = nlohmann::json::parse(Bytes("out/tradeoff.json"));
   int repeated = 0;
@@ -119,7 +122,8 @@ TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
       continue;
     }
     RunOk(With(With({"stylize", Scene("suzanne.glb")}, Words(options)), {"-o", "again.png"}));
-    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << name << ": " << options;
+    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>()))
+        << name << ": " << options;
     ++repeated;
   }
   EXPECT_EQ(repeated, 14) << "all but the small table and twice the resolution";
@@ -133,9 +137,14 @@ TEST_F(Tradeoff, OptionsRepeatLightPathsToo) {
   };
   for (const Case& c : {Case{"lpe.LDDE", "samples 1,blend_radius 4", {"--samples", "3", "--max-bounces", "1"}},
                         Case{"lpe.full", "blend_radius 4", {"--max-bounces", "0"}}}) {
-    const Arguments trade = {"tradeoff", Scene("snail.glb"), "--style", "scene-oil", "--set",
-                             "transfer.guide_weights." + c.weight + "=1", "--size", "64x36", "--repeat", "1", "--no-memory"};
-    const nlohmann::json ways = RunOk(With(With(trade, c.light), {"--only", c.only, "--json", "-o", "out"})).Json()["ways"];
+    const Arguments trade = {"tradeoff",   Scene("snail.glb"),
+                             "--style",    "scene-oil",
+                             "--set",      "transfer.guide_weights." + c.weight + "=1",
+                             "--size",     "64x36",
+                             "--repeat",   "1",
+                             "--no-memory"};
+    const nlohmann::json ways =
+        RunOk(With(With(trade, c.light), {"--only", c.only, "--json", "-o", "out"})).Json()["ways"];
     EXPECT_EQ(ways.size(), c.only.starts_with("samples") ? 3u : 2u);
     for (const auto& way : ways) {
       RunOk(With(With({"stylize", Scene("snail.glb")}, Words(way["options"])), {"-o", "again.png"}));
@@ -144,9 +153,31 @@ TEST_F(Tradeoff, OptionsRepeatLightPathsToo) {
   }
 }
 
+// A scene that moves, and a style whose chunks begin elsewhere in each frame.
+TEST_F(Tradeoff, AFrameIsTheSequencesOwn) {
+  const Arguments arguments = Small(Scene("toys.glb"), {"--only", "blend_radius 4", "--set", "transfer.jitter_fps=12", "--json",
+                                                        "--frame", "31", "--fps", "20", "-o", "out"});
+  const nlohmann::json ways = RunOk(arguments).Json()["ways"];
+  ASSERT_EQ(ways.size(), 2u);
+  for (const auto& way : ways) {
+    Arguments words = Words(way["options"]);
+    RunOk(With(With({"stylize", Scene("toys.glb")}, words), {"-o", "again.png"}));
+    const auto picture = Pixels("out/pictures/" + way["picture"].get<std::string>());
+    EXPECT_EQ(Pixels("again.png"), picture) << way["options"];
+    const auto frame = std::find(words.begin(), words.end(), "--frame");
+    ASSERT_NE(frame, words.end());
+    *(frame + 1) = "0";
+    RunOk(With(With({"stylize", Scene("toys.glb")}, words), {"-o", "other.png"}));
+    EXPECT_NE(Pixels("other.png"), picture);
+  }
+  ExpectError(Small(Scene("toys.glb"), {"--frame", "1", "--fps", "0"}), 2, {"--fps 0"});
+  ExpectError(Small(Scene("toys.glb"), {"--animation", "walk"}), 2, {"--animation", "--frame"});
+}
+
 TEST_F(Tradeoff, FiguresButTimesAreTheSameForAnyThreads) {
-  const Arguments arguments = Small(Scene("toys.glb"), {"--json", "--only", "exact,levels 1,threshold 0.25,blend_radius 4,"
-                                                                        "precision,resolution 0.5,nearest tree"});
+  const Arguments arguments = Small(Scene("toys.glb"), {"--json", "--only",
+                                                        "exact,levels 1,threshold 0.25,blend_radius 4,"
+                                                        "precision,resolution 0.5,nearest tree"});
   const nlohmann::json one = WithoutTimes(RunOk(With(arguments, {"--threads", "1"})));
   ASSERT_EQ(one.size(), 9u);
   EXPECT_EQ(one, WithoutTimes(RunOk(With(arguments, {"--threads", "2"}))));
@@ -156,9 +187,10 @@ TEST_F(Tradeoff, FiguresButTimesAreTheSameForAnyThreads) {
 
 TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
   WritePainted("mine/shade.png", 64, 64);
-  WriteText("mine/style.toml",
-            "[transfer]\nreference_height = 0\nlevels = 4\npaper = \"#ffeecc\"\n"
-            "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
+  WriteText(
+      "mine/style.toml",
+      "[transfer]\nreference_height = 0\nlevels = 4\npaper = \"#ffeecc\"\n"
+      "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
   const CommandResult result = RunOk(Small(Scene("suzanne.glb"), {"--json", "--only", "precision,exact"}));
   const nlohmann::json ways = result.Json()["ways"];
   ASSERT_EQ(ways.size(), 4u);
@@ -166,9 +198,11 @@ TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
   EXPECT_EQ(ways[1]["exact"], true);
   EXPECT_GT(ways[2]["guide_rms"].get<double>(), 0.0) << "8 bits of luminance";
   EXPECT_GT(ways[2]["guide_rms"].get<double>(), ways[3]["guide_rms"].get<double>()) << "half floats are finer";
-  EXPECT_NE(ways[0]["options"].get<std::string>().find("transfer.paper="), std::string::npos) << "measured without paper";
+  EXPECT_NE(ways[0]["options"].get<std::string>().find("transfer.paper="), std::string::npos)
+      << "measured without paper";
   // ball.glb is lit by a square: its light is sampled.
-  const nlohmann::json sampled = RunOk(Small(Scene("ball.glb"), {"--json", "--only", "samples"}, "40x40")).Json()["ways"];
+  const nlohmann::json sampled =
+      RunOk(Small(Scene("ball.glb"), {"--json", "--only", "samples"}, "40x40")).Json()["ways"];
   std::map<std::string, double> rms;
   for (const auto& way : sampled) rms[way["value"]] = way["guide_rms"];
   ASSERT_TRUE(rms.count("1") && rms.count("256") && rms.count("1024"));
@@ -226,7 +260,8 @@ TEST_F(Tradeoff, AFolderIsTakenAgainAndLeftAsItWasFound) {
 }
 
 TEST_F(Tradeoff, InterruptedLeavesNoFolder) {
-  const pid_t child = Start({"tradeoff", Scene("suzanne.glb"), "--style", "mine", "--size", "96x54", "--repeat", "1000", "-o", "out"});
+  const pid_t child =
+      Start({"tradeoff", Scene("suzanne.glb"), "--style", "mine", "--size", "96x54", "--repeat", "1000", "-o", "out"});
   std::this_thread::sleep_for(std::chrono::milliseconds(500));  // of the minutes that a thousand runs take
   ::kill(child, SIGINT);
   EXPECT_EQ(Finish(child).code, 128 + SIGINT) << "it was at work";
@@ -235,14 +270,15 @@ TEST_F(Tradeoff, InterruptedLeavesNoFolder) {
 
 TEST_F(Tradeoff, HelpSaysWhatIsTimed) {
   const std::string help = RunOk({"help", "tradeoff"}).out;
-  for (const char* word : {"--only", "--quick", "--repeat", "--samples", "--no-memory", "both", "not in them", "FOLDER"}) {
+  for (const char* word :
+       {"--only", "--quick", "--repeat", "--samples", "--no-memory", "both", "not in them", "FOLDER"}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(help.find("--peak-of"), std::string::npos) << "for the program itself";
 }
 
-// Embree's robust mode is about rays that meet an edge: what is hit elsewhere is the same, and its last bits are refined by our
-// own arithmetic in any case. The file says which it was.
+// Embree's robust mode is about rays that meet an edge: what is hit elsewhere is the same, and its last bits are
+// refined by our own arithmetic in any case. The file says which it was.
 TEST_F(Tradeoff, GuidesWithoutRobustModeSaySo) {
   const Arguments arguments = {"guidegen", Scene("suzanne.glb"), "--size", "160x90", "-o"};
   RunOk(With(arguments, {"robust.exr"}));
@@ -256,7 +292,9 @@ TEST_F(Tradeoff, GuidesWithoutRobustModeSaySo) {
   for (std::size_t i = 0; i < robust->pixel_count(); ++i) {
     different += robust->Plane(Layer::kObject)[i] != plain->Plane(Layer::kObject)[i];
   }
-  EXPECT_LE(different, robust->pixel_count() / 1000) << "rays through edges are few";
+  // Only where a ray passes an edge within float's sight, 2^-20 of 9 m beside pixels of 0.026 m: of the 40,000 visible
+  // edges, about a pixel long each, 26 centres.
+  EXPECT_LE(different, 26u);
 }
 
 }  // namespace

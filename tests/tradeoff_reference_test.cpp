@@ -66,9 +66,9 @@ TradeMeasure Measured(const TradeReference& reference, const Painted& painted) {
   return measure;
 }
 
-// The sphere that was painted, in its own paint: every pixel's nearest neighbour is itself, so the picture is the exemplar.
-// Its normals are Embree's, the exemplar's the formula's: they are a few ulps of a float apart, whose squares times λ are
-// below 10 · 3 · (4 · 2^-24)², so nothing in single precision.
+// The sphere that was painted, in its own paint: every pixel's nearest neighbour is itself, so the picture is the
+// exemplar. Its normals are Embree's, the exemplar's the formula's: they are a few ulps of a float apart, whose squares
+// times λ are below 10 · 3 · (4 · 2^-24)², so nothing in single precision.
 TEST(TradeReference, AStraightCopyOfTheExemplarScoresNothing) {
   const auto guides = SphereOf(kSize);
   const Painted painted = Paint(LitSphereStyle(kSize), *guides);
@@ -94,11 +94,12 @@ TEST(TradeReference, AnotherPictureScoresMoreAndWithoutAFieldSaysNothingOfTheMos
   TradeMeasure measure;
   ASSERT_TRUE(reference.MeasurePaint(Noise(kSize, 7), nullptr, {}, measure).ok());
   EXPECT_GT(measure.both.mean, 1.0);
-  EXPECT_FALSE(measure.coherence || measure.chunk_area || measure.guide_degrees || measure.seam_excess || measure.repetition);
+  EXPECT_FALSE(measure.coherence || measure.chunk_area || measure.guide_degrees || measure.seam_excess ||
+               measure.repetition);
 }
 
-// All normals turned by an angle about z: the distance of each is 2 sin(angle / 2) · |(x, y)|, and the mean of x² + y² over
-// the unit disc is a half.
+// All normals turned by an angle about z: the distance of each is 2 sin(angle / 2) · |(x, y)|, and the mean of x² + y²
+// over the unit disc is a half.
 TEST(TradeReference, TheDifferenceOfNormalsIsTheirRootMeanSquareDistance) {
   const auto guides = SphereOf(200);
   GuideSet turned = *guides;
@@ -113,12 +114,13 @@ TEST(TradeReference, TheDifferenceOfNormalsIsTheirRootMeanSquareDistance) {
   const auto off = reference.Compare(turned, 0.0);
   ASSERT_TRUE(off.ok());
   const double expected = 2.0 * std::sin(angle / 2.0) * std::sqrt(0.5);
-  EXPECT_NEAR(off->rms, expected, 0.01 * expected) << "pixels on the rim are whole: a share of 4 / 200 or less of the area";
+  EXPECT_NEAR(off->rms, expected, 0.01 * expected)
+      << "pixels on the rim are whole: a share of 4 / 200 or less of the area";
   EXPECT_GT(off->flip, 0.0);
 }
 
-// A block of three covered pixels and one beside the thing: means of the three, and three quarters of coverage; one whose
-// normals are opposite has no direction left; one of nothing is background.
+// A block of three covered pixels and one beside the thing: means of the three, and three quarters of coverage; one
+// whose normals are opposite has no direction left; one of nothing is background.
 TEST(TradeReference, LargerGuidesAreComparedByTheirMeans) {
   GuideSet large(6, 2);
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance, Layer::kObject}) large.Add(layer);
@@ -142,8 +144,8 @@ TEST(TradeReference, LargerGuidesAreComparedByTheirMeans) {
   EXPECT_EQ(small.Plane(Layer::kLuminance)[2], 0.0f);
 }
 
-// A ball of twice the size says the same: its mean normals are those at the pixels' centres but for the second order of a
-// quarter of a pixel, and for the rim, where pixels are partly beside the ball.
+// A ball of twice the size says the same: its mean normals are those at the pixels' centres but for the second order of
+// a quarter of a pixel, and for the rim, where pixels are partly beside the ball.
 TEST(TradeReference, TwiceTheResolutionIsCloseToTheExactGuides) {
   const auto guides = SphereOf(kSize), large = SphereOf(2 * kSize);
   const Painted painted = Paint(LitSphereStyle(kSize), *guides);
@@ -157,7 +159,8 @@ TEST(TradeReference, TwiceTheResolutionIsCloseToTheExactGuides) {
       << "a pixel in from the rim the normal is sqrt(2 / 32) = 0.25 off; an eighth of all pixels is so near to it";
 }
 
-// Light counts instead of normals where there are several conditions; it is exposed, and cut at the brightest exemplar's.
+// Light counts instead of normals where there are several conditions; it is exposed, and cut at the brightest
+// exemplar's.
 TEST(TradeReference, OfAStyleWithLightItIsTheLight) {
   const auto guides = SphereOf(kSize, {Layer::kLuminance});
   Style style = LitSphereStyle(kSize);
@@ -202,8 +205,8 @@ TEST(TradeReference, PaintForOtherLightCosts) {
       << "noise of random colours has no nearer patch";
 }
 
-// A wall in paint that was copied from one place of a ball: noise has no nearer patch, so each pixel costs λ times the square
-// of what its source's normal is farther off than the chord of the variety.
+// A wall in paint that was copied from one place of a ball: noise has no nearer patch, so each pixel costs λ times the
+// square of what its source's normal is farther off than the chord of the variety.
 TEST(TradeReference, WhatVarietyGrantsOnAWallIsFree) {
   constexpr int kWall = 20, kLeft = 14, kTop = 24;
   auto wall = std::make_shared<GuideSet>(kWall, kWall);
