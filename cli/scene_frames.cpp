@@ -198,7 +198,7 @@ Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const
 
 Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
                                       const Globals& globals, bool plan_only) {
-  const std::string mend = ": give --frame N, or --frames for several";
+  const std::string mend = ": give --frame N, or --frames for several where the verb has it";
   if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
   if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);

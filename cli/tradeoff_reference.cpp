@@ -177,13 +177,13 @@ Status TradeReference::MeasureMosaic(const Picture& picture, const SourceField& 
   return Ok();
 }
 
-Expected<GuideDifference> TradeReference::Compare(const GuideSet& guides, double exposure) const {
+Expected<GuideDifference> TradeReference::Compare(const GuideSet& guides) const {
   const GuideSpace* const space = style_.space.get();
   if (space && space->has_radiance()) {  // the layer that is farthest off: light that needs chance, where some does
     GuideDifference worst;
     for (const LayerInfo& info : AllLayers()) {
       if (!GuideWeights::IsRadiance(info.layer) || !(style_.settings.guide_weights[info.layer] > 0.0f)) continue;
-      SCUMBLE_ASSIGN(const GuideDifference off, CompareLight(guides, exposure, info.layer, space->white()));
+      SCUMBLE_ASSIGN(const GuideDifference off, CompareLight(guides, info.layer, space->white()));
       if (off.rms > worst.rms) worst = off;
     }
     return worst;
@@ -191,7 +191,7 @@ Expected<GuideDifference> TradeReference::Compare(const GuideSet& guides, double
   if (!style_.illumination.active()) return CompareNormals(guides);
   const auto luminances = style_.illumination.luminances();
   const float brightest = *std::max_element(luminances.begin(), luminances.end());
-  return CompareLight(guides, exposure, Layer::kLuminance, brightest > 0.0f ? brightest : 1.0f);
+  return CompareLight(guides, Layer::kLuminance, brightest > 0.0f ? brightest : 1.0f);
 }
 
 Expected<GuideDifference> TradeReference::CompareNormals(const GuideSet& guides) const {
@@ -205,10 +205,10 @@ Expected<GuideDifference> TradeReference::CompareNormals(const GuideSet& guides)
   return GuideDifference{rms, flip.mean};
 }
 
-Expected<GuideDifference> TradeReference::CompareLight(const GuideSet& guides, double exposure, Layer layer,
-                                                       float white) const {
-  const LinearColors exact = LightAsColors(*guides_, layer, static_cast<float>(Exp2(exposure_)) / white);
-  const LinearColors other = LightAsColors(guides, layer, static_cast<float>(Exp2(exposure)) / white);
+Expected<GuideDifference> TradeReference::CompareLight(const GuideSet& guides, Layer layer, float white) const {
+  // One exposure for both: each one's own is rounded to a hundredth of a stop, which is more than the noise of many samples.
+  const auto factor = static_cast<float>(Exp2(exposure_)) / white;
+  const LinearColors exact = LightAsColors(*guides_, layer, factor), other = LightAsColors(guides, layer, factor);
   FlipOptions options;
   options.threads = threads_;
   SCUMBLE_ASSIGN(const FlipReport flip, MeasureFlip(exact, other, options));

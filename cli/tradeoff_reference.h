@@ -33,9 +33,9 @@ class TradeReference {
   Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
 
   // Over pixels that both cover: of normals the root of the mean squared distance, and FLIP of (n + 1) / 2 as a picture;
-  // where the style weighs light, of its layer that is farthest off instead, exposed so that 1 is the exemplar's brightest tenth, and cut there.
-  // The guides must have one size.
-  Expected<GuideDifference> Compare(const GuideSet& guides, double exposure) const;
+  // where the style weighs light, of its layer that is farthest off instead, both exposed as the exact guides are, so that 1 is the
+  // exemplar's brightest tenth, and cut there. The guides must have one size.
+  Expected<GuideDifference> Compare(const GuideSet& guides) const;
 
  private:
   EnergyTarget Target(const Picture& picture) const;
@@ -44,7 +44,7 @@ class TradeReference {
   void AddConditions();
   void AddFreedom();
   Expected<GuideDifference> CompareNormals(const GuideSet& guides) const;
-  Expected<GuideDifference> CompareLight(const GuideSet& guides, double exposure, Layer layer, float white) const;
+  Expected<GuideDifference> CompareLight(const GuideSet& guides, Layer layer, float white) const;
 
   std::shared_ptr<const GuideSet> guides_;
   PreparedStyle style_;

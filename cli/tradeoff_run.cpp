@@ -17,6 +17,7 @@
 #include "cli/tradeoff_reference.h"
 #include "cli/tradeoff_way.h"
 #include "io/picture_file.h"
+#include "style/style_keyframes.h"
 
 namespace scumble {
 namespace {
@@ -47,6 +48,11 @@ Quartiles TotalOf(const std::vector<double>& guides, const std::vector<double>& 
   return QuartilesOf(std::move(sums));
 }
 
+// A way that takes longer has no process of its own to tell its memory.
+constexpr double kMostForMemoryMs = 60000.0;
+
+void AddNote(TradeMeasure& measure, const std::string& note) { measure.note += (measure.note.empty() ? "" : "; ") + note; }
+
 class Trade {
  public:
   Trade(const TradeSetup& setup, const Globals& globals, ProgressBar& bar)
@@ -75,6 +81,7 @@ class Trade {
     SCUMBLE_RETURN_IF_ERROR(TimeGuides(ways));
     report_.scene = std::filesystem::path(setup_.scene.scene).stem().string();
     report_.style = stage_.style.name.empty() ? setup_.style.style : stage_.style.name;
+    report_.frame = setup_.frame;
     report_.width = stage_.width, report_.height = stage_.height;
     report_.machine = MachineName(globals_.threads), report_.repeats = setup_.repeats;
     report_.lambda = EnergyOptions().lambda, report_.command = TradeCommand(setup_, globals_);
@@ -86,6 +93,7 @@ class Trade {
 
  private:
   // Shares of the bar, a transfer being 1.
+  static constexpr int kReferenceSeed = 1 << 20;  // added to the verb's; that of no way
   static constexpr double kGuidesWork = 2.0, kMeasureWork = 20.0, kMemoryWork = 10.0;
 
   void Finished(double work) {
@@ -96,7 +104,8 @@ class Trade {
   Status OpenStyles(const std::vector<Way>& ways) {
     for (const Way& way : ways) {
       SCUMBLE_ASSIGN(Style style, StyleOfWay(setup_, way));
-      layers_.push_back(RequiredLayers(style));
+      SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
+      layers_.push_back(layers);
       styles_.push_back(std::move(style));
     }
     return Ok();
@@ -115,8 +124,12 @@ class Trade {
   Status MakeReference() {
     const auto exact = std::find_if(stage_.grid.ways.begin(), stage_.grid.ways.end(),
                                     [](const Way& way) { return way.axis == kExactAxis; });
-    SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, *exact));
-    SCUMBLE_ASSIGN(exact_guides_, GuidesOf(*exact, RequiredLayers(style)));
+    // Noise of its own: guides of as many samples would be compared with themselves, and those of fewer with their own beginning.
+    Way converged = *exact;
+    if (stage_.chance) converged.more_seed = kReferenceSeed;
+    SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, converged));
+    SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
+    SCUMBLE_ASSIGN(exact_guides_, GuidesOf(converged, layers));
     const GuideSet& guides = exact_guides_->guides;
     SCUMBLE_RETURN_IF_ERROR(guides.Validate(setup_.scene.scene));
     const auto coverage = guides.Plane(Layer::kCoverage);
@@ -125,7 +138,7 @@ class Trade {
                         ": the camera sees nothing, so there is nothing to measure; try --view or another "
                         "--camera");
     }
-    SCUMBLE_ASSIGN(const WayPainter painter, WayPainter::Prepare(setup_, *exact, style, exact_guides_, globals_));
+    SCUMBLE_ASSIGN(const WayPainter painter, WayPainter::Prepare(setup_, converged, style, exact_guides_, globals_));
     reference_.emplace(std::shared_ptr<const GuideSet>(exact_guides_, &guides), painter.prepared(), painter.exposure(),
                        globals_.threads);
     return Ok();
@@ -184,12 +197,15 @@ class Trade {
       TradeMeasure& measure = report_.ways[i];
       measure.guides_ms = QuartilesOf(guides), measure.transfer_ms = QuartilesOf(times[i - begin]);
       measure.total_ms = TotalOf(guides, times[i - begin]);
+      const bool once = guides.size() == 1 || times[i - begin].size() == 1;
+      if (once && setup_.repeats > 1) AddNote(measure, "what takes more than 5 s ran once");
       if (!asks_for_memory_) continue;
-      if (measure.total_ms.median <= 2.0 * kSlowMs) {
+      if (measure.total_ms.median > kMostForMemoryMs) {
+        AddNote(measure, "its memory was not measured, as it takes more than a minute");
+      } else {
         SCUMBLE_ASSIGN(measure.memory_bytes, AskForPeak(setup_, ways[i].name, globals_));
         if (measure.memory_bytes == 0) {
-          measure.note +=
-              std::string(measure.note.empty() ? "" : "; ") + "the process that was to tell its memory failed";
+          AddNote(measure, "the process that was to tell its memory failed");
         }
       }
       Finished(kMemoryWork);
@@ -208,8 +224,7 @@ class Trade {
     const GuideSet& guides = painter.guides().guides;
     const int super = SupersampleOf(way);
     SCUMBLE_ASSIGN(const GuideDifference off,
-                   super == 1 ? reference_->Compare(guides, painter.exposure())
-                              : reference_->Compare(AveragedGuides(guides, super), painter.exposure()));
+                   super == 1 ? reference_->Compare(guides) : reference_->Compare(AveragedGuides(guides, super)));
     measure.guide_rms = off.rms, measure.guide_flip = off.flip;
     SCUMBLE_ASSIGN(const std::vector<std::byte> png, EncodePng(painter.picture()));
     measure.picture_png.resize(png.size());
@@ -235,7 +250,7 @@ class Trade {
     if (!is_new) {
       const TradeMeasure& same = report_.ways[known->second];
       measure.both = same.both, measure.energy = same.energy, measure.missing = same.missing;
-      measure.note += (measure.note.empty() ? "" : "; ") + std::string("the same picture as ") + same.name;
+      AddNote(measure, "the same picture as " + same.name);
       return Ok();
     }
     EnergyOptions options;
@@ -278,7 +293,8 @@ Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name
       std::find_if(stage.grid.ways.begin(), stage.grid.ways.end(), [&](const Way& one) { return one.name == name; });
   if (way == stage.grid.ways.end()) return UsageError("--peak-of " + name + ": there is no such way");
   SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way));
-  SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, RequiredLayers(style), globals));
+  SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
+  SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, layers, globals));
   auto guides = std::make_shared<const WayGuides>(std::move(made));
   SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup, *way, style, std::move(guides), globals));
   SCUMBLE_RETURN_IF_ERROR(painter.Paint());

@@ -66,7 +66,7 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& glob
   stage.width = size.width, stage.height = size.height;
   const auto layers = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
     stage.has_wishes = !wishes.objects.empty() || !wishes.materials.empty();
-    return RequiredLayers(stage.style);
+    return LayersOverTime(stage.style);
   };
   SCUMBLE_ASSIGN(stage.scene, OpenSceneAt(setup.frame, setup.scene, layers, globals));
   stage.chance = NeedSamples(stage.scene.scene, stage.scene.layers, setup.scene);

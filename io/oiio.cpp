@@ -61,6 +61,8 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, co
                                                    const OIIO::ImageSpec& config) {
   auto input = OIIO::ImageInput::create(reader);
   if (!input) return OpenFailure(OIIO::geterror(), name);
+  // A library that was built without this reader would look for any other.
+  if (input->format_name() != reader) return OpenFailure("OpenImageIO was built without its reader \"" + reader + "\"", name);
   OIIO::ImageSpec spec;
   if (!input->open(name, spec, config)) return OpenFailure(input->geterror(), name);
   return input;

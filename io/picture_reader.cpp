@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstddef>
 #include <fstream>
+#include <initializer_list>
 #include <string_view>
 
 namespace scumble::internal {
@@ -31,32 +32,55 @@ constexpr Mark kMarks[] = {
     {"WEBP"sv, "webp", 8},
     {"BM"sv, "bmp"},
     {"GIF8"sv, "gif"},
+    {"P1"sv, "pnm"},
+    {"P2"sv, "pnm"},
+    {"P3"sv, "pnm"},
+    {"P4"sv, "pnm"},
+    {"P5"sv, "pnm"},
+    {"P6"sv, "pnm"},
+    {"PF"sv, "pnm"},
+    {"Pf"sv, "pnm"},
+    {"ftyphei"sv, "heif", 4},
+    {"ftypmif1"sv, "heif", 4},
+    {"ftypavif"sv, "heif", 4},
+    {"\0\0\0\x0cjP  "sv, "jpeg2000"},
+    {"\xff\x4f\xff\x51"sv, "jpeg2000"},
+    {"DDS "sv, "dds"},
+    {"\x01\xda"sv, "sgi"},
     {"SDPX"sv, "dpx"},
     {"XPDS"sv, "dpx"},
 };
 
-bool IsTga(const std::filesystem::path& name) {
+bool EndsIn(const std::filesystem::path& name, std::initializer_list<std::string_view> endings) {
   std::string ending = name.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".tga";
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+// Most of these begin as TIFF files do, whose reader would show the small preview in them.
+bool IsRawPhotograph(const std::filesystem::path& name) {
+  return EndsIn(name, {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".fff", ".iiq", ".kdc", ".mef", ".mos",
+                       ".mrw", ".nef", ".nrw", ".orf", ".pef", ".raf", ".raw", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"});
 }
 
 }  // namespace
 
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name) {
+  const std::string failure = "cannot read " + name.string() + ": ";
+  if (IsRawPhotograph(name)) return InputError(failure + "it is a camera's raw photograph; develop it into a TIFF of 16 bits first");
   const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
   for (const Mark& mark : kMarks) {
     if (text.size() >= mark.at && text.substr(mark.at).starts_with(mark.bytes)) return std::string(mark.reader);
   }
-  if (IsTga(name)) return std::string("targa");
-  return InputError("cannot read " + name.string() + ": " +
-                    (start.empty() ? "it is empty" : "it does not begin as a picture") +
-                    "; EXR, PNG, TIFF, JPEG, WebP, PSD, TGA, HDR, BMP, GIF and DPX are read");
+  if (EndsIn(name, {".tga", ".tpic"})) return std::string("targa");
+  return InputError(failure + (start.empty() ? "it is empty" : "it does not begin as a picture") +
+                    "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP, GIF, JPEG 2000, DPX, DDS and SGI are read");
 }
 
 Expected<std::string> ReaderFor(const std::filesystem::path& path) {
   std::array<char, 16> start{};
   std::ifstream file(path, std::ios::binary);
+  if (!file) return InputError("cannot read " + path.string() + ": it cannot be opened any more");
   file.read(start.data(), start.size());
   return ReaderFor(std::as_bytes(std::span(start)).first(static_cast<std::size_t>(file.gcount())), path);
 }

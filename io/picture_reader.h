@@ -12,10 +12,11 @@ namespace scumble::internal {
 // OpenImageIO's name of the one reader that may open a file: by how it begins, and of TGA, which has no such mark, by
 // its name's ending. Else an error that says which formats are read. Left to itself OpenImageIO hands what one reader
 // turns down to all the others, video and raw photographs among them, and one of those ends the process at some bytes.
+// Raw photographs are refused: most begin as TIFF, whose reader shows the small preview in them.
 // `start` is the beginning of the file, 16 bytes if it has them. Thread-safe.
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name);
 
-// The same of a file. What cannot be opened begins with nothing.
+// The same of a file.
 Expected<std::string> ReaderFor(const std::filesystem::path& path);
 
 }  // namespace scumble::internal

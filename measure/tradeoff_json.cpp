@@ -51,6 +51,7 @@ Json WayJson(const TradeReport& report, std::size_t i, bool front) {
 std::string TradeJson(const TradeReport& report) {
   Json json{{"scene", report.scene},
             {"style", report.style},
+            {"frame", report.frame ? Json(*report.frame) : Json()},
             {"width", report.width},
             {"height", report.height},
             {"machine", report.machine},

@@ -61,7 +61,9 @@ std::string ShortPercent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f}", 100.0 * *share) : kNone;
 }
 
-std::string TradeTitle(const TradeReport& report) { return report.scene + " in " + report.style; }
+std::string TradeTitle(const TradeReport& report) {
+  return report.scene + " in " + report.style + (report.frame ? fmt::format(", frame {}", *report.frame) : "");
+}
 
 std::string TradeSetup(const TradeReport& report) {
   std::string setup = fmt::format("{}×{} pixels", report.width, report.height);

@@ -47,6 +47,7 @@ struct TradeReport {
   int repeats = 0;
   double lambda = 0.0;
   std::string command = {};  // that measures all this again; empty: not said
+  std::optional<int> frame = {};  // of the scene and the style; none: as they stand
   std::vector<TradeMeasure> ways;
 };
 

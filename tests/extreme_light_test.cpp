@@ -280,21 +280,22 @@ double MeanLuminance(const GuidegenResult& result) {
 // this distance varies by less than half of its mean from point to point, so the mean of 16 pixels × 256 samples is off
 // by 5 × 0.5 / 64 at most.
 TEST(AreaLight, EdgeOnItFadesByTheFormulaToNothing) {
+  const Camera spot = LookingAt({0, -0.02, 5}, {0, 0, 0}, 1.1e-8);
   for (const double beside : {1.0, 1e-1, 1e-2, 1e-4, 1e-6, 0.0, -1e-6, -1e-1}) {
     Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f), 1.0);
     Light panel = Above(LightType::kArea, 2.5, 1.0);
     panel.world_from_light = glm::rotate(Moved(-beside, 0, 2.5), -0.5 * kPi, glm::dvec3(0, 1, 0));
     scene.lights = {panel};
-    const auto result = Render(scene, Spot(), Paths(4, {Layer::kLuminance, Layer::kLpeLDE}, 256));
+    const auto result = Render(scene, spot, Paths(4, {Layer::kLuminance, Layer::kLpeLDE}, 256));
     const std::array<glm::dvec3, 4> corners = {
         {{-beside, -0.5, 2.0}, {-beside, 0.5, 2.0}, {-beside, 0.5, 3.0}, {-beside, -0.5, 3.0}}};
     const double expected = beside > 0.0 ? PolygonIrradiance(corners) / kPi : 0.0;
-    // The spot is 9e-6 m wide: so far from its middle is what its pixels see, and the formula's slope is below 0.1.
-    const double slack = 5e-6 * 0.1;
+    // So far from its middle are what the spot's pixels see, half of its width of 1e-9 m, at a slope of less than 0.1.
+    const double slack = 5e-10 * 0.1;
     for (const Layer layer : {Layer::kLuminance, Layer::kLpeLDE}) {
       const double mean = layer == Layer::kLuminance ? MeanLuminance(result) : Mean(result, layer);
       EXPECT_NEAR(mean, expected, expected * 5.0 * 0.5 / 64.0 + slack) << beside;
-      if (beside < -5e-6) {
+      if (beside < 0.0) {
         EXPECT_EQ(mean, 0.0) << beside;
       }
     }

@@ -128,7 +128,6 @@ SourceError ErrorOf(const PreparedExemplar& sphere, const glm::dvec3& n, const g
   return {glm::distance(at, found), Angle(lifted(at), lifted(found))};
 }
 
-// Not for floats, whose half step is less than what float's sums lose.
 TEST(Precision, TheSourceOfAStoredNormal) {
   const PreparedExemplar sphere(NoisePicture(2048), 0.0, 2048);
   for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
@@ -152,6 +151,29 @@ TEST(Precision, TheSourceOfAStoredNormal) {
           NameOf(kept), kRings[std::size_t(ring) + 1], 256 * worst.moved, 4096 * worst.moved, 4096 * step,
           glm::degrees(worst.turned), glm::degrees(turn));
     }
+  }
+}
+
+// Floats' own half step is a sixteenth of what float's sums may lose, so here the truth is the formula in double: x and
+// y themselves, wherever the usable disc, which ends half a pixel early, does not cut them.
+TEST(Precision, TheSourceOfANormalInFloats) {
+  const PreparedExemplar sphere(NoisePicture(2048), 0.0, 2048);
+  const double step = 2.0 * std::sqrt(2.0) * LargestHalfStep(Kept::kFloat);
+  for (int ring = 0; ring + 2 < int(kRings.size()); ++ring) {
+    SourceError worst;
+    ForDirections(ring, 100000, [&](const glm::dvec3& n) {
+      const glm::dvec2 found(sphere.OnDisc(glm::vec3(n)));
+      const glm::dvec3 there(found, std::sqrt(1.0 - glm::dot(found, found)));
+      worst.moved = std::max(worst.moved, glm::distance(found, glm::dvec2(n)));
+      worst.turned = std::max(worst.turned, Angle(n, there));
+    });
+    const double turn = LargestTurn(kRings[std::size_t(ring) + 1], step);
+    EXPECT_LE(worst.moved, step) << "ring " << ring;
+    EXPECT_LE(worst.turned, turn) << "ring " << ring;
+    EXPECT_GT(worst.moved, 0.2 * step) << "below a half a step is half as large";
+    std::printf("source, float, ring %.3f: moved %.3g px of R 4096 (limit %.3g); turned %.3g deg (%.3g)\n",
+                kRings[std::size_t(ring) + 1], 4096 * worst.moved, 4096 * step, glm::degrees(worst.turned),
+                glm::degrees(turn));
   }
 }
 
@@ -317,7 +339,9 @@ TEST(Precision, DecisionsAtTheThreshold) {
     // of the three components, so fewer flip there.
     const double chance = 5.0 * std::sqrt(0.14 * 0.86 / near), share = double(flipped) / near;
     EXPECT_LT(share, 0.5 / (2.0 * std::sqrt(3.0)) + chance);
-    if (kept == Kept::kEightBits) EXPECT_GT(share, 13.0 / 16.0 / std::sqrt(3.0) / (2.0 * std::sqrt(3.0)) - chance);
+    if (kept == Kept::kEightBits) {
+      EXPECT_GT(share, 13.0 / 16.0 / std::sqrt(3.0) / (2.0 * std::sqrt(3.0)) - chance);
+    }
     std::printf("threshold, %s: %.3f %% near, %.3f %% decided otherwise; level %.3f %%, source %.3f %% of %d pixels\n",
                 NameOf(kept), 100.0 * near / seen, 100.0 * flipped / seen, 100.0 * other_level / seen,
                 100.0 * other_offset / seen, seen);

@@ -171,21 +171,34 @@ TEST(ExtremeSame, OnOnePixel) { ExpectTheSame(OddGuides(1, 1), "1×1"); }
 TEST(ExtremeSame, OnARow) { ExpectTheSame(OddGuides(530, 1), "a row"); }
 TEST(ExtremeSame, OnAColumn) { ExpectTheSame(OddGuides(1, 140), "a column"); }
 
-// What has no fast form: threads and pieces alone.
+// Sources of a style that weighs light are found in a tree of more dimensions.
+Style Weighed(float weight) {
+  Style style = Base();
+  GuideSet guides = SphereGuides(64);
+  guides.Add(Layer::kLuminance);
+  for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kLuminance)[i] = UnitFloat(Hash(i, 5));
+  style.exemplars[0].guides = std::move(guides);
+  style.transfer.guide_weights[Layer::kLuminance] = weight;
+  return style;
+}
+
+// Whose matching has one form for all instruction sets, but for the tree; all have fast ways to vote.
 TEST(ExtremeSame, OtherWaysToMatch) {
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 7);
   const GuideSet guides = OddGuides(90, 60);
-  for (const int way : {0, 1, 2, 3, 4}) {
-    Style style = Lit(1e9f, LuminanceError::kExcess);
+  for (const int way : {0, 1, 2, 3, 4, 5, 6, 7}) {
+    Style style = way < 5 ? Lit(1e9f, LuminanceError::kExcess) : Weighed(way == 5 ? 1e-20f : way == 6 ? 1.0f : 1e9f);
     style.transfer.threshold = way % 2 ? 1e30f : kDenormal;
     if (way == 0) style.transfer.method = Method::kLitSphere;
     if (way == 1) style.transfer.coherent = true;
     if (way == 2) style.transfer.match_step = 8;
     if (way == 3) style.transfer.hybrid = 1e6;
     if (way == 4) style.transfer.hybrid = kInfinity, style.transfer.blend_radius = 64;
+    if (way == 6) style.transfer.method = Method::kLitSphere;
     const auto prepared = Prepare(style, guides.height());
     ASSERT_TRUE(prepared.ok()) << way;
     const Picture one = Painted(*prepared, guides, 1);
+    OnEveryInstructionSet([&] { EXPECT_TRUE(Painted(*prepared, guides, 1).rgba == one.rgba) << way; });
     for (const int threads : {2, 3, 7}) EXPECT_TRUE(Painted(*prepared, guides, threads).rgba == one.rgba) << way;
     EXPECT_TRUE(InPieces(*prepared, guides, 41, 23).rgba == one.rgba) << way;
   }

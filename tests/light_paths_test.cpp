@@ -231,30 +231,34 @@ TEST(DirectLight, WorldUnderAnOverhang) {
   EXPECT_EQ(result.rays.bounce, 0u);
 }
 
+// A roughness of 1e-4 counts as none.
 TEST(Specular, MirrorsShowLampsAndWorldAndTheEyeDoesNot) {
-  Scene scene = Floor(Painted(Bsdf::kGlossy, 0.5f, 0.0f), 4.0);
-  Light panel = Above(LightType::kArea, 3.0, 8.0);
-  panel.world_from_light = Moved(0, 3, 3);
-  panel.size_x = panel.size_y = 1.0;
-  Light sun = Above(LightType::kSun, 0.0, 1.0);
-  sun.angle_degrees = 10.0;
-  sun.world_from_light = glm::rotate(glm::dmat4(1.0), -0.25 * kPi, glm::dvec3(1, 0, 0));
-  const double sun_radiance = 1.0 / (kPi * std::pow(std::tan(glm::radians(5.0)), 2));
-  scene.lights = {panel};
-  const auto lamp = Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4));
-  EXPECT_NEAR(Center(lamp, Layer::kLpeLSE), 4.0, 1e-6);
-  EXPECT_NEAR(Center(lamp, Layer::kLpeFull), 4.0, 1e-6);
-  EXPECT_EQ(Center(lamp, Layer::kLpeLDE), 0.0);
-  scene.lights = {sun};
-  EXPECT_NEAR(Center(Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4)), Layer::kLpeLSE), 0.5 * sun_radiance, 1e-4);
-  scene.lights.clear();
-  scene.world_radiance = glm::vec3(3.0f);
-  EXPECT_NEAR(Center(Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4)), Layer::kLpeLSE), 1.5, 1e-6);
-  // The lamp between the eye and the floor is not in the picture.
-  scene.world_radiance = glm::vec3(0.0f);
-  panel.world_from_light = Moved(0, -1.5, 1.5);
-  scene.lights = {panel};
-  EXPECT_EQ(Center(Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4)), Layer::kLpeFull), 0.0);
+  for (const float roughness : {0.0f, 1e-4f}) {
+    SCOPED_TRACE(roughness);
+    Scene scene = Floor(Painted(Bsdf::kGlossy, 0.5f, roughness), 4.0);
+    Light panel = Above(LightType::kArea, 3.0, 8.0);
+    panel.world_from_light = Moved(0, 3, 3);
+    panel.size_x = panel.size_y = 1.0;
+    Light sun = Above(LightType::kSun, 0.0, 1.0);
+    sun.angle_degrees = 10.0;
+    sun.world_from_light = glm::rotate(glm::dmat4(1.0), -0.25 * kPi, glm::dvec3(1, 0, 0));
+    const double sun_radiance = 1.0 / (kPi * std::pow(std::tan(glm::radians(5.0)), 2));
+    scene.lights = {panel};
+    const auto lamp = Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4));
+    EXPECT_NEAR(Center(lamp, Layer::kLpeLSE), 4.0, 1e-6);
+    EXPECT_NEAR(Center(lamp, Layer::kLpeFull), 4.0, 1e-6);
+    EXPECT_EQ(Center(lamp, Layer::kLpeLDE), 0.0);
+    scene.lights = {sun};
+    EXPECT_NEAR(Center(Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4)), Layer::kLpeLSE), 0.5 * sun_radiance, 1e-4);
+    scene.lights.clear();
+    scene.world_radiance = glm::vec3(3.0f);
+    EXPECT_NEAR(Center(Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4)), Layer::kLpeLSE), 1.5, 1e-6);
+    // The lamp between the eye and the floor is not in the picture.
+    scene.world_radiance = glm::vec3(0.0f);
+    panel.world_from_light = Moved(0, -1.5, 1.5);
+    scene.lights = {panel};
+    EXPECT_EQ(Center(Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4)), Layer::kLpeFull), 0.0);
+  }
 }
 
 TEST(Specular, RoughHighlightsAgreeByLampAndByMesh) {

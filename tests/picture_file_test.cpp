@@ -379,7 +379,7 @@ TEST(PictureFile, FormatsAreKnownByHowTheyBegin) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> bytes(3 * 16 * 16, 200);
   for (const auto& [ending, tolerance] :
-       {std::pair{"bmp", 0}, {"tga", 0}, {"dpx", 0}, {"tif", 0}, {"webp", 600}, {"gif", 600}, {"hdr", 600}}) {
+       {std::pair{"bmp", 0}, {"tga", 0}, {"dpx", 0}, {"tif", 0}, {"ppm", 0}, {"sgi", 0}, {"webp", 600}, {"gif", 600}, {"hdr", 600}}) {
     SCOPED_TRACE(ending);
     const fs::path path = folder / ("a." + std::string(ending));
     OIIO::ImageSpec spec(16, 16, 3, OIIO::TypeDesc::UINT8);
@@ -406,6 +406,11 @@ TEST(PictureFile, FormatsThatNobodyPaintsInAreRefused) {
   const fs::path path = folder / "render.rla";
   WriteWith(path, OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), std::vector<std::uint8_t>(3 * 8 * 8, 9));
   ExpectRefusal(ReadPicture(path), {"render.rla", "does not begin as a picture", "PNG", "PSD"});
+  // Raw photographs are TIFF files whose first picture is a small preview.
+  WriteWith(folder / "preview.tif", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), std::vector<std::uint8_t>(3 * 8 * 8, 9));
+  ASSERT_TRUE(ReadPicture(folder / "preview.tif"));
+  fs::rename(folder / "preview.tif", folder / "photo.NEF");
+  ExpectRefusal(ReadPicture(folder / "photo.NEF"), {"photo.NEF", "raw", "TIFF of 16 bits"});
 }
 
 TEST(PictureFile, AJpegMayLackNothingButMayHoldMore) {

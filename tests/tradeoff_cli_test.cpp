@@ -85,7 +85,6 @@ TEST_F(Tradeoff, WritesAPageFiguresAndPicturesThatAgree) {
     ASSERT_EQ(row.size(), rows[0].size());
     EXPECT_EQ(row[column["way"]], way["way"]);
     EXPECT_EQ(row[column["options"]], way["options"]);
-    if (way["axis"] == "resolution") EXPECT_GT(way["guide_rms"].get<double>(), 0.0) << way["way"];
     EXPECT_EQ(std::stod(row[column["both"]]), way["both"]["mean"].get<double>());
     EXPECT_EQ(std::stod(row[column["total_ms_median"]]), way["total_ms"]["median"].get<double>());
     EXPECT_EQ(std::stod(row[column["memory_bytes"]]), way["memory_bytes"].get<double>());
@@ -127,6 +126,11 @@ TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
     ++repeated;
   }
   EXPECT_EQ(repeated, 14) << "all but the small table and twice the resolution";
+  const auto large =
+      std::find_if(json["ways"].begin(), json["ways"].end(), [](const auto& way) { return way["way"] == "resolution 2"; });
+  ASSERT_NE(large, json["ways"].end());
+  EXPECT_GT((*large)["guide_rms"].get<double>(), 0.0) << "averaged, they are not those of the pixels' centres";
+  EXPECT_GT((*large)["guide_flip"].get<double>(), 0.0);
 }
 
 // Light that needs chance, and light that would without the limit on bounces.
@@ -154,7 +158,7 @@ TEST_F(Tradeoff, OptionsRepeatLightPathsToo) {
 }
 
 // A scene that moves, and a style whose chunks begin elsewhere in each frame.
-TEST_F(Tradeoff, AFrameIsTheSequencesOwn) {
+TEST_F(Tradeoff, AFrameIsThatOfStylize) {
   const Arguments arguments = Small(Scene("toys.glb"), {"--only", "blend_radius 4", "--set", "transfer.jitter_fps=12", "--json",
                                                         "--frame", "31", "--fps", "20", "-o", "out"});
   const nlohmann::json ways = RunOk(arguments).Json()["ways"];
@@ -169,6 +173,18 @@ TEST_F(Tradeoff, AFrameIsTheSequencesOwn) {
     *(frame + 1) = "0";
     RunOk(With(With({"stylize", Scene("toys.glb")}, words), {"-o", "other.png"}));
     EXPECT_NE(Pixels("other.png"), picture);
+  }
+  // What a key asks for in other frames is there in this one too: guides of half the size are upsampled by it.
+  WriteText("mine/style.toml",
+            "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = [[0, 0], [48, 3]]\n[[exemplar]]\nimage = \"lit.png\"\n");
+  const nlohmann::json half =
+      RunOk(Small(Scene("toys.glb"),
+                  {"--only", "resolution 0.5", "--view", "30,20", "--frame", "2", "--json", "-o", "out"})).Json();
+  EXPECT_EQ(half["frame"], 2);
+  ASSERT_EQ(half["ways"].size(), 2u);
+  for (const auto& way : half["ways"]) {
+    RunOk(With(With({"stylize", Scene("toys.glb")}, Words(way["options"])), {"-o", "again.png"}));
+    EXPECT_EQ(Pixels("again.png"), Pixels("out/pictures/" + way["picture"].get<std::string>())) << way["options"];
   }
   ExpectError(Small(Scene("toys.glb"), {"--frame", "1", "--fps", "0"}), 2, {"--fps 0"});
   ExpectError(Small(Scene("toys.glb"), {"--animation", "walk"}), 2, {"--animation", "--frame"});
@@ -206,7 +222,8 @@ TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
   std::map<std::string, double> rms;
   for (const auto& way : sampled) rms[way["value"]] = way["guide_rms"];
   ASSERT_TRUE(rms.count("1") && rms.count("256") && rms.count("1024"));
-  EXPECT_EQ(rms["1024"], 0.0) << "what the others are compared with";
+  EXPECT_GT(rms["1024"], 0.0) << "what the others are compared with has noise of its own";
+  EXPECT_LT(rms["1024"], rms["256"]);
   EXPECT_GT(rms["1"], 4.0 * rms["256"]) << "noise falls with the root of the samples: 16 times, less what is cut at 1";
 }
 
@@ -292,9 +309,9 @@ TEST_F(Tradeoff, GuidesWithoutRobustModeSaySo) {
   for (std::size_t i = 0; i < robust->pixel_count(); ++i) {
     different += robust->Plane(Layer::kObject)[i] != plain->Plane(Layer::kObject)[i];
   }
-  // Only where a ray passes an edge within float's sight, 2^-20 of 9 m beside pixels of 0.026 m: of the 40,000 visible
-  // edges, about a pixel long each, 26 centres.
-  EXPECT_LE(different, 26u);
+  // Only where a ray passes an outline within float's sight, 2^-20 of 9 m to either side beside pixels of 0.026 m: outlines are
+  // some 1,500 pixels long, so one centre is expected there, and more than three once in fifty.
+  EXPECT_LE(different, 3u);
 }
 
 }  // namespace

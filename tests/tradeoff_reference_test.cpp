@@ -81,7 +81,7 @@ TEST(TradeReference, AStraightCopyOfTheExemplarScoresNothing) {
   EXPECT_EQ(*measure.coherence, 1.0) << "one piece";
   EXPECT_EQ(*measure.repetition, 1.0) << "nothing twice";
   EXPECT_LT(*measure.guide_degrees, 0.1);
-  const auto off = reference.Compare(*guides, 0.0);
+  const auto off = reference.Compare(*guides);
   ASSERT_TRUE(off.ok());
   EXPECT_EQ(off->rms, 0.0);
   EXPECT_EQ(off->flip, 0.0);
@@ -111,7 +111,7 @@ TEST(TradeReference, TheDifferenceOfNormalsIsTheirRootMeanSquareDistance) {
   }
   const Painted painted = Paint(LitSphereStyle(32), *guides);
   const TradeReference reference(guides, painted.style, 0.0, 0);
-  const auto off = reference.Compare(turned, 0.0);
+  const auto off = reference.Compare(turned);
   ASSERT_TRUE(off.ok());
   const double expected = 2.0 * std::sin(angle / 2.0) * std::sqrt(0.5);
   EXPECT_NEAR(off->rms, expected, 0.01 * expected)
@@ -150,8 +150,8 @@ TEST(TradeReference, TwiceTheResolutionIsCloseToTheExactGuides) {
   const auto guides = SphereOf(kSize), large = SphereOf(2 * kSize);
   const Painted painted = Paint(LitSphereStyle(kSize), *guides);
   const TradeReference reference(guides, painted.style, 0.0, 0);
-  const auto off = reference.Compare(AveragedGuides(*large, 2), 0.0);
-  const auto half = reference.Compare(AveragedGuides(*guides, 1), 0.0);
+  const auto off = reference.Compare(AveragedGuides(*large, 2));
+  const auto half = reference.Compare(AveragedGuides(*guides, 1));
   ASSERT_TRUE(off.ok() && half.ok());
   EXPECT_LT(half->rms, 1e-6) << "blocks of one pixel are the guides themselves, but for their length's last bits";
   EXPECT_GT(off->rms, 0.0);
@@ -170,17 +170,19 @@ TEST(TradeReference, OfAStyleWithLightItIsTheLight) {
   const TradeReference reference(guides, painted.style, 0.0, 0);
   GuideSet other = *guides;
   for (float& z : other.Plane(Layer::kNormal, 2)) z = 0.0f;
-  EXPECT_EQ(reference.Compare(other, 0.0)->rms, 0.0) << "normals do not count";
+  EXPECT_EQ(reference.Compare(other)->rms, 0.0) << "normals do not count";
   GuideSet dark = *guides, bright = *guides;
   for (float& value : dark.Plane(Layer::kLuminance)) value = 0.0f;
   for (float& value : bright.Plane(Layer::kLuminance)) value = 1.0f;
   // Against light of 1 everywhere, which is cut at 0.5 of 0.5: the difference to darkness is 1.
   const auto all = std::make_shared<const GuideSet>(bright);
   const TradeReference lit(all, painted.style, 0.0, 0);
-  EXPECT_EQ(lit.Compare(dark, 0.0)->rms, 1.0);
-  EXPECT_EQ(lit.Compare(bright, 1.0)->rms, 0.0) << "twice as bright is cut all the same";
+  EXPECT_EQ(lit.Compare(dark)->rms, 1.0);
+  for (float& value : bright.Plane(Layer::kLuminance)) value = 2.0f;
+  EXPECT_EQ(lit.Compare(bright)->rms, 0.0) << "twice as bright is cut all the same";
   for (float& value : bright.Plane(Layer::kLuminance)) value = 0.125f;
-  EXPECT_EQ(lit.Compare(bright, 1.0)->rms, 0.5) << "0.125 a stop brighter is half of 0.5";
+  EXPECT_EQ(lit.Compare(bright)->rms, 0.75) << "a quarter of 0.5";
+  EXPECT_EQ(TradeReference(all, painted.style, 1.0, 0).Compare(bright)->rms, 0.5) << "0.125 a stop brighter is half of 0.5";
 }
 
 // The wrong condition costs λ times the weighed difference of luminances, however well the paint fits.
