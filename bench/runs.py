@@ -1,5 +1,6 @@
 """What the benches in Python share: running programs, spread of what was measured, and what machine it was."""
 
+import os
 import platform
 import resource
 import statistics
@@ -8,10 +9,11 @@ import sys
 import time
 
 
-def run(command):
+def run(command, **environment):
     """Seconds from start to end, seconds of processor time, and what the program said."""
     begin, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True,
+                          env={**os.environ, **environment})
     seconds, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
     processor_time = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     if done.returncode != 0:

@@ -354,7 +354,7 @@ TEST(Albedo, NoneAndAll) {
     const auto open = Render(scene, LookingAt({0, -4, 3}, {0, 0, 0}, 20.0), Paths(16, AllLight(), 16));
     for (const float value : open.guides.Plane(Layer::kLpeFull, 1)) EXPECT_EQ(value, albedo);
     // Luminance is that of white, whatever the paint.
-    EXPECT_NEAR(MeanLuminance(open), 1.0, 1e-6);
+    EXPECT_NEAR(MeanLuminance(open), 1.0, kFloat);
     AddObject(scene, "wall", QuadMesh(), glm::rotate(Moved(0, 1, 1), 0.5 * kPi, glm::dvec3(1, 0, 0)));
     GuidegenOptions options = Paths(16, {Layer::kLpeFull}, 16);
     options.max_bounces = 64;
