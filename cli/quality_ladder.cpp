@@ -52,7 +52,8 @@ struct Rung {
 constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "transfer.method=litsphere",
                      *kUnsplit = "transfer.hybrid=0", *kCrisp = "transfer.blend_radius=0";
 
-// By rising energy, the mean over scenes and styles: docs/budget.md. But for guides of an eighth, whose steps it hardly sees.
+// By rising energy, the mean over scenes and styles: docs/budget.md. But for guides of an eighth, whose steps it hardly
+// sees.
 const std::vector<Rung>& Rungs() {
   static const std::vector<Rung> kRungs = {
       {1, {}},
@@ -143,12 +144,10 @@ std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame)
 Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
   if (quality == Quality::kFinal) return MakeWay(Rungs().front(), styles, frame);
   Rung rung{4, {kLitSphere, kUnsplit}};
-  if (quality == Quality::kPreview) {
-    // Guides of normals alone take so little that nothing is gained which would not be seen.
-    const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-    rung = {2, {kStyleBlit, kUnsplit}};
-    if (frame.casts && !lit) return MakeWay({1, rung.settings}, styles, frame);
-  }
+  if (quality == Quality::kPreview) rung = {2, {kStyleBlit, kUnsplit}};
+  // Guides of normals alone take so little that nothing is gained which would not be seen.
+  const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
+  if (frame.casts && !lit && !WeighGuides(styles)) return MakeWay({1, rung.settings}, styles, frame);
   if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
   return MakeWay(rung, styles, frame);
 }

@@ -17,9 +17,12 @@ constexpr int kConverged = 1024;  // samples
 
 const char* NameOf(Method method) {
   switch (method) {
-    case Method::kLitSphere: return "litsphere";
-    case Method::kStyleBlit: return "styleblit";
-    case Method::kBruteForce: return "bruteforce";
+    case Method::kLitSphere:
+      return "litsphere";
+    case Method::kStyleBlit:
+      return "styleblit";
+    case Method::kBruteForce:
+      return "bruteforce";
   }
   return "";
 }
@@ -56,15 +59,23 @@ class Grid {
     return grid_.ways.emplace_back(std::move(way));
   }
   // One key, which gives the axis its name.
-  void AddKey(const std::string& axis, const std::string& value) { Add(axis, value, {"transfer." + axis + "=" + value}); }
+  void AddKey(const std::string& axis, const std::string& value) {
+    Add(axis, value, {"transfer." + axis + "=" + value});
+  }
 
   void AddExact() {
     Way way;
     way.name = "the exact way", way.axis = kExactAxis, way.value = "";
-    if (style_.method == Method::kStyleBlit && BruteForceFits()) way.settings.push_back("transfer.method=bruteforce");
-    if (!sphere_ && IsPlain()) way.settings.push_back("transfer.nearest=tree");
-    // A ball's formula is exact to a pixel, which its table is not.
-    if (sphere_ && style_.nearest == NearestSearch::kTable) way.settings.push_back("transfer.nearest=analytic");
+    if (style_.method == Method::kStyleBlit) {
+      if (BruteForceFits()) {
+        way.settings.push_back("transfer.method=bruteforce");
+      } else {
+        grid_.left_out.push_back(fmt::format("brute force in the exact way, which is for pictures of at most {} pixels",
+                                             kMostBruteForcePixels));
+      }
+    }
+    // The nearest by comparison: a ball's formula is exact to a pixel only.
+    if (IsPlain() && style_.nearest != NearestSearch::kTree) way.settings.push_back("transfer.nearest=tree");
     if (style_.nearest_error > 0.0) way.settings.push_back("transfer.nearest_error=0");
     if (style_.match_step > 1) way.settings.push_back("transfer.match_step=1");
     if (options_.chance && options_.samples < kConverged) way.samples = kConverged;
@@ -76,7 +87,8 @@ class Grid {
       if (method == style_.method) continue;
       if (method == Method::kBruteForce && (options_.quick || !BruteForceFits())) {
         if (!options_.quick) {
-          grid_.left_out.push_back(fmt::format("method bruteforce, which is for pictures of at most {} pixels", kMostBruteForcePixels));
+          grid_.left_out.push_back(
+              fmt::format("method bruteforce, which is for pictures of at most {} pixels", kMostBruteForcePixels));
         }
         continue;
       }
@@ -94,14 +106,16 @@ class Grid {
     }
     for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
       const double threshold = factor * style_.threshold;
-      if (!(threshold > 0.0) || !std::isfinite(threshold) || (options_.quick && (factor < 0.5 || factor > 2.0))) continue;
+      if (!(threshold > 0.0) || !std::isfinite(threshold) || (options_.quick && (factor < 0.5 || factor > 2.0)))
+        continue;
       AddKey("threshold", fmt::format("{:.6g}", threshold));
     }
   }
 
   void AddVotes() {
     for (const int radius : {0, 1, 2, 4, 8}) {
-      if (radius != style_.blend_radius && (!options_.quick || radius % 4 == 0)) AddKey("blend_radius", std::to_string(radius));
+      if (radius != style_.blend_radius && (!options_.quick || radius % 4 == 0))
+        AddKey("blend_radius", std::to_string(radius));
     }
     if (!options_.quick) AddKey("edge_aware", style_.edge_aware ? "false" : "true");
     for (const int step : {1, 2, 4}) {
@@ -173,8 +187,8 @@ class Grid {
   // Unless it differs in one thing only, and stands on that axis already.
   void AddCombination(double scale, Method method, int levels, int radius) {
     const bool blit = method == Method::kStyleBlit;
-    const int differences = (scale < 1.0) + (method != style_.method) + (blit && levels != style_.levels) +
-                            (radius != style_.blend_radius);
+    const int differences =
+        (scale < 1.0) + (method != style_.method) + (blit && levels != style_.levels) + (radius != style_.blend_radius);
     if (differences < 2) return;
     std::vector<std::string> settings = {fmt::format("transfer.method={}", NameOf(method))};
     if (blit) settings.push_back(fmt::format("transfer.levels={}", levels));
@@ -217,8 +231,9 @@ Expected<std::vector<Way>> ChooseWays(const std::vector<Way>& ways, const std::s
       chosen[i] = any = true;
     }
     if (!any) {
-      return UsageError(fmt::format("--only {}: no axis and no way is called '{}'; the axes of this style and scene are {}", only,
-                                    part, fmt::join(AxesOf(ways), ", ")));
+      return UsageError(
+          fmt::format("--only {}: no axis and no way is called '{}'; the axes of this style and scene are {}", only,
+                      part, fmt::join(AxesOf(ways), ", ")));
     }
   }
   std::vector<Way> result;

@@ -51,7 +51,9 @@ Quartiles TotalOf(const std::vector<double>& guides, const std::vector<double>& 
 // A way that takes longer has no process of its own to tell its memory.
 constexpr double kMostForMemoryMs = 60000.0;
 
-void AddNote(TradeMeasure& measure, const std::string& note) { measure.note += (measure.note.empty() ? "" : "; ") + note; }
+void AddNote(TradeMeasure& measure, const std::string& note) {
+  measure.note += (measure.note.empty() ? "" : "; ") + note;
+}
 
 class Trade {
  public:
@@ -65,11 +67,12 @@ class Trade {
   Expected<TradeReport> Measure() {
     SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, globals_));
     SCUMBLE_ASSIGN(const std::vector<Way> ways, ChooseWays(stage_.grid.ways, setup_.only));
-    for (const std::string& line : stage_.grid.left_out) Say(globals_, "left out: " + line);
+    report_.left_out = stage_.grid.left_out;
     if (setup_.memory && !asks_for_memory_) {
-      Say(globals_,
-          "left out: memory, for which Blender would export the scene for each way; export it as .glb for that");
+      report_.left_out.push_back(
+          "memory, for which Blender would export the scene for each way; export it as .glb for that");
     }
+    for (const std::string& line : report_.left_out) Say(globals_, "left out: " + line);
     SCUMBLE_RETURN_IF_ERROR(OpenStyles(ways));
     // Guides that differ only in how they are rounded take one time.
     std::map<std::string, bool> jobs;
@@ -124,7 +127,8 @@ class Trade {
   Status MakeReference() {
     const auto exact = std::find_if(stage_.grid.ways.begin(), stage_.grid.ways.end(),
                                     [](const Way& way) { return way.axis == kExactAxis; });
-    // Noise of its own: guides of as many samples would be compared with themselves, and those of fewer with their own beginning.
+    // Noise of its own: guides of as many samples would be compared with themselves, and those of fewer with their own
+    // beginning.
     Way converged = *exact;
     if (stage_.chance) converged.more_seed = kReferenceSeed;
     SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, converged));
@@ -242,7 +246,11 @@ class Trade {
       SCUMBLE_ASSIGN(untinted, painter.PaintUntinted());
     }
     const Picture& picture = untinted ? *untinted : painter.picture();
-    if (painter.field()) SCUMBLE_RETURN_IF_ERROR(reference_->MeasureMosaic(picture, *painter.field(), measure));
+    if (painter.field()) {
+      SCUMBLE_RETURN_IF_ERROR(reference_->MeasureMosaic(picture, *painter.field(), measure));
+    } else {
+      AddNote(measure, "its pieces are those of a larger picture, and were not measured");
+    }
     // At some sizes settings round to the same: the same picture has the same energy.
     const std::string_view bytes(reinterpret_cast<const char*>(picture.rgba.data()),
                                  picture.rgba.size() * sizeof picture.rgba[0]);
@@ -250,6 +258,7 @@ class Trade {
     if (!is_new) {
       const TradeMeasure& same = report_.ways[known->second];
       measure.both = same.both, measure.energy = same.energy, measure.missing = same.missing;
+      measure.same_as = known->second;
       AddNote(measure, "the same picture as " + same.name);
       return Ok();
     }

@@ -26,6 +26,7 @@ struct EdgePlace {
   glm::dvec2 barycentric;
   double miss;   // squared distance
   double along;  // from the ray's origin, in lengths of its direction
+  bool behind;   // the origin, by more than rounding: an eye on an edge sees that edge
 };
 
 EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray) {
@@ -40,7 +41,11 @@ EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray) {
   const double length = glm::dot(across, across);
   const double share = length > 0.0 ? glm::clamp(-glm::dot(from, across) / length, 0.0, 1.0) : 0.0;
   const glm::dvec3 miss = from + across * share;
-  return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), along(corner + edge * share)};
+  const double way = along(corner + edge * share);
+  constexpr double kRounding = 0x1p-48;  // some steps of a double, of what was added up
+  const bool behind =
+      way < 0.0 && way * way * squared > kRounding * kRounding * (glm::dot(corner, corner) + glm::dot(edge, edge));
+  return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), way, behind};
 }
 
 // The barycentrics of the place on a triangle's edges that the ray passes at the least distance. A triangle seen edge
@@ -51,7 +56,7 @@ glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     places[i] = NearestOnEdge(triangle, i, ray);
-    if (!(places[i].along >= 0.0)) places[i].miss += kLargestPlainSquare;  // behind, for want of anything before
+    if (places[i].behind) places[i].miss += kLargestPlainSquare;  // for want of anything before
     least = std::min(least, places[i].miss);
   }
   const double step_squared = kEdgeOn * kEdgeOn * glm::dot(ray.direction, ray.direction);

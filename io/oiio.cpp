@@ -1,6 +1,9 @@
 #include "io/oiio.h"
 
 #include <cctype>
+#include <cstdint>
+#include <limits>
+#include <system_error>
 
 #include "image/guides.h"
 #include "io/atomic_file.h"
@@ -56,15 +59,31 @@ Error OpenFailure(const std::string& reason, const std::string& name) {
   return InputError("cannot read " + name + ": " + LibraryReason(reason, name));
 }
 
-// Opens by one reader alone.
+// Before memory is taken for pixels that so short a file cannot hold.
+Status CheckPromise(const OIIO::ImageSpec& spec, const std::string& reader, std::uint64_t bytes,
+                    const std::string& name) {
+  const std::uint64_t most = MostSamplesInAByte(reader);
+  if (most == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return Ok();
+  const auto samples =
+      static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);  // of 31 bits each
+  if (samples / most <= bytes / static_cast<std::uint64_t>(spec.nchannels)) return Ok();
+  return InputError("cannot read " + name + ": it promises " + std::to_string(spec.width) + "×" +
+                    std::to_string(spec.height) + " pixels of " + std::to_string(spec.nchannels) +
+                    " channels, and its " + std::to_string(bytes) +
+                    " bytes cannot hold them; it may be cut short or damaged");
+}
+
+// Opens by one reader alone a file of so many bytes.
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, const std::string& name,
-                                                   const OIIO::ImageSpec& config) {
+                                                   std::uint64_t bytes, const OIIO::ImageSpec& config) {
   auto input = OIIO::ImageInput::create(reader);
   if (!input) return OpenFailure(OIIO::geterror(), name);
   // A library that was built without this reader would look for any other.
-  if (input->format_name() != reader) return OpenFailure("OpenImageIO was built without its reader \"" + reader + "\"", name);
+  if (input->format_name() != reader)
+    return OpenFailure("OpenImageIO was built without its reader \"" + reader + "\"", name);
   OIIO::ImageSpec spec;
   if (!input->open(name, spec, config)) return OpenFailure(input->geterror(), name);
+  SCUMBLE_RETURN_IF_ERROR(CheckPromise(spec, reader, bytes, name));
   return input;
 }
 
@@ -79,7 +98,9 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   if (auto whole = CheckIfPng(path); !whole) return whole.error();
   if (auto kept = CheckExrPromises(path); !kept) return kept.error();
   SCUMBLE_ASSIGN(const std::string reader, ReaderFor(path));
-  return OpenBy(reader, path.string(), StraightAlpha());
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  return OpenBy(reader, path.string(), unknown ? std::numeric_limits<std::uint64_t>::max() : bytes, StraightAlpha());
 }
 
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
@@ -91,7 +112,7 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemRea
   void* pointer = &proxy;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
   SCUMBLE_ASSIGN(const std::string reader, ReaderFor(bytes, name));
-  return OpenBy(reader, name, config);
+  return OpenBy(reader, name, bytes.size(), config);
 }
 
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name) {

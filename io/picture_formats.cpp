@@ -37,8 +37,8 @@ std::string CombinedLayer(const OIIO::ImageSpec& spec) {
   return found;
 }
 
-// By name first (OpenImageIO sorts EXR channels), by position where the names say nothing. Names with a dot say of which
-// layer a channel is: guides are no colours, whatever their order.
+// By name first (OpenImageIO sorts EXR channels), by position where the names say nothing. Names with a dot say of
+// which layer a channel is: guides are no colours, whatever their order.
 Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std::string& file) {
   const std::string combined = CombinedLayer(spec);
   const auto find = [&](std::initializer_list<std::string> names) {
@@ -101,23 +101,44 @@ struct Decoder {
   }
 };
 
-// Reads in the file's own numbers, `T`, and hands each pixel and its place in `picture` to `decode`.
+// Channels that stand side by side in a file: [begin, end).
+struct ChannelRange {
+  int begin = 0, end = 0;
+  int count() const { return end - begin; }
+};
+
+ChannelRange RangeOf(const ColorChannels& channels) {
+  const auto [first, last] =
+      std::minmax({channels.r, channels.g, channels.b, channels.a < 0 ? channels.r : channels.a});
+  return {first, last + 1};
+}
+
+ColorChannels Within(ColorChannels channels, const ChannelRange& range) {
+  for (int* channel : {&channels.r, &channels.g, &channels.b, &channels.a}) {
+    if (*channel >= 0) *channel -= range.begin;
+  }
+  return channels;
+}
+
+// Reads channels in the file's own numbers, `T`, and hands each pixel of them and its place in the picture to `decode`.
+// The picture is made when all of the file has been read: what is cut short does not cost the memory for it.
 template <class T, class Decode>
-Status ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type, Picture& picture,
-                  Decode decode) {
+Expected<Picture> ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type,
+                             const ChannelRange& range, Decode decode) {
   const OIIO::ImageSpec spec = input.spec();
-  std::vector<T> pixels(std::size_t(spec.nchannels) * spec.width * spec.height);
-  if (!input.read_image(0, 0, 0, spec.nchannels, type, pixels.data()) || input.has_error()) {
+  std::vector<T> pixels(std::size_t(range.count()) * std::size_t(spec.width) * std::size_t(spec.height));
+  if (!input.read_image(0, 0, range.begin, range.end, type, pixels.data()) || input.has_error()) {
     return internal::ReadFailure(input, name);
   }
+  Picture picture(spec.full_width, spec.full_height);
   const T* pixel = pixels.data();
   for (int y = 0; y < spec.height; ++y) {
-    for (int x = 0; x < spec.width; ++x, pixel += spec.nchannels) {
+    for (int x = 0; x < spec.width; ++x, pixel += range.count()) {
       const int px = x + spec.x - spec.full_x, py = y + spec.y - spec.full_y;
       if (px >= 0 && py >= 0 && px < picture.width && py < picture.height) decode(pixel, picture.At(px, py));
     }
   }
-  return Ok();
+  return picture;
 }
 
 // A camera notes how it was held (Exif's Orientation, 1 to 8); the picture is turned so that up is up.
@@ -145,18 +166,21 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
   display.width = spec.full_width, display.height = spec.full_height;
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
   SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name));
-  const Decoder decoder{channels, spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};
-  Picture picture(display.width, display.height);
-  if (IsLinear(spec)) {
-    SCUMBLE_RETURN_IF_ERROR(
-        ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, picture,
-                          [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); }));
-  } else {
-    SCUMBLE_RETURN_IF_ERROR(ReadPixels<std::uint16_t>(
-        input, name, OIIO::TypeDesc::UINT16, picture,
-        [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); }));
+  const ChannelRange range = RangeOf(channels);
+  constexpr int kMostApart = 64;
+  if (range.count() > kMostApart) {
+    return InputError(name + " has its colours " + std::to_string(range.count()) + " channels apart: expected " +
+                      std::to_string(kMostApart) + " at the most; write them as R, G, B and A side by side");
   }
-  return picture;
+  const Decoder decoder{Within(channels, range),
+                        spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};
+  if (IsLinear(spec)) {
+    return ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, range,
+                             [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); });
+  }
+  return ReadPixels<std::uint16_t>(
+      input, name, OIIO::TypeDesc::UINT16, range,
+      [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
 }
 
 OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureWriteOptions& options) {

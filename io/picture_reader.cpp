@@ -59,22 +59,50 @@ bool EndsIn(const std::filesystem::path& name, std::initializer_list<std::string
 
 // Most of these begin as TIFF files do, whose reader would show the small preview in them.
 bool IsRawPhotograph(const std::filesystem::path& name) {
-  return EndsIn(name, {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".fff", ".iiq", ".kdc", ".mef", ".mos",
-                       ".mrw", ".nef", ".nrw", ".orf", ".pef", ".raf", ".raw", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"});
+  return EndsIn(
+      name, {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".fff", ".iiq", ".kdc", ".mef", ".mos",
+             ".mrw", ".nef", ".nrw", ".orf", ".pef", ".raf", ".raw", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"});
 }
+
+struct Bound {
+  const char* reader;
+  std::uint64_t samples;
+};
+
+// What the tightest packing of each format comes to, once OpenImageIO has put palettes and bits into channels of their
+// own.
+constexpr Bound kBounds[] = {
+    {"pnm", 8},            // a bit a pixel
+    {"dpx", 8},            // the same
+    {"dds", 16},           // 8 bytes a block of 4 x 4 pixels of 4 channels, and a cube's six sides on a sheet of twelve
+    {"hdr", 64},           // 2 bytes a run of 127
+    {"targa", 256},        // 2 bytes a run of 128 pixels, of a palette of 4 channels
+    {"bmp", 510},          // 2 bytes a run of 255 pixels, the same
+    {"sgi", 16384 / 8},    // rows may share what stands in the file, but for 8 bytes of where and how long it is
+    {"psd", 8 * 258 * 4},  // Deflate, a run of 258 bytes in 2 bits, of a bit a pixel
+};
 
 }  // namespace
 
+std::uint64_t MostSamplesInAByte(std::string_view reader) {
+  for (const Bound& bound : kBounds) {
+    if (reader == bound.reader) return bound.samples;
+  }
+  return 0;
+}
+
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name) {
   const std::string failure = "cannot read " + name.string() + ": ";
-  if (IsRawPhotograph(name)) return InputError(failure + "it is a camera's raw photograph; develop it into a TIFF of 16 bits first");
+  if (IsRawPhotograph(name))
+    return InputError(failure + "it is a camera's raw photograph; develop it into a TIFF of 16 bits first");
   const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
   for (const Mark& mark : kMarks) {
     if (text.size() >= mark.at && text.substr(mark.at).starts_with(mark.bytes)) return std::string(mark.reader);
   }
   if (EndsIn(name, {".tga", ".tpic"})) return std::string("targa");
-  return InputError(failure + (start.empty() ? "it is empty" : "it does not begin as a picture") +
-                    "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP, GIF, JPEG 2000, DPX, DDS and SGI are read");
+  return InputError(
+      failure + (start.empty() ? "it is empty" : "it does not begin as a picture") +
+      "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP, GIF, JPEG 2000, DPX, DDS and SGI are read");
 }
 
 Expected<std::string> ReaderFor(const std::filesystem::path& path) {

@@ -1,9 +1,11 @@
 // Which of OpenImageIO's readers a picture is for.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "image/status.h"
 
@@ -18,5 +20,9 @@ Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::fil
 
 // The same of a file.
 Expected<std::string> ReaderFor(const std::filesystem::path& path);
+
+// Most samples, one a channel and pixel, that a byte of such a file stands for; 0: no bound is known, as a few bytes
+// hold a plain picture of any size. EXR and PNG have bounds of their own, which look at what is packed.
+std::uint64_t MostSamplesInAByte(std::string_view reader);
 
 }  // namespace scumble::internal

@@ -46,6 +46,12 @@ std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& 
   return text + ".";
 }
 
+std::string LeftOut(const TradeReport& report) {
+  std::string html;
+  for (const std::string& line : report.left_out) html += "<p class=\"soft\">Left out: " + EscapeHtml(line) + ".</p>\n";
+  return html;
+}
+
 std::string Header(const TradeReport& report) {
   const std::vector<std::size_t> front = FrontOf(report);
   std::string html = "<h1>" + EscapeHtml(internal::TradeTitle(report)) +
@@ -55,8 +61,8 @@ std::string Header(const TradeReport& report) {
   if (report.ways.empty()) return html + "<p>Nothing was measured.</p>\n";
   html += fmt::format("<p>{} of {} ways are on the front: nothing else is as fast and nearer to the exemplar. ",
                       front.size(), report.ways.size());
-  return html + OwnPlace(report, front) +
-         " " + internal::kMindBlending + " What ways of the axis <code>seed</code> differ by is chance.</p>\n";
+  return html + OwnPlace(report, front) + " " + internal::kMindBlending +
+         " What ways of the axis <code>seed</code> differ by is chance.</p>\n" + LeftOut(report);
 }
 
 std::string Choice(const char* name, std::size_t i, const char* label) {

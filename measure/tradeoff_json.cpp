@@ -60,6 +60,7 @@ std::string TradeJson(const TradeReport& report) {
             {"command", report.command}};
   json["front"] = Json::array();
   for (const std::size_t i : FrontOf(report)) json["front"].push_back(report.ways[i].name);
+  json["left_out"] = report.left_out;
   json["ways"] = Json::array();
   const std::vector<bool> front = internal::OnFront(report);
   for (std::size_t i = 0; i < report.ways.size(); ++i) json["ways"].push_back(WayJson(report, i, front[i]));

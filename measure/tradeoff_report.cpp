@@ -82,12 +82,21 @@ std::vector<std::string> AxesOf(const TradeReport& report) {
 
 }  // namespace internal
 
+namespace {
+
+bool IsQuickerForSure(const TradeMeasure& way, const TradeMeasure& other) {
+  return way.total_ms.upper < other.total_ms.lower;
+}
+
+}  // namespace
+
 std::vector<std::size_t> FrontOf(const TradeReport& report) {
   constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   std::vector<TradePoint> points;
   for (const TradeMeasure& way : report.ways) {
     const double time = internal::Taken(way.total_ms.median).value_or(kNotMeasured);
-    points.push_back({way.by_chance ? kNotMeasured : time, way.both.mean});
+    const bool again = way.same_as && !IsQuickerForSure(way, report.ways[*way.same_as]);
+    points.push_back({way.by_chance || again ? kNotMeasured : time, way.both.mean});
   }
   return ParetoFront(points);
 }

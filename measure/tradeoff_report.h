@@ -25,6 +25,8 @@ struct TradeMeasure {
   std::string note;     // for the reader; empty: none
   bool chosen = false;  // the style as it is
   bool exact = false;   // it is what the others are measured against
+  std::optional<std::size_t>
+      same_as;             // the place of the first way in the report that makes the same picture, if not this
   bool by_chance = false;  // the style as it is with another seed: by how much chance alone moves the figures
   Quartiles guides_ms, transfer_ms, total_ms;  // wall clock
   std::size_t memory_bytes = 0;                // the peak
@@ -46,13 +48,15 @@ struct TradeReport {
   std::string machine;  // processor and threads
   int repeats = 0;
   double lambda = 0.0;
-  std::string command = {};  // that measures all this again; empty: not said
+  std::string command = {};       // that measures all this again; empty: not said
   std::optional<int> frame = {};  // of the scene and the style; none: as they stand
   std::vector<TradeMeasure> ways;
+  std::vector<std::string> left_out = {};  // ways that were not measured, or figures, in words and with why
 };
 
 // Places in `ways` of the Pareto front of median total time and `both`, by rising time. What was not measured is not
-// there, nor is what differs from the style by chance alone.
+// there, nor is what differs from the style by chance alone. Of ways that make the same picture it is the first, and
+// others only where they are quicker by more than their quartiles: else the moment would choose.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 
 // Places in `ways`, the axes in the order in which they first come, ways of one axis in the order given.

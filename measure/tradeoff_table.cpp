@@ -105,6 +105,7 @@ std::string Notes(const TradeReport& report) {
   for (const TradeMeasure& way : report.ways) {
     if (!way.note.empty()) text += "  " + way.name + ": " + way.note + "\n";
   }
+  for (const std::string& line : report.left_out) text += "  left out: " + line + "\n";
   return text.empty() ? "" : "\nNotes\n" + text;
 }
 
@@ -124,8 +125,10 @@ std::string TradeTable(const TradeReport& report) {
     text += Line(rows[line], widths);
   }
   text +=
-      "\n* nothing else is as fast and nearer to the exemplar by `both`, the error: what of the picture is not the exemplar's\n"
-      "  (energy) and what of the exemplar is not in the picture (missing). coher.: neighbours whose paint was side by side;\n"
+      "\n* nothing else is as fast and nearer to the exemplar by `both`, the error: what of the picture is not the "
+      "exemplar's\n"
+      "  (energy) and what of the exemplar is not in the picture (missing). coher.: neighbours whose paint was side by "
+      "side;\n"
       "  seam: larger steps across pieces than inside; repetition: how often a shown pixel of the exemplar shows.\n  ";
   text += internal::kMindBlending + std::string("\n");
   return text + GuideTable(report) + Notes(report);

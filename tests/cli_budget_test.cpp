@@ -72,9 +72,10 @@ TEST_F(CliBudget, APlanIsOfWhatIsPicked) {
   };
   const double whole = guides_of({});
   EXPECT_GT(whole, 0.0);
-  EXPECT_EQ(guides_of({"--quality", "draft"}) * 16.0, whole);
-  EXPECT_EQ(smaller, 4);
+  EXPECT_EQ(guides_of({"--quality", "draft"}), whole) << "guides of normals alone stay as they are";
+  EXPECT_EQ(smaller, 1);
   const double picked = guides_of({"--budget-ms", "1e-6"});
+  EXPECT_GT(smaller, 1);
   EXPECT_EQ(picked * smaller * smaller, whole);
 }
 

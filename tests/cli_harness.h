@@ -60,13 +60,6 @@ struct CommandSettings {
   unsigned patience_seconds = 60;  // then the program is taken to hang
 };
 
-// ThreadSanitizer makes everything ten times slower.
-#ifdef __SANITIZE_THREAD__
-inline constexpr unsigned kSlower = 10;
-#else
-inline constexpr unsigned kSlower = 1;
-#endif
-
 class CliTest : public testing::Test {
  protected:
   using Arguments = std::vector<std::string>;
@@ -270,7 +263,7 @@ class CliTest : public testing::Test {
   // In the child: only calls that are safe between fork and exec.
   [[noreturn]] static void Become(const std::vector<char*>& argv, const std::string& out, const std::string& err,
                                   const std::string& work, const CommandSettings& settings) {
-    ::alarm(kSlower * settings.patience_seconds);
+    ::alarm(SCUMBLE_TESTS_SLOWER * settings.patience_seconds);
     const int in_file = ::open("/dev/null", O_RDONLY);
     const int out_file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
     const int err_file = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);

@@ -51,6 +51,10 @@ inline glm::dvec3 FromEye(const Camera& camera, const glm::dmat4& world_from_obj
 // than 13 u; 16 u is 2^-20.
 inline constexpr double kFloatSight = 1.0 / (1 << 20);
 
+// What rounding a unit vector's components to float once moves it by, and no more: √3 · 2^-24, 1.03e-7. A normal that
+// is read, turned and written is rounded twice, one that is made unit in between three times.
+inline constexpr double kRounded = 0x1.bb67aep-24;
+
 struct ExactHit {
   int instance = -1;  // -1: background
   std::size_t triangle = 0;
@@ -136,10 +140,10 @@ inline ExactCount ExpectExact(const Scene& scene, const Camera& camera, const Gu
       if (hit.Undecided()) {
         ++count.undecided;
         if (!covered) continue;
-        EXPECT_NEAR(glm::length(glm::dvec3(guides.Vec3(Layer::kNormal, i))), 1.0, 1e-6);
+        EXPECT_NEAR(glm::length(glm::dvec3(guides.Vec3(Layer::kNormal, i))), 1.0, kRounded);
         const glm::dvec3 from_eye =
             glm::dvec3(guides.Vec3(Layer::kPosition, i)) - glm::dvec3(camera.world_from_camera[3]);
-        const double stored = 1e-7 * glm::length(glm::dvec3(guides.Vec3(Layer::kPosition, i)));
+        const double stored = 0x1p-24 * glm::length(glm::dvec3(guides.Vec3(Layer::kPosition, i)));
         EXPECT_LE(ray.DistanceTo(from_eye), hit.farthest * kFloatSight + stored);
         continue;
       }

@@ -10,6 +10,8 @@ import numpy
 import OpenImageIO as oiio
 
 SUFFIX = ".scumble-tmp"
+# How much longer a program may take than it should: tests/CMakeLists.txt says so where a sanitizer slows it down.
+SLOWER = int(os.environ.get("SCUMBLE_TESTS_SLOWER", "1"))
 
 
 class Failures:
@@ -46,7 +48,7 @@ class Program:
         """(exit code, stderr); the code is negative where a signal ended it, and None where it had to be stopped."""
         process = self.start(*arguments, **more)
         try:
-            _, said = process.communicate(timeout=patience)
+            _, said = process.communicate(timeout=SLOWER * patience)
             return process.returncode, said or ""
         except subprocess.TimeoutExpired:
             process.kill()

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "image/guides.h"
@@ -101,7 +104,8 @@ TEST_F(Promises, ExrWindowsThatNoFileOfThatSizeHolds) {
 TEST_F(Promises, ExrHeadersAreReadWhereTheyStand) {
   const auto file = Guides("zip", 8);
   constexpr std::size_t kTerabyte = std::size_t(1) << 40;
-  void* const start = ::mmap(nullptr, kTerabyte, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  void* const start =
+      ::mmap(nullptr, kTerabyte, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (start == MAP_FAILED) GTEST_SKIP() << "the system gives no terabyte of addresses";
   std::memcpy(start, file.data(), file.size());
   const std::span<const std::byte> bytes(static_cast<const std::byte*>(start), kTerabyte);
@@ -147,6 +151,70 @@ TEST(PromisesOfPng, WhatIsPackedTightlyIsRead) {
   const auto file = *EncodePng(Picture(2048, 2048), 0);
   EXPECT_TRUE(internal::CheckPngIsWhole(file, "p.png"));
   EXPECT_TRUE(DecodePicture(file, "p.png"));
+}
+
+// --- Formats that OpenImageIO reads
+// ------------------------------------------------------------------------------------
+
+std::vector<std::byte> BytesOf(std::initializer_list<int> values) {
+  std::vector<std::byte> bytes;
+  for (const int value : values) bytes.push_back(static_cast<std::byte>(value));
+  return bytes;
+}
+std::vector<std::byte> BytesOf(const std::string& text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+struct Claim {
+  const char* name;
+  std::vector<std::byte> header;  // of 16384 x 16384 pixels
+};
+
+std::vector<Claim> Claims() {
+  return {
+      {"p.ppm", BytesOf("P6\n16384 16384\n255\n")},
+      {"p.pbm", BytesOf("P4\n16384 16384\n")},
+      {"p.pfm", BytesOf("PF\n16384 16384\n-1.0\n")},
+      {"p.hdr", BytesOf("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n")},
+      {"p.tga", BytesOf({0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 64, 0, 64, 32, 8})},
+      {"p.bmp", BytesOf({'B', 'M', 0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 0, 64, 0, 0, 0, 64, 0, 0, 1,
+                         0,   24,  0, 0, 0, 0, 0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0})},
+  };
+}
+
+// What the formats' bounds let a file of some kilobytes promise is at most 512 times as many samples: far less than
+// these.
+TEST(PromisesOfPictures, SidesThatNoFileOfThatSizeHolds) {
+  const TemporaryFolder folder;
+  for (Claim& claim : Claims()) {
+    claim.header.resize(claim.header.size() + 4096);
+    const auto refused = [&](const Expected<Picture>& picture) {
+      ASSERT_FALSE(picture) << claim.name;
+      EXPECT_THAT(picture.error().message, HasSubstr(claim.name));
+      EXPECT_THAT(picture.error().message, HasSubstr("it promises 16384×16384 pixels"));
+      EXPECT_THAT(picture.error().message, HasSubstr(std::to_string(claim.header.size()) + " bytes"));
+    };
+    ASSERT_TRUE(WriteFileAtomically(folder / claim.name, claim.header));
+    refused(ReadPicture(folder / claim.name));
+    if (std::string_view(claim.name) != "p.tga") refused(DecodePicture(claim.header, claim.name));
+  }
+}
+
+// As near to the bounds as pixels come: a bit each in P4, and runs of 128 in Targa.
+TEST(PromisesOfPictures, WhatIsPackedTightlyIsRead) {
+  auto bits = BytesOf("P4\n1024 512\n");
+  bits.resize(bits.size() + 1024 * 512 / 8);
+  const auto white = DecodePicture(bits, "p.pbm");
+  ASSERT_TRUE(white) << white.error().message;
+  EXPECT_EQ(white->width, 1024);
+  const TemporaryFolder folder;
+  auto runs = BytesOf({0, 0, 11, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 2, 8, 0});  // greys, 1024 x 512
+  for (int i = 0; i < 1024 * 512 / 128; ++i) runs.insert(runs.end(), {std::byte(0xff), std::byte(77)});
+  ASSERT_TRUE(WriteFileAtomically(folder / "p.tga", runs));
+  const auto grey = ReadPicture(folder / "p.tga");
+  ASSERT_TRUE(grey) << grey.error().message;
+  EXPECT_EQ(grey->At(1023, 511)[0], 77 * 257);
 }
 
 }  // namespace

@@ -94,6 +94,14 @@ TEST(QualityLadder, StylesThatWeighGuidesKeepTheirChunks) {
   EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, weighed, kCast)), "--upsample 4 --set transfer.method=styleblit");
 }
 
+// With normals alone smaller guides take as long, and their outlines are steps.
+TEST(QualityLadder, DraftsOfNormalsAloneKeepTheirGuides) {
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, Open("oil"), kCast)), "--set transfer.method=litsphere");
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kPreview, Open("oil"), kCast)), "");
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, Open("chiaroscuro"), kCast)),
+            "--upsample 4 --set transfer.method=litsphere");
+}
+
 // One setting is for all styles of a picture: a rung that takes from one must not give to another.
 TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
   StyleSet two = Open("oil");
@@ -164,8 +172,8 @@ TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
   }
 }
 
-// Where only normals are cast, nothing quicker would go unseen but the split; light is cast at half the size, and guides that
-// are there are painted without blending.
+// Where only normals are cast, nothing quicker would go unseen but the split; light is cast at half the size, and
+// guides that are there are painted without blending.
 TEST(QualityLadder, PreviewTakesWhatIsDear) {
   const auto preview = [](const char* style, const LadderFrame& frame) {
     return OptionsOf(WayOf(Quality::kPreview, Open(style), frame));

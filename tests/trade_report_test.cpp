@@ -108,12 +108,28 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
   }
 }
 
+// Of one picture the first way is there, whatever the moment made of the times; a later one only where even its upper
+// quartile is below the first's lower one.
+TEST(TradeReport, TheFrontHasAPictureOnce) {
+  TradeReport report;
+  for (const char* name : {"style", "again", "other"}) report.ways.push_back(MadeUpWay("axis", name, 10.0, 1.0));
+  report.ways[2].both.mean = 2.0;
+  report.ways[0].total_ms = {10.0, 9.0, 11.0};
+  report.ways[1].same_as = 0;
+  report.ways[1].total_ms = {9.5, 8.5, 9.5};
+  report.ways[2].total_ms = {9.8, 9.7, 9.9};
+  EXPECT_EQ(FrontOf(report), (std::vector<std::size_t>{2, 0})) << "not pushed off by the one that is not there";
+  report.ways[1].total_ms = {8.5, 8.0, 8.9};
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
+}
+
 TEST(TradeReport, TheChartRingsNothingThatIsChance) {
   TradeReport report = MadeUpReport();
   const auto rings = [&report] {
     const std::string svg = TradeChart(report);
     int count = 0;
-    for (std::size_t at = svg.find("class=\"ring\""); at != std::string::npos; at = svg.find("class=\"ring\"", at + 1)) ++count;
+    for (std::size_t at = svg.find("class=\"ring\""); at != std::string::npos; at = svg.find("class=\"ring\"", at + 1))
+      ++count;
     return count;
   };
   const int before = rings();

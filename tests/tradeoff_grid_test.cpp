@@ -58,11 +58,13 @@ const Way& Named(const TradeGrid& grid, const std::string& name) {
 }
 
 // The table of a ball is no reference: its cells are wider than pixels.
-TEST(TradeGrid, TheExactWayOfABallNeverLooksInItsTable) {
-  Style style = SphereStyle();
-  style.transfer.nearest = NearestSearch::kTable;
-  const Values exact = MakeTradeGrid(style, Sized()).ways[1].settings;
-  EXPECT_EQ(std::count(exact.begin(), exact.end(), "transfer.nearest=analytic"), 1);
+TEST(TradeGrid, TheExactWaySearchesByComparisonWhateverTheStyleDoes) {
+  for (const NearestSearch nearest : {NearestSearch::kAnalytic, NearestSearch::kTable, NearestSearch::kTree}) {
+    Style style = SphereStyle();
+    style.transfer.nearest = nearest;
+    const Values exact = MakeTradeGrid(style, Sized()).ways[1].settings;
+    EXPECT_EQ(std::count(exact.begin(), exact.end(), "transfer.nearest=tree"), nearest == NearestSearch::kTree ? 0 : 1);
+  }
 }
 
 TEST(TradeGrid, OtherSeedsChangeNothingElse) {
@@ -90,7 +92,8 @@ TEST(TradeGrid, OfASphereIsEveryAxisWithoutTheStylesOwnValues) {
   EXPECT_EQ(grid.ways[0].axis, kStyleAxis);
   EXPECT_TRUE(grid.ways[0].settings.empty()) << "the style changes nothing";
   EXPECT_EQ(grid.ways[1].axis, kExactAxis);
-  EXPECT_EQ(grid.ways[1].settings, Values{"transfer.method=bruteforce"}) << "the formula is exact to a pixel, guides are floats";
+  EXPECT_EQ(grid.ways[1].settings, (Values{"transfer.method=bruteforce", "transfer.nearest=tree"}))
+      << "the formula is exact to a pixel, guides are floats";
   EXPECT_EQ(ValuesOf(grid, "method"), (Values{"litsphere", "bruteforce"}));
   EXPECT_EQ(ValuesOf(grid, "levels"), (Values{"1", "2", "3", "4", "5", "6", "8", "9"})) << "the style's are 7";
   EXPECT_EQ(ValuesOf(grid, "threshold"), (Values{"0.03125", "0.0625", "0.25", "0.5"}));
@@ -117,8 +120,8 @@ TEST(TradeGrid, OfASphereIsEveryAxisWithoutTheStylesOwnValues) {
 
 TEST(TradeGrid, CombinationsDifferInTwoThingsOrMore) {
   const TradeGrid grid = MakeTradeGrid(SphereStyle(), Sized());
-  // 2 scales × (3 radii of the Lit Sphere + 3 levels × 3 radii), less the style itself and what differs in one thing: of the
-  // full size 2 radii, 2 levels and the Lit Sphere with the style's radius, of the half size the style's own.
+  // 2 scales × (3 radii of the Lit Sphere + 3 levels × 3 radii), less the style itself and what differs in one thing:
+  // of the full size 2 radii, 2 levels and the Lit Sphere with the style's radius, of the half size the style's own.
   EXPECT_EQ(ValuesOf(grid, "grid").size(), 24u - 1u - 2u - 2u - 1u - 1u);
   const Way& one = Named(grid, "grid styleblit 3 levels radius 4 half size");
   EXPECT_EQ(one.guide_scale, 0.5);
@@ -147,13 +150,15 @@ TEST(TradeGrid, OfGuidesOfLightHasNoTablesAndAsksForSamplesWhereTheyCount) {
 }
 
 TEST(TradeGrid, LeavesOutWhatCannotBeAndSaysSo) {
-  const TradeGrid large = MakeTradeGrid(SphereStyle(), Sized(1025, 1025));  // odd, and 2049 pixels too many for brute force
+  const TradeGrid large =
+      MakeTradeGrid(SphereStyle(), Sized(1025, 1025));  // odd, and 2049 pixels too many for brute force
   EXPECT_EQ(ValuesOf(large, "method"), Values{"litsphere"});
   EXPECT_EQ(ValuesOf(large, "resolution"), Values{"2"});
-  EXPECT_TRUE(large.ways[1].settings.empty());
-  ASSERT_EQ(large.left_out.size(), 2u);
-  EXPECT_NE(large.left_out[0].find("bruteforce"), std::string::npos);
-  EXPECT_NE(large.left_out[1].find("even"), std::string::npos);
+  EXPECT_EQ(large.ways[1].settings, Values{"transfer.nearest=tree"});
+  ASSERT_EQ(large.left_out.size(), 3u);
+  EXPECT_NE(large.left_out[0].find("brute force in the exact way"), std::string::npos);
+  EXPECT_NE(large.left_out[1].find("bruteforce"), std::string::npos);
+  EXPECT_NE(large.left_out[2].find("even"), std::string::npos);
   for (const Way& way : large.ways) EXPECT_NE(way.guide_scale, 0.5) << way.name;
   const TradeGrid whole = MakeTradeGrid(SphereStyle(), Sized(1024, 1024));  // a megapixel exactly
   EXPECT_EQ(ValuesOf(whole, "method"), (Values{"litsphere", "bruteforce"}));
@@ -197,7 +202,8 @@ TEST(ChooseWays, TakesAxesAndNamesAndAlwaysTheStyle) {
   EXPECT_EQ(names("levels *,robust").size(), 1u + 8u + 1u);
   EXPECT_EQ(names("nearest table 1*"), (Values{"the style", "nearest table 128", "nearest table 1024"}));
   EXPECT_EQ(names("exact"), (Values{"the style", "the exact way"}));
-  ExpectRefusal(ChooseWays(grid.ways, "levles"), ErrorKind::kUsage, {"--only levles", "'levles'", "levels", "nearest", "precision"});
+  ExpectRefusal(ChooseWays(grid.ways, "levles"), ErrorKind::kUsage,
+                {"--only levles", "'levles'", "levels", "nearest", "precision"});
   ExpectRefusal(ChooseWays(grid.ways, "levels,"), ErrorKind::kUsage, {"''"});
 }
 
@@ -212,9 +218,9 @@ GuideSet OnePixel(glm::vec3 normal, float luminance) {
   return guides;
 }
 
-// v goes to the nearest of 255 steps, so half a step, 1/510, is the most a colour is off; a normal's component has twice the
-// range, 1/255. What is left of a float's rounding is 2^-22. Lengths are off by √3/255 at most; a reader makes
-// it a unit vector, which moves it by no more than that again.
+// v goes to the nearest of 255 steps, so half a step, 1/510, is the most a colour is off; a normal's component has
+// twice the range, 1/255. What is left of a float's rounding is 2^-22. Lengths are off by √3/255 at most; a reader
+// makes it a unit vector, which moves it by no more than that again.
 TEST(RoundGuides, EightBitsAreOffByHalfAStep) {
   for (int n = 0; n < 2000; ++n) {
     glm::vec3 normal;
@@ -234,7 +240,8 @@ TEST(RoundGuides, EightBitsAreOffByHalfAStep) {
   GuideSet along = OnePixel({0.0f, 0.0f, 1.0f}, 7.5f);
   RoundGuides(GuidePrecision::kEightBits, along);
   const double length = std::sqrt(1.0 + 2.0 / (255.0 * 255.0));  // a reader makes it a unit vector
-  EXPECT_NEAR(along.Plane(Layer::kNormal, 0)[0], 1.0 / 255.0 / length, 0x1p-22) << "0 is 127.5 of 255: there is no such step";
+  EXPECT_NEAR(along.Plane(Layer::kNormal, 0)[0], 1.0 / 255.0 / length, 0x1p-22)
+      << "0 is 127.5 of 255: there is no such step";
   EXPECT_NEAR(along.Plane(Layer::kNormal, 2)[0], 1.0 / length, 0x1p-22);
   EXPECT_EQ(along.Plane(Layer::kLuminance)[0], 1.0f) << "brighter is cut";
 }
