@@ -32,6 +32,7 @@ SAMPLES = {
                              "--only", "samples,exact"]),
 }
 NONE = "–"
+SAME = "the same picture as "  # as the verb has it in a note
 
 
 def measure(options, name):
@@ -66,8 +67,19 @@ def time(value):
     return "%s (%s–%s)" % tuple(figure(value[key]) for key in ("median", "lower_quartile", "upper_quartile"))
 
 
+def remarks(way):
+    """What of the note belongs into a table: " (= the style)", " (once)"."""
+    said = []
+    for part in way["note"].split("; "):
+        if part.startswith(SAME):
+            said.append("= " + part[len(SAME):])
+        if "ran once" in part:
+            said.append("once")
+    return " (%s)" % ", ".join(said) if said else ""
+
+
 def row(way):
-    name = way["way"] + (", **the style as it is**" if way["chosen"] and way["way"] != "the style" else "")
+    name = way["way"] + remarks(way) + (", **the style as it is**" if way["chosen"] and way["way"] != "the style" else "")
     megabytes = None if way["memory_bytes"] is None else way["memory_bytes"] * 1e-6
     coherence = None if way["coherence"] is None else 100.0 * way["coherence"]
     cells = ["★" if way["front"] else "", name, time(way["total_ms"]), figure(megabytes), estimate(way["both"]),
@@ -84,12 +96,18 @@ def table(ways):
 
 
 def guide_table(ways):
-    """Of the ways whose guides differ from the exact ones: by how much."""
-    measured = [way for way in ways if way["guide_rms"] or way["guide_flip"]]
+    """Of the ways whose guides differ from the exact ones: by how much. Those with the same guides share a line."""
+    measured = {}
+    for way in ways:
+        if way["guide_rms"] or way["guide_flip"]:
+            measured.setdefault((way["guide_rms"], way["guide_flip"]), []).append(way["way"])
     if not measured:
         return []
     lines = ["", "Guides against the exact ones:", "", "| way | RMS | FLIP |", "|---|---|---|"]
-    return lines + ["| %s | %s | %s |" % (way["way"], figure(way["guide_rms"]), figure(way["guide_flip"])) for way in measured]
+    for (rms, flip), names in measured.items():
+        more = ", and %d more with the same guides" % (len(names) - 1) if len(names) > 1 else ""
+        lines.append("| %s%s | %s | %s |" % (names[0], more, figure(rms), figure(flip)))
+    return lines
 
 
 def by_axis(ways):

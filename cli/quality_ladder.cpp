@@ -147,7 +147,8 @@ Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
   if (quality == Quality::kPreview) rung = {2, {kStyleBlit, kUnsplit}};
   // Guides of normals alone take so little that nothing is gained which would not be seen.
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-  if (frame.casts && !lit && !WeighGuides(styles)) return MakeWay({1, rung.settings}, styles, frame);
+  const bool drafts_guides = quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks: that is all there is
+  if (frame.casts && !lit && !drafts_guides) return MakeWay({1, rung.settings}, styles, frame);
   if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
   return MakeWay(rung, styles, frame);
 }

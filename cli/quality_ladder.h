@@ -28,13 +28,11 @@ std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame)
 
 // Named points of it.
 enum class Quality {
-  // For finding a camera: the Lit Sphere, and guides of a quarter of the size where they may be smaller and hold light.
-  // Of
-  // guides of normals alone smaller ones save less than it takes to upsample them.
+  // For finding a camera: the Lit Sphere, and guides of a quarter of the size where they may be smaller and hold light or
+  // are weighed. Of guides of normals alone smaller ones save less than it takes to upsample them.
   kDraft,
   // For judging a style: guides of half the size where they hold light, which is what makes them slow, or no blending
-  // where
-  // the guides are as they are. What casts normals alone is quick enough as it is, but for the split.
+  // where the guides are as they are. What casts normals alone is quick enough as it is, but for the split.
   kPreview,
   kFinal,  // the style as it is
 };

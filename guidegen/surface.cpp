@@ -29,7 +29,7 @@ struct EdgePlace {
   bool behind;   // the origin, by more than rounding: an eye on an edge sees that edge
 };
 
-EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray) {
+EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray, double summands) {
   constexpr glm::dvec2 kCorners[] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
   const int next = (i + 1) % 3;
   const double squared = glm::dot(ray.direction, ray.direction);
@@ -44,18 +44,19 @@ EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray) {
   const double way = along(corner + edge * share);
   constexpr double kRounding = 0x1p-48;  // some steps of a double, of what was added up
   const bool behind =
-      way < 0.0 && way * way * squared > kRounding * kRounding * (glm::dot(corner, corner) + glm::dot(edge, edge));
+      way < 0.0 && way * way * squared >
+                       kRounding * kRounding * (glm::dot(corner, corner) + glm::dot(edge, edge) + summands * summands);
   return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), way, behind};
 }
 
 // The barycentrics of the place on a triangle's edges that the ray passes at the least distance. A triangle seen edge
 // on shows two of its edges there: of places before the ray's origin that lie on the ray, to a step of float of their
 // distance, it is the first.
-glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray) {
+glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray, double summands) {
   EdgePlace places[3];
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
-    places[i] = NearestOnEdge(triangle, i, ray);
+    places[i] = NearestOnEdge(triangle, i, ray, summands);
     if (places[i].behind) places[i].miss += kLargestPlainSquare;  // for want of anything before
     least = std::min(least, places[i].miss);
   }
@@ -74,7 +75,8 @@ glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray) {
 // Möller & Trumbore 1997, in double; `area` is the cross product of the triangle's edges. Rays that just miss the
 // triangle, because Embree sees it with its corners rounded to float, meet the nearest place of its edges, in space: in
 // barycentrics a triangle's height is 1 however low it is seen, and a micrometre may seem to be a thousand triangles.
-glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray) {
+// `summands` is the largest of what was added up to the corners and the origin, whose roundings are theirs.
+glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray, double summands) {
   const glm::dvec3 moment = glm::cross(ray.origin - triangle.corner[0], ray.direction);
   const double seen = glm::dot(area, ray.direction);
   const double scale = -1.0 / seen;
@@ -82,7 +84,7 @@ glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const 
                           glm::dot(triangle.corner[0] - triangle.corner[1], moment) * scale);
   const bool inside = result.x >= 0.0 && result.y >= 0.0 && result.x + result.y <= 1.0;  // false for NaN
   const bool steady = std::abs(seen) > kEdgeOn * LongestEdgeSquared(triangle) * glm::length(ray.direction);
-  return inside && steady ? result : NearestOnEdges(triangle, ray);
+  return inside && steady ? result : NearestOnEdges(triangle, ray, summands);
 }
 
 glm::dvec3 Mix(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec2& barycentric) {
@@ -120,7 +122,8 @@ SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primiti
   const Triangle triangle = ViewTriangle(object, primitive);
   const glm::dvec3 area = glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
   SurfacePoint point;
-  point.barycentric = MeetTriangle(triangle, area, ray);
+  const double summands = LargestCoordinate(glm::dvec3(object.view_from_object[3])) + LargestCoordinate(ray.origin);
+  point.barycentric = MeetTriangle(triangle, area, ray, summands);
   point.position = Mix(triangle.corner[0], triangle.corner[1], triangle.corner[2], point.barycentric);
   point.rest_position = RestPosition(object, primitive, point.barycentric);
   point.largest_coordinate = LargestCoordinate(point.position);

@@ -97,10 +97,13 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   }
   if (auto whole = CheckIfPng(path); !whole) return whole.error();
   if (auto kept = CheckExrPromises(path); !kept) return kept.error();
-  SCUMBLE_ASSIGN(const std::string reader, ReaderFor(path));
+  SCUMBLE_ASSIGN(const std::vector<std::byte> start, ReadStart(path));
+  SCUMBLE_ASSIGN(const std::string reader, ReaderFor(start, path));
   std::error_code unknown;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
-  return OpenBy(reader, path.string(), unknown ? std::numeric_limits<std::uint64_t>::max() : bytes, StraightAlpha());
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  const std::uint64_t bytes = unknown ? std::numeric_limits<std::uint64_t>::max() : size;
+  SCUMBLE_RETURN_IF_ERROR(CheckStart(reader, start, bytes, path.string()));
+  return OpenBy(reader, path.string(), bytes, StraightAlpha());
 }
 
 Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
@@ -112,6 +115,7 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemRea
   void* pointer = &proxy;
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
   SCUMBLE_ASSIGN(const std::string reader, ReaderFor(bytes, name));
+  SCUMBLE_RETURN_IF_ERROR(CheckStart(reader, bytes, bytes.size(), name));
   return OpenBy(reader, name, bytes.size(), config);
 }
 

@@ -167,10 +167,10 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
   SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name));
   const ChannelRange range = RangeOf(channels);
-  constexpr int kMostApart = 64;
-  if (range.count() > kMostApart) {
-    return InputError(name + " has its colours " + std::to_string(range.count()) + " channels apart: expected " +
-                      std::to_string(kMostApart) + " at the most; write them as R, G, B and A side by side");
+  // Read at once; four of the largest picture are, side by side.
+  if (std::int64_t(range.count()) * spec.width * spec.height > 4 * kMaxPicturePixels) {
+    return InputError(name + " has its colours " + std::to_string(range.count()) +
+                      " channels apart, too many for its size; write R, G, B and A side by side");
   }
   const Decoder decoder{Within(channels, range),
                         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};

@@ -8,6 +8,8 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "image/guides.h"
+
 namespace scumble::internal {
 namespace {
 
@@ -72,14 +74,14 @@ struct Bound {
 // What the tightest packing of each format comes to, once OpenImageIO has put palettes and bits into channels of their
 // own.
 constexpr Bound kBounds[] = {
-    {"pnm", 8},            // a bit a pixel
-    {"dpx", 8},            // the same
-    {"dds", 16},           // 8 bytes a block of 4 x 4 pixels of 4 channels, and a cube's six sides on a sheet of twelve
-    {"hdr", 64},           // 2 bytes a run of 127
-    {"targa", 256},        // 2 bytes a run of 128 pixels, of a palette of 4 channels
-    {"bmp", 510},          // 2 bytes a run of 255 pixels, the same
-    {"sgi", 16384 / 8},    // rows may share what stands in the file, but for 8 bytes of where and how long it is
-    {"psd", 8 * 258 * 4},  // Deflate, a run of 258 bytes in 2 bits, of a bit a pixel
+    {"pnm", 8},      // a bit a pixel
+    {"dpx", 8},      // the same
+    {"bmp", 8 * 3},  // a bit a pixel, of a palette of three channels
+    {"dds", 8 * 6},  // 8 bytes a block of 4 × 4 pixels of 4 channels; a cube has six sides, whichever are there
+    {"hdr", 64},     // 2 bytes a run of 127
+    {"targa", 128 * 4 / 2},                     // 2 bytes a run of 128 pixels, of a palette of 4 channels
+    {"psd", 64 * 8 * 3},                        // 2 bytes a run of 128, of a bit a pixel, shown as three channels
+    {"sgi", std::uint64_t(kMaxImageSide) / 8},  // rows may share what they hold, but for the 8 bytes that say where
 };
 
 }  // namespace
@@ -105,12 +107,34 @@ Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::fil
       "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP, GIF, JPEG 2000, DPX, DDS and SGI are read");
 }
 
-Expected<std::string> ReaderFor(const std::filesystem::path& path) {
-  std::array<char, 16> start{};
+Status CheckStart(std::string_view reader, std::span<const std::byte> start, std::uint64_t bytes,
+                  const std::string& name) {
+  const std::string failure = "cannot read " + name + ": ";
+  const auto byte = [&](std::size_t at) { return at < start.size() ? std::to_integer<std::uint64_t>(start[at]) : 0; };
+  if (reader == "bmp" && byte(14) >= 40 && (byte(30) == 1 || byte(30) == 2)) {
+    return InputError(failure + "it is a BMP packed by runs, which is not read; save it as a PNG");
+  }
+  const std::string promise =
+      "its header promises more than its " + std::to_string(bytes) + " bytes hold; it may be cut short or damaged";
+  // Where each row of each channel begins, and how long it is: 4 bytes each.
+  if (reader == "sgi" && byte(2) == 1) {
+    const std::uint64_t rows = byte(8) << 8 | byte(9), channels = byte(10) << 8 | byte(11);
+    if (rows * channels * 8 > bytes) return InputError(failure + promise);
+  }
+  if (reader == "psd") {
+    const std::uint64_t palette = byte(26) << 24 | byte(27) << 16 | byte(28) << 8 | byte(29);
+    if (palette > bytes) return InputError(failure + promise);
+  }
+  return Ok();
+}
+
+Expected<std::vector<std::byte>> ReadStart(const std::filesystem::path& path) {
+  std::array<char, kStartBytes> start{};
   std::ifstream file(path, std::ios::binary);
   if (!file) return InputError("cannot read " + path.string() + ": it cannot be opened any more");
   file.read(start.data(), start.size());
-  return ReaderFor(std::as_bytes(std::span(start)).first(static_cast<std::size_t>(file.gcount())), path);
+  const auto bytes = std::as_bytes(std::span(start)).first(static_cast<std::size_t>(file.gcount()));
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
 }
 
 }  // namespace scumble::internal

@@ -1,11 +1,13 @@
 // Which of OpenImageIO's readers a picture is for.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "image/status.h"
 
@@ -15,11 +17,17 @@ namespace scumble::internal {
 // its name's ending. Else an error that says which formats are read. Left to itself OpenImageIO hands what one reader
 // turns down to all the others, video and raw photographs among them, and one of those ends the process at some bytes.
 // Raw photographs are refused: most begin as TIFF, whose reader shows the small preview in them.
-// `start` is the beginning of the file, 16 bytes if it has them. Thread-safe.
+// `start` is the beginning of the file, kStartBytes if it has them. Thread-safe.
+inline constexpr std::size_t kStartBytes = 64;
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name);
 
-// The same of a file.
-Expected<std::string> ReaderFor(const std::filesystem::path& path);
+// Whether that reader may open a file of so many bytes that starts so: some take memory for what the first bytes claim
+// as soon as they open it, and BMPs that are packed by runs OpenImageIO unpacks without looking where it writes.
+Status CheckStart(std::string_view reader, std::span<const std::byte> start, std::uint64_t bytes,
+                  const std::string& name);
+
+// The first kStartBytes of a file, or all there are.
+Expected<std::vector<std::byte>> ReadStart(const std::filesystem::path& path);
 
 // Most samples, one a channel and pixel, that a byte of such a file stands for; 0: no bound is known, as a few bytes
 // hold a plain picture of any size. EXR and PNG have bounds of their own, which look at what is packed.

@@ -56,7 +56,7 @@ struct TradeReport {
 
 // Places in `ways` of the Pareto front of median total time and `both`, by rising time. What was not measured is not
 // there, nor is what differs from the style by chance alone. Of ways that make the same picture it is the first, and
-// others only where they are quicker by more than their quartiles: else the moment would choose.
+// others only where their guides are quicker by more than their quartiles: else the moment would choose.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 
 // Places in `ways`, the axes in the order in which they first come, ways of one axis in the order given.

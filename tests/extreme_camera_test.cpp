@@ -315,24 +315,32 @@ TEST(Inside, AMicrometreFromAWallAndOnIt) {
     }
     return way;
   };
-  for (const glm::dvec3 eye : {glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(1, 1, 1)}) {
-    const Camera camera = LookingAt(eye, {-0.5, -0.3, -1.0}, 40.0);
-    const GuideSet guides = Render(scene, camera, Sized(21, 21)).guides;
-    const glm::dvec3 view = -glm::dvec3(camera.world_from_camera[2]);
-    int here = 0;
-    for (int pixel = 0; pixel < 441; ++pixel) {
-      EXPECT_EQ(guides.Plane(Layer::kCoverage)[pixel], 1.0f);
-      EXPECT_NEAR(glm::length(glm::dvec3(guides.Vec3(Layer::kNormal, pixel))), 1.0, kRounded);
-      const glm::dvec3 direction = PixelRay(camera, 21, 21, pixel % 21, pixel / 21).direction;
-      for (int axis = 0; axis < 3; ++axis) ASSERT_TRUE(eye[axis] < 1.0 || direction[axis] < 0.0) << "out of the box";
-      const double depth = guides.Plane(Layer::kDepth)[pixel];
-      const double expected = across(eye, direction) * glm::dot(direction, view);
-      const bool is_here = depth < 0.5 * expected;
-      here += is_here;
-      // Float's rounding, and double's: on the surface where the eye is nothing else is left.
-      EXPECT_NEAR(depth, is_here ? 0.0 : expected, (is_here ? 0.0 : std::ldexp(expected, -24)) + 0x1p-50) << pixel;
+  // Also where corners are so far from their object's own origin that they are sums of large numbers.
+  for (const float baked : {0.0f, 1024.0f, 65536.0f}) {
+    Mesh mesh = CubeMesh();
+    for (glm::vec3& corner : mesh.positions) corner += baked;
+    const Scene far_box = SceneOf(mesh);
+    for (const glm::dvec3 eye : {glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(1, 1, 1)}) {
+      const Camera camera = LookingAt(eye + double(baked), glm::dvec3(-0.5, -0.3, -1.0) + double(baked), 40.0);
+      const GuideSet guides = Render(far_box, camera, Sized(21, 21)).guides;
+      const glm::dvec3 view = -glm::dvec3(camera.world_from_camera[2]);
+      int here = 0;
+      for (int pixel = 0; pixel < 441; ++pixel) {
+        EXPECT_EQ(guides.Plane(Layer::kCoverage)[pixel], 1.0f);
+        EXPECT_NEAR(glm::length(glm::dvec3(guides.Vec3(Layer::kNormal, pixel))), 1.0, kRounded);
+        const glm::dvec3 direction = PixelRay(camera, 21, 21, pixel % 21, pixel / 21).direction;
+        for (int axis = 0; axis < 3; ++axis) ASSERT_TRUE(eye[axis] < 1.0 || direction[axis] < 0.0) << "out of the box";
+        const double depth = guides.Plane(Layer::kDepth)[pixel];
+        const double expected = across(eye, direction) * glm::dot(direction, view);
+        const bool is_here = depth < 0.5 * expected;
+        here += is_here;
+        // Float's rounding, and double's: on the surface where the eye is nothing else is left.
+        EXPECT_NEAR(depth, is_here ? 0.0 : expected,
+                    (is_here ? 0.0 : std::ldexp(expected, -24)) + (1.0 + baked) * 0x1p-50)
+            << pixel;
+      }
+      RecordProperty("seen_here_" + std::to_string(int(eye.y + eye.z)) + "_of_" + std::to_string(int(baked)), here);
     }
-    RecordProperty("seen_here_" + std::to_string(int(eye.y + eye.z)), here);
   }
 }
 

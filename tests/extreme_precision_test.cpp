@@ -340,7 +340,8 @@ TEST(Precision, DecisionsAtTheThreshold) {
     const double bend = 1.5 * LargestHalfStep(kept) * LargestHalfStep(kept) / threshold;
     const double reach = std::sqrt(3.0) * LargestHalfStep(kept) + 0x1p-20;
     int seen = 0, near = 0, flipped = 0, other_level = 0, other_offset = 0;
-    double expected = 0.0, squares = 0.0;
+    double expected = 0.0;
+    std::vector<double> differences;  // by seed, of what is decided otherwise from what is expected
     TransferOptions options;
     for (options.seed = 0; options.seed < kSeeds; ++options.seed) {
       style.transfer.threshold = 2.0f * threshold;
@@ -370,16 +371,19 @@ TEST(Precision, DecisionsAtTheThreshold) {
         expected_here += std::abs(glm::distance(glm::dvec3(stored), glm::dvec3(s)) - distance) / (2.0 * within);
       }
       flipped += flipped_here, expected += expected_here;
-      squares += (flipped_here - expected_here) * (flipped_here - expected_here);
+      differences.push_back(flipped_here - expected_here);
     }
     EXPECT_GT(near, 500);
     EXPECT_GT(flipped, 50);
-    // The seeds' differences from what is expected of them, taken as chance of mean 0: five deviations of their sum.
-    EXPECT_NEAR(flipped, expected, 5.0 * std::sqrt(squares)) << NameOf(kept);
-    // And that is sure enough to say something.
-    EXPECT_LT(5.0 * std::sqrt(squares), 0.5 * expected) << NameOf(kept);
+    // How sure their sum is, by how far the seeds are from each other: five deviations of it, which is little of it.
+    const double mean = (flipped - expected) / kSeeds;
+    double squares = 0.0;
+    for (const double difference : differences) squares += (difference - mean) * (difference - mean);
+    const double deviation = std::sqrt(squares / (kSeeds - 1) * kSeeds);
+    EXPECT_NEAR(flipped, expected, 5.0 * deviation) << NameOf(kept);
+    EXPECT_LT(5.0 * deviation, 0.5 * expected) << NameOf(kept);
     std::printf("threshold, %s: of %d near it %d decided otherwise, %.1f +- %.1f expected\n", NameOf(kept), near,
-                flipped, expected, std::sqrt(squares));
+                flipped, expected, deviation);
     std::printf("threshold, %s: %.3f %% near, %.3f %% decided otherwise; level %.3f %%, source %.3f %% of %d\n",
                 NameOf(kept), 100.0 * near / seen, 100.0 * flipped / seen, 100.0 * other_level / seen,
                 100.0 * other_offset / seen, seen);

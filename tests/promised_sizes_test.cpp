@@ -180,6 +180,14 @@ std::vector<Claim> Claims() {
       {"p.tga", BytesOf({0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 64, 0, 64, 32, 8})},
       {"p.bmp", BytesOf({'B', 'M', 0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0, 0, 64, 0, 0, 0, 64, 0, 0, 1,
                          0,   24,  0, 0, 0, 0, 0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0})},
+      {"p.psd", BytesOf({'8', 'B', 'P', 'S', 0, 1, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 64, 0, 0, 0,
+                         64,  0,   0,   8,   0, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,  0, 0, 0})},
+      {"p.dds",
+       BytesOf({'D', 'D', 'S', ' ', 124, 0, 0, 0, 7, 16, 8, 0, 0, 64, 0, 0, 0, 64, 0, 0, 0,  0, 0, 0, 0, 0,  0, 0,
+                1,   0,   0,   0,   0,   0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0,  0, 0, 0, 0, 0,  0, 0,
+                0,   0,   0,   0,   0,   0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 32, 0, 0, 0, 4, 0,  0, 0,
+                'D', 'X', 'T', '1', 0,   0, 0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0,  0, 0, 0, 0, 16, 0, 0})},
+      {"p.sgi", BytesOf({1, 218, 0, 1, 0, 3, 64, 0, 64, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 255})},
   };
 }
 
@@ -197,7 +205,28 @@ TEST(PromisesOfPictures, SidesThatNoFileOfThatSizeHolds) {
     };
     ASSERT_TRUE(WriteFileAtomically(folder / claim.name, claim.header));
     refused(ReadPicture(folder / claim.name));
-    if (std::string_view(claim.name) != "p.tga") refused(DecodePicture(claim.header, claim.name));
+    if (std::string_view(claim.name) != "p.tga" && std::string_view(claim.name) != "p.sgi")
+      refused(DecodePicture(claim.header, claim.name));
+  }
+}
+
+// Readers that take memory as they open a file: 65535 rows of 65535 channels of an SGI, 4 GiB of palette of a PSD, and
+// all of a BMP that is packed by runs.
+TEST(PromisesOfPictures, HeadersThatCostAsTheyAreOpened) {
+  const auto refused = [](std::vector<std::byte> header, const char* name, const char* why) {
+    header.resize(header.size() + 4096);
+    const auto picture = DecodePicture(header, name);
+    ASSERT_FALSE(picture) << name;
+    EXPECT_THAT(picture.error().message, HasSubstr(why));
+  };
+  refused(BytesOf({1, 218, 1, 1, 0, 3, 0, 4, 255, 255, 255, 255}), "p.sgi", "promises more than its");
+  refused(BytesOf({'8', 'B', 'P', 'S', 0, 1, 0, 0, 0, 0, 0, 0,   0,   1,   0,
+                   0,   0,   4,   0,   0, 0, 4, 0, 8, 0, 2, 255, 255, 255, 255}),
+          "p.psd", "promises more than its");
+  for (const int packing : {1, 2}) {
+    refused(BytesOf({'B', 'M', 0,   0,   0, 0, 0,   0,   0, 0, 54, 0, 0, 0, 40,     0,
+                     0,   0,   255, 255, 0, 0, 255, 255, 0, 0, 1,  0, 8, 0, packing}),
+            "p.bmp", "packed by runs");
   }
 }
 
@@ -209,12 +238,14 @@ TEST(PromisesOfPictures, WhatIsPackedTightlyIsRead) {
   ASSERT_TRUE(white) << white.error().message;
   EXPECT_EQ(white->width, 1024);
   const TemporaryFolder folder;
-  auto runs = BytesOf({0, 0, 11, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 2, 8, 0});  // greys, 1024 x 512
-  for (int i = 0; i < 1024 * 512 / 128; ++i) runs.insert(runs.end(), {std::byte(0xff), std::byte(77)});
+  // Of a palette of one colour with alpha, 1024 x 512.
+  auto runs = BytesOf({0, 1, 9, 0, 0, 1, 0, 32, 0, 0, 0, 0, 0, 4, 0, 2, 8, 8, 30, 20, 10, 255});
+  for (int i = 0; i < 1024 * 512 / 128; ++i) runs.insert(runs.end(), {std::byte(0xff), std::byte(0)});
   ASSERT_TRUE(WriteFileAtomically(folder / "p.tga", runs));
-  const auto grey = ReadPicture(folder / "p.tga");
-  ASSERT_TRUE(grey) << grey.error().message;
-  EXPECT_EQ(grey->At(1023, 511)[0], 77 * 257);
+  const auto plain = ReadPicture(folder / "p.tga");
+  ASSERT_TRUE(plain) << plain.error().message;
+  EXPECT_EQ(plain->At(1023, 511)[0], 10 * 257);
+  EXPECT_EQ(plain->At(1023, 511)[2], 30 * 257);
 }
 
 }  // namespace

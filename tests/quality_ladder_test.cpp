@@ -102,6 +102,14 @@ TEST(QualityLadder, DraftsOfNormalsAloneKeepTheirGuides) {
             "--upsample 4 --set transfer.method=litsphere");
 }
 
+TEST(QualityLadder, StylesThatWeighGuidesWithoutLightAreDraftedBySmallerOnes) {
+  StyleSet weighed = Open("oil");
+  weighed.styles.front().transfer.guide_weights[Layer::kNormal] = 2.0f;
+  ASSERT_FALSE(weighed.styles.front().transfer.guide_weights.ArePlain());
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kPreview, weighed, kCast)), "");
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, weighed, kCast)), "--upsample 4");
+}
+
 // One setting is for all styles of a picture: a rung that takes from one must not give to another.
 TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
   StyleSet two = Open("oil");

@@ -108,18 +108,22 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
   }
 }
 
-// Of one picture the first way is there, whatever the moment made of the times; a later one only where even its upper
-// quartile is below the first's lower one.
+// Of one picture the first way is there, whatever the moment made of the times; a later one only where even the upper
+// quartile of its guides is below the first's lower one.
 TEST(TradeReport, TheFrontHasAPictureOnce) {
   TradeReport report;
   for (const char* name : {"style", "again", "other"}) report.ways.push_back(MadeUpWay("axis", name, 10.0, 1.0));
   report.ways[2].both.mean = 2.0;
   report.ways[0].total_ms = {10.0, 9.0, 11.0};
+  report.ways[0].guides_ms = {5.0, 4.5, 5.5};
   report.ways[1].same_as = 0;
-  report.ways[1].total_ms = {9.5, 8.5, 9.5};
+  report.ways[1].total_ms = {8.5, 8.4, 8.6};
+  report.ways[1].guides_ms = report.ways[0].guides_ms;
   report.ways[2].total_ms = {9.8, 9.7, 9.9};
   EXPECT_EQ(FrontOf(report), (std::vector<std::size_t>{2, 0})) << "not pushed off by the one that is not there";
-  report.ways[1].total_ms = {8.5, 8.0, 8.9};
+  report.ways[1].guides_ms = {4.0, 4.0, 4.0};
+  EXPECT_EQ(FrontOf(report), (std::vector<std::size_t>{2, 0})) << "one run says nothing";
+  report.ways[1].guides_ms = {4.0, 3.9, 4.1};
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
 }
 
