@@ -72,7 +72,7 @@ def measure(program, counter):
         scenes = {name: Path(scratch) / (name + ".glb") for name in ("sun", "area")}
         for name, path in scenes.items():
             with_one_light(ROOT / "scenes/stilllife.glb", path, name == "area")
-        preloaded = Path(shutil.copy(counter, scratch))  # the loader takes no path with spaces or colons
+        preloaded = Path(shutil.copy(counter, scratch))  # the loader takes no path with spaces or colons, as a source's may be
         for title, scene, (verb, *arguments) in ROWS:
             output = Path(scratch) / ("out.png" if verb == "stylize" else "out.exr")
             allocated = Path(scratch) / ("allocated-" + title)
@@ -81,7 +81,8 @@ def measure(program, counter):
                                    "--threads", 1, "-o", output], LD_PRELOAD=str(preloaded),
                                   SCUMBLE_ALLOCATED_TO=str(allocated), XDG_CACHE_HOME=scratch + "/cache-" + title)[2])
             if not allocated.exists():
-                sys.exit("%s was not loaded into %s: is it built for the same machine?" % (counter, program))
+                sys.exit("%s was not loaded into %s: it must be built for the same machine, and %s allow programs, "
+                         "without a space or colon in its path" % (counter, program, scratch))
             rays, work = told["rays"], told["work"]
             rows.append((title, [rays["primary"], rays["shadow"], rays["bounce"], work["light_samples"], work["materials"],
                                  work["texture_lookups"], work["textures_decoded"],

@@ -119,9 +119,11 @@ def section(name, report):
     scene, style, what = SAMPLES[name][:3]
     front = [next(way for way in report["ways"] if way["way"] == each) for each in report["front"]]
     own = [way for way in report["ways"] if way["chosen"] and not way["front"]]
+    left_out = ["Left out: %s." % "; ".join(report["left_out"]), ""] if report["left_out"] else []
     lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
         what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "", report["width"],
         report["height"], report["machine"], report["repeats"]), ""]
+    lines += left_out
     lines += ["![time against error of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]
     lines += ["The front%s:" % (", and below it the style as it is" if own else ""), ""] + table(front + own)
     lines += ["", "<details><summary>All ways</summary>", ""] + table(by_axis(report["ways"]))
