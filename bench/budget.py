@@ -39,11 +39,11 @@ def paint(arguments, job, more, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scumble", default=SOURCE / "build" / "scumble")
-    parser.add_argument("--size", default="640x360")
+    parser.add_argument("--size", default="1280x720")
     parser.add_argument("--verbs", default="stylize,transfer")
     parser.add_argument("--scenes", default="suzanne,stilllife,toys,snail")
-    parser.add_argument("--styles", default="oil,charcoal,chiaroscuro")
-    parser.add_argument("--shares", default="0.8,1.2,2",
+    parser.add_argument("--styles", default="oil,charcoal,sumi-e,chiaroscuro")
+    parser.add_argument("--shares", default="0.6,0.8,1.2,2",
                         help="budgets, as shares of what the style itself took in a first run")
     parser.add_argument("--repeats", type=int, default=5, help="runs of each, that take turns")
     parser.add_argument("--csv", help="every run, as a file")
