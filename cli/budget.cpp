@@ -34,6 +34,10 @@ Quality QualityOf(const std::string& name) {
 
 // One frame by the way at a place of the ladder.
 using PaintWay = std::function<Expected<double>(const Way& way)>;
+struct Trials {
+  PaintWay paint;  // milliseconds
+  PaintWay judge;  // how far off the picture is: PaintTrial::Judge
+};
 
 std::string WordsOf(const Way& way) {
   const std::string options = OptionsOf(way);
@@ -62,22 +66,35 @@ Status TakeQuality(const BudgetOptions& options, const LadderFrame& frame, Style
 }
 
 Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const std::string& circumstances,
-                  StyleSet& styles, PictureOptions& picture, const Globals& globals, const PaintWay& paint) {
+                  StyleSet& styles, PictureOptions& picture, const Globals& globals, const Trials& trials) {
   const std::vector<Way> ways = QualityLadder(styles, frame);
   FileCache cache(CacheFolder() ? *CacheFolder() / "times" : std::filesystem::path());
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
   for (const Way& way : ways) calibration.ways.push_back(way.name);
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (std::size_t j = i + 1; j < ways.size(); ++j) {
+      if (AreRivals(ways[i], ways[j])) calibration.rivals[i] = j;
+    }
+  }
   ProgressBar bar("calibration", globals.quiet);
   const Progress progress = bar.Part(0.0, 1.0);
-  // Each way once, the one that is taken nine times, and the last twice more for a cold start.
-  const double usual_runs = static_cast<double>(ways.size()) + kCalibrationRuns + 2.0;
+  // Each way once, the one that is taken nine times, and the last twice more for a cold start; and two judgements.
+  const double usual_runs = static_cast<double>(ways.size()) + kCalibrationRuns + 2.0 + 2.0;
   int runs = 0;
   const MeasureWay measure = [&](std::size_t place) {
     if (runs == 0) Say(globals, fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
     if (progress) progress(std::min(0.99, runs++ / usual_runs));
-    return paint(ways[place]);
+    return trials.paint(ways[place]);
   };
-  SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure));
+  bool judges = false;
+  const JudgeWay judge = [&](std::size_t place) {
+    if (!std::exchange(judges, true)) {
+      Say(globals, "--budget-ms: two ways fit whose order differs by style; which is nearer is measured here, once");
+    }
+    if (progress) progress(std::min(0.99, runs++ / usual_runs));
+    return trials.judge(ways[place]);
+  };
+  SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure, judge));
   bar.Clear();
   EndStage(globals, "calibration");
   const Way& way = ways[picked.way];
@@ -94,6 +111,9 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
                               {"fits", picked.fits},
                               {"measured_runs", picked.measured},
                               {"options", OptionsJson(way)}};
+  for (const auto& [place, off] : picked.compared) {
+    if (std::isfinite(off)) picture.chosen["budget"]["compared"][ways[place].name] = off;
+  }
   return Take(way, styles, picture);
 }
 
@@ -107,41 +127,18 @@ std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture,
                      KeepsField(picture, globals) ? "; keeps the field" : "");
 }
 
-// The scene as it stands in the frame that is looked at.
-Expected<Scene> SceneToMeasure(const SceneOptions& options, std::optional<int> frame, const Globals& globals,
-                               BlenderFilm& film) {
-  if (IsBlenderScene(options.scene)) {
-    BlenderOptions blender = options.blender;
-    blender.frame = frame;
-    return LoadBlenderScene(options.scene, blender, globals, &film);
-  }
-  SCUMBLE_ASSIGN(const AnimatedScene scene,
-                 AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
-  if (!scene.moves() || !frame) return scene.rest();
-  SCUMBLE_ASSIGN(const FrameRate rate, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
-  return scene.SceneAt(SecondsAt(*frame, rate));
-}
-
-// What is opened when the first way is measured.
-struct OpenedScene {
-  Scene scene;
-  Camera camera;
-  LayerSet layers;
-};
-
-Expected<OpenedScene> OpenToMeasure(const SceneOptions& options, std::optional<int> frame, StyleSet& styles,
+// What is opened when the first way is measured: the frame as the run will have it.
+Expected<SceneAtRest> OpenToMeasure(const SceneOptions& options, std::optional<int> frame, StyleSet& styles,
                                     const Globals& globals) {
-  BlenderFilm film;
-  SCUMBLE_ASSIGN(Scene scene, SceneToMeasure(options, frame, globals, film));
-  SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, WishesOf(scene.instances, scene), options.scene));
-  SCUMBLE_ASSIGN(PreparedView view, ViewScene(scene, options, layers));
+  const LayersFor layers = [&](const StyleWishes& wishes) { return RequiredLayers(styles, wishes, options.scene); };
+  SCUMBLE_ASSIGN(SceneAtRest opened, OpenSceneAt(frame, options, layers, globals, false));
   MemoryNeed need;
   AddProgram(globals.threads, need);
-  AddScene(scene, CountNeededPixels(scene, options, layers), need);
+  AddScene(opened.scene, CountNeededPixels(opened.scene, options, opened.layers), need);
   SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals, "make the scene or its textures smaller"));
   // Which is reading, and counts as little as that of the scene.
-  SCUMBLE_RETURN_IF_ERROR(DecodeNeededTextures(scene, options, layers));
-  return OpenedScene{std::move(scene), std::move(view.camera), layers};
+  SCUMBLE_RETURN_IF_ERROR(DecodeNeededTextures(opened.scene, options, opened.layers));
+  return opened;
 }
 
 }  // namespace
@@ -192,7 +189,8 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, con
                   guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
   PaintTrial trial(styles, picture, name, over, globals);
   return TakeWithin(options, ladder, circumstances, styles, picture, globals,
-                    [&](const Way& way) { return trial.Paint(way, guides); });
+                    {[&](const Way& way) { return trial.Paint(way, guides); },
+                     [&](const Way& way) { return trial.Judge(way, guides); }});
 }
 
 Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame,
@@ -208,21 +206,31 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
                   GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, globals));
   Globals silent = globals;
   silent.quiet = true, silent.timing = nullptr;
-  std::optional<OpenedScene> opened;
+  std::optional<SceneAtRest> opened;
   PaintTrial trial(styles, picture, scene.scene, over, globals);
-  return TakeWithin(options, ladder, circumstances, styles, picture, globals, [&](const Way& way) -> Expected<double> {
+  double casting_ms = 0.0;
+  const auto cast = [&](const Way& way) -> Expected<GuideSet> {
     if (!opened) {
       SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
     }
     SceneOptions small = scene;
     small.size = fmt::format("{}x{}", size.width / UpsampleOf(way), size.height / UpsampleOf(way));
     Stopwatch watch;
-    SCUMBLE_ASSIGN(const SceneGuides made,
-                   CastScene(opened->scene, opened->camera, nullptr, small, opened->layers, silent, {}, false));
-    const double ms = watch.Lap();
-    SCUMBLE_ASSIGN(const double painting, trial.Paint(way, made.guides));
-    return ms + painting;
-  });
+    SCUMBLE_ASSIGN(SceneGuides made,
+                   CastScene(opened->scene, opened->view.camera, nullptr, small, opened->layers, silent, {}, false));
+    casting_ms = watch.Lap();
+    return std::move(made.guides);
+  };
+  const PaintWay paint = [&](const Way& way) -> Expected<double> {
+    SCUMBLE_ASSIGN(const GuideSet guides, cast(way));
+    SCUMBLE_ASSIGN(const double painting, trial.Paint(way, guides));
+    return casting_ms + painting;
+  };
+  const PaintWay judge = [&](const Way& way) -> Expected<double> {
+    SCUMBLE_ASSIGN(const GuideSet guides, cast(way));
+    return trial.Judge(way, guides);
+  };
+  return TakeWithin(options, ladder, circumstances, styles, picture, globals, {paint, judge});
 }
 
 }  // namespace scumble

@@ -1,29 +1,55 @@
 #include "cli/budget_trial.h"
 
+#include <limits>
+#include <memory>
+
 #include "cli/cache.h"
+#include "cli/memory_limit.h"
 #include "cli/quality_ladder.h"
 #include "cli/show.h"
+#include "cli/tradeoff_reference.h"
+#include "image/check.h"
 #include "image/stopwatch.h"
 #include "io/picture_file.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
 
-Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample) {
-  if (prepared_for_ == way.name) return Ok();
+namespace {
+
+std::size_t PixelsOf(const PreparedStyle& style) {
+  const PreparedExemplar& exemplar = *style.exemplar;
+  return std::size_t(exemplar.width()) * std::size_t(exemplar.height()) * std::size_t(exemplar.count());
+}
+
+// What the energy takes beside all that this process has had: 250 bytes for each place (measure/energy.h), and the planes
+// that it is made of.
+bool HasMemoryFor(std::size_t places, const Globals& globals) {
+  constexpr std::uint64_t kEachPlace = 250 + 100;
+  const MemoryLimit limit = LimitFor(globals);
+  return limit.bytes == 0 || PeakMemory() + kEachPlace * places <= limit.bytes;
+}
+
+}  // namespace
+
+// `bare`: without paper.
+Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample, bool bare) {
+  const std::string wanted = way.name + (bare ? ", bare" : "");
+  if (prepared_for_ == wanted) return Ok();
   StyleSet styles = styles_;
   SCUMBLE_RETURN_IF_ERROR(ApplyWay(way, styles));
   FileCache cache = UserCache();
   PrepareOptions options;
   options.cache = &cache, options.threads = globals_.threads;
   prepared_.clear();
-  for (const Style& style : styles.styles) {
+  for (Style& style : styles.styles) {
+    if (bare) style.paper = {};
     SCUMBLE_ASSIGN(PreparedStyle one, scumble::Prepare(style, guides.height() * upsample, options));
     prepared_.push_back(std::move(one));
   }
   SCUMBLE_ASSIGN(const std::optional<double> given, ParseExposure(picture_.exposure));
   exposure_ = given ? *given : MeasureExposure(prepared_, guides, globals_.threads).value_or(0.0);
-  prepared_for_ = way.name;
+  prepared_for_ = wanted;
   return Ok();
 }
 
@@ -36,16 +62,7 @@ Expected<const Picture*> PaintTrial::Over(const GuideSet& guides) {
   return fits ? &*over_ : nullptr;
 }
 
-Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
-  const int upsample = picture_.upsample * UpsampleOf(way);
-  SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample));
-  Stopwatch watch;
-  std::optional<GuideSet> larger;
-  if (upsample > 1) {
-    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, globals_.threads));
-  }
-  double ms = watch.Lap();
-  const GuideSet& guides = larger ? *larger : given;
+Status PaintTrial::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture, double& ms) {
   std::vector<const PreparedStyle*> pointers;
   for (const PreparedStyle& one : prepared_) pointers.push_back(&one);
   const bool needs_map = styles_.NeedsMap(guides);
@@ -56,14 +73,62 @@ Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
   TransferOptions options;
   options.seed = picture_.seed, options.exposure = exposure_, options.threads = globals_.threads;
   options.frame = picture_.frame.value_or(0);
-  SCUMBLE_ASSIGN(options.over, Over(guides));
-  options.keep_field = KeepsField(picture_, globals_);
+  SCUMBLE_ASSIGN(const FrameRate fps, RateFor(picture_, guides));
+  options.fps_numerator = fps.numerator, options.fps_denominator = fps.denominator;
+  options.keep_field = bare || KeepsField(picture_, globals_);
+  if (!bare) {
+    SCUMBLE_ASSIGN(options.over, Over(guides));
+  }
+  Stopwatch watch;
+  SCUMBLE_RETURN_IF_ERROR(needs_map ? scumble::Transfer(pointers, map, guides, options, scratch, picture)
+                                    : scumble::Transfer(prepared_.front(), guides, options, scratch, picture));
+  ms += watch.Lap();
+  return Ok();
+}
+
+Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
+  const int upsample = picture_.upsample * UpsampleOf(way);
+  SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample, false));
+  Stopwatch watch;
+  std::optional<GuideSet> larger;
+  if (upsample > 1) {
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, globals_.threads));
+  }
+  double ms = watch.Lap();
   TransferScratch scratch;
   Picture picture;
-  watch.Lap();
-  SCUMBLE_RETURN_IF_ERROR(needs_map ? Transfer(pointers, map, guides, options, scratch, picture)
-                                    : Transfer(prepared_.front(), guides, options, scratch, picture));
-  return ms + watch.Lap();
+  SCUMBLE_RETURN_IF_ERROR(Transfer(larger ? *larger : given, false, scratch, picture, ms));
+  return ms;
+}
+
+Expected<double> PaintTrial::Judge(const Way& way, const GuideSet& given) {
+  SCUMBLE_CHECK_EQ(UpsampleOf(way), 1);
+  constexpr double kNotKnown = std::numeric_limits<double>::infinity();
+  if (styles_.styles.size() > 1 || styles_.NeedsMap(given)) return kNotKnown;
+  const int upsample = picture_.upsample;
+  std::optional<GuideSet> larger;
+  if (upsample > 1) {
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, globals_.threads));
+  }
+  const GuideSet& guides = larger ? *larger : given;
+  SCUMBLE_RETURN_IF_ERROR(Prepare(Way(), given, upsample, true));
+  const PreparedStyle exact = prepared_.front();
+  if (!HasMemoryFor(guides.pixel_count() + PixelsOf(exact), globals_)) return kNotKnown;
+  const double exposure = exposure_;
+  SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample, true));
+  TransferScratch scratch;
+  Picture picture;
+  double ms = 0.0;
+  SCUMBLE_RETURN_IF_ERROR(Transfer(guides, true, scratch, picture, ms));
+  // The guides are the caller's and outlive it.
+  const TradeReference reference(std::shared_ptr<const GuideSet>(std::shared_ptr<void>(), &guides), exact, exposure,
+                                 globals_.threads);
+  EnergyOptions options;
+  options.samples = kJudgedPatches;
+  TradeMeasure measure;
+  // Guides that are no numbers can be painted by, but not be measured.
+  if (!reference.MeasurePaint(picture, &scratch.field, options, measure).ok()) return kNotKnown;
+  return measure.both.mean;
 }
 
 }  // namespace scumble

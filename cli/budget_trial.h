@@ -29,8 +29,19 @@ class PaintTrial {
   // refuse it. Returns the milliseconds of wall clock that both took; preparing the style is not counted.
   Expected<double> Paint(const Way& way, const GuideSet& guides);
 
+  // How far the picture of a way that leaves the guides' size alone is from what the painting shows under these guides, and
+  // what of the painting it misses: `both` of measure/energy.h, at kJudgedPatches patches, the same ones for each way. Without
+  // paper and what is underneath. 0 where nothing is covered; infinity where several styles paint, memory for it is not there
+  // or guides are no numbers. Errors as of Paint.
+  Expected<double> Judge(const Way& way, const GuideSet& guides);
+
+  // So few that a judgement takes a second or two. Rivals that are closer than that can tell are as good as each other.
+  static constexpr std::size_t kJudgedPatches = 1024;
+
  private:
-  Status Prepare(const Way& way, const GuideSet& guides, int upsample);
+  Status Prepare(const Way& way, const GuideSet& guides, int upsample, bool bare);
+  // Adds its time to `ms`. `bare`: without what is underneath, and with a field.
+  Status Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture, double& ms);
   Expected<const Picture*> Over(const GuideSet& guides);
 
   StyleSet& styles_;
@@ -38,7 +49,7 @@ class PaintTrial {
   const std::string& name_;
   const std::string& over_file_;
   const Globals& globals_;
-  std::string prepared_for_;  // that way's name
+  std::string prepared_for_;  // that way's name, and what else
   std::vector<PreparedStyle> prepared_;
   double exposure_ = 0.0;
   std::optional<Picture> over_;

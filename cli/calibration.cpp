@@ -24,16 +24,17 @@ double Median(Runs runs) {
   return runs.size() % 2 ? runs[half] : 0.5 * (runs[half - 1] + runs[half]);
 }
 
-bool IsTime(const nlohmann::json& json, double& ms) {
+bool IsNumber(const nlohmann::json& json, double& number) {
   if (!json.is_number()) return false;
-  ms = json.get<double>();
-  return ms >= 0.0 && std::isfinite(ms);
+  number = json.get<double>();
+  return number >= 0.0 && std::isfinite(number);
 }
 
-// Times by way, as {"circumstances": …, "cold_ms": 3.5, "ways": {"--upsample 4": [12.5, …], …}}. Nothing where the text is
-// none of ours, or of others: keys are hashes.
+// Times by way, as {"circumstances": …, "cold_ms": 3.5, "ways": {"--upsample 4": [12.5, …], …}, "off": {"--upsample 4": 0.3}}.
+// Nothing where the text is none of ours, or of others: keys are hashes.
 struct Known {
   std::map<std::string, Runs> ways;
+  std::map<std::string, double> off;  // of ways that had rivals
   double cold_ms = 0.0;
 };
 std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::string& circumstances) {
@@ -44,22 +45,32 @@ std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::str
   const auto cold = json.find("cold_ms");
   if (ways == json.end() || !ways->is_object() || cold == json.end()) return std::nullopt;
   Known known;
-  if (!IsTime(*cold, known.cold_ms)) return std::nullopt;
+  if (!IsNumber(*cold, known.cold_ms)) return std::nullopt;
   for (const auto& [way, times] : ways->items()) {
     if (!times.is_array() || times.size() > std::size_t(kCalibrationRuns)) return std::nullopt;
     for (const auto& time : times) {
       double ms = 0.0;
-      if (!IsTime(time, ms)) return std::nullopt;
+      if (!IsNumber(time, ms)) return std::nullopt;
       known.ways[way].push_back(ms);
     }
+  }
+  const auto off = json.find("off");
+  if (off == json.end() || !off->is_object()) return std::nullopt;
+  for (const auto& [way, value] : off->items()) {
+    if (!IsNumber(value, known.off[way])) return std::nullopt;
   }
   return known;
 }
 
 class Picker {
  public:
-  Picker(const Calibration& calibration, double budget_ms, const MeasureWay& measure)
-      : calibration_(calibration), budget_ms_(budget_ms), measure_(measure), runs_(calibration.ways.size()) {}
+  Picker(const Calibration& calibration, double budget_ms, const MeasureWay& measure, const JudgeWay& judge)
+      : calibration_(calibration),
+        budget_ms_(budget_ms),
+        measure_(measure),
+        judge_(judge),
+        runs_(calibration.ways.size()),
+        off_(calibration.ways.size()) {}
 
   void Load() {
     if (!calibration_.cache || calibration_.anew) return;
@@ -71,16 +82,20 @@ class Picker {
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       const auto found = known->ways.find(calibration_.ways[way]);
       if (found != known->ways.end()) runs_[way] = found->second;
+      const auto off = known->off.find(calibration_.ways[way]);
+      if (off != known->off.end()) off_[way] = off->second;
     }
   }
 
   void Store() const {
-    if (!calibration_.cache || measured_ == 0 || !cold_ms_) return;
+    if (!calibration_.cache || (measured_ == 0 && !judged_) || !cold_ms_) return;
     nlohmann::ordered_json json{{"circumstances", calibration_.circumstances},
                                 {"cold_ms", cold_ms_.value_or(0.0)},
-                                {"ways", nlohmann::ordered_json::object()}};
+                                {"ways", nlohmann::ordered_json::object()},
+                                {"off", nlohmann::ordered_json::object()}};
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       if (!runs_[way].empty()) json["ways"][calibration_.ways[way]] = runs_[way];
+      if (off_[way] && std::isfinite(*off_[way])) json["off"][calibration_.ways[way]] = *off_[way];
     }
     const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
     calibration_.cache->Store(Key(), std::as_bytes(std::span(text)));
@@ -89,7 +104,7 @@ class Picker {
   Expected<PickedWay> Pick() {
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       SCUMBLE_ASSIGN(const bool fits, Fits(way));
-      if (fits) return Picked(way, true);
+      if (fits) return NearerOf(way);
     }
     // What was given up at its first run may have been slow by chance: the least of its runs says how quick it can be.
     const auto least = [](const Runs& runs) { return *std::min_element(runs.begin(), runs.end()); };
@@ -104,7 +119,25 @@ class Picker {
   std::string Key() const { return fmt::format("{:016x}", HashText(calibration_.circumstances)); }
 
   double Predicted(std::size_t way) const { return PredictedMs(runs_[way], cold_ms_.value_or(0.0)); }
-  PickedWay Picked(std::size_t way, bool fits) const { return {way, Predicted(way), fits, measured_}; }
+  PickedWay Picked(std::size_t way, bool fits) const { return {way, Predicted(way), fits, measured_, {}}; }
+
+  // Of a way that fits and its rival, if there is one that does.
+  Expected<PickedWay> NearerOf(std::size_t way) {
+    const auto found = calibration_.rivals.find(way);
+    if (found == calibration_.rivals.end()) return Picked(way, true);
+    const std::size_t rival = found->second;
+    SCUMBLE_CHECK(rival > way && rival < runs_.size());
+    SCUMBLE_ASSIGN(const bool fits, Fits(rival));
+    if (!fits) return Picked(way, true);
+    for (const std::size_t one : {way, rival}) {
+      if (off_[one]) continue;
+      SCUMBLE_ASSIGN(off_[one], judge_(one));
+      judged_ = true;
+    }
+    PickedWay picked = Picked(*off_[rival] < *off_[way] ? rival : way, true);
+    picked.compared = {{way, *off_[way]}, {rival, *off_[rival]}};
+    return picked;
+  }
 
   Expected<bool> Fits(std::size_t way) {
     const Runs& runs = runs_[way];
@@ -143,7 +176,10 @@ class Picker {
   const Calibration& calibration_;
   const double budget_ms_;
   const MeasureWay& measure_;
-  std::vector<Runs> runs_;  // by way
+  const JudgeWay& judge_;
+  std::vector<Runs> runs_;                  // by way
+  std::vector<std::optional<double>> off_;  // likewise, of those that were judged
+  bool judged_ = false;                     // some now
   std::optional<double> cold_ms_;
   int measured_ = 0;
 };
@@ -156,9 +192,11 @@ double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
   return slowest + (slowest - Median({runs_ms.begin(), runs_ms.end()})) + cold_ms;
 }
 
-Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure) {
+Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure,
+                            const JudgeWay& judge) {
   SCUMBLE_CHECK(!calibration.ways.empty());
-  Picker picker(calibration, budget_ms, measure);
+  SCUMBLE_CHECK(judge || calibration.rivals.empty());
+  Picker picker(calibration, budget_ms, measure, judge);
   picker.Load();
   Expected<PickedWay> picked = picker.Pick();
   picker.Store();

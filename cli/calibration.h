@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,24 +27,32 @@ struct Calibration {
   std::vector<std::string> ways;  // by options, the most accurate first; at least one
   TableCache* cache = nullptr;    // where times are kept between runs; null: nowhere
   bool anew = false;              // what is kept does not count
+  // Of a way, a place in `ways`: one further down that may be nearer in this scene and style. Where both fit they are compared.
+  std::map<std::size_t, std::size_t> rivals = {};
 };
 
 // Milliseconds that the way, a place in Calibration::ways, takes once.
 using MeasureWay = std::function<Expected<double>(std::size_t way)>;
+// How far off its picture is, 0 or more; infinity where that cannot be known.
+using JudgeWay = std::function<Expected<double>(std::size_t way)>;
 
 struct PickedWay {
   std::size_t way = 0;        // in Calibration::ways
   double predicted_ms = 0.0;  // nine frames of ten take no longer
   bool fits = false;          // otherwise it is the quickest there is
   int measured = 0;           // runs that were made for it now; 0: all times were known
+  std::map<std::size_t, double> compared = {};  // rivals that were weighed against each other, and how far off they are
 };
 
 // What is predicted from times of equal runs, where the first run of a process takes `cold_ms` longer; infinity without any.
 double PredictedMs(std::span<const double> runs_ms, double cold_ms);
 
-// The first of the ways whose predicted time is within the budget; where none is, the quickest. A way is given up at its
+// The first of the ways whose predicted time is within the budget, or its rival if that fits, too, and is nearer; where none
+// is, the quickest. How far off ways are is kept with their times. A way is given up at its
 // first run beyond the budget, so what is too slow costs one run. The first of all runs is one of the last way, and is
-// compared with the slower of two more. What was kept and makes no sense is measured again. Errors are those of `measure`.
-Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure);
+// compared with the slower of two more. What was kept and makes no sense is measured again. Errors are those of `measure` and
+// `judge`, which is needed where there are rivals.
+Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure,
+                            const JudgeWay& judge = {});
 
 }  // namespace scumble

@@ -188,8 +188,9 @@ Expected<Scene> LoadAnyScene(const SceneOptions& options, const Globals& globals
 
 }  // namespace
 
-Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film) {
+Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film, bool warns) {
   SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, globals, film));
+  if (!warns) return scene;
   for (const std::string& warning : scene.warnings) Warn(options.scene + ": " + warning);
   return scene;
 }

@@ -110,7 +110,8 @@ bool IsScene(const std::string& path);
 
 // Loads the scene, a .blend by way of Blender; warns of what the scene asks for in vain. Its textures are decoded by
 // CastScene, if at all.
-Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film = nullptr);
+Expected<Scene> OpenScene(const SceneOptions& options, const Globals& globals, BlenderFilm* film = nullptr,
+                          bool warns = true);
 
 // Mistakes in the options come to light before a large scene is loaded.
 Status CheckSceneOptions(const SceneOptions& options);

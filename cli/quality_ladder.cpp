@@ -53,7 +53,7 @@ constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "t
                      *kUnsplit = "transfer.hybrid=0", *kCrisp = "transfer.blend_radius=0";
 
 // By rising energy, the mean over scenes and styles: docs/budget.md. But for guides of an eighth, whose steps it hardly
-// sees.
+// sees: they stand below no blending and the Lit Sphere, which have whole outlines.
 const std::vector<Rung>& Rungs() {
   static const std::vector<Rung> kRungs = {
       {1, {}},
@@ -62,8 +62,8 @@ const std::vector<Rung>& Rungs() {
       {2, {kStyleBlit, kUnsplit}},
       {4, {kStyleBlit, kUnsplit}},
       {1, {kStyleBlit, kUnsplit, kCrisp}},
-      {8, {kStyleBlit, kUnsplit}},
       {1, {kLitSphere, kUnsplit}},
+      {8, {kStyleBlit, kUnsplit}},
       {4, {kLitSphere, kUnsplit}},
       {8, {kLitSphere, kUnsplit}},
       {1, {kLitSphere, kUnsplit, kCrisp}},
@@ -139,6 +139,14 @@ std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame)
     if (!known) ways.push_back(std::move(way));
   }
   return ways;
+}
+
+bool AreRivals(const Way& a, const Way& b) {
+  const auto has = [](const Way& way, const char* setting) {
+    return std::find(way.settings.begin(), way.settings.end(), setting) != way.settings.end();
+  };
+  return a.guide_scale == b.guide_scale && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
+         has(a, kCrisp) != has(b, kCrisp);
 }
 
 Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {

@@ -26,6 +26,10 @@ struct LadderFrame {
 // the same, or that change nothing of any of the styles, are left out. Never empty.
 std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame);
 
+// Whether which of two rungs is nearer differs by style, so that their order in the ladder is little more than chance: one
+// without blending, the other by the Lit Sphere, with guides of one size.
+bool AreRivals(const Way& a, const Way& b);
+
 // Named points of it.
 enum class Quality {
   // For finding a camera: the Lit Sphere, and guides of a quarter of the size where they may be smaller and hold light or

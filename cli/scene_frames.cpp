@@ -197,14 +197,14 @@ Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const
 }
 
 Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                      const Globals& globals, bool plan_only) {
+                                      const Globals& globals, bool plan_only, bool warns) {
   const std::string mend = ": give --frame N, or --frames for several where the verb has it";
   if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
   if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
   Stopwatch watch;
   SceneAtRest rest;
-  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, globals, plan_only ? nullptr : &rest.film));
+  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, globals, plan_only ? nullptr : &rest.film, warns));
   SCUMBLE_ASSIGN(rest.layers, layers_for(WishesOf(rest.scene.instances, rest.scene)));
   rest.load_ms = watch.Lap();
   SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, rest.layers));
@@ -213,11 +213,11 @@ Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersF
 }
 
 Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& options, const LayersFor& layers_for,
-                                  const Globals& globals) {
+                                  const Globals& globals, bool warns) {
   if (!frame || IsBlenderScene(options.scene)) {
     SceneOptions at = options;
     at.blender.frame = frame;
-    return OpenSceneAtRest(at, layers_for, false, globals, false);
+    return OpenSceneAtRest(at, layers_for, false, globals, false, warns);
   }
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
   SCUMBLE_ASSIGN(const FrameRate rate, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
@@ -226,7 +226,9 @@ Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& 
                  AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
   SceneAtRest result;
   SCUMBLE_ASSIGN(result.scene, film.SceneAt(0.0));
-  for (const std::string& warning : result.scene.warnings) Warn(options.scene + ": " + warning);
+  if (warns) {
+    for (const std::string& warning : result.scene.warnings) Warn(options.scene + ": " + warning);
+  }
   SCUMBLE_ASSIGN(result.layers, layers_for(WishesOf(film.objects(), film.rest())));
   SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
   for (const std::string& note : result.view.notes) Say(globals, note);

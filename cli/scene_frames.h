@@ -104,13 +104,14 @@ struct SceneAtRest {
   double load_ms = 0.0;
 };
 
-// Says how it is seen. Errors as MakeGuidesAtRest has them.
+// Says how it is seen, and what the scene warns of unless `warns` is false: it will be opened once more. Errors as
+// MakeGuidesAtRest has them.
 Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                      const Globals& globals, bool plan_only);
+                                      const Globals& globals, bool plan_only, bool warns = true);
 
 // The same of a frame, seen as SceneFrames sees it; without a number, at rest.
 Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& options, const LayersFor& layers_for,
-                                  const Globals& globals);
+                                  const Globals& globals, bool warns = true);
 
 // The scene as it stands without a frame's number, as MakeGuidesOf has it. --animation and the layer motion are usage
 // errors.

@@ -200,14 +200,17 @@ TEST(Calibration, ABrokenCacheIsMeasuredOver) {
   const std::string runs10 = "[1,1,1,1,1,1,1,1,1,1]";
   for (const std::string& text :
        {std::string(), std::string("{"), std::string("[]"), std::string("{\"ways\": {}}"),
-        std::string(R"({"circumstances": "others", "cold_ms": 0, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0})"),
-        std::string(R"({"circumstances": "a machine and a scene", "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": 1}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": ["x"]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [-1]}})"),
-        R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": )" + runs10 + "}}"}) {
+        std::string(R"({"circumstances": "others", "cold_ms": 0, "off": {}, "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "off": {}, "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "off": {}, "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": 1}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {"way 0": -1}, "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": [], "ways": {"way 0": [1]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": ["x"]}})"),
+        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": [-1]}})"),
+        R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": )" + runs10 + "}}"}) {
     MemoryCache cache;
     FakeClock clock{{{50.0}, {30.0}}};
     MustPick(Ladder(2, &cache), 40.0, clock);
@@ -216,6 +219,46 @@ TEST(Calibration, ABrokenCacheIsMeasuredOver) {
     EXPECT_EQ(MustPick(Ladder(2, &cache), 40.0, again).way, 0u) << text;
     EXPECT_EQ(again.runs[0], kCalibrationRuns) << text;
   }
+}
+
+// Ways 1 and 2 take 30 and 32 ms and are rivals; whichever is nearer is taken where both fit, and what was found is kept.
+TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
+  MemoryCache cache;
+  Calibration ladder = Ladder(4, &cache);
+  ladder.rivals = {{1, 2}};
+  std::vector<double> off = {0.0, 0.5, 0.4, 0.0};
+  int judged = 0;
+  const JudgeWay judge = [&](std::size_t way) -> Expected<double> { return ++judged, off[way]; };
+  FakeClock clock{{{50.0}, {30.0}, {32.0}, {5.0}}};
+  const auto pick = [&](double budget_ms) {
+    const auto picked = PickWay(ladder, budget_ms, clock.Measure(), judge);
+    EXPECT_TRUE(picked.ok());
+    return picked.ok() ? *picked : PickedWay();
+  };
+  const PickedWay nearer = pick(40.0);
+  EXPECT_EQ(nearer.way, 2u);
+  EXPECT_EQ(nearer.predicted_ms, 32.0);
+  EXPECT_EQ(nearer.compared, (std::map<std::size_t, double>{{1, 0.5}, {2, 0.4}}));
+  EXPECT_EQ(judged, 2);
+  const int runs = clock.Total();
+  EXPECT_EQ(pick(40.0).way, 2u);
+  EXPECT_EQ(judged, 2) << "it is kept";
+  EXPECT_EQ(clock.Total(), runs);
+  EXPECT_EQ(pick(31.0).way, 1u) << "the rival is too slow";
+  EXPECT_TRUE(pick(31.0).compared.empty());
+  EXPECT_EQ(pick(60.0).way, 0u) << "what is above both is above the nearer, too";
+  ladder.anew = true;
+  off = {0.0, 0.4, 0.5, 0.0};
+  EXPECT_EQ(pick(40.0).way, 1u);
+  off = {0.0, 0.4, 0.4, 0.0};
+  EXPECT_EQ(pick(40.0).way, 1u) << "as near: the ladder's order";
+  const double unknown = std::numeric_limits<double>::infinity();
+  off = {0.0, unknown, unknown, 0.0};
+  EXPECT_EQ(pick(40.0).way, 1u) << "not known: the ladder's order";
+  ladder.anew = false;
+  judged = 0, off = {0.0, 0.5, 0.4, 0.0};
+  EXPECT_EQ(pick(40.0).way, 2u);
+  EXPECT_EQ(judged, 2) << "what was not known is asked again";
 }
 
 // A way that the ladder has had and has no more does not matter.

@@ -206,6 +206,17 @@ TEST_F(CliBudget, ASequenceHasOneWay) {
   EXPECT_EQ(of_files.at("picked"), "the style");
 }
 
+// A scene that moves, whose camera frames it as it stands at time 0: measured at its first frame, painted as without a budget.
+TEST_F(CliBudget, AMovingSceneIsPaintedAsWithoutABudget) {
+  const Arguments stylize = {"stylize", Scene("toys.glb"), "--style", "style", "--size", "96x54", "--view", "20,30", "--frames", "30-31"};
+  const CommandResult within = RunOk(With(stylize, {"--budget-ms", "3600000", "--json", "-o", "p.#.png"}));
+  EXPECT_EQ(within.Json().at("budget").at("picked"), "the style");
+  RunOk(With(stylize, {"-o", "o.#.png"}));
+  for (const char* const frame : {"30", "31"}) {
+    EXPECT_EQ(Bytes(std::string("p.") + frame + ".png"), Bytes(std::string("o.") + frame + ".png"));
+  }
+}
+
 TEST_F(CliBudget, GuidesThatCannotBeReadAreToldOfAsEver) {
   ExpectError({"transfer", "no.exr", "--style", "style", "--budget-ms", "50", "-o", "out.png"}, 3, {"no.exr"});
   ExpectError({"stylize", "no.glb", "--style", "style", "--budget-ms", "50", "-o", "out.png"}, 3, {"no.glb"});
