@@ -1,11 +1,18 @@
 // scumble tradeoff: what every way to stylise a scene costs, and how far off it is.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -17,6 +24,7 @@
 #include "cli/style_set.h"
 #include "cli/tradeoff_run.h"
 #include "io/atomic_file.h"
+#include "io/unfinished_files.h"
 #include "measure/tradeoff_report.h"
 
 namespace scumble {
@@ -30,7 +38,7 @@ struct TradeoffVerb {
   std::string peak_of;  // a way's name: its memory alone, for the process that AskForPeak starts
 };
 
-constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json";
+constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json", *kPage = "report.html";
 
 // Folders that a run makes, with those above them, and that go again where nothing comes to stand in them.
 class MadeFolders {
@@ -68,7 +76,7 @@ Status CheckFolder(const TradeoffVerb& verb) {
   style.scene_styles = false;
   SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style));
   files.ReadsStyles(styles);
-  for (const char* name : {"report.html", "tradeoff.csv", kJson, "chart.svg"}) {
+  for (const char* name : {kPage, "tradeoff.csv", kJson, "chart.svg"}) {
     SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
   }
   // How pictures will be called is known only later: none of those that are there may be one that is read.
@@ -98,19 +106,55 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
   return old;
 }
 
-// The page last: where it is, all that it tells of is there.
-Status WriteFolder(const std::string& folder, const TradeReport& report) {
-  const std::vector<fs::path> old = OldPictures(folder, report);
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const fs::path file = fs::path(folder) / kPictures / TradePictureName(report, i);
-    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.ways[i].picture_png))));
+// Whether a report of so many bytes finds room in the page's folder: they are taken, and given back at once. Where the
+// file system cannot tell beforehand, it does.
+Status CheckRoom(const fs::path& page, std::size_t bytes) {
+  const internal::UnfinishedFile taken(page);
+  int failure = errno;
+  if (taken.descriptor() >= 0) {
+    failure = ::posix_fallocate(taken.descriptor(), 0, static_cast<off_t>(bytes));
+    ::close(taken.descriptor());
+    if (failure != ENOSPC && failure != EDQUOT && failure != EFBIG) return Ok();
   }
-  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "tradeoff.csv", TradeCsv(report)));
-  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / kJson, TradeJson(report)));
-  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "chart.svg", TradeChart(report)));
-  SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(fs::path(folder) / "report.html", TradeHtml(report)));
+  return OutputError(fmt::format("cannot write {}: {}; the report takes {:.1f} MB: make room, or name another folder",
+                                 page.string(), std::strerror(failure), 1e-6 * static_cast<double>(bytes)));
+}
+
+// Takes a file away, links followed as where it is written; what is not there, a device and a pipe are no matter.
+Status Remove(const fs::path& file) {
+  std::error_code failed;
+  const fs::path target = fs::canonical(file, failed);
+  if (failed || !fs::is_regular_file(target, failed)) return Ok();
+  fs::remove(target, failed);
+  return failed ? Status(OutputError("cannot write " + file.string() + ": " + failed.message())) : Ok();
+}
+
+// All is encoded first and has room, so that a full disk leaves an older report as it was. Then that goes, its page
+// first, as pictures of other ways get the names of its own; and the new page comes last. So where a page is, all that
+// it tells of is there, whenever a run ends.
+Status WriteFolder(const std::string& folder, const TradeReport& report) {
+  const fs::path place(folder);
+  const std::array<std::pair<const char*, std::string>, 4> texts = {{{"tradeoff.csv", TradeCsv(report)},
+                                                                    {kJson, TradeJson(report)},
+                                                                    {"chart.svg", TradeChart(report)},
+                                                                    {kPage, TradeHtml(report)}}};
+  constexpr std::size_t kBlock = 4096;  // what a file takes beside its bytes: the rest of its last block
+  std::size_t bytes = 0;
+  for (const auto& [name, text] : texts) bytes += text.size() + kBlock;
+  for (const TradeMeasure& way : report.ways) bytes += way.picture_png.size() + kBlock;
+  SCUMBLE_RETURN_IF_ERROR(CheckRoom(place / kPage, bytes));
+
+  const std::vector<fs::path> old = OldPictures(folder, report);
+  SCUMBLE_RETURN_IF_ERROR(Remove(place / kPage));
   std::error_code ignored;
   for (const fs::path& picture : old) fs::remove(picture, ignored);
+  for (const auto& [name, text] : texts) SCUMBLE_RETURN_IF_ERROR(Remove(place / name));
+
+  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+    const fs::path file = place / kPictures / TradePictureName(report, i);
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.ways[i].picture_png))));
+  }
+  for (const auto& [name, text] : texts) SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(place / name, text));
   return Ok();
 }
 

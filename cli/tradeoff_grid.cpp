@@ -43,6 +43,10 @@ class Grid {
     AddGuides();
     AddSeeds();
     if (!options_.quick) AddCombinations();
+    if (options_.quick) {
+      grid_.left_out.push_back("by --quick guides of twice the size, robust mode, samples, combinations, and every other value of "
+                               "the axes that stay");
+    }
     return std::move(grid_);
   }
 

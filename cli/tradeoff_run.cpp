@@ -66,8 +66,9 @@ class Trade {
 
   Expected<TradeReport> Measure() {
     SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, globals_));
-    SCUMBLE_ASSIGN(const std::vector<Way> ways, ChooseWays(stage_.grid.ways, setup_.only));
+    SCUMBLE_ASSIGN(std::vector<Way> ways, ChosenWays());
     report_.left_out = stage_.grid.left_out;
+    SCUMBLE_RETURN_IF_ERROR(LeaveOutWhatIsTooLarge(ways));
     if (setup_.memory && !asks_for_memory_) {
       report_.left_out.push_back(
           "memory, for which Blender would export the scene for each way; export it as .glb for that");
@@ -104,6 +105,41 @@ class Trade {
     if (progress_) progress_(std::min(1.0, done_ / work_));
   }
 
+  Expected<std::vector<Way>> ChosenWays() const {
+    auto chosen = ChooseWays(stage_.grid.ways, setup_.only);
+    if (chosen.ok() || !setup_.quick) return chosen;
+    const TradeGrid whole =
+        MakeTradeGrid(stage_.style, {stage_.width, stage_.height, false, stage_.chance, setup_.scene.samples});
+    if (!ChooseWays(whole.ways, setup_.only).ok()) return chosen;
+    return UsageError("--only " + setup_.only + ": --quick leaves that out; leave out --quick");
+  }
+
+  // Guides larger than the picture, and exemplars that fit them, may be too large to be made; that is told before all else.
+  Status LeaveOutWhatIsTooLarge(std::vector<Way>& ways) {
+    std::vector<Way> left;
+    for (Way& way : ways) {
+      if (SupersampleOf(way) > 1) {
+        SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, way));
+        const Status fits = TryWay(way, style);
+        if (!fits.ok() && fits.error().kind == ErrorKind::kCancelled) return fits;
+        if (!fits.ok()) {
+          report_.left_out.push_back(way.name + ", as " + fits.error().message);
+          continue;
+        }
+      }
+      left.push_back(std::move(way));
+    }
+    ways = std::move(left);
+    return Ok();
+  }
+
+  Status TryWay(const Way& way, const Style& style) {
+    SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
+    SCUMBLE_ASSIGN(const WayGuides made, MakeWayGuides(stage_.scene, setup_.scene, way, layers, silent_));
+    SCUMBLE_RETURN_IF_ERROR(scumble::Prepare(style, made.guides.height(), {}));
+    return Ok();
+  }
+
   Status OpenStyles(const std::vector<Way>& ways) {
     for (const Way& way : ways) {
       SCUMBLE_ASSIGN(Style style, StyleOfWay(setup_, way));
@@ -137,7 +173,13 @@ class Trade {
     const GuideSet& guides = exact_guides_->guides;
     SCUMBLE_RETURN_IF_ERROR(guides.Validate(setup_.scene.scene));
     const auto coverage = guides.Plane(Layer::kCoverage);
-    if (std::none_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; })) {
+    const float least = EnergyOptions().least_coverage;
+    const bool nothing = std::none_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
+    if (!nothing && std::none_of(coverage.begin(), coverage.end(), [least](float a) { return a >= least; })) {
+      return InputError(setup_.scene.scene +
+                        ": no pixel is covered fully, so there is no paint to measure; take a larger --size, or go nearer");
+    }
+    if (nothing) {
       return InputError(setup_.scene.scene +
                         ": the camera sees nothing, so there is nothing to measure; try --view or another "
                         "--camera");
@@ -245,6 +287,7 @@ class Trade {
     measure.name = way.name, measure.axis = way.axis, measure.value = way.value;
     measure.chosen = way.axis == kStyleAxis, measure.exact = way.axis == kExactAxis;
     measure.by_chance = way.more_seed != 0;
+    measure.prepare_ms = painter.prepare_ms();
     RepeatOptions repeat = RepeatWay(setup_, stage_, way);
     measure.options = std::move(repeat.options), measure.note = std::move(repeat.note);
     const GuideSet& guides = painter.guides().guides;
@@ -327,6 +370,7 @@ Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name
   if (way == stage.grid.ways.end()) return UsageError("--peak-of " + name + ": there is no such way");
   SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way));
   SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
+  ForgetPeakMemory();  // what opening scene and style took for a moment is the same for all ways, and may hide theirs
   SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, layers, globals));
   auto guides = std::make_shared<const WayGuides>(std::move(made));
   SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup, *way, style, std::move(guides), globals));

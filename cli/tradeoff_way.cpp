@@ -5,7 +5,6 @@
 #include <array>
 #include <utility>
 
-#include "cli/cache.h"
 #include "cli/quality_ladder.h"
 #include "cli/shell_word.h"
 #include "cli/style_set.h"
@@ -76,7 +75,7 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& glob
 }
 
 RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const Way& way) {
-  if (way.precision != GuidePrecision::kFloat) return {"", "stylize has floats for guides, whatever is asked for"};
+  if (way.precision != GuidePrecision::kFloat) return {"", "stylize has its guides as floats, but for colours with --half"};
   if (way.guide_scale > 1.0) {
     return {"", fmt::format("stylize with --size {}x{}, then each 2 x 2 pixels averaged", 2 * stage.width,
                             2 * stage.height)};
@@ -109,12 +108,13 @@ Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way
                                          std::shared_ptr<const WayGuides> guides, const Globals& globals) {
   WayPainter painter;
   painter.guides_ = std::move(guides);
-  FileCache cache = UserCache();
   PrepareOptions prepare;
   prepare.table_resolution = way.table_resolution;
-  prepare.cache = &cache;
+  prepare.cache = nullptr;  // what a table costs would not be seen where it is kept
   prepare.threads = globals.threads;
+  Stopwatch watch;
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
+  painter.prepare_ms_ = watch.Lap();
   const auto stops = MeasureExposure({&painter.prepared_, 1}, painter.guides_->ForExposure(), globals.threads);
   painter.options_.exposure = stops.value_or(0.0);
   PictureOptions picture;

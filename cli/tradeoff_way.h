@@ -53,6 +53,7 @@ class WayPainter {
   const PreparedStyle& prepared() const { return prepared_; }
   const WayGuides& guides() const { return *guides_; }
   double exposure() const { return options_.exposure; }
+  double prepare_ms() const { return prepare_ms_; }
 
  private:
   WayPainter() = default;
@@ -61,6 +62,7 @@ class WayPainter {
   PreparedStyle prepared_;
   TransferOptions options_;
   TransferScratch scratch_;
+  double prepare_ms_ = 0.0;
   int factor_ = 1;
   Picture picture_, small_;
 };

@@ -96,8 +96,8 @@ Chart ChartOf(const TradeReport& report, const ChartLook& look) {
       const double error = point.error.mean + side * point.error.standard_error;
       if (std::isfinite(error)) errors.push_back(error);
     }
-    const bool by_chance = report.ways[point.way].by_chance;
-    trade.push_back({by_chance ? std::numeric_limits<double>::quiet_NaN() : point.time.median, point.error.mean});
+    const bool counts = look.time != ChartTime::kMemory && MayBeOnFront(report, point.way);
+    trade.push_back({counts ? point.time.median : std::numeric_limits<double>::quiet_NaN(), point.error.mean});
   }
   chart.across = ScaleFor(times, true, kLeft, chart.right);
   chart.up = ScaleFor(errors, false, kHeight - kBottom, chart.top);
@@ -167,6 +167,7 @@ std::string Words(const TradeMeasure& way, bool front) {
   std::string words = way.name + (way.chosen ? ", the style as it is" : "") + (way.exact ? ", the exact one" : "") +
                       (front ? ", on the front" : "");
   words += "\ntime " + ShortTime(way.total_ms) + " ms, of which the transfer " + ShortTime(way.transfer_ms) + " ms";
+  if (way.prepare_ms > 0.0) words += "\npreparing the style " + ShortFigure(way.prepare_ms) + " ms, once";
   if (way.memory_bytes > 0) words += "\nmemory " + ShortMegabytes(way.memory_bytes) + " MB";
   words += "\nboth " + ShortEstimate(way.both) + ", energy " + ShortEstimate(way.energy) + ", missing " +
            ShortEstimate(way.missing);

@@ -11,7 +11,7 @@ constexpr const char* kHead =
     "way,axis,value,options,note,chosen,exact,front,"
     "guides_ms_median,guides_ms_lower_quartile,guides_ms_upper_quartile,"
     "transfer_ms_median,transfer_ms_lower_quartile,transfer_ms_upper_quartile,"
-    "total_ms_median,total_ms_lower_quartile,total_ms_upper_quartile,memory_bytes,"
+    "total_ms_median,total_ms_lower_quartile,total_ms_upper_quartile,prepare_ms,memory_bytes,"
     "both,both_standard_error,energy,energy_standard_error,missing,missing_standard_error,"
     "guide_degrees,coherence,chunk_area_pixels,seam_excess,repetition,guide_rms,guide_flip,picture";
 
@@ -48,6 +48,7 @@ std::string TradeCsv(const TradeReport& report) {
     for (const std::string& text : {way.name, way.axis, way.value, way.options, way.note}) csv += Quoted(text) + ",";
     csv += fmt::format("{:d},{:d},{:d},", way.chosen, way.exact, bool(front[i]));
     for (const Quartiles& time : {way.guides_ms, way.transfer_ms, way.total_ms}) csv += Time(time) + ",";
+    csv += Number(internal::Taken(way.prepare_ms)) + ",";
     csv += way.memory_bytes > 0 ? fmt::format("{},", way.memory_bytes) : ",";
     for (const Estimate& estimate : {way.both, way.energy, way.missing}) csv += Figure(estimate) + ",";
     for (const auto& value : {way.guide_degrees, way.coherence, way.chunk_area, way.seam_excess, way.repetition,

@@ -112,7 +112,8 @@ std::string Charts(const TradeReport& report) {
     }
   }
   return html +
-         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points. Bars are quartiles of the time and "
+         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways differ "
+         "by less than two runs of one. Bars are quartiles of the time and "
          "standard "
          "errors of the sample. Each point leads to its picture.</p>\n</section>\n";
 }
@@ -125,7 +126,7 @@ struct Column {
 
 constexpr Column kColumns[] = {{"front", "", false},      {"way", "", false},        {"changes", "", false},
                                {"time", "ms", true},      {"guides", "ms", true},    {"transfer", "ms", true},
-                               {"memory", "MB", true},    {"both", "", true},        {"energy", "", true},
+                               {"prepare", "ms", true},   {"memory", "MB", true},    {"both", "", true},        {"energy", "", true},
                                {"missing", "", true},     {"off by", "°", true},     {"coherence", "%", true},
                                {"chunk", "px", true},     {"seam excess", "", true}, {"repetition", "", true},
                                {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
@@ -147,6 +148,7 @@ std::string WayRow(const TradeReport& report, std::size_t i, bool front) {
   html += fmt::format("<th scope=\"row\" data-v=\"{}\">{}</th><td>{}</td>", EscapeHtml(way.name), LinkTo(report, i),
                       EscapeHtml(way.axis));
   html += TimeCell(way.total_ms) + TimeCell(way.guides_ms) + TimeCell(way.transfer_ms);
+  html += FigureCell(internal::Taken(way.prepare_ms));
   html += Cell(internal::Taken(static_cast<double>(way.memory_bytes)), internal::ShortMegabytes(way.memory_bytes));
   html += EstimateCell(way.both) + EstimateCell(way.energy) + EstimateCell(way.missing);
   html += FigureCell(way.guide_degrees) + Cell(way.coherence, internal::ShortPercent(way.coherence));

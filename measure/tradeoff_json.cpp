@@ -31,6 +31,7 @@ Json WayJson(const TradeReport& report, std::size_t i, bool front) {
   json["guides_ms"] = TimeJson(way.guides_ms);
   json["transfer_ms"] = TimeJson(way.transfer_ms);
   json["total_ms"] = TimeJson(way.total_ms);
+  json["prepare_ms"] = NumberJson(internal::Taken(way.prepare_ms));
   json["memory_bytes"] = way.memory_bytes > 0 ? Json(way.memory_bytes) : Json();
   json["both"] = EstimateJson(way.both);
   json["energy"] = EstimateJson(way.energy);

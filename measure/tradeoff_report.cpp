@@ -92,13 +92,22 @@ bool HasQuickerGuides(const TradeMeasure& way, const TradeMeasure& other) {
 
 }  // namespace
 
+namespace internal {
+
+bool MayBeOnFront(const TradeReport& report, std::size_t i) {
+  const TradeMeasure& way = report.ways[i];
+  const bool again = way.same_as && !HasQuickerGuides(way, report.ways[*way.same_as]);
+  return !way.by_chance && !again && (way.chosen || !way.options.empty());
+}
+
+}  // namespace internal
+
 std::vector<std::size_t> FrontOf(const TradeReport& report) {
   constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   std::vector<TradePoint> points;
-  for (const TradeMeasure& way : report.ways) {
-    const double time = internal::Taken(way.total_ms.median).value_or(kNotMeasured);
-    const bool again = way.same_as && !HasQuickerGuides(way, report.ways[*way.same_as]);
-    points.push_back({way.by_chance || again ? kNotMeasured : time, way.both.mean});
+  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+    const double time = internal::Taken(report.ways[i].total_ms.median).value_or(kNotMeasured);
+    points.push_back({internal::MayBeOnFront(report, i) ? time : kNotMeasured, report.ways[i].both.mean});
   }
   return ParetoFront(points);
 }

@@ -29,7 +29,8 @@ struct TradeMeasure {
       same_as;             // the place of the first way in the report that makes the same picture, if not this
   bool by_chance = false;  // the style as it is with another seed: by how much chance alone moves the figures
   Quartiles guides_ms, transfer_ms, total_ms;  // wall clock
-  std::size_t memory_bytes = 0;                // the peak
+  double prepare_ms = 0.0;       // the style, once, with nothing kept from before: tables, trees, exemplars at this size
+  std::size_t memory_bytes = 0;  // the peak
   Estimate both, energy, missing;              // measure/energy.h; `both` ranks
   std::optional<double> guide_degrees;  // mean angle between a pixel's normal and that of its source, exact guides
   std::optional<double> coherence;      // 0 … 1
@@ -55,7 +56,7 @@ struct TradeReport {
 };
 
 // Places in `ways` of the Pareto front of median total time and `both`, by rising time. What was not measured is not
-// there, nor is what differs from the style by chance alone. Of ways that make the same picture it is the first, and
+// there, nor is what differs from the style by chance alone, nor what `stylize` has no options for. Of ways that make the same picture it is the first, and
 // others only where their guides are quicker by more than their quartiles: else the moment would choose.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 

@@ -462,6 +462,25 @@ TEST_F(BlenderVerbs, StylizeToo) {
   EXPECT_TRUE(Exists("p.png"));
 }
 
+// What is measured of a .blend is what is painted of it: its frame, and its view.
+TEST_F(BlenderVerbs, TradeoffAndBudgetTakeAFrame) {
+  WriteStyle("style");
+  const Arguments seen = {"--style", "style", "--size", "64x36", "--view", "20,30", "--frame", "6"};
+  const Arguments stylize = With({"stylize", Blend("objects")}, seen);
+  ASSERT_EQ(RunHere(With(stylize, {"-o", "plain.png"})).code, 0);
+  const CommandResult within = RunHere(With(stylize, {"--budget-ms", "3600000", "--json", "-o", "picked.png"}));
+  ASSERT_EQ(within.code, 0) << within.err;
+  EXPECT_EQ(within.Json().at("budget").at("picked"), "the style");
+  EXPECT_EQ(Bytes("picked.png"), Bytes("plain.png"));
+  const CommandResult trade = RunHere(
+      With(With({"tradeoff", Blend("objects")}, seen), {"--only", "method", "--repeat", "1", "--json", "-o", "out"}));
+  ASSERT_EQ(trade.code, 0) << trade.err;
+  const nlohmann::json ways = trade.Json().at("ways");
+  ASSERT_EQ(ways.size(), 3u);
+  EXPECT_EQ(Pixels("out/pictures/01-the-style.png"), Pixels("plain.png"));
+  for (const auto& way : ways) EXPECT_TRUE(way.at("memory_bytes").is_null()) << "Blender would run for each";
+}
+
 // One Blender for the range; more frames than it may be ahead, backwards and with a stop in between.
 TEST_F(BlenderVerbs, ARangeIsItsFramesByteForByte) {
   const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30"};

@@ -19,6 +19,7 @@ inline TradeMeasure MadeUpWay(const std::string& axis, const std::string& value,
   way.guides_ms = {total_ms * 0.25, total_ms * 0.24, total_ms * 0.27};
   way.transfer_ms = {total_ms * 0.75, total_ms * 0.74, total_ms * 0.78};
   way.total_ms = {total_ms, total_ms * 0.98, total_ms * 1.05};
+  way.prepare_ms = 12.5;
   way.memory_bytes = 123456789;
   way.both = {both, 0.0123456789012345};
   way.energy = {both / 3, 0.004};

@@ -1,4 +1,5 @@
 // The trade-off as a table, as CSV and as JSON: every form holds the figures it was given.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "measure/tradeoff_parts.h"
 #include "tests/trade_report_fixtures.h"
 
 namespace scumble {
@@ -127,6 +129,32 @@ TEST(TradeReport, TheFrontHasAPictureOnce) {
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
 }
 
+// Table, JSON and chart tell of one front: each ringed point is one of it, and of memory there is none.
+TEST(TradeReport, TheChartRingsTheFront) {
+  TradeReport report = MadeUpReport();
+  report.ways.push_back(MadeUpWay("levels", "9", 4.0, 0.5));
+  report.ways.back().same_as = 2;
+  report.ways.back().guides_ms = report.ways[2].guides_ms;
+  report.ways.push_back(MadeUpWay("precision", "8 bits", 3.0, 0.4));
+  report.ways.back().options.clear();  // nothing makes it
+  const std::vector<bool> front = internal::OnFront(report);
+  const auto ringed = [&report](internal::ChartTime time) {
+    const std::string svg = internal::DrawTradeChart(report, {time, internal::ChartError::kBoth, true});
+    std::vector<bool> rings;
+    for (std::size_t i = 0; i < report.ways.size(); ++i) {
+      const std::size_t begin = svg.find(fmt::format("<a href=\"#way-{}\"", i + 1)), end = svg.find("</a>", begin);
+      rings.push_back(svg.substr(begin, end - begin).find("class=\"ring\"") != std::string::npos);
+    }
+    return rings;
+  };
+  EXPECT_EQ(ringed(internal::ChartTime::kTotal), front);
+  EXPECT_FALSE(front[6] || front[7]);
+  EXPECT_EQ(ringed(internal::ChartTime::kMemory), std::vector<bool>(report.ways.size(), false));
+  report.ways[7].options = "--anything";
+  EXPECT_EQ(ringed(internal::ChartTime::kTotal), internal::OnFront(report));
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{7}) << "otherwise it would be the best of all";
+}
+
 TEST(TradeReport, TheChartRingsNothingThatIsChance) {
   TradeReport report = MadeUpReport();
   const auto rings = [&report] {
@@ -183,6 +211,7 @@ TEST(TradeReport, CsvReadsBackToTheSameTextsAndValues) {
     EXPECT_EQ(NumberOf(rows, i, "guides_ms_median"), way.guides_ms.median);
     EXPECT_EQ(NumberOf(rows, i, "transfer_ms_lower_quartile"), way.transfer_ms.lower);
     EXPECT_EQ(NumberOf(rows, i, "total_ms_upper_quartile"), way.total_ms.upper);
+    EXPECT_EQ(NumberOf(rows, i, "prepare_ms"), way.prepare_ms);
     EXPECT_EQ(NumberOf(rows, i, "memory_bytes"), double(way.memory_bytes));
     EXPECT_EQ(NumberOf(rows, i, "both"), way.both.mean);
     EXPECT_EQ(NumberOf(rows, i, "both_standard_error"), way.both.standard_error);
@@ -268,7 +297,7 @@ TEST(TradeReport, JsonHasTheFiguresOfTheCsv) {
       EXPECT_EQ(way[error]["standard_error"], NumberOf(rows, i, error + "_standard_error"));
     }
     for (const char* figure :
-         {"memory_bytes", "guide_degrees", "coherence", "chunk_area_pixels", "seam_excess", "repetition"}) {
+         {"prepare_ms", "memory_bytes", "guide_degrees", "coherence", "chunk_area_pixels", "seam_excess", "repetition"}) {
       EXPECT_EQ(way[figure], NumberOf(rows, i, figure)) << figure;
     }
   }

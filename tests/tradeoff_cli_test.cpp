@@ -1,4 +1,6 @@
 // scumble tradeoff, from its arguments to its files.
+#include <sys/stat.h>
+
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -52,7 +54,7 @@ class Tradeoff : public CliTest {
   nlohmann::json WithoutTimes(const CommandResult& result) const {
     nlohmann::json ways = result.Json()["ways"];
     for (auto& way : ways) {
-      for (const char* key : {"guides_ms", "transfer_ms", "total_ms", "front"}) way.erase(key);
+      for (const char* key : {"guides_ms", "transfer_ms", "total_ms", "prepare_ms", "front"}) way.erase(key);
     }
     return ways;
   }
@@ -227,6 +229,29 @@ TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
   EXPECT_GT(rms["1"], 4.0 * rms["256"]) << "noise falls with the root of the samples: 16 times, less what is cut at 1";
 }
 
+// Guides of twice the size have a side that is too long here; the others are measured all the same.
+TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
+  const nlohmann::json json =
+      RunOk(Small(Scene("suzanne.glb"), {"--only", "resolution,levels 1", "--json"}, "20000x4")).Json();
+  std::set<std::string> ways;
+  for (const auto& way : json["ways"]) ways.insert(way["way"]);
+  EXPECT_EQ(ways, (std::set<std::string>{"the style", "levels 1", "resolution 0.5"}));
+  ASSERT_EQ(json["left_out"].size(), 1u) << json["left_out"];
+  EXPECT_EQ(json["left_out"][0].get<std::string>().find("resolution 2, as "), 0u) << json["left_out"];
+}
+
+// What a table costs is told, though this machine has made it before.
+TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
+  const Arguments arguments =
+      Small(Scene("suzanne.glb"), {"--only", "nearest table 64,nearest table 1024", "--json"});
+  RunOk(arguments);
+  const nlohmann::json ways = RunOk(arguments).Json()["ways"];
+  std::map<std::string, double> ms;
+  for (const auto& way : ways) ms[way["way"]] = way["prepare_ms"];
+  // 256 times as many cells to fill.
+  EXPECT_GT(ms.at("nearest table 1024"), 4.0 * ms.at("nearest table 64"));
+}
+
 TEST_F(Tradeoff, SaysWhatIsWrongAndHowToMendIt) {
   const std::string scene = Scene("suzanne.glb");
   ExpectError(Small(scene, {"--only", "levles"}), 2, {"--only levles", "levels", "nearest", "threshold"});
@@ -237,6 +262,9 @@ TEST_F(Tradeoff, SaysWhatIsWrongAndHowToMendIt) {
   ExpectError({"tradeoff", scene, "--style", "nobody"}, 3, {"nobody"});
   WriteText("file", "");
   ExpectError(Small(scene, {"-o", "file"}), 4, {"-o file"});
+  ExpectError(Small(scene, {"--quick", "--only", "resolution 2,levels"}), 2, {"--only resolution 2,levels", "--quick leaves"});
+  // One thing that covers no pixel whole has no paint to be measured.
+  ExpectError(Small(scene, {"--view", "30,20", "--aa", "4"}, "1x1"), 3, {"covered fully", "--size"});
   WriteText("away.gltf", TriangleGltf(true));
   ExpectError(Small("away.gltf", {"-o", "out"}), 3, {"away.gltf", "nothing", "--view"});
   EXPECT_FALSE(Exists("out/report.html"));
@@ -283,6 +311,53 @@ TEST_F(Tradeoff, InterruptedLeavesNoFolder) {
   ::kill(child, SIGINT);
   EXPECT_EQ(Finish(child).code, 128 + SIGINT) << "it was at work";
   EXPECT_FALSE(Exists("out"));
+}
+
+// Files may not grow beyond 10,000 bytes: the pictures fit, the page, which holds them all as text, does not. What an
+// older report has stays as it is, to the byte.
+TEST_F(Tradeoff, AReportWithoutRoomLeavesTheOlderOne) {
+  const Arguments arguments = Small(Scene("suzanne.glb"), {"--only", "levels 1", "-o", "out"}, "48x27");
+  RunOk(arguments);
+  WriteText("out/pictures/01-the-style.png", "an older one");
+  const auto files = [&] {
+    std::map<std::string, std::string> bytes;
+    for (const auto& entry : fs::recursive_directory_iterator(At("out"))) {
+      if (entry.is_regular_file()) bytes[entry.path().string()] = ReadAll(entry.path().string());
+    }
+    return bytes;
+  };
+  const auto before = files();
+  ASSERT_EQ(before.size(), 6u) << "two pictures, page, chart, table and figures";
+  EXPECT_LT(before.at(At("out/pictures/02-levels-1.png").string()).size(), 10000u);
+  EXPECT_GT(before.at(At("out/report.html").string()).size(), 10000u);
+  CommandSettings settings;
+  settings.file_size_limit = 10000;
+  ExpectError(arguments, 4, {"out/report.html", "File too large", "make room"}, settings);
+  EXPECT_EQ(files(), before);
+}
+
+// Killed among its pictures it leaves no page, table or figures of the older report over them. A pipe that nobody reads
+// from holds it up at the second picture.
+TEST_F(Tradeoff, KilledAmongItsPicturesItLeavesNoPage) {
+  const Arguments arguments = Small(Scene("suzanne.glb"), {"--only", "levels 1", "-o", "out"}, "48x27");
+  RunOk(arguments);
+  WriteText("out/pictures/01-the-style.png", "an older one");
+  fs::remove(At("out/pictures/02-levels-1.png"));
+  ASSERT_EQ(::mkfifo(At("out/pictures/02-levels-1.png").c_str(), 0600), 0);
+  const pid_t child = Start(arguments);
+  const auto late = std::chrono::steady_clock::now() + std::chrono::seconds(30 * SCUMBLE_TESTS_SLOWER);
+  while (Bytes("out/pictures/01-the-style.png") == "an older one" && std::chrono::steady_clock::now() < late) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ::kill(child, SIGKILL);
+  EXPECT_EQ(Finish(child).code, 128 + SIGKILL) << "it waited for a reader";
+  EXPECT_NE(Bytes("out/pictures/01-the-style.png"), "an older one") << "it came to its pictures";
+  for (const char* name : {"report.html", "tradeoff.json", "tradeoff.csv", "chart.svg"}) {
+    EXPECT_FALSE(Exists(std::string("out/") + name)) << name;
+  }
+  fs::remove(At("out/pictures/02-levels-1.png"));
+  RunOk(arguments);
+  EXPECT_TRUE(Exists("out/report.html")) << "the folder is taken again";
 }
 
 TEST_F(Tradeoff, HelpSaysWhatIsTimed) {
