@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "image/hash.h"
 #include "io/guide_storage.h"
 #include "tests/transfer_fixtures.h"
+#include "transfer/look_up_table.h"
 
 namespace scumble::testing {
 namespace {
@@ -257,6 +259,114 @@ TEST(Precision, TheSourceInPixels) {
     }
   }
 }
+
+// The most that lies, in space, between a direction that is at most `to` from the middle of the disc and the nearest
+// pixel's. That of the pixel which the place falls in is a step of √½ pixel; where that pixel may be outside the disc,
+// it is another along each axis at the most. Near the silhouette a step turns a normal far: there the nearest is up to
+// some pixels off along the rim.
+double LargestGap(double to, int radius) {
+  const double step = std::sqrt(0.5) / radius;
+  return LargestTurn(to, to + step <= 1.0 ? step : step + std::sqrt(2.0) / radius);
+}
+
+// The pixel whose direction is nearest to n where pixels lie `shift` of one aside: tried one by one.
+glm::ivec2 NearestOnLattice(const glm::dvec3& n, int radius, const glm::dvec2& shift) {
+  constexpr int kReach = 3;  // LargestGap up to the ring of 0.95, rounded up
+  const glm::ivec2 middle(glm::round(glm::dvec2(n) * double(radius) - shift));
+  glm::ivec2 nearest(0);
+  double least = std::numeric_limits<double>::infinity();
+  for (int v = -kReach; v <= kReach; ++v) {
+    for (int u = -kReach; u <= kReach; ++u) {
+      const glm::ivec2 pixel = middle + glm::ivec2(u, v);
+      const glm::dvec2 p = (glm::dvec2(pixel) + shift) / double(radius);
+      const glm::dvec3 off = n - glm::dvec3(p, std::sqrt(std::max(0.0, 1.0 - glm::dot(p, p))));
+      if (glm::dot(off, off) < least) least = glm::dot(off, off), nearest = pixel;
+    }
+  }
+  return nearest;
+}
+
+constexpr std::array<int, 2> kPixelRadii = {200, 400};
+
+// How many directions find another pixel, of how many, and what is expected of them.
+struct Changes {
+  int seen = 0, found = 0;
+  double expected = 0.0, variance = 0.0;
+  void Expect(double chance) { expected += chance, variance += chance * (1.0 - chance); }
+};
+
+// Where cells of a table hold different sources, another cell is another source. Where in its cell a projected
+// direction lies is chance, so along an axis it leaves the cell with the chance of its move in cells.
+double ChanceOfAnotherCell(const glm::dvec3& whole, const glm::dvec3& stored) {
+  const auto projected = [](const glm::dvec3& n) { return glm::dvec2(n) / std::sqrt(1.0 + n.z); };
+  const glm::dvec2 move = glm::abs(projected(whole) - projected(stored)) * (0.5 * LookUpTable::kResolution);
+  return 1.0 - std::max(0.0, 1.0 - move.x) * std::max(0.0, 1.0 - move.y);
+}
+
+// The same by the two searches that go by the distance in space: a tree, which is exact, and a table. Both bring a
+// normal to unit length first, so it is off by δ = √3 e / (1 - √3 e), and its source is as far from it as LargestGap
+// says. A table asks for the middle of its cell instead, half of Quantisation() away. So two sources are δ and two gaps
+// apart in space, by table Quantisation() more, and in the picture no more than in space.
+//
+// How many sources are others: of a tree, as many as on a lattice of pixels that lies anywhere (both counts are chance,
+// so their difference has twice the variance of one), up to the ring of 0.95, which no edge of the disc disturbs. Of a
+// table, as many as come to other cells, where the middles of two cells, which are √(1 + z) times 2 / resolution apart
+// at least, are farther from each other than two gaps and so have no source in common: in the middle of a large sphere.
+// Radii are no powers of two here, so that steps of half floats and borders of pixels meet by chance.
+void CheckPixels(const PreparedExemplar& sphere, bool is_table, Kept kept) {
+  const int radius = sphere.size() / 2;
+  const double cell = is_table ? LookUpTable::Quantisation(LookUpTable::kResolution) : 0.0;
+  const double off = std::sqrt(3.0) * LargestHalfStep(kept) / (1.0 - std::sqrt(3.0) * LargestHalfStep(kept));
+  std::uint64_t draws = 0;
+  Changes all, told;
+  for (int ring = 0; ring + 1 < int(kRings.size()); ++ring) {
+    const double to = std::min(1.0, kRings[std::size_t(ring) + 1] + off + 0.5 * cell), gap = LargestGap(to, radius);
+    const double limit = radius * (off + 2.0 * gap + cell) + radius * 0x1p-20;  // what float's sums lose
+    const double middles = 2.0 / LookUpTable::kResolution * std::sqrt(1.0 + std::sqrt(1.0 - to * to));
+    const bool is_told = is_table ? middles > 2.0 * gap : ring < 3;
+    double worst = 0.0;
+    ForDirections(ring, 4000, [&](const glm::dvec3& n) {
+      const glm::dvec3 stored = Rounded(kept, n), unit = glm::normalize(stored);
+      const Source at = sphere.NearestNeighbour(glm::vec3(n)), found = sphere.NearestNeighbour(glm::vec3(stored));
+      worst = std::max(worst, std::hypot(double(at.x - found.x), double(at.y - found.y)));
+      ++all.seen, all.found += !(at == found);
+      if (!is_told) return;
+      ++told.seen, told.found += !(at == found);
+      if (is_table) return told.Expect(ChanceOfAnotherCell(n, unit));
+      const std::uint64_t hash = Hash(0xb0adu, draws++);
+      const glm::dvec2 shift(double(hash >> 32) * 0x1p-32, double(hash & 0xffffffffu) * 0x1p-32);
+      told.expected += NearestOnLattice(n, radius, shift) != NearestOnLattice(unit, radius, shift);
+    });
+    EXPECT_LE(worst, limit) << "ring " << ring;
+    std::printf("pixels, %s, %s, R %d, ring %.3f: worst %.2f (limit %.2f)\n", is_table ? "table" : "tree", NameOf(kept),
+                radius, kRings[std::size_t(ring) + 1], worst, limit);
+  }
+  if (!is_table) {
+    const double share = 0.5 * (told.found + told.expected) / told.seen;
+    told.variance = 2.0 * told.seen * share * (1.0 - share);
+  }
+  EXPECT_NEAR(told.found, told.expected, 5.0 * std::sqrt(told.variance));
+  std::printf("pixels, %s, %s, R %d: other pixel %.2f %%; of %d %.2f %% (expected %.2f %%)\n",
+              is_table ? "table" : "tree", NameOf(kept), radius, 100.0 * all.found / all.seen, told.seen,
+              100.0 * told.found / std::max(told.seen, 1), 100.0 * told.expected / std::max(told.seen, 1));
+  if (!is_table || radius == kPixelRadii.back()) {
+    EXPECT_GT(told.seen, 0);
+  }
+}
+
+void CheckPixels(NearestSearch search) {
+  for (const int radius : kPixelRadii) {
+    PreparedExemplar sphere(NoisePicture(64), 0.0, 2 * radius);
+    ASSERT_TRUE(sphere.SearchBy(search, LookUpTable::kResolution, nullptr).ok());
+    for (const Kept kept : {Kept::kEightBits, Kept::kHalf}) {
+      SCOPED_TRACE(std::string(NameOf(kept)) + ", radius " + std::to_string(radius));
+      CheckPixels(sphere, search == NearestSearch::kTable, kept);
+    }
+  }
+}
+
+TEST(Precision, TheSourceInPixelsByTree) { CheckPixels(NearestSearch::kTree); }
+TEST(Precision, TheSourceInPixelsByTable) { CheckPixels(NearestSearch::kTable); }
 
 // --- A scene ------------------------------------------------------------------------------------------------------
 

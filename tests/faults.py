@@ -10,6 +10,8 @@ import numpy
 import OpenImageIO as oiio
 
 SUFFIX = ".scumble-tmp"
+# Files of `tradeoff -o`, with the one picture that every report has.
+REPORT = ("report.html", "chart.svg", "tradeoff.csv", "tradeoff.json", "pictures/01-the-style.png")
 # How much longer a program may take than it should: tests/CMakeLists.txt says so where a sanitizer slows it down.
 SLOWER = int(os.environ.get("SCUMBLE_TESTS_SLOWER", "1"))
 

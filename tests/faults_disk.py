@@ -36,14 +36,27 @@ def mount(*arguments):
         raise SystemExit(77)
 
 
-def fill(disk):
-    """Leaves no room for a byte; names of empty files still have some."""
+def fill(disk, pages=0):
+    """Leaves room for so many pages of 4096 bytes, or for no byte; names of empty files still have some."""
     filler = os.open(disk / "filler", os.O_WRONLY | os.O_CREAT)
     try:
         while True:
             os.write(filler, b"x" * 4096)
     except OSError:
+        os.ftruncate(filler, os.fstat(filler).st_size - 4096 * pages)
         os.close(filler)
+
+
+def older_files(folder):
+    """What a run would replace there."""
+    (folder / "trade" / "pictures").mkdir(parents=True)
+    for older in ("p.png", "g.exr", "f.2.png", *(f"trade/{name}" for name in faults.REPORT)):
+        (folder / older).write_text("an older one")
+
+
+def tradeoff(scene, folder):
+    return ["tradeoff", scene, "--style", "style", "--size", 32, "--only", "levels 1", "--repeat", 1, "--no-memory",
+            "-o", folder]
 
 
 def outputs(folder, scene, guides):
@@ -57,6 +70,8 @@ def outputs(folder, scene, guides):
     kinds["template.png"] = ["sphere", "--size", 64, "--only", "png", "-o", folder]
     kinds["template.ora"] = ["sphere", "--size", 64, "--only", "ora", "-o", folder]
     kinds["template.pdf"] = ["sphere", "--size", 128, "--only", "pdf", "-o", folder]
+    kinds["lit.png"] = ["sphere", "--rectify", "kit/template.png", "--size", 64, "-o", folder / "lit.png"]
+    kinds["trade/report.html"] = tradeoff(scene, folder / "trade")
     if shutil.which("blender"):
         kinds["report.html"] = ["crosscheck", scene, "--size", 32, "--samples", 1, "-o", folder / "report.html"]
         kinds["limits.json"] = ["crosscheck", scene, "--size", 160, "--write-baseline", folder / "limits.json"]
@@ -82,38 +97,58 @@ def standard_output(program, failures):
         failures.check(code == 4 and "standard output" in faults.error_in(said), f"{arguments} > /dev/full: {code}: {said}")
 
 
+def report_without_room(program, failures, disk, scene):
+    """Where there is room for pictures and not for their page, an older report stays whole."""
+    before = faults.contents(disk, ignored=("filler",))
+    fill(disk, pages=3)
+    code, said = program.run(*tradeoff(scene, disk / "trade"))
+    error = faults.error_in(said)
+    failures.check(code == 4 and "report.html: No space left on device" in error, f"tradeoff: {code}: {said}")
+    failures.check(faults.contents(disk, ignored=("filler",)) == before, "a part of an older report is gone")
+    fill(disk)
+
+
 def caches(program, failures, disk, read_only):
-    """A cache that keeps nothing changes nothing."""
-    run = ["transfer", "g.exr", "--style", "style", "--set", "transfer.nearest=table", "-o", "c.png"]
+    """A cache that keeps nothing changes nothing: neither of tables nor of the times of --budget-ms, where an hour is
+    enough for the style as it is whatever they are."""
+    run = ["transfer", "g.exr", "--style", "style", "-o", "c.png"]
+    kept = program.folder / "cache" / "scumble"
+    one_cache(program, failures, disk, read_only, [*run, "--set", "transfer.nearest=table"], kept, True)
+    one_cache(program, failures, disk, read_only, [*run, "--budget-ms", 3600000], kept / "times", False)
+
+
+def one_cache(program, failures, disk, read_only, run, folder, is_same):
+    """is_same: what is made again has the same bytes, as times have not."""
     code, said = program.run(*run)
     failures.check(code == 0, said)
     whole = (program.folder / "c.png").read_bytes()
-    tables = list((program.folder / "cache" / "scumble").glob("*.table"))
-    failures.check(len(tables) == 1, f"the style has its table in the cache: {tables}")
+    kept = list(folder.glob("*.table"))
+    failures.check(len(kept) == 1, f"one file is in the cache {folder}: {kept}")
     (program.folder / "a file").write_text("no folder")
     for cache in (disk / "cache", read_only, read_only / "new", program.folder / "a file", pathlib.Path("/proc/none")):
         code, said = program.run(*run, env=dict(program.environment, XDG_CACHE_HOME=str(cache)))
         failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"cache {cache}: {code}: {said}")
-    table = tables[0].read_bytes()
+    table = kept[0].read_bytes()
     flipped = bytearray(table)
     flipped[len(table) // 2] ^= 1
     for damaged in (b"", table[:8], table[:-1], table + b"x", bytes(len(table)), bytes(flipped)):
-        tables[0].write_bytes(damaged)
+        kept[0].write_bytes(damaged)
         code, said = program.run(*run)
-        failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"a damaged table: {code}: {said}")
-        failures.check(tables[0].read_bytes() == table, "a damaged table is made again")
-    tables[0].unlink()
-    tables[0].mkdir()
+        failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"damaged {kept[0]}: {code}: {said}")
+        made = kept[0].read_bytes()
+        failures.check(made == table if is_same else made != damaged, f"damaged, {kept[0]} is made again")
+    kept[0].unlink()
+    kept[0].mkdir()
     code, said = program.run(*run)
-    failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"a folder for a table: {code}: {said}")
+    failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"a folder for {kept[0]}: {code}: {said}")
 
 
 def permissions(program, failures, scene):
     """As a user whom the folder does not belong to; root may write anywhere. False: there is no such user to be had."""
     closed = program.folder / "closed"
-    closed.mkdir()
-    (closed / "p.png").write_text("an older one")
-    closed.chmod(0o555)
+    older_files(closed)
+    for folder in (closed / "trade" / "pictures", closed / "trade", closed):
+        folder.chmod(0o555)
     user = []
     if os.geteuid() == 0:
         user = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
@@ -153,15 +188,20 @@ def main():
             more = ["--view", "30,10"] if output == "other.exr" else []
             code, said = program.run("guidegen", scene, "--size", size, *more, "-o", output)
             failures.check(code == 0, said)
+        code, said = program.run("sphere", "--size", 512, "--only", "png", "-o", "kit")
+        failures.check(code == 0, said)
+        for kind in (["sphere", "--rectify", "kit/template.png", "--size", 64, "-o", "lit.png"], tradeoff(scene, "trade")):
+            code, said = program.run(*kind)  # where there is room
+            failures.check(code == 0, said)
+        failures.check(set(faults.REPORT) <= set(faults.contents(program.folder / "trade")), "a report's files")
         disk, read_only = program.folder / "disk", program.folder / "read_only"
         disk.mkdir()
         mount("-t", "tmpfs", "-o", "size=64k", "none", disk)  # in a namespace: gone with the last who is in it
-        for older in ("p.png", "g.exr", "f.2.png"):
-            (disk / older).write_text("an older one")
+        older_files(disk)
         fill(disk)
         refuses(program, failures, disk, scene, "No space left on device")
-        read_only.mkdir()
-        (read_only / "p.png").write_text("an older one")
+        report_without_room(program, failures, disk, scene)
+        older_files(read_only)
         mount("--bind", read_only, read_only)
         mount("-o", "remount,bind,ro", read_only)
         refuses(program, failures, read_only, scene, "Read-only file system")

@@ -6,7 +6,7 @@ and takes away the temporary file that a killed run could not. Then signals that
 temporary file at all; and runs at the same time in one folder, of which some are killed.
 
 The moments are drawn from a seeded generator, in shares of the time that whole runs take here and now from their first
-file to their end.
+file to their last.
 
 Usage: faults_killed.py PROGRAM SOURCE [KILLS]
 """
@@ -30,7 +30,7 @@ class Verb:
         self.program, self.name, self.failures = program, name, failures
         self.folder = program.folder / name
         self.arguments = [*arguments, "--frames", f"1-{FRAMES}", "-o", name + "/f.####" + name[-4:]]
-        self.seconds = []  # from the first file on, of the last whole runs
+        self.seconds = []  # from the first file to the last, of the last whole runs
         for _ in range(3):
             self.whole_run()
         self.whole = faults.contents(self.folder)
@@ -47,9 +47,15 @@ class Verb:
         faults.clean(self.folder)
         process = self.begin()
         start = time.monotonic()
-        _, said = process.communicate()
+        while process.poll() is None and not self.is_complete():
+            time.sleep(0.0005)
         self.seconds = self.seconds[-8:] + [time.monotonic() - start]
+        _, said = process.communicate()
         self.failures.check(process.returncode == 0, f"{self.name}: {process.returncode}: {said}")
+
+    def is_complete(self):
+        names = os.listdir(self.folder)
+        return len(names) == FRAMES and not faults.leftovers(self.folder)
 
     def resume(self):
         code, said = self.program.run(*self.arguments, "--resume")
@@ -78,8 +84,8 @@ class Verb:
 
 def kill_many(verbs, chance, kills):
     running = between = with_leftover = tries = 0
-    # Moments are uniform in the median time from the first file to the end, so about half of them meet what they are for. A
-    # quarter is what no pace of the machine should spoil.
+    # Moments are uniform in the median time from the first file to the last, so more than half of them meet what they are
+    # for. A quarter is what no pace of the machine should spoil.
     while between < kills and tries < 4 * kills:
         i, tries = tries, tries + 1
         verb = verbs[i % len(verbs)]
