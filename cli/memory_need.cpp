@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include "guidegen/path_layers.h"
 #include "style/sphere_template.h"
@@ -21,6 +22,9 @@ constexpr Bytes kProgram = 30 * kMega, kThread = 4 * kMega;
 constexpr Bytes kFormatsModule = 125 * kMega;  // OpenImageIO and what it loads
 constexpr Bytes kDecoded = 16;                 // of a pixel of a JPEG or WebP, beside the picture that comes of it
 constexpr Bytes kTriangle = 340;               // ours, Embree's, and what reading a text of it leaves behind
+constexpr Bytes kVertex = 40;                  // what triangles that share no corners have more, while normals are made
+constexpr Bytes kPlacedTriangle = 220;         // Embree's, of each further instance: corners, hierarchy, that of what shines
+constexpr Bytes kInstance = 2300;              // its node in the file, ours, and Embree's geometry
 
 // Of transfer/: what one pixel takes.
 constexpr Bytes kSource = 7;                // SourceField and who is painted
@@ -146,7 +150,16 @@ void AddProgram(int threads, MemoryNeed& need) { need.Take("program", kProgram +
 
 void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   Bytes bytes = kPaint * more.all;
-  for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size();
+  for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size() + kVertex * mesh.positions.size();
+  // Embree is given each instance's triangles where they stand. Those that an exact copy covers it is not, but they are
+  // rare, and only a look at every corner tells.
+  std::vector<bool> placed(scene.meshes.size());
+  for (const Instance& instance : scene.instances) {
+    const auto mesh = std::size_t(instance.mesh);
+    if (placed[mesh]) bytes += kPlacedTriangle * scene.meshes[mesh].triangles.size();
+    placed[mesh] = true;
+    bytes += kInstance;
+  }
   for (const Picture& texture : scene.textures) bytes += kPaint * Bytes(texture.width) * Bytes(texture.height);
   for (const auto& texture : scene.encoded_textures) bytes += texture ? Bytes(texture->bytes) : 0;
   if (more.largest > 0) need.Take("reader", kFormatsModule);

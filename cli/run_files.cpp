@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 #include "io/atomic_file.h"
@@ -27,11 +29,17 @@ std::optional<Identity> IdentityOf(const std::string& path) {
   return Identity{file.st_dev, file.st_ino};
 }
 
-// Its beginning, where files are named.
+// No system takes longer names.
+constexpr std::size_t kLongestName = 4096;
+
+// Its beginning, where files are named. Files of /proc, which say that they are empty, name none.
 std::string StartOf(const fs::path& path) {
-  constexpr std::size_t kMost = std::size_t(16) << 20;
+  constexpr std::uintmax_t kMost = std::uintmax_t(16) << 20;
+  std::error_code failed;
+  const std::uintmax_t size = fs::file_size(path, failed);
+  if (failed) return {};
   std::ifstream stream(path, std::ios::binary);
-  std::string text(kMost, '\0');
+  std::string text(static_cast<std::size_t>(std::min(size, kMost)), '\0');
   stream.read(text.data(), std::streamsize(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
@@ -41,6 +49,20 @@ std::string Ending(const fs::path& path) {
   std::string ending = path.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return ending;
+}
+
+// Calls use(name) with what may be a file at the end of a line: "c.png", "b c.png", "a b c.png" of "map_Kd a b c.png". A name
+// has no more than 64 words here: of a line of 100 KB, all such ends together would come to gigabytes.
+template <class Use>
+void ForEachNameAtEnd(std::string_view line, const Use& use) {
+  constexpr int kMostWords = 64;
+  line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+  std::size_t space = line.rfind(' ');
+  for (int words = 0; words < kMostWords && space != std::string_view::npos; ++words) {
+    if (line.size() - space > kLongestName) return;
+    use(std::string(line.substr(space + 1)));
+    space = space == 0 ? std::string_view::npos : line.rfind(' ', space - 1);
+  }
 }
 
 // "a%20b.png" as glTF writes the name "a b.png".
@@ -62,7 +84,6 @@ void RunFiles::Reads(const std::string& what, const std::string& path) {
 }
 
 void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder) {
-  constexpr std::size_t kLongestName = 4096;
   const std::string text = StartOf(file);
   for (std::size_t begin = text.find_first_of("\"'"); begin != std::string::npos;) {
     const std::size_t end = text.find(text[begin], begin + 1);
@@ -82,26 +103,21 @@ void RunFiles::ReadsScene(const std::string& scene) {
   Reads("the scene", scene);
   if (Ending(scene) == ".gltf") ReadsQuoted(what, scene, folder);
   if (Ending(scene) != ".obj") return;
-  // "mtllib a.mtl" there and "map_Kd -s 1 1 1 a.png" in that file: what is at the end of a line may be a file.
-  const auto named = [&](const std::string& line) {
-    std::vector<std::string> names;
-    for (std::size_t space = line.find(' '); space != std::string::npos; space = line.find(' ', space + 1)) {
-      std::string name = line.substr(space + 1);
-      name.erase(name.find_last_not_of(" \t\r") + 1);
-      if (!name.empty()) names.push_back((fs::path(folder) / name).string());
-    }
-    return names;
-  };
+  // "mtllib a.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into once.
+  std::set<Identity> libraries;
   std::istringstream lines(StartOf(scene));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("mtllib", 0) != 0) continue;
-    for (const std::string& library : named(line)) {
+    ForEachNameAtEnd(line, [&](const std::string& name) {
+      const std::string library = (fs::path(folder) / name).string();
+      const auto identity = IdentityOf(library);
+      if (!identity || !libraries.insert(*identity).second) return;
       Reads(what, library);
-      std::istringstream entries(IdentityOf(library) ? StartOf(library) : std::string());
+      std::istringstream entries(StartOf(library));
       for (std::string entry; std::getline(entries, entry);) {
-        for (const std::string& picture : named(entry)) Reads(what, picture);
+        ForEachNameAtEnd(entry, [&](const std::string& picture) { Reads(what, (fs::path(folder) / picture).string()); });
       }
-    }
+    });
   }
 }
 

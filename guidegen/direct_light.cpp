@@ -12,8 +12,12 @@
 namespace scumble {
 namespace {
 
-// Metres or radians below which a light has no extent: its radiance would leave a double's range.
-constexpr double kLeastExtent = 1e-9;
+// Metres up to which a lamp has no extent: as floats hold no less, no scene is so small, and a radiance, over the square
+// of it, stays within a double's range.
+constexpr double kLeastRadius = 0x1p-149;
+
+// Radians up to which a sun has none: in floats nothing tells the two apart.
+constexpr double kLeastHalfAngle = 1e-9;
 
 // Degrees; beyond, the tangent of half the angle would leave every range.
 constexpr double kWidestSun = 179.9;
@@ -85,7 +89,7 @@ Expected<PlacedLight> PlaceLight(const Light& light, const CameraRays& camera) {
   placed.position = camera.ViewFromWorld(position);
   if (light.type == LightType::kPoint || light.type == LightType::kSpot) {
     SCUMBLE_RETURN_IF_ERROR(CheckExtent(who, "radius", light.radius));
-    if (light.radius > kLeastExtent) placed.radius = light.radius;
+    if (light.radius > kLeastRadius) placed.radius = light.radius;
   }
   if (light.type == LightType::kPoint) return placed;
 
@@ -99,7 +103,7 @@ Expected<PlacedLight> PlaceLight(const Light& light, const CameraRays& camera) {
       return InputError(who + "is " + std::to_string(light.angle_degrees) + " degrees wide: give a sun at most 180");
     }
     const double half_angle = glm::radians(0.5 * std::min(light.angle_degrees, kWidestSun));
-    if (half_angle > kLeastExtent) placed.half_angle = half_angle;
+    if (half_angle > kLeastHalfAngle) placed.half_angle = half_angle;
     return placed;
   }
   SCUMBLE_RETURN_IF_ERROR(light.type == LightType::kSpot ? PlaceCone(light, who, placed)

@@ -10,9 +10,6 @@
 namespace scumble {
 namespace {
 
-// An accessor without a buffer view is all zeros and needs no byte of the file, so its count needs a limit of its own.
-constexpr std::size_t kMaxZeroElements = 16'000'000;
-
 // `count` elements of `element_bytes` bytes, `stride` apart; null when the accessor has no data of its own.
 struct Block {
   const unsigned char* data = nullptr;
@@ -240,6 +237,23 @@ Expected<std::span<const unsigned char>> ReadBufferView(const tinygltf::Model& m
                " of a buffer of " + std::to_string(data.size()) + " bytes");
   }
   return std::span<const unsigned char>(data).subspan(view.byteOffset, view.byteLength);
+}
+
+Status ZeroBudget::Take(const tinygltf::Model& model, const std::string& file, int accessor) {
+  if (accessor < 0 || std::size_t(accessor) >= model.accessors.size()) return Ok();
+  const tinygltf::Accessor& from = model.accessors[std::size_t(accessor)];
+  if (from.bufferView >= 0) return Ok();
+  constexpr std::uint64_t kElementsOfAValue = 16;
+  const std::uint64_t values = from.sparse.isSparse ? std::uint64_t(std::max(from.sparse.count, 0)) : 0;
+  const std::uint64_t zeros = from.count - std::min<std::uint64_t>(from.count, kElementsOfAValue * values);
+  if (zeros <= limit_ - taken_) {
+    taken_ += zeros;
+    return Ok();
+  }
+  const std::uint64_t found = zeros > ~taken_ ? ~std::uint64_t(0) : taken_ + zeros;
+  return InputError(file + ": what is read of accessors without data comes to " + std::to_string(found) +
+                    " elements with accessor " + std::to_string(accessor) + "; expected at most " +
+                    std::to_string(limit_) + ": export it again, with the data");
 }
 
 Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::string& file, int accessor,

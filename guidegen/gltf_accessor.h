@@ -30,6 +30,25 @@ struct FloatTable {
 Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::string& file, int accessor,
                                     const std::string& what);
 
+// An accessor without a buffer view is all zeros, but for what a sparse one puts in their place: it needs no byte of the
+// file, however many elements it has, and may be named any number of times. So its count has a limit, and what is read of
+// such accessors has one for all together.
+inline constexpr std::uint64_t kMaxZeroElements = 16'000'000;
+
+// Counts elements that no byte of the file stands for; a value of a sparse accessor stands for 16.
+class ZeroBudget {
+ public:
+  explicit ZeroBudget(std::uint64_t limit) : limit_(limit) {}
+
+  // One more reading of an accessor, before it is read: kInput, naming the file, where it is one too many. Those that have
+  // data, or do not exist, take nothing.
+  Status Take(const tinygltf::Model& model, const std::string& file, int accessor);
+
+ private:
+  std::uint64_t limit_;
+  std::uint64_t taken_ = 0;
+};
+
 // Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused.
 Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
                                 const std::string& what);

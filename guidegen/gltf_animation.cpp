@@ -9,7 +9,38 @@
 #include "guidegen/gltf_accessor.h"
 
 namespace scumble {
+
+// Each channel keeps its times and values, and any number of channels may name the same accessors. This refuses before they
+// are read.
+class KeyBudget {
+ public:
+  // 200 joints that are moved, turned and scaled 30 times a second for 20 minutes have 43 million times and values.
+  static constexpr std::uint64_t kMaxElements = 64'000'000;
+  // Times have data, since they increase. What is known to stand still is left out, seldom written as zeros.
+  static constexpr std::uint64_t kMaxZeros = 4'000'000;
+
+  Status Take(const tinygltf::Model& model, const std::string& file, int accessor, const std::string& where) {
+    SCUMBLE_ASSIGN(const std::size_t count, AccessorCount(model, file, accessor, where));
+    SCUMBLE_RETURN_IF_ERROR(zeros_.Take(model, file, accessor));
+    if (count > kMaxElements - taken_) {
+      return InputError(file + ": " + where + ": with these the animation has more than " +
+                        std::to_string(kMaxElements) + " times and values; expected fewer: bake fewer keys");
+    }
+    taken_ += count;
+    return Ok();
+  }
+
+ private:
+  ZeroBudget zeros_{kMaxZeros};
+  std::uint64_t taken_ = 0;
+};
+
 namespace {
+
+std::string AnimationName(const tinygltf::Model& model, std::size_t index) {
+  const std::string& name = model.animations[index].name;
+  return name.empty() ? "animation_" + std::to_string(index) : name;
+}
 
 glm::dquat ToQuaternion(const double* v) { return glm::dquat(v[3], v[0], v[1], v[2]); }
 
@@ -21,11 +52,12 @@ bool HasDirection(const double* v) {
 // Reads one animation's channels; the members only save passing them on.
 class ChannelReader {
  public:
-  ChannelReader(const tinygltf::Model& model, const std::string& file, int animation)
+  ChannelReader(const tinygltf::Model& model, const std::string& file, int animation, KeyBudget& budget)
       : model_(model),
         file_(file),
+        budget_(budget),
         animation_(model.animations[std::size_t(animation)]),
-        name_("animation '" + Excerpt(AnimationNames(model)[std::size_t(animation)], 80) + "'") {}
+        name_("animation '" + Excerpt(AnimationName(model, std::size_t(animation)), 80) + "'") {}
 
   const std::string& name() const { return name_; }
   std::string Where(std::size_t channel) const { return name_ + ", channel " + std::to_string(channel); }
@@ -59,6 +91,7 @@ class ChannelReader {
   }
 
   Expected<std::vector<double>> ReadTimes(int accessor, const std::string& where) const {
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(model_, file_, accessor, where));
     SCUMBLE_ASSIGN(const FloatTable table, ReadFloats(model_, file_, accessor, where));
     if (table.components != 1) return Bad(where, "are not single numbers");
     if (table.count == 0) return Bad(where, "has no key; expected one or more");
@@ -75,6 +108,7 @@ class ChannelReader {
 
   Status ReadValues(int accessor, int width, const std::string& channel, KeyTrack& track) const {
     const std::string where = channel + ", values";
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(model_, file_, accessor, where));
     SCUMBLE_ASSIGN(const FloatTable table, ReadFloats(model_, file_, accessor, where));
     const std::size_t values_a_key = track.interpolation == KeyInterpolation::kCubicSpline ? 3 : 1;
     const std::size_t keys = track.times.size() * values_a_key;
@@ -104,6 +138,7 @@ class ChannelReader {
 
   const tinygltf::Model& model_;
   const std::string& file_;
+  KeyBudget& budget_;
   const tinygltf::Animation& animation_;
   const std::string name_;
 };
@@ -156,20 +191,18 @@ std::vector<double> KeyTrack::At(double seconds, bool is_rotation) const {
 
 std::vector<std::string> AnimationNames(const tinygltf::Model& model) {
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < model.animations.size(); ++i) {
-    const std::string& name = model.animations[i].name;
-    names.push_back(name.empty() ? "animation_" + std::to_string(i) : name);
-  }
+  for (std::size_t i = 0; i < model.animations.size(); ++i) names.push_back(AnimationName(model, i));
   return names;
 }
 
 Expected<GltfAnimation> GltfAnimation::Read(const tinygltf::Model& model, const std::string& file,
                                             const std::string& name, WarningCounter& warnings) {
   GltfAnimation animation;
+  KeyBudget budget;
   const std::vector<std::string> names = AnimationNames(model);
   if (name == "*") {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      SCUMBLE_RETURN_IF_ERROR(animation.ReadAnimation(model, file, static_cast<int>(i), warnings));
+      SCUMBLE_RETURN_IF_ERROR(animation.ReadAnimation(model, file, static_cast<int>(i), budget, warnings));
     }
     return animation;
   }
@@ -185,13 +218,14 @@ Expected<GltfAnimation> GltfAnimation::Read(const tinygltf::Model& model, const 
     warnings.Add("only the first of the " + std::to_string(names.size()) + " animations in the file is played",
                  "'" + Excerpt(names[0], 80) + "'");
   }
-  SCUMBLE_RETURN_IF_ERROR(animation.ReadAnimation(model, file, static_cast<int>(chosen - names.begin()), warnings));
+  const int index = static_cast<int>(chosen - names.begin());
+  SCUMBLE_RETURN_IF_ERROR(animation.ReadAnimation(model, file, index, budget, warnings));
   return animation;
 }
 
-Status GltfAnimation::ReadAnimation(const tinygltf::Model& model, const std::string& file, int index,
+Status GltfAnimation::ReadAnimation(const tinygltf::Model& model, const std::string& file, int index, KeyBudget& budget,
                                     WarningCounter& warnings) {
-  const ChannelReader reader(model, file, index);
+  const ChannelReader reader(model, file, index, budget);
   const std::vector<tinygltf::AnimationChannel>& channels = model.animations[std::size_t(index)].channels;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const int node = channels[i].target_node;

@@ -18,6 +18,8 @@ class Model;
 
 namespace scumble {
 
+class KeyBudget;
+
 // A node's own placing, as glTF splits it: scaled, then rotated, then moved.
 struct NodePose {
   glm::dvec3 translation{0.0};
@@ -44,8 +46,9 @@ struct KeyTrack {
 class GltfAnimation {
  public:
   // Chooses by name: "" is the file's first, "*" all of them at once (Blender may write one for each object). A name
-  // that the file lacks is a kUsage error that lists those there are. Keys that are not finite or do not increase, and
-  // accessors whose counts do not fit, are kInput errors that name animation, channel and place.
+  // that the file lacks is a kUsage error that lists those there are. Keys that are not finite or do not increase,
+  // accessors whose counts do not fit, and more keys in all than any film has, are kInput errors that name animation,
+  // channel and place.
   static Expected<GltfAnimation> Read(const tinygltf::Model& model, const std::string& file, const std::string& name,
                                       WarningCounter& warnings);
 
@@ -63,7 +66,8 @@ class GltfAnimation {
     KeyTrack translation, rotation, scale, weights;  // without keys: not animated
   };
 
-  Status ReadAnimation(const tinygltf::Model& model, const std::string& file, int index, WarningCounter& warnings);
+  Status ReadAnimation(const tinygltf::Model& model, const std::string& file, int index, KeyBudget& budget,
+                       WarningCounter& warnings);
 
   std::map<int, NodeTracks> nodes_;
   double duration_ = 0.0;

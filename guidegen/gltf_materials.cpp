@@ -8,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "guidegen/gltf_accessor.h"
 #include "guidegen/gltf_parse.h"
@@ -71,20 +73,23 @@ std::optional<std::string> EndingOf(std::span<const unsigned char> bytes) {
   return std::nullopt;
 }
 
+using SharedBytes = std::shared_ptr<const std::vector<unsigned char>>;
+
 // A picture of the file, as its decoding needs it when the file is closed.
 struct EncodedPicture {
   std::string file;   // the scene's
   std::string label;  // of the picture, and of a material that uses it
   std::string owner;
   int number = 0;
-  std::vector<unsigned char> bytes;
+  SharedBytes bytes;             // null: none are kept
   std::filesystem::path beside;  // the file that has them instead; empty: none
 };
 
 // Reads it with a function of its bytes and of a name for messages.
 template <class Read>
 auto ReadWith(const EncodedPicture& encoded, const Read& read) -> decltype(read({}, "")) {
-  std::span<const unsigned char> bytes(encoded.bytes);
+  std::span<const unsigned char> bytes;
+  if (encoded.bytes) bytes = *encoded.bytes;
   std::vector<std::byte> whole;
   if (!encoded.beside.empty()) {
     if (auto file = ReadRegularFile(encoded.beside)) whole = *std::move(file);
@@ -110,7 +115,9 @@ auto ReadWith(const EncodedPicture& encoded, const Read& read) -> decltype(read(
 class TextureLoader {
  public:
   TextureLoader(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings)
-      : model_(model), file_(file), scene_(scene), warnings_(warnings) {}
+      : model_(model), file_(file), scene_(scene), warnings_(warnings) {
+    for (const tinygltf::Buffer& buffer : model.buffers) room_ += buffer.data.size();
+  }
 
   // `Info` is tinygltf's TextureInfo or NormalTextureInfo. An absent texture gives TextureUse with texture -1.
   template <class Info>
@@ -144,6 +151,21 @@ class TextureLoader {
   }
 
  private:
+  // Any number of images may name one buffer view, and any number of views one part of a buffer: that is kept once.
+  // Pictures that do not lie on each other fit into the buffers together.
+  Expected<SharedBytes> BytesOf(int view, const std::string& label) {
+    SCUMBLE_ASSIGN(const auto bytes, ReadBufferView(model_, file_, view, label));
+    SharedBytes& kept = kept_[{bytes.data(), bytes.size()}];
+    if (kept) return kept;
+    if (bytes.size() > room_) {
+      return InputError(file_ + ": " + label + ": the pictures inside the file's buffers have more bytes than the " +
+                        "buffers, so they lie on each other; expected each at a place of its own: export it again");
+    }
+    room_ -= bytes.size();
+    kept = std::make_shared<const std::vector<unsigned char>>(bytes.begin(), bytes.end());
+    return kept;
+  }
+
   Expected<int> PictureOf(const tinygltf::Texture& texture, const std::string& owner) {
     int source = texture.source;
     if (const auto webp = texture.extensions.find("EXT_texture_webp"); source < 0 && webp != texture.extensions.end()) {
@@ -163,15 +185,14 @@ class TextureLoader {
     encoded.file = file_;
     encoded.number = source;
     if (image.bufferView >= 0) {
-      SCUMBLE_ASSIGN(const auto bytes, ReadBufferView(model_, file_, image.bufferView, encoded.label));
-      encoded.bytes.assign(bytes.begin(), bytes.end());
+      SCUMBLE_ASSIGN(encoded.bytes, BytesOf(image.bufferView, encoded.label));
     } else if (!image.image.empty() || image.uri.empty()) {
-      encoded.bytes = image.image;
+      encoded.bytes = std::make_shared<const std::vector<unsigned char>>(image.image);
     } else {
       encoded.beside = PictureFile(file_, image.uri);
     }
     auto kept_texture = std::make_shared<EncodedTexture>();
-    kept_texture->bytes = encoded.bytes.size();
+    kept_texture->bytes = encoded.bytes ? encoded.bytes->size() : 0;
     const auto kept = std::make_shared<const EncodedPicture>(std::move(encoded));
     using Bytes = std::span<const std::byte>;
     kept_texture->decode = [kept] {
@@ -193,6 +214,8 @@ class TextureLoader {
   Scene& scene_;
   WarningCounter& warnings_;
   std::map<int, int> loaded_;
+  std::map<std::pair<const unsigned char*, std::size_t>, SharedBytes> kept_;  // by their place in the model
+  std::uint64_t room_ = 0;  // bytes of the buffers that no picture was found in yet
 };
 
 // A factor that the format confines to 0 … 1.

@@ -8,7 +8,9 @@
 #include <exception>
 #include <limits>
 #include <new>
+#include <set>
 #include <span>
+#include <string_view>
 
 #include "guidegen/loader_util.h"
 
@@ -17,6 +19,9 @@ namespace {
 
 // tinygltf walks and frees extras by recursion; real files nest a dozen levels.
 constexpr int kMaxJsonDepth = 200;
+// Of files that several buffers name. Exporters write one for each: as tinygltf wants a buffer to be as long as its file,
+// others would only hold the same bytes again.
+constexpr std::uintmax_t kMaxBytesAgain = std::uintmax_t(1) << 26;
 constexpr std::size_t kGlbHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
@@ -61,27 +66,43 @@ Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::s
   return json;
 }
 
-// The deepest nesting of brackets outside strings; a cheap look ahead of the parser proper.
-int JsonDepth(std::span<const unsigned char> json) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
+// What a cheap look ahead of the parser proper finds in the JSON.
+struct JsonOutline {
+  int depth = 0;                // of the deepest brackets
+  int buffers_without_uri = 0;  // or with one that is empty or no text, which tinygltf takes for none
+};
+
+// Keys are compared as they are spelled. One with an escape may be any, so it counts for the worst: no exporter writes
+// such.
+JsonOutline OutlineOf(std::string_view json) {
+  JsonOutline outline;
+  int depth = 0;
+  bool in_buffers = false, at_uri = false, has_uri = false;
+  std::string_view text;  // the last string
+  const auto may_be = [&](std::string_view key) { return text == key || text.find('\\') != text.npos; };
   for (std::size_t i = 0; i < json.size(); ++i) {
-    const unsigned char c = json[i];
-    if (in_string) {
-      if (c == '\\') {
-        ++i;
-      } else if (c == '"') {
-        in_string = false;
-      }
-    } else if (c == '"') {
-      in_string = true;
+    const char c = json[i];
+    if (c == '"') {
+      const std::size_t begin = i + 1;
+      for (++i; i < json.size() && json[i] != '"'; ++i) i += json[i] == '\\';
+      text = json.substr(begin, i - begin);
+      if (depth == 3 && at_uri) has_uri = !text.empty();
+    } else if (c == ':' && depth == 1) {
+      in_buffers = may_be("buffers");
+    } else if (c == ':' && depth == 3 && in_buffers) {
+      at_uri = text == "uri";
+      if (may_be("uri")) has_uri = false;
+    } else if (c == ',' && depth == 3) {
+      at_uri = false;
     } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
+      outline.depth = std::max(outline.depth, ++depth);
+      if (depth == 3) at_uri = has_uri = false;
     } else if (c == '}' || c == ']') {
+      outline.buffers_without_uri += depth == 3 && in_buffers && !has_uri;
       --depth;
     }
   }
-  return deepest;
+  return outline;
 }
 
 bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, int, int, const unsigned char* bytes,
@@ -102,6 +123,8 @@ struct Surroundings {
   std::string folder;            // the scene's
   bool keep_pictures = false;    // pictures are there, too
   bool hidden_pictures = false;  // some were asked for, and were not
+  std::set<std::filesystem::path> read = {};
+  std::uintmax_t bytes_again = 0;  // read of files that had been read before
 };
 
 bool HasPictureEnding(const std::string& name) {
@@ -123,7 +146,25 @@ bool BesideScene(const std::string& name, void* base) {
   return std::filesystem::is_regular_file(name, error) && !error;
 }
 
-bool ReadForTinygltf(std::vector<unsigned char>* out, std::string* error, const std::string& name, void*) {
+// Any number of buffers may name one file, and tinygltf keeps its bytes for each.
+bool MayBeRead(const std::string& name, Surroundings& surroundings) {
+  std::error_code failed;
+  const std::filesystem::path file = std::filesystem::canonical(name, failed);
+  if (failed || surroundings.read.insert(file).second) return true;
+  const std::uintmax_t size = std::filesystem::file_size(file, failed);
+  if (failed || size > kMaxBytesAgain - surroundings.bytes_again) return false;
+  surroundings.bytes_again += size;
+  return true;
+}
+
+bool ReadForTinygltf(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* base) {
+  if (!MayBeRead(name, *static_cast<Surroundings*>(base))) {
+    if (error) {
+      *error += "several buffers name this file, and reading files again comes to more than " +
+                std::to_string(kMaxBytesAgain) + " bytes; expected one buffer for each file";
+    }
+    return false;
+  }
   const Expected<std::vector<std::byte>> bytes = ReadRegularFile(name);
   if (!bytes) {
     if (error) *error += bytes.error().message;
@@ -178,7 +219,7 @@ Status RunTinygltf(const std::string& file, Surroundings& surroundings, std::spa
     return Ok();
   }
   if (errors.empty()) errors = warnings.empty() ? "no reason given" : warnings;
-  return InputError(file + " is not valid glTF 2.0: " + Excerpt(errors, 300) +
+  return InputError(file + " cannot be read as glTF 2.0: " + Excerpt(errors, 300) +
                     "; export it again, or check it with a glTF validator");
 }
 
@@ -198,15 +239,23 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
   if (IsGlb(bytes)) {
     SCUMBLE_ASSIGN(json, GlbJson(file, bytes));
   }
-  if (JsonDepth(json) > kMaxJsonDepth) {
+  const JsonOutline outline = OutlineOf({reinterpret_cast<const char*>(json.data()), json.size()});
+  if (outline.depth > kMaxJsonDepth) {
     return InputError(file + " nests its JSON more than " + std::to_string(kMaxJsonDepth) +
                       " levels deep; no scene needs that");
+  }
+  // Each of them would be a copy of the binary chunk. glTF allows it to the first alone; where meshopt packs the meshes,
+  // others stand for what they become.
+  if (IsGlb(bytes) && outline.buffers_without_uri > 1) {
+    return InputError(file + " has " + std::to_string(outline.buffers_without_uri) +
+                      " buffers without a uri; expected one, the file's own binary chunk: export it again, with " +
+                      "compression of meshes (meshopt) switched off");
   }
   Surroundings surroundings{FolderOf(path)};
   const Status parsed = RunTinygltf(file, surroundings, bytes, model, warnings);
   if (parsed || !surroundings.hidden_pictures) return parsed;
   // A buffer may have a picture's name.
-  surroundings.keep_pictures = true;
+  surroundings = {surroundings.folder, true};
   model = tinygltf::Model();
   return RunTinygltf(file, surroundings, bytes, model, warnings);
 }

@@ -10,7 +10,9 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <unordered_map>
 
+#include "guidegen/gltf_accessor.h"
 #include "guidegen/gltf_materials.h"
 #include "guidegen/gltf_meshes.h"
 #include "guidegen/gltf_parse.h"
@@ -22,6 +24,13 @@ namespace scumble {
 namespace {
 
 constexpr int kMaxNodeDepth = 1024;
+// Of objects, cameras and lights, wherever one is kept: as many instances as there may be, with names of 500 bytes.
+constexpr std::uint64_t kMaxNameBytes = std::uint64_t(1) << 29;
+// Morph targets are what exporters write without data: 100 that do nothing to the positions and normals of 100,000 vertices
+// are 20 million.
+constexpr std::uint64_t kMaxZerosOfTargets = 4 * kMaxZeroElements;
+// Skins have as many inverse bind matrices as joints; more are allowed, and not looked at.
+constexpr std::size_t kMaxSpareMatrices = 1024;
 constexpr double kLumensPerWatt = 683.0;
 constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
@@ -46,6 +55,7 @@ class GltfLoader {
     SCUMBLE_RETURN_IF_ERROR(CheckVersionAndExtensions());
     SCUMBLE_RETURN_IF_ERROR(LoadGltfMaterials(model_, file_, scene_, warnings_));
     SCUMBLE_RETURN_IF_ERROR(ReadMaterialExtras(model_, file_, scene_));
+    ShareDefaultMaterial();
     SCUMBLE_RETURN_IF_ERROR(ReadSceneExtras(model_, std::max(model_.defaultScene, 0), file_, scene_));
     rig_.file = file_;
     if (animation_) {
@@ -53,7 +63,7 @@ class GltfLoader {
     }
     SCUMBLE_ASSIGN(const std::vector<int> roots, ChooseRoots());
     SCUMBLE_RETURN_IF_ERROR(WalkNodes(roots));
-    NameObjects();
+    SCUMBLE_RETURN_IF_ERROR(NameObjects());
     for (std::size_t i = 0; i < rig_.nodes.size(); ++i) SCUMBLE_RETURN_IF_ERROR(LoadNode(i));
     SCUMBLE_RETURN_IF_ERROR(CheckAnimatedWeights());
     if (!rig_.meshes.empty()) SCUMBLE_RETURN_IF_ERROR(rig_.Pose(std::nullopt, scene_));
@@ -85,6 +95,18 @@ class GltfLoader {
     if (unknown.empty()) return Ok();
     return InputError(file_ + " requires " + unknown + ", which cannot be read: export it without (for Draco or " +
                       "meshopt: switch compression off)");
+  }
+
+  // A default of the file's own may stand anywhere in its list: looked for anew for each primitive without a material, that
+  // would take the square of what the file holds. One that is made stands at the end, and is found at once.
+  void ShareDefaultMaterial() {
+    const int shared = FindDefaultMaterial(scene_);
+    if (shared < 0) return;
+    for (tinygltf::Mesh& mesh : model_.meshes) {
+      for (tinygltf::Primitive& primitive : mesh.primitives) {
+        if (primitive.material < 0) primitive.material = shared;
+      }
+    }
   }
 
   Expected<std::vector<int>> ChooseRoots() {
@@ -143,6 +165,7 @@ class GltfLoader {
         visit.pose = RestPose(visit.node);
       }
       const int index = static_cast<int>(rig_.nodes.size());
+      rig_node_of_[visit.node] = index;
       rig_.nodes.push_back(visit);
       const std::vector<int>& children = model_.nodes[std::size_t(visit.node)].children;
       for (std::size_t i = children.size(); i-- > 0;) {
@@ -206,7 +229,7 @@ class GltfLoader {
 
   // Ids are hashes of names, so objects of one name would be one object. The first node of a name, by its place in the
   // file's list, keeps it whatever comes later; the others take their whole path.
-  void NameObjects() {
+  Status NameObjects() {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < rig_.nodes.size(); ++i) {
       if (model_.nodes[std::size_t(rig_.nodes[i].node)].mesh >= 0) order.push_back(i);
@@ -225,13 +248,58 @@ class GltfLoader {
         later.push_back(i);
       }
     }
-    for (std::size_t i : later) {
-      std::string path = NodeName(rig_.nodes[i].node);
-      for (int at = rig_.nodes[i].parent; at >= 0; at = rig_.nodes[std::size_t(at)].parent) {
-        path = NodeName(rig_.nodes[std::size_t(at)].node) + "/" + path;
-      }
-      names_[i] = unique.Take(path);
+    SCUMBLE_RETURN_IF_ERROR(CheckNames(later));
+    for (std::size_t i : later) names_[i] = unique.Take(PathOf(i));
+    return Ok();
+  }
+
+  std::string PathOf(std::size_t index) const {
+    std::vector<int> nodes;
+    for (int at = static_cast<int>(index); at >= 0; at = rig_.nodes[std::size_t(at)].parent) {
+      nodes.push_back(rig_.nodes[std::size_t(at)].node);
     }
+    std::string path = NodeName(nodes.back());
+    for (std::size_t i = nodes.size() - 1; i-- > 0;) path += "/" + NodeName(nodes[i]);
+    return path;
+  }
+
+  // A name is in the file once and kept many times: with each primitive of a mesh, in the path of each node below, by each
+  // node that shows one camera or light. So names are counted before the paths are made, which nodes `with_path` get.
+  Status CheckNames(const std::vector<std::size_t>& with_path) const {
+    std::vector<bool> has_path(rig_.nodes.size(), false);
+    for (std::size_t i : with_path) has_path[i] = true;
+    std::vector<std::uint64_t> path_bytes;  // parents stand before their children
+    std::uint64_t bytes = 0;
+    for (const RigNode& visit : rig_.nodes) {
+      const tinygltf::Node& node = model_.nodes[std::size_t(visit.node)];
+      const std::uint64_t own = NodeName(visit.node).size();
+      path_bytes.push_back(visit.parent < 0 ? own : path_bytes[std::size_t(visit.parent)] + 1 + own);
+      if (node.mesh >= 0 && std::size_t(node.mesh) < model_.meshes.size()) {
+        const std::uint64_t one = has_path[path_bytes.size() - 1] ? path_bytes.back() : own;
+        bytes += one * std::max<std::uint64_t>(model_.meshes[std::size_t(node.mesh)].primitives.size(), 1);
+      }
+      if (node.name.empty()) bytes += NameBytesOf(model_.cameras, node.camera);
+      if (node.name.empty()) bytes += NameBytesOf(model_.lights, LightOf(node).value_or(-1));
+      if (bytes > kMaxNameBytes) {
+        return InputError(file_ + ": the names of its objects, cameras and lights come to more than " +
+                          std::to_string(kMaxNameBytes) + " bytes, at " + NodeLabel(visit.node) + "; where a name is " +
+                          "taken, the path counts: give shorter names, or each object one of its own");
+      }
+    }
+    return Ok();
+  }
+
+  template <class Named>
+  static std::uint64_t NameBytesOf(const std::vector<Named>& list, int index) {
+    return index >= 0 && std::size_t(index) < list.size() ? list[std::size_t(index)].name.size() : 0;
+  }
+
+  // The light that KHR_lights_punctual gives a node.
+  static std::optional<int> LightOf(const tinygltf::Node& node) {
+    const auto light = node.extensions.find("KHR_lights_punctual");
+    if (light == node.extensions.end() || !light->second.Has("light")) return std::nullopt;
+    if (!light->second.Get("light").IsInt()) return std::nullopt;
+    return light->second.Get("light").GetNumberAsInt();
   }
 
   Status LoadNode(std::size_t index) {
@@ -251,11 +319,8 @@ class GltfLoader {
     }
     SCUMBLE_ASSIGN(const std::optional<Light> lamp, ReadLampExtras(node, file_ + ": " + NodeLabel(visit.node)));
     if (lamp) return PlaceLight(visit, *lamp);
-    const auto light = node.extensions.find("KHR_lights_punctual");
-    if (light != node.extensions.end() && light->second.Has("light") && light->second.Get("light").IsInt()) {
-      return LoadLight(visit, light->second.Get("light").GetNumberAsInt());
-    }
-    return Ok();
+    const std::optional<int> light = LightOf(node);
+    return light ? LoadLight(visit, *light) : Ok();
   }
 
   Status LoadInstances(std::size_t index) {
@@ -283,12 +348,31 @@ class GltfLoader {
     }
     const auto [loaded, is_new] = loaded_meshes_.try_emplace(node.mesh);
     if (is_new) {
+      SCUMBLE_RETURN_IF_ERROR(TakeZeros(node.mesh, false));
       SCUMBLE_ASSIGN(loaded->second, LoadGltfMesh({model_, file_, scene_, budget_, warnings_}, node.mesh));
     }
     for (int mesh : loaded->second) {
       SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_new));
       instance.mesh = mesh;
       AddInstance({instance, static_cast<int>(index), -1});
+    }
+    return Ok();
+  }
+
+  // Before a mesh is read, what it has of elements without data: all its primitives', and their morph targets' where those
+  // are read too.
+  Status TakeZeros(int mesh, bool with_targets) {
+    for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
+      SCUMBLE_RETURN_IF_ERROR(zeros_.Take(model_, file_, primitive.indices));
+      for (const auto& [name, accessor] : primitive.attributes) {
+        SCUMBLE_RETURN_IF_ERROR(zeros_.Take(model_, file_, accessor));
+      }
+      if (!with_targets) continue;
+      for (const std::map<std::string, int>& target : primitive.targets) {
+        for (const auto& [name, accessor] : target) {
+          SCUMBLE_RETURN_IF_ERROR(zeros_of_targets_.Take(model_, file_, accessor));
+        }
+      }
     }
     return Ok();
   }
@@ -324,6 +408,7 @@ class GltfLoader {
     if (node.skin >= 0) {
       SCUMBLE_ASSIGN(skin, LoadSkin(node.skin));
     }
+    SCUMBLE_RETURN_IF_ERROR(TakeZeros(node.mesh, !weights.empty()));
     DeformationRequest request;
     request.joints = skin < 0 ? 0 : rig_.skins[std::size_t(skin)].joints.size();
     request.targets = weights.size();
@@ -343,12 +428,13 @@ class GltfLoader {
   Expected<int> LoadSkin(int index) {
     const auto [known, is_new] = loaded_skins_.try_emplace(index, static_cast<int>(rig_.skins.size()));
     if (!is_new) return known->second;
+    SCUMBLE_RETURN_IF_ERROR(CheckInverseBinds(index));
     SCUMBLE_ASSIGN(GltfSkin skin, ReadSkin(model_, file_, index));
-    std::map<int, int> rig_nodes;
-    for (std::size_t i = 0; i < rig_.nodes.size(); ++i) rig_nodes[rig_.nodes[i].node] = static_cast<int>(i);
+    skin.inverse_bind.resize(skin.joints.size());
+    skin.inverse_bind.shrink_to_fit();
     for (std::size_t i = 0; i < skin.joints.size(); ++i) {
-      const auto joint = rig_nodes.find(skin.joints[i]);
-      if (joint == rig_nodes.end()) {
+      const auto joint = rig_node_of_.find(skin.joints[i]);
+      if (joint == rig_node_of_.end()) {
         return InputError(file_ + ": " + skin.name + ", joint " + std::to_string(i) + " is node " +
                           std::to_string(skin.joints[i]) + ", which is not in the scene: export it again");
       }
@@ -356,6 +442,19 @@ class GltfLoader {
     }
     rig_.skins.push_back(std::move(skin));
     return known->second;
+  }
+
+  // Before they are read: skins may share one list of any length.
+  Status CheckInverseBinds(int index) const {
+    if (index < 0 || std::size_t(index) >= model_.skins.size()) return Ok();  // ReadSkin says so
+    const tinygltf::Skin& skin = model_.skins[std::size_t(index)];
+    const int accessor = skin.inverseBindMatrices;
+    if (accessor < 0 || std::size_t(accessor) >= model_.accessors.size()) return Ok();
+    const std::size_t matrices = model_.accessors[std::size_t(accessor)].count;
+    if (matrices <= skin.joints.size() + kMaxSpareMatrices) return Ok();
+    return InputError(file_ + ": skin " + std::to_string(index) + " has " + std::to_string(matrices) +
+                      " inverse bind matrices for " + std::to_string(skin.joints.size()) +
+                      " joints; expected as many: export it again");
   }
 
   // Every key of an animated mesh must have as many weights as there are targets.
@@ -474,11 +573,14 @@ class GltfLoader {
   tinygltf::Model model_;
   Scene scene_;
   GeometryBudget budget_;
+  ZeroBudget zeros_{kMaxZeroElements};
+  ZeroBudget zeros_of_targets_{kMaxZerosOfTargets};
   WarningCounter warnings_;
   GltfRig rig_;
   std::vector<std::string> names_;  // of the object at each visit; empty where there is no mesh
   std::map<int, std::vector<int>> loaded_meshes_;
   std::map<int, int> loaded_skins_;
+  std::unordered_map<int, int> rig_node_of_;  // by the node in the file
   UniqueNames camera_names_;
 };
 

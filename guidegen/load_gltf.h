@@ -8,7 +8,8 @@
 // is refused by the extension's name.
 //
 // An object is named after its node. Where several nodes have one name, the first in the file's list keeps it and the
-// others take their path, "Parent/Name", then "Parent/Name#2", …: what is added behind them renames nobody.
+// others take their path, "Parent/Name", then "Parent/Name#2", …: what is added behind them renames nobody. Names that
+// would come to more than 512 MiB, counted wherever one is kept, are refused.
 #pragma once
 
 #include <filesystem>

@@ -9,7 +9,9 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <sstream>
+#include <system_error>
 #include <unordered_map>
 
 #include "guidegen/loader_util.h"
@@ -27,18 +29,50 @@ std::filesystem::path BesideScene(const std::filesystem::path& scene, std::strin
   return scene.parent_path() / name;
 }
 
-// Reads material libraries from regular files only, and says which one is missing.
+bool IsBlank(char c) { return c == ' ' || c == '\t'; }
+
+// Makes comments of what tinyobjloader would hold and nobody looks at; the numbers of lines stay. Of a subdivision tag's 20
+// bytes it makes 360 KB, and again in each shape. The lines and points of an object it copies at each change of material:
+// the first index of each kind says that they are there.
+void BlankUnused(std::string& text) {
+  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  bool has_lines = false, has_points = false;  // in this object or group
+  for (auto begin = text.begin(); begin != text.end();) {
+    const auto end = std::find_if(begin, text.end(), ends_line);
+    const auto what = std::find_if_not(begin, end, IsBlank);
+    begin = end == text.end() ? end : end + 1;
+    if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
+    if (*what == 'o' || *what == 'g') has_lines = has_points = false;
+    if (*what == 't') *what = '#';
+    if (*what != 'l' && *what != 'p') continue;
+    bool& is_told = *what == 'l' ? has_lines : has_points;
+    const auto index = std::find_if_not(what + 1, end, IsBlank);
+    if (is_told || index == end) {
+      *what = '#';
+    } else {
+      std::fill(std::find_if(index, end, IsBlank), end, ' ');
+      is_told = true;
+    }
+  }
+}
+
+// Reads material libraries from regular files only, each once under whatever name, and says which one is missing.
 class LibraryReader : public tinyobj::MaterialReader {
  public:
   LibraryReader(const std::filesystem::path& scene, WarningCounter& warnings) : scene_(scene), warnings_(warnings) {}
 
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
                   std::map<std::string, int>* indices, std::string* warning, std::string* error) override {
-    const auto bytes = ReadRegularFile(BesideScene(scene_, name));
+    const std::filesystem::path path = BesideScene(scene_, name);
+    std::error_code missing;
+    const std::filesystem::path library = std::filesystem::canonical(path, missing);
+    if (!missing && read_.count(library) > 0) return true;
+    const auto bytes = ReadRegularFile(path);
     if (!bytes) {
       warnings_.Add("a material library is missing, its objects are matt and light grey", Excerpt(name));
       return false;
     }
+    if (!missing) read_.insert(library);
     std::istringstream stream(AsText(bytes.value()));
     tinyobj::LoadMtl(indices, materials, &stream, warning, error);
     return true;
@@ -47,6 +81,7 @@ class LibraryReader : public tinyobj::MaterialReader {
  private:
   const std::filesystem::path& scene_;
   WarningCounter& warnings_;
+  std::set<std::filesystem::path> read_;
 };
 
 // `normal` is an index into the file's normals, or -1 - an index into the smooth ones.
@@ -99,7 +134,9 @@ class ObjLoader {
   Status Parse() {
     SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path_));
     if (bytes.empty()) return InputError(file_ + " is empty; expected a Wavefront OBJ scene");
-    std::istringstream stream(AsText(bytes));
+    std::string text = AsText(bytes);
+    BlankUnused(text);
+    std::istringstream stream(std::move(text));
     LibraryReader library(path_, warnings_);
     std::string warning, error;
     bool ok = false;
@@ -238,8 +275,8 @@ class ObjLoader {
   void LoadMaterials() {
     mtl_ = std::make_shared<MtlLibrary>();
     mtl_->materials = std::move(materials_);
-    for (const tinyobj::material_t& material : mtl_->materials) {
-      for (const std::string& name : TexturesOf(material)) KeepTexture(name);
+    for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
+      for (const std::string& name : TexturesOf(mtl_->materials[i])) KeepTexture(name, i);
     }
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       const std::string& name = mtl_->materials[i].name;
@@ -248,14 +285,21 @@ class ObjLoader {
     }
   }
 
-  // To be decoded later.
-  void KeepTexture(const std::string& name) {
-    if (!mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size())).second) return;
+  // To be decoded later. Where it is left out, the materials that use it are made anew, and no others: a library may have
+  // as many missing textures as materials.
+  void KeepTexture(const std::string& name, std::size_t material) {
+    const auto [known, is_new] = mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size()));
+    if (!is_new) {
+      users_[std::size_t(known->second)]->push_back(material);
+      return;
+    }
+    const auto users = std::make_shared<std::vector<std::size_t>>(1, material);
+    users_.push_back(users);
     auto texture = std::make_shared<EncodedTexture>();
     texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file); };
     texture->count_pixels = [file = BesideScene(path_, name)] { return CountPixels(file); };
-    texture->leave_out = [mtl = mtl_](Scene& scene) {
-      for (std::size_t i = 0; i < mtl->materials.size(); ++i) {
+    texture->leave_out = [mtl = mtl_, users](Scene& scene) {
+      for (std::size_t i : *users) {
         Material made = MakeMaterial(*mtl, i, scene);
         made.name = scene.materials[i].name;
         scene.materials[i] = std::move(made);
@@ -370,6 +414,7 @@ class ObjLoader {
   glm::dvec3 origin_{0.0};
   std::vector<glm::vec3> positions_;  // relative to it
   std::shared_ptr<MtlLibrary> mtl_;  // once it is loaded
+  std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
   std::vector<Triangle> triangles_;
   std::vector<glm::vec3> smooth_normals_;
   std::size_t faces_ = 0;

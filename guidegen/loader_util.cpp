@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 #include <system_error>
 
 #include "io/atomic_file.h"
@@ -40,18 +42,72 @@ std::vector<glm::dvec2> Project(std::span<const glm::vec3> corners) {
   return flat;
 }
 
-bool IsEar(const std::vector<glm::dvec2>& points, const std::vector<unsigned>& ring, std::size_t at) {
-  const std::size_t n = ring.size();
-  const unsigned ia = ring[(at + n - 1) % n], ib = ring[at], ic = ring[(at + 1) % n];
-  const glm::dvec2 &a = points[ia], &b = points[ib], &c = points[ic];
-  if (Cross(a, b, c) <= 0.0) return false;
-  for (unsigned i : ring) {
-    if (i == ia || i == ib || i == ic) continue;
-    const glm::dvec2& p = points[i];
-    if (p == a || p == b || p == c) continue;
-    if (InTriangle(p, a, b, c)) return false;
+// What is left of a polygon while its ears are cut off.
+class Ears {
+ public:
+  explicit Ears(std::span<const glm::vec3> corners)
+      : points_(Project(corners)), cleared_(points_.size(), 0), gone_(points_.size(), false), ring_(points_.size()) {
+    for (std::size_t i = 0; i < ring_.size(); ++i) ring_[i] = static_cast<unsigned>(i);
   }
-  return true;
+
+  const std::vector<unsigned>& ring() const { return ring_; }
+  std::uint64_t looks() const { return looks_; }
+
+  glm::uvec3 Triangle(std::size_t at) const {
+    const std::size_t n = ring_.size();
+    return {ring_[(at + n - 1) % n], ring_[at], ring_[(at + 1) % n]};
+  }
+
+  // Whether no corner that is left lies in the triangle. Asked again of the same triangle, it goes on with the corner that
+  // was in the way: those before it are outside for good. So all looks are for three triangles a corner at most.
+  bool IsEar(std::size_t at) {
+    const glm::uvec3 triangle = Triangle(at);
+    const glm::dvec2 &a = points_[triangle.x], &b = points_[triangle.y], &c = points_[triangle.z];
+    if (Cross(a, b, c) <= 0.0) return false;
+    for (unsigned& i = cleared_[triangle.y]; i < points_.size(); ++i) {
+      ++looks_;
+      if (gone_[i] || i == triangle.x || i == triangle.y || i == triangle.z) continue;
+      const glm::dvec2& p = points_[i];
+      if (p == a || p == b || p == c) continue;
+      if (InTriangle(p, a, b, c)) return false;
+    }
+    return true;
+  }
+
+  void Cut(std::size_t at) {
+    const glm::uvec3 triangle = Triangle(at);
+    gone_[triangle.y] = true;
+    cleared_[triangle.x] = cleared_[triangle.z] = 0;
+    ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+
+ private:
+  const std::vector<glm::dvec2> points_;
+  std::vector<unsigned> cleared_;  // of the triangle at each corner, how many points are known not to be in it
+  std::vector<bool> gone_;
+  std::vector<unsigned> ring_;
+  std::uint64_t looks_ = 0;
+};
+
+bool IsPlain(const Material& material) {
+  return material.base_color == glm::vec4(1.0f) && material.base_color_texture.texture < 0 &&
+         material.normal_texture.texture < 0 && material.double_sided;
+}
+
+// The first of "default", "default#2", … that no material has, or that a plain one has, whose index `found` then is.
+std::string DefaultName(const Scene& scene, int& found) {
+  std::map<std::string_view, int> named;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const std::string& name = scene.materials[i].name;
+    if (name.rfind("default", 0) == 0) named.try_emplace(name, static_cast<int>(i));
+  }
+  std::string name = "default";
+  for (int number = 2;; ++number) {
+    const auto taken = named.find(name);
+    found = taken == named.end() ? -1 : taken->second;
+    if (found < 0 || IsPlain(scene.materials[std::size_t(found)])) return name;
+    name = "default#" + std::to_string(number);
+  }
 }
 
 }  // namespace
@@ -62,7 +118,11 @@ Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& pa
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     return InputError("cannot read " + path.string() + ": it is no regular file");
   }
-  return ReadWholeFile(path);
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) return ReadWholeFile(path, 0);  // which says why not
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t(8) << 30;
+  if (size > kMostBytes) return InputError(path.string() + " is larger than " + std::to_string(kMostBytes) + " bytes");
+  return ReadWholeFile(path, size, ", which is what the system says it has: copy it to a plain file once it is whole");
 }
 
 std::span<const unsigned char> AsChars(std::span<const std::byte> bytes) {
@@ -124,33 +184,29 @@ Status GeometryBudget::TakeInstance(const std::string& file, const Mesh& mesh, b
   return is_first ? Ok() : Take(file, mesh.positions.size(), mesh.triangles.size());
 }
 
-void TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles) {
-  if (corners.size() < 3) return;
-  if (corners.size() == 3) {
-    triangles.emplace_back(0, 1, 2);
-    return;
+std::uint64_t TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles) {
+  if (corners.size() <= 3 || corners.size() > kMaxEarCorners) {
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) triangles.emplace_back(0, i, i + 1);
+    return 0;
   }
-  std::vector<unsigned> ring(corners.size());
-  for (std::size_t i = 0; i < ring.size(); ++i) ring[i] = static_cast<unsigned>(i);
-  if (corners.size() <= kMaxEarCorners) {
-    const std::vector<glm::dvec2> points = Project(corners);
-    // Starting behind the last ear spreads the cuts, and makes a convex polygon's triangles less thin.
-    std::size_t at = 1, misses = 0;
-    while (ring.size() > 3 && misses < ring.size()) {
-      at %= ring.size();
-      if (!IsEar(points, ring, at)) {
-        ++at;
-        ++misses;
-        continue;
-      }
-      const std::size_t n = ring.size();
-      triangles.emplace_back(ring[(at + n - 1) % n], ring[at], ring[(at + 1) % n]);
-      ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(at));
+  Ears ears(corners);
+  const std::vector<unsigned>& ring = ears.ring();
+  // Starting behind the last ear spreads the cuts, and makes a convex polygon's triangles less thin.
+  std::size_t at = 1, misses = 0;
+  while (ring.size() > 3 && misses < ring.size()) {
+    at %= ring.size();
+    if (!ears.IsEar(at)) {
       ++at;
-      misses = 0;
+      ++misses;
+      continue;
     }
+    triangles.push_back(ears.Triangle(at));
+    ears.Cut(at);
+    ++at;
+    misses = 0;
   }
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) triangles.emplace_back(ring[0], ring[i], ring[i + 1]);
+  return ears.looks();
 }
 
 glm::dvec3 OriginOf(std::span<const glm::dvec3> places) {
@@ -181,24 +237,23 @@ std::string Excerpt(const std::string& text, std::size_t max_bytes) {
   return text.size() > max_bytes ? line + "…" : line;
 }
 
-int DefaultMaterial(Scene& scene) {
-  std::string name = "default";
-  for (int number = 2;; ++number) {
-    bool taken = false;
-    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-      const Material& material = scene.materials[i];
-      if (material.name != name) continue;
-      const bool plain = material.base_color == glm::vec4(1.0f) && material.base_color_texture.texture < 0 &&
-                         material.normal_texture.texture < 0 && material.double_sided;
-      if (plain) return static_cast<int>(i);
-      taken = true;
-    }
-    if (!taken) break;
-    name = "default#" + std::to_string(number);
+int FindDefaultMaterial(const Scene& scene) {
+  if (!scene.materials.empty()) {
+    const Material& last = scene.materials.back();
+    const bool named = last.name == "default" || last.name.rfind("default#", 0) == 0;
+    if (named && IsPlain(last)) return static_cast<int>(scene.materials.size()) - 1;
   }
+  int found = -1;
+  DefaultName(scene, found);
+  return found;
+}
+
+int DefaultMaterial(Scene& scene) {
+  int found = FindDefaultMaterial(scene);
+  if (found >= 0) return found;
   Material material;
-  material.name = name;
-  scene.materials.push_back(material);
+  material.name = DefaultName(scene, found);
+  scene.materials.push_back(std::move(material));
   return static_cast<int>(scene.materials.size()) - 1;
 }
 

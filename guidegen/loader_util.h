@@ -17,8 +17,9 @@
 
 namespace scumble {
 
-// A file that a scene consists of, whole. Only regular files are read: a scene is other people's data, and may name a
-// pipe or a device that never ends.
+// A file that a scene consists of, whole. Only regular files are read, and no more of one than the system says it has: a
+// scene is other people's data, and may name a pipe or a device that never ends, or one of the system's own files under
+// /proc, which say that they are empty and need not end either.
 Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& path);
 
 std::span<const unsigned char> AsChars(std::span<const std::byte> bytes);
@@ -52,7 +53,8 @@ class WarningCounter {
 };
 
 // A file of a few bytes can ask for any amount of geometry; this refuses before anything is allocated. What is shown
-// more than once counts each time, because the ray caster holds each instance's triangles.
+// more than once counts each time, because the ray caster holds each instance's triangles. glTF's geometry without any
+// data has a lower limit besides: ZeroBudget of guidegen/gltf_accessor.h.
 class GeometryBudget {
  public:
   static constexpr std::uint64_t kMaxTriangles = 500'000'000;
@@ -79,8 +81,9 @@ class GeometryBudget {
 
 // Cuts a simple polygon into corners - 2 triangles of corner numbers, winding kept: ear clipping in the plane of its
 // Newell normal. Where there is no proper ear (self-intersecting, collinear or overly long polygons) the rest becomes a
-// fan. Fewer than three corners give nothing.
-void TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles);
+// fan. Fewer than three corners give nothing. Returns how often it looked whether a corner lies in a triangle: no more
+// than 4 times the square of the corners, whatever their shape.
+std::uint64_t TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles);
 
 // The place that positions are stored relative to, so that floats can hold them: the middle of the whole, in whole
 // metres, where it is so far from 0 that floats would lose four bits or more of the shape; else 0.
@@ -96,7 +99,11 @@ std::string Excerpt(const std::string& text, std::size_t max_bytes = 200);
 // The colour of what no file gives a colour: Blender's own for faces without a material.
 inline constexpr glm::vec4 kPlainColor{0.8f, 0.8f, 0.8f, 1.0f};
 
-// The index of an opaque white material named "default", made when there is none yet.
+// The index of an opaque white material named "default", or "default#2", … where the names before it are others'; -1 where
+// there is none. The last material is looked at first, whatever its number: there one stands that was made, and is found
+// again at once.
+int FindDefaultMaterial(const Scene& scene);
+// The same, made at the end of the list where there is none yet.
 int DefaultMaterial(Scene& scene);
 
 }  // namespace scumble

@@ -103,6 +103,19 @@ Status GuideSet::Validate(const std::string& name) const {
     return InputError(name + ": layer depth is negative or NaN on " + bad_depth.Describe() +
                       " of the covered ones: write planar depth in metres");
   }
+  for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
+    if (!Has(layer)) continue;
+    Offenders bad(width_);
+    const auto ids = Plane(layer);
+    for (std::size_t i = 0; i < pixel_count(); ++i) {
+      if (coverage[i] > 0.0f && !(ids[i] >= 0.0f && ids[i] <= kMostId)) bad.Add(i);
+    }
+    if (bad.any()) {
+      return InputError(name + ": layer " + (layer == Layer::kObject ? "object" : "material") +
+                        " is NaN, negative or above 2^24 on " + bad.Describe() +
+                        " of the covered ones: write ids as whole numbers that a float holds, up to 16777216");
+    }
+  }
   for (const LayerInfo& info : AllLayers()) {
     if (!Has(info.layer) || !info.is_color) continue;
     Offenders bad(width_);

@@ -63,8 +63,9 @@ class GuideSet {
   glm::vec3 Vec3(Layer layer, std::size_t index) const;
 
   // Ok, or the first thing that makes the set unusable: impossible size, coverage outside [0, 1], and on covered
-  // pixels normals that are NaN or zero, depth that is NaN or negative, non-finite colours. The message counts the
-  // bad pixels and names the first. O(pixels). `name` stands for the set in the message.
+  // pixels normals that are NaN or zero, depth that is NaN or negative, ids that are NaN, negative or above kMostId,
+  // non-finite colours. The message counts the bad pixels and names the first. O(pixels). `name` stands for the set in
+  // the message.
   Status Validate(const std::string& name) const;
 
   // Free text that travels in the file's header: generator, isa, ….
@@ -85,6 +86,15 @@ class GuideSet {
 
 // The value that a layer has where there is nothing.
 float BackgroundValue(Layer layer);
+
+// No id is above it: floats hold all whole numbers up to here.
+inline constexpr float kMostId = 1 << 24;
+
+// The id that a value of an id's layer stands for; 0, as of the background, where it stands for none: NaN, negative, or
+// above kMostId.
+inline std::uint32_t IdOf(float value) {
+  return value > 0.0f && value <= kMostId ? static_cast<std::uint32_t>(value) : 0u;
+}
 
 // Largest width or height of any picture or guide set that is read or made.
 inline constexpr int kMaxImageSide = 32768;

@@ -135,7 +135,7 @@ Status WriteFileAtomically(const fs::path& path, std::string_view text) {
   return WriteFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
-Expected<std::vector<std::byte>> ReadWholeFile(const fs::path& path, std::size_t limit) {
+Expected<std::vector<std::byte>> ReadWholeFile(const fs::path& path, std::size_t limit, std::string_view mend) {
   std::error_code failed;
   const fs::file_status status = fs::status(path, failed);
   if (!fs::exists(status)) return InputError("cannot read " + path.string() + ": there is no such file");
@@ -144,10 +144,15 @@ Expected<std::vector<std::byte>> ReadWholeFile(const fs::path& path, std::size_t
   if (!stream) return InputError("cannot read " + path.string() + ": " + std::strerror(errno));
   std::vector<std::byte> bytes;
   char block[1 << 16];
-  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+  while (stream) {
+    // One byte more than there may be tells that there are more.
+    const std::size_t room = limit - bytes.size();
+    stream.read(block, static_cast<std::streamsize>(room < sizeof block ? room + 1 : sizeof block));
     const auto* begin = reinterpret_cast<const std::byte*>(block);
     bytes.insert(bytes.end(), begin, begin + stream.gcount());
-    if (bytes.size() > limit) return InputError(path.string() + " is larger than " + std::to_string(limit) + " bytes");
+    if (bytes.size() > limit) {
+      return InputError(path.string() + " is larger than " + std::to_string(limit) + " bytes" + std::string(mend));
+    }
   }
   if (stream.bad()) return InputError("cannot read " + path.string() + ": " + std::strerror(errno));
   return bytes;

@@ -7,6 +7,7 @@
 
 #include "image/guides.h"
 #include "io/atomic_file.h"
+#include "io/flat_psd.h"
 #include "io/formats.h"
 #include "io/picture_reader.h"
 #include "io/readable_file.h"
@@ -26,6 +27,13 @@ namespace {
 OIIO::ImageSpec StraightAlpha() {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
+  return config;
+}
+
+// The readers look for the proxy in the configuration, and forget one that is only passed as an argument.
+OIIO::ImageSpec StraightAlphaFrom(OIIO::Filesystem::IOProxy* proxy) {
+  OIIO::ImageSpec config = StraightAlpha();
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   return config;
 }
 
@@ -74,22 +82,39 @@ Status CheckPromise(const OIIO::ImageSpec& spec, const std::string& reader, std:
 }
 
 // Opens by one reader alone a file of so many bytes.
-Expected<std::unique_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, const std::string& name,
+Expected<std::shared_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, const std::string& name,
                                                    std::uint64_t bytes, const OIIO::ImageSpec& config) {
-  auto input = OIIO::ImageInput::create(reader);
+  std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) return OpenFailure(OIIO::geterror(), name);
   // A library that was built without this reader would look for any other.
   if (input->format_name() != reader)
     return OpenFailure("OpenImageIO was built without its reader \"" + reader + "\"", name);
   OIIO::ImageSpec spec;
-  if (!input->open(name, spec, config)) return OpenFailure(input->geterror(), name);
+  bool open = false;
+  SCUMBLE_RETURN_IF_ERROR(WithoutExceptions(name, [&] { open = input->open(name, spec, config); }));
+  if (!open) return OpenFailure(input->geterror(), name);
   SCUMBLE_RETURN_IF_ERROR(CheckPromise(spec, reader, bytes, name));
   return input;
 }
 
+// A PSD, what is read of it, and its reader, which goes first.
+struct PsdInput {
+  std::unique_ptr<OIIO::Filesystem::IOProxy> file, flat;
+  std::shared_ptr<OIIO::ImageInput> input;
+};
+
+Expected<std::shared_ptr<OIIO::ImageInput>> OpenPsd(std::unique_ptr<OIIO::Filesystem::IOProxy> file,
+                                                    const std::string& name) {
+  const auto psd = std::make_shared<PsdInput>();
+  psd->file = std::move(file);
+  SCUMBLE_ASSIGN(psd->flat, FlatPsd(*psd->file, name));
+  SCUMBLE_ASSIGN(psd->input, OpenBy("psd", name, psd->file->size(), StraightAlphaFrom(psd->flat.get())));
+  return std::shared_ptr<OIIO::ImageInput>(psd, psd->input.get());
+}
+
 }  // namespace
 
-Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path) {
+Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path) {
   SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
   if (LooksLikeScene(path)) {
     return InputError("cannot read " + path.string() + ": it is a scene, and a picture or guides are expected here; " +
@@ -102,21 +127,22 @@ Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
   const std::uint64_t bytes = unknown ? std::numeric_limits<std::uint64_t>::max() : size;
-  SCUMBLE_RETURN_IF_ERROR(CheckStart(reader, start, bytes, path.string()));
+  SCUMBLE_RETURN_IF_ERROR(CheckStart(reader, start, path.string()));
+  if (reader == "psd") {
+    return OpenPsd(std::make_unique<OIIO::Filesystem::IOFile>(path.string(), OIIO::Filesystem::IOProxy::Read),
+                   path.string());
+  }
   return OpenBy(reader, path.string(), bytes, StraightAlpha());
 }
 
-Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
+Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
   const auto bytes = std::as_bytes(std::span(proxy.buffer().data(), proxy.buffer().size()));
   if (IsPng(bytes)) SCUMBLE_RETURN_IF_ERROR(CheckPngIsWhole(bytes, name));
   SCUMBLE_RETURN_IF_ERROR(CheckExrPromises(bytes, name));
-  // The readers look for the proxy in the configuration, and forget one that is only passed as an argument.
-  OIIO::ImageSpec config = StraightAlpha();
-  void* pointer = &proxy;
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &pointer);
   SCUMBLE_ASSIGN(const std::string reader, ReaderFor(bytes, name));
-  SCUMBLE_RETURN_IF_ERROR(CheckStart(reader, bytes, bytes.size(), name));
-  return OpenBy(reader, name, bytes.size(), config);
+  SCUMBLE_RETURN_IF_ERROR(CheckStart(reader, bytes, name));
+  if (reader == "psd") return OpenPsd(std::make_unique<OIIO::Filesystem::IOMemReader>(proxy.buffer()), name);
+  return OpenBy(reader, name, bytes.size(), StraightAlphaFrom(&proxy));
 }
 
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name) {

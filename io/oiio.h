@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <exception>
 #include <memory>
+#include <new>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,11 +18,27 @@
 
 namespace scumble::internal {
 
-// Opens a picture file with straight alpha left as it is stored. The message carries the library's reason.
-Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path);
+// Opens a picture file with straight alpha left as it is stored. The message carries the library's reason. Of a PSD only
+// the flattened picture is there.
+Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path);
 
 // The same from memory; `proxy` must outlive the input.
-Expected<std::unique_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name);
+Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name);
+
+// Calls a reader of the library, which may throw where a file promises what no memory holds: kInput then, but for want of
+// memory, which is the caller's.
+template <class Call>
+Status WithoutExceptions(const std::string& name, const Call& call) {
+  try {
+    call();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& failure) {
+    return InputError("cannot read " + name + ": its reader fails at what is in it (" + failure.what() +
+                      "); it may be damaged: save it again, or as a PNG");
+  }
+  return Ok();
+}
 
 // The library's reason why pixels could not be read. Some readers report success and leave an error behind, as for a
 // TIFF that ends too soon: ask has_error() as well.

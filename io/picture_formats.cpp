@@ -127,9 +127,10 @@ Expected<Picture> ReadPixels(OIIO::ImageInput& input, const std::string& name, O
                              const ChannelRange& range, Decode decode) {
   const OIIO::ImageSpec spec = input.spec();
   std::vector<T> pixels(std::size_t(range.count()) * std::size_t(spec.width) * std::size_t(spec.height));
-  if (!input.read_image(0, 0, range.begin, range.end, type, pixels.data()) || input.has_error()) {
-    return internal::ReadFailure(input, name);
-  }
+  bool read = false;
+  SCUMBLE_RETURN_IF_ERROR(internal::WithoutExceptions(
+      name, [&] { read = input.read_image(0, 0, range.begin, range.end, type, pixels.data()); }));
+  if (!read || input.has_error()) return internal::ReadFailure(input, name);
   Picture picture(spec.full_width, spec.full_height);
   const T* pixel = pixels.data();
   for (int y = 0; y < spec.height; ++y) {
@@ -290,7 +291,9 @@ Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
 Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name) {
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(const auto input, internal::OpenInput(proxy, name));
-  return HeaderOf(input->spec());
+  PictureHeader header = HeaderOf(input->spec());
+  header.width = input->spec().full_width, header.height = input->spec().full_height;  // as the picture will be
+  return header;
 }
 
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {

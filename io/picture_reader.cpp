@@ -33,7 +33,6 @@ constexpr Mark kMarks[] = {
     {"#?"sv, "hdr"},
     {"WEBP"sv, "webp", 8},
     {"BM"sv, "bmp"},
-    {"GIF8"sv, "gif"},
     {"P1"sv, "pnm"},
     {"P2"sv, "pnm"},
     {"P3"sv, "pnm"},
@@ -47,11 +46,12 @@ constexpr Mark kMarks[] = {
     {"ftypavif"sv, "heif", 4},
     {"\0\0\0\x0cjP  "sv, "jpeg2000"},
     {"\xff\x4f\xff\x51"sv, "jpeg2000"},
-    {"DDS "sv, "dds"},
-    {"\x01\xda"sv, "sgi"},
-    {"SDPX"sv, "dpx"},
-    {"XPDS"sv, "dpx"},
 };
+
+// OpenImageIO's readers of these look behind the end of what a file holds, or for ever, take memory for whatever it says, or
+// end the process at a number that they do not know.
+constexpr Mark kNotRead[] = {
+    {"GIF8"sv, "a GIF"}, {"DDS "sv, "a DDS"}, {"SDPX"sv, "a DPX"}, {"XPDS"sv, "a DPX"}, {"\x01\xda"sv, "an SGI"}};
 
 bool EndsIn(const std::filesystem::path& name, std::initializer_list<std::string_view> endings) {
   std::string ending = name.extension().string();
@@ -75,13 +75,10 @@ struct Bound {
 // own.
 constexpr Bound kBounds[] = {
     {"pnm", 8},      // a bit a pixel
-    {"dpx", 8},      // the same
     {"bmp", 8 * 3},  // a bit a pixel, of a palette of three channels
-    {"dds", 8 * 6},  // 8 bytes a block of 4 × 4 pixels of 4 channels; a cube has six sides, whichever are there
     {"hdr", 64},     // 2 bytes a run of 127
     {"targa", 128 * 4 / 2},                     // 2 bytes a run of 128 pixels, of a palette of 4 channels
     {"psd", 64 * 8 * 3},                        // 2 bytes a run of 128, of a bit a pixel, shown as three channels
-    {"sgi", std::uint64_t(kMaxImageSide) / 8},  // rows may share what they hold, but for the 8 bytes that say where
 };
 
 }  // namespace
@@ -98,34 +95,37 @@ Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::fil
   if (IsRawPhotograph(name))
     return InputError(failure + "it is a camera's raw photograph; develop it into a TIFF of 16 bits first");
   const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
+  for (const Mark& mark : kNotRead) {
+    if (text.starts_with(mark.bytes)) {
+      return InputError(failure + "it is " + mark.reader + ", which is not read; save it as a PNG");
+    }
+  }
   for (const Mark& mark : kMarks) {
     if (text.size() >= mark.at && text.substr(mark.at).starts_with(mark.bytes)) return std::string(mark.reader);
   }
   if (EndsIn(name, {".tga", ".tpic"})) return std::string("targa");
   return InputError(
       failure + (start.empty() ? "it is empty" : "it does not begin as a picture") +
-      "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP, GIF, JPEG 2000, DPX, DDS and SGI are read");
+      "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP and JPEG 2000 are read");
 }
 
-Status CheckStart(std::string_view reader, std::span<const std::byte> start, std::uint64_t bytes,
-                  const std::string& name) {
+Status CheckStart(std::string_view reader, std::span<const std::byte> start, const std::string& name) {
   const std::string failure = "cannot read " + name + ": ";
   const auto byte = [&](std::size_t at) { return at < start.size() ? std::to_integer<std::uint64_t>(start[at]) : 0; };
   if (reader == "bmp" && byte(14) >= 40 && (byte(30) == 1 || byte(30) == 2)) {
     return InputError(failure + "it is a BMP packed by runs, which is not read; save it as a PNG");
   }
-  const std::string promise =
-      "its header promises more than its " + std::to_string(bytes) + " bytes hold; it may be cut short or damaged";
-  // Where each row of each channel begins, and how long it is: 4 bytes each.
-  if (reader == "sgi" && byte(2) == 1) {
-    const std::uint64_t rows = byte(8) << 8 | byte(9), channels = byte(10) << 8 | byte(11);
-    if (rows * channels * 8 > bytes) return InputError(failure + promise);
-  }
-  if (reader == "psd") {
-    const std::uint64_t palette = byte(26) << 24 | byte(27) << 16 | byte(28) << 8 | byte(29);
-    if (palette > bytes) return InputError(failure + promise);
+  // OpenImageIO looks colours up behind the end of a short palette, and before the beginning of one that starts late.
+  const bool indexed = reader == "targa" && (byte(2) == 1 || byte(2) == 9);
+  if (indexed && (byte(16) != 8 || byte(3) != 0 || byte(4) != 0 || (byte(6) << 8 | byte(5)) < 256)) {
+    return InputError(failure + "it is a TGA whose palette is not of 256 colours, which is not read; save it as a PNG");
   }
   return Ok();
+}
+
+Error BrokenPromise(const std::string& name, std::uint64_t bytes) {
+  return InputError("cannot read " + name + ": its header promises more than its " + std::to_string(bytes) +
+                    " bytes hold; it may be cut short or damaged");
 }
 
 Expected<std::vector<std::byte>> ReadStart(const std::filesystem::path& path) {

@@ -16,15 +16,19 @@ namespace scumble::internal {
 // OpenImageIO's name of the one reader that may open a file: by how it begins, and of TGA, which has no such mark, by
 // its name's ending. Else an error that says which formats are read. Left to itself OpenImageIO hands what one reader
 // turns down to all the others, video and raw photographs among them, and one of those ends the process at some bytes.
-// Raw photographs are refused: most begin as TIFF, whose reader shows the small preview in them.
+// Raw photographs are refused: most begin as TIFF, whose reader shows the small preview in them. So are GIFs, which
+// OpenImageIO 2.4 draws as it opens them: on a canvas whose bytes it counts in 32 bits, which makes none of 32768²
+// pixels, and in colours from behind a palette's end, which nothing short of unpacking the pixels could rule out.
 // `start` is the beginning of the file, kStartBytes if it has them. Thread-safe.
 inline constexpr std::size_t kStartBytes = 64;
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name);
 
-// Whether that reader may open a file of so many bytes that starts so: some take memory for what the first bytes claim
-// as soon as they open it, and BMPs that are packed by runs OpenImageIO unpacks without looking where it writes.
-Status CheckStart(std::string_view reader, std::span<const std::byte> start, std::uint64_t bytes,
-                  const std::string& name);
+// Whether that reader may open a file that starts so: BMPs that are packed by runs OpenImageIO unpacks without looking where it
+// writes, and a TGA's colours it takes without looking how many there are. Of PSDs io/flat_psd.h takes care.
+Status CheckStart(std::string_view reader, std::span<const std::byte> start, const std::string& name);
+
+// That a file of so many bytes is too short for what its header promises.
+Error BrokenPromise(const std::string& name, std::uint64_t bytes);
 
 // The first kStartBytes of a file, or all there are.
 Expected<std::vector<std::byte>> ReadStart(const std::filesystem::path& path);

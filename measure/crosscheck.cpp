@@ -77,7 +77,7 @@ struct LayerMeasure {
 };
 
 glm::vec3 LookOfId(const GuideSet& guides, std::size_t i) {
-  const std::uint64_t hash = Hash(static_cast<std::uint64_t>(guides.Plane(Layer::kObject)[i]));
+  const std::uint64_t hash = Hash(IdOf(guides.Plane(Layer::kObject)[i]));
   const glm::vec3 color(UnitFloat(hash), UnitFloat(Mix64(hash)), UnitFloat(Mix64(hash + 1)));
   return 0.05f + 0.7f * color * color;
 }
@@ -216,19 +216,19 @@ void CountCovered(const GuideSet& a, const GuideSet& b, const std::vector<std::s
                   CrosscheckReport& report) {
   const auto covered_a = a.Plane(Layer::kCoverage), covered_b = b.Plane(Layer::kCoverage);
   const auto object = b.Plane(Layer::kObject);
-  std::set<float> seen, compared;
+  std::set<std::uint32_t> seen, compared;
   for (std::size_t i = 0; i < a.pixel_count(); ++i) {
     if (!(covered_a[i] > 0.0f && covered_b[i] > 0.0f)) continue;
     ++report.covered;
-    seen.insert(object[i]);
+    seen.insert(IdOf(object[i]));
   }
-  for (const std::size_t i : mask) compared.insert(object[i]);
+  for (const std::size_t i : mask) compared.insert(IdOf(object[i]));
   std::string names;
   std::size_t thin = 0;
-  for (const float id : seen) {
+  for (const std::uint32_t id : seen) {
     if (compared.count(id)) continue;
     if (++thin > 5) continue;
-    const auto name = b.object_names.find(static_cast<std::uint32_t>(id));
+    const auto name = b.object_names.find(id);
     names += (names.empty() ? "" : ", ") + (name != b.object_names.end() ? name->second : fmt::format("id {}", id));
   }
   if (thin == 0) return;

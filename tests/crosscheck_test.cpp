@@ -98,6 +98,32 @@ TEST(Crosscheck, NothingToCompareFailsTheVerdictAndUnequalSizesAreAnError) {
   EXPECT_FALSE(Crosscheck("scene", small, small).ok());
 }
 
+// One pixel of an object's middle: its colour and its name are those of the background, whose id is 0.
+TEST(Crosscheck, ValuesThatAreNoIdsAreShownAsNothing) {
+  const auto with_pixel = [](float id) {
+    GuideSet ours = TwoObjects();
+    ours.Plane(Layer::kObject)[ours.Index(10, 10)] = id;
+    const auto report = Crosscheck("scene", TwoObjects(), ours);
+    EXPECT_TRUE(report.ok());
+    return *report;
+  };
+  const auto look = [](const CrosscheckReport& report) {
+    for (const CrosscheckPictures& pictures : report.pictures) {
+      if (pictures.layer == "object") return pictures.ours.rgba;
+    }
+    ADD_FAILURE() << "no picture of the objects";
+    return decltype(Picture::rgba)();
+  };
+  const CrosscheckReport nothing = with_pixel(0.0f);
+  EXPECT_NE(look(nothing), look(with_pixel(7.0f)));
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float id : {std::nanf(""), kInfinity, -kInfinity, -1.0f, 16777218.0f, 8589941760.0f, 1e30f}) {
+    const CrosscheckReport report = with_pixel(id);
+    EXPECT_EQ(report.too_thin, "id 0") << id;
+    EXPECT_EQ(look(report), look(nothing)) << id;
+  }
+}
+
 TEST(Crosscheck, ThePageIsOneFileAndEscapesNames) {
   const auto report = Crosscheck("a<b>&.glb", TwoObjects(), TwoObjects());
   const auto html = CrosscheckToHtml({*report}, {"Cycles", "scumble crosscheck \"a<b>\""});

@@ -40,7 +40,8 @@ GuideSet Guides(int width, int height) {
 GuideSet OddGuides(int width, int height) {
   GuideSet guides = Guides(width, height);
   const float odd[] = {-1.0f, kNan, kInfinity, -kInfinity, 65504.0f, 65520.0f, 1e38f, kDenormal, -0.0f};
-  for (const Layer layer : {Layer::kLuminance, Layer::kAlbedo, Layer::kNormal}) {
+  for (const Layer layer :
+       {Layer::kLuminance, Layer::kAlbedo, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPref}) {
     for (int c = 0; c < ChannelCount(layer); ++c) {
       for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
         if (Hash(int(layer), c, i, 9) % 11 == 0) guides.Plane(layer, c)[i] = odd[Hash(i, c, int(layer)) % std::size(odd)];

@@ -87,7 +87,7 @@ Input Mutated(const std::vector<NamedInput>& seeds, std::uint64_t number) {
 std::uint64_t RunsOf(const std::string& target) {
   static const std::map<std::string, std::uint64_t> kRuns = {
       {"exr", 6000},      {"gltf", 9000}, {"guides", 10000}, {"header", 200000}, {"obj", 9500},
-      {"options", 12000}, {"ply", 15000}, {"png", 150000},   {"raster", 12000},  {"style", 10500}};
+      {"options", 12000}, {"picture", 9000}, {"ply", 15000}, {"png", 150000},   {"raster", 12000},  {"style", 10500}};
   if (const char* const asked = std::getenv("SCUMBLE_FUZZ_RUNS")) return std::strtoull(asked, nullptr, 10);
   const auto found = kRuns.find(target);
   EXPECT_NE(found, kRuns.end()) << target << " has no number of runs";

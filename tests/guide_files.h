@@ -46,6 +46,7 @@ inline GuideSet RandomGuides(int width, int height) {
     guides.Plane(Layer::kCoverage)[i] = covered ? 0.5f + 0.5f * UnitFloat(Hash(i)) : 0.0f;
     guides.Plane(Layer::kDepth)[i] = covered ? 0.1f + UnitFloat(Hash(i, 1)) : std::numeric_limits<float>::infinity();
     guides.Plane(Layer::kObject)[i] = static_cast<float>(Hash(i, 2) >> 40);
+    guides.Plane(Layer::kMaterial)[i] = static_cast<float>(Hash(i, 3) >> 40);
     const glm::vec3 n = covered ? glm::normalize(guides.Vec3(Layer::kNormal, i)) : glm::vec3(0.0f);
     for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = n[c];
   }

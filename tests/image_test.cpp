@@ -259,12 +259,15 @@ TEST(Ids, ACollisionMovesTheLaterName) {
 
 GuideSet ValidGuides(int width = 4, int height = 3) {
   GuideSet guides(width, height);
-  for (Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kAlbedo, Layer::kLuminance})
+  for (Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial,
+                      Layer::kAlbedo, Layer::kLuminance})
     guides.Add(layer);
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     guides.Plane(Layer::kCoverage)[i] = 1.0f;
     guides.Plane(Layer::kNormal, 2)[i] = 1.0f;
     guides.Plane(Layer::kDepth)[i] = 2.0f;
+    guides.Plane(Layer::kObject)[i] = kMostId;
+    guides.Plane(Layer::kMaterial)[i] = 0.5f;  // integers of 32 bits are fractions once they are read as floats
   }
   return guides;
 }
@@ -317,6 +320,11 @@ TEST(GuideSets, EveryDefectIsNamedCountedAndLocated) {
       {"normal packed", set(Layer::kNormal, 2, 0.4f), {"layer normal", "[-1, 1]"}},
       {"depth NaN", set(Layer::kDepth, 0, kNan), {"layer depth", "NaN"}},
       {"depth negative", set(Layer::kDepth, 0, -1.0f), {"layer depth", "negative"}},
+      {"id NaN", set(Layer::kObject, 0, kNan), {"layer object", "NaN", "16777216"}},
+      {"id infinite", set(Layer::kMaterial, 0, kInf), {"layer material", "above 2^24"}},
+      {"id negative", set(Layer::kMaterial, 0, -1.0f), {"layer material", "negative"}},
+      {"id beyond a float's whole numbers", set(Layer::kObject, 0, 16777218.0f), {"layer object"}},
+      {"id beyond 32 bits", set(Layer::kObject, 0, 1e30f), {"layer object"}},
       {"colour infinite", set(Layer::kAlbedo, 1, kInf), {"layer albedo", "infinite"}},
       {"colour NaN", set(Layer::kLuminance, 0, kNan), {"layer luminance", "NaN"}},
   };
@@ -351,8 +359,20 @@ TEST(GuideSets, TheBackgroundMayHoldAnything) {
   guides.Plane(Layer::kCoverage)[6] = 0.0f;
   guides.Plane(Layer::kNormal, 0)[6] = kNan;
   guides.Plane(Layer::kDepth)[6] = -kInf;
+  guides.Plane(Layer::kObject)[6] = kInf;
+  guides.Plane(Layer::kMaterial)[6] = kNan;
   guides.Plane(Layer::kAlbedo)[6] = kNan;
   EXPECT_TRUE(guides.Validate("g"));
+}
+
+// What is above 2^24 or no number stands for nothing: in 32 bits it would be undefined, and 2^33 + 7168 the id 7168 on
+// some machines.
+TEST(GuideSets, IdsAreThoseThatFloatsHold) {
+  for (const float whole : {1.0f, 7168.0f, 16777215.0f, 16777216.0f}) EXPECT_EQ(IdOf(whole), std::uint32_t(whole));
+  EXPECT_EQ(IdOf(3.75f), 3u);
+  for (const float none : {0.0f, -0.0f, -1.0f, 16777218.0f, 0x1p32f, 0x1p33f + 7168.0f, 1e30f, kInf, -kInf, kNan}) {
+    EXPECT_EQ(IdOf(none), 0u) << none;
+  }
 }
 
 TEST(GuideSets, SizesAndLayersThatCannotBe) {

@@ -385,6 +385,16 @@ TEST(StyleMap, ObjectsGoBeforeMaterialsAndBothBeforeTheDefault) {
   EXPECT_EQ(map.style, (std::vector<std::uint16_t>{5, 6, 7}));
 }
 
+// 2^33 + 7168 is exact in float, and its lowest 32 bits are the id 7168. Where no id is meant there is none: 0.
+TEST(StyleMap, ValuesThatAreNoIdsAreNoObjects) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float objects[] = {7168.0f, 0x1p33f + 7168.0f, infinity, -infinity, 1e30f, -7168.0f, std::nanf("")};
+  GuideSet guides = MakeGuides(7, 1, [](int, int) { return glm::vec3(0, 0, 1); });
+  std::copy_n(objects, 7, guides.Plane(Layer::kObject).begin());
+  EXPECT_EQ(MapStyles(guides, {{{7168, 5}}, {}, 7}).style, (std::vector<std::uint16_t>{5, 7, 7, 7, 7, 7, 7}));
+  EXPECT_EQ(MapStyles(guides, {{{0, 5}}, {}, 7}).style, (std::vector<std::uint16_t>{7, 5, 5, 5, 5, 5, 5}));
+}
+
 // Against a look-up for each pixel, in more pixels than one thread takes at once.
 TEST(StyleMap, EveryPixelIsLookedUp) {
   GuideSet guides(401, 331);

@@ -51,8 +51,7 @@ int Silhouettes::Band(std::size_t i) const {
 }
 
 std::uint32_t Silhouettes::ObjectOf(const OutlinePixel& pixel) const {
-  const float id = object_[input_.guides.Index(pixel.x, pixel.y)];
-  return id > 0.0f ? static_cast<std::uint32_t>(id) : 0u;
+  return IdOf(object_[input_.guides.Index(pixel.x, pixel.y)]);
 }
 
 // How clearly pixel `front` of an object stands before what pixel `behind` shows, 0 … 1.

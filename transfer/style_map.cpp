@@ -15,7 +15,7 @@ class Finder {
  public:
   explicit Finder(const std::map<std::uint32_t, Assigned>& assigned) : assigned_(assigned), found_(Find(0)) {}
   const Assigned* At(float id) {
-    const std::uint32_t whole = id > 0.0f ? static_cast<std::uint32_t>(id) : 0u;
+    const std::uint32_t whole = IdOf(id);
     if (whole != last_) last_ = whole, found_ = Find(whole);
     return found_;
   }

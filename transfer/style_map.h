@@ -27,7 +27,8 @@ struct StyleAssignment {
   std::uint16_t otherwise = 0;
 };
 
-// O(pixels · log assignments). The guides must hold the object layer if an object is named, and material likewise.
+// O(pixels · log assignments). The guides must hold the object layer if an object is named, and material likewise; a
+// value that is no id counts as 0 (IdOf).
 StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment);
 
 // A style by the rank-th of several assignments.

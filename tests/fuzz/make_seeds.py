@@ -226,9 +226,68 @@ def make_pictures():
         write("raster", name, data.getvalue())
 
 
+def packed_picture(ending, channels, kind=oiio.UINT8, **attributes):
+    """The bytes of a small picture as OpenImageIO writes that format; nothing where it does not."""
+    path = str(FOLDER / f"made.{ending}")
+    spec = oiio.ImageSpec(9, 6, channels, kind)
+    for key, value in attributes.items():
+        spec.attribute(key, value)
+    output = oiio.ImageOutput.create(path)
+    assert output and output.open(path, spec), oiio.geterror()
+    pixels = np.fromfunction(lambda y, x, c: (x // 3 + y // 2 + c) % 4 / 3, (6, 9, channels)).astype(np.float32)
+    assert output.write_image(pixels), output.geterror()
+    output.close()
+    data = pathlib.Path(path).read_bytes()
+    pathlib.Path(path).unlink()
+    return data
+
+
+def make_other_pictures():
+    for name, ending, channels, kind, attributes in (
+            ("plain.bmp", "bmp", 3, oiio.UINT8, {}), ("alpha.bmp", "bmp", 4, oiio.UINT8, {}), ("grey.bmp", "bmp", 1, oiio.UINT8, {}),
+            ("plain.tga", "tga", 4, oiio.UINT8, {"compression": "none"}), ("runs.tga", "tga", 3, oiio.UINT8, {"compression": "rle"}),
+            ("grey.tga", "tga", 1, oiio.UINT8, {"compression": "rle"}), ("plain.hdr", "hdr", 3, oiio.FLOAT, {}),
+            ("plain.jpg", "jpg", 3, oiio.UINT8, {"Orientation": 6}), ("grey.jpg", "jpg", 1, oiio.UINT8, {}),
+            ("plain.tif", "tif", 4, oiio.UINT8, {"compression": "none", "oiio:UnassociatedAlpha": 1}),
+            ("lzw.tif", "tif", 3, oiio.UINT16, {"compression": "lzw"}), ("zip.tif", "tif", 1, oiio.FLOAT, {"compression": "zip"}),
+            ("tiled.tif", "tif", 3, oiio.UINT8, {"compression": "packbits", "tile_width": 16})):
+        write("picture", name, packed_picture(ending, channels, kind, **attributes))
+    runs = b"".join(bytes([2, 2, 0, 9]) + bytes([128 + 9, 40 + y]) * 4 for y in range(6))
+    write("picture", "runs.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 6 +X 9\n" + runs)
+    for kind, row in ((1, b"0 1 1\n"), (2, b"0 7 255\n"), (3, b"1 2 3 4 5 6 7 8 9\n"), (4, b"\xa0"), (5, b"\0\x07\xff"), (6, bytes(range(9)))):
+        write("picture", f"p{kind}.pnm", b"P%d\n# words\n3 2\n" % kind + (b"" if kind in (1, 4) else b"255\n") + row * 2)
+    write("picture", "float.pfm", b"PF\n3 2\n-1.0\n" + struct.pack("<18f", *range(18)))
+    write("picture", "grey.pfm", b"Pf\n3 2\n1.0\n" + struct.pack(">6f", *range(6)))
+    # Targa with a palette, packed by runs.
+    write("picture", "palette.tga", struct.pack("<BBBHHBHHHHBB", 0, 1, 9, 0, 256, 24, 0, 0, 9, 6, 8, 0x20) + bytes(range(256)) * 3 +
+          bytes([0x88, 1]) * 3 + bytes([8, *range(4), *range(4), 0]) * 3)
+    for bits, palette in ((1, 2), (4, 16), (8, 256)):  # BMP with a palette
+        row = bytes([0x1b] * ((9 * bits + 31) // 32 * 4))
+        head = 14 + 40 + 4 * palette
+        write("picture", f"palette{bits}.bmp", struct.pack("<2sIHHI", b"BM", head + 6 * len(row), 0, 0, head) +
+              struct.pack("<IiiHHIIiiII", 40, 9, 6, 1, bits, 0, 0, 2835, 2835, palette, 0) +
+              bytes(v % 256 for v in range(4 * palette)) + row * 6)
+    write("picture", "old.bmp", struct.pack("<2sIHHI", b"BM", 14 + 12 + 6 * 28, 0, 0, 26) + struct.pack("<IHHHH", 12, 9, 6, 1, 24) + bytes(6 * 28))
+    for mode, channels, depth, packed in ((3, 3, 8, 0), (3, 4, 8, 1), (1, 1, 16, 0), (4, 4, 8, 0), (2, 1, 8, 0), (0, 1, 1, 0)):
+        row = bytes((9 * depth + 7) // 8)
+        palette = bytes(768) if mode == 2 else b""
+        resources = b"8BIM" + struct.pack(">HHI", 1005, 0, 16) + struct.pack(">IHHIHH", 72 << 16, 1, 1, 72 << 16, 1, 1)
+        data = struct.pack(">H", packed)
+        if packed:
+            run = bytes([257 - 9, 7])
+            data += struct.pack(">H", len(run)) * (6 * channels) + run * (6 * channels)
+        else:
+            data += row * (6 * channels)
+        write("picture", f"mode{mode}_{channels}_{depth}.psd", struct.pack(">4sH6xHIIHH", b"8BPS", 1, channels, 6, 9, depth, mode) +
+              struct.pack(">I", len(palette)) + palette + struct.pack(">I", len(resources)) + resources + struct.pack(">I", 0) + data)
+    # Nothing but a palette: GIFs are refused by their first bytes.
+    write("picture", "plain.gif", b"GIF89a" + struct.pack("<HHBBB", 9, 6, 0x80, 0, 0) + bytes(6) + b";")
+
+
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     make_exr()
     make_gltf()
     make_text()
     make_pictures()
+    make_other_pictures()

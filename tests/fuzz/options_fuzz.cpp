@@ -7,8 +7,10 @@
 #include "cli/help_format.h"
 #include "cli/options.h"
 #include "cli/sequence.h"
+#include "cli/style_set.h"
 #include "cli/transfer_run.h"
 #include "cli/verbs.h"
+#include "io/picture_file.h"
 #include "style/print_page.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -25,6 +27,17 @@ struct Program {
   }
 };
 
+// A style of one small painting, for what --set is of.
+const std::string& SmallStyle() {
+  static const std::string folder = [] {
+    SCUMBLE_CHECK(WritePicture(Folder() / "lit.png", Picture(4, 4)).ok());
+    constexpr std::string_view kText = "[[exemplar]]\nimage = \"lit.png\"\n";
+    InFile("style.toml", {reinterpret_cast<const std::uint8_t*>(kText.data()), kText.size()});
+    return Folder().string();
+  }();
+  return folder;
+}
+
 void ReadValue(const std::string& text) {
   CheckRefusal(ParseSize(text), 1000 + text.size());
   CheckRefusal(ParseNumbers(text, 1, 4, "--numbers"), 1000 + text.size());
@@ -39,6 +52,9 @@ void ReadValue(const std::string& text) {
   const auto name = FrameName::Parse(text);
   CheckRefusal(name, 1000 + 2 * text.size());
   if (name) SCUMBLE_CHECK(!name->At(-5).empty() || text.empty());
+  StyleOptions style;
+  style.style = SmallStyle(), style.sets = {text, SmallStyle() + ":" + text};
+  if (text.find('=') != text.npos) CheckRefusal(OpenStyles(style), 3000 + 3 * text.size() + 3 * SmallStyle().size());
   static_cast<void>(FitsPattern(text.substr(0, text.size() / 2), text.substr(text.size() / 2)));
 }
 
