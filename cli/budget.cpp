@@ -17,10 +17,8 @@
 #include "cli/quality_ladder.h"
 #include "cli/scene_frames.h"
 #include "cli/timing.h"
-#include "guidegen/load_scene.h"
 #include "image/hash.h"
 #include "io/atomic_file.h"
-#include "style/style_keyframes.h"
 
 namespace scumble {
 namespace {
@@ -65,20 +63,23 @@ Status TakeQuality(const BudgetOptions& options, const LadderFrame& frame, Style
   return Take(way, styles, picture);
 }
 
-Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const std::string& circumstances,
+Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const std::string& circumstances, const std::string& judged,
                   StyleSet& styles, PictureOptions& picture, const Globals& globals, const Trials& trials) {
   const std::vector<Way> ways = QualityLadder(styles, frame);
   FileCache cache(CacheFolder() ? *CacheFolder() / "times" : std::filesystem::path());
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
   for (const Way& way : ways) calibration.ways.push_back(way.name);
-  for (std::size_t i = 0; i < ways.size(); ++i) {
+  calibration.judged = judged;
+  const bool one_style = styles.styles.size() == 1 && styles.assigned.empty();  // of several no error is known
+  for (std::size_t i = 0; one_style && i < ways.size(); ++i) {
     for (std::size_t j = i + 1; j < ways.size(); ++j) {
       if (AreRivals(ways[i], ways[j])) calibration.rivals[i] = j;
     }
   }
   ProgressBar bar("calibration", globals.quiet);
   const Progress progress = bar.Part(0.0, 1.0);
-  // Each way once, the one that is taken nine times, and the last twice more for a cold start; and two judgements.
+  // Each way once, the one that is taken nine times (its rival, if it has one, too), the last twice more for a cold start; and
+  // two judgements.
   const double usual_runs = static_cast<double>(ways.size()) + kCalibrationRuns + 2.0 + 2.0;
   int runs = 0;
   const MeasureWay measure = [&](std::size_t place) {
@@ -141,6 +142,17 @@ Expected<SceneAtRest> OpenToMeasure(const SceneOptions& options, std::optional<i
   return opened;
 }
 
+// What a picture of guides shows, which their size and coverage do not tell: their normals and light.
+std::string PictureText(const GuideSet& guides, const PictureOptions& picture) {
+  std::uint64_t hash = 0;
+  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance}) {
+    if (!guides.Has(layer)) continue;
+    const auto plane = guides.Plane(layer);
+    hash = Hash(hash, HashText({reinterpret_cast<const char*>(plane.data()), plane.size_bytes()}));
+  }
+  return fmt::format("guides {:016x}, exposure {}", hash, picture.exposure);
+}
+
 }  // namespace
 
 void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
@@ -175,8 +187,8 @@ Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options) {
   return Ok();
 }
 
-Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name,
-                       const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
+Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std::optional<int> frame,
+                       const std::string& name, const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
   if (!options.chooses()) return Ok();
   const LadderFrame ladder{false, guides.width(), guides.height(), true};
   if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
@@ -187,8 +199,8 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, con
       fmt::format("transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
                   guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
-  PaintTrial trial(styles, picture, name, over, globals);
-  return TakeWithin(options, ladder, circumstances, styles, picture, globals,
+  PaintTrial trial(styles, picture, frame, name, over, globals);
+  return TakeWithin(options, ladder, circumstances, PictureText(guides, picture), styles, picture, globals,
                     {[&](const Way& way) { return trial.Paint(way, guides); },
                      [&](const Way& way) { return trial.Judge(way, guides); }});
 }
@@ -207,7 +219,7 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
   Globals silent = globals;
   silent.quiet = true, silent.timing = nullptr;
   std::optional<SceneAtRest> opened;
-  PaintTrial trial(styles, picture, scene.scene, over, globals);
+  PaintTrial trial(styles, picture, frame, scene.scene, over, globals);
   double casting_ms = 0.0;
   const auto cast = [&](const Way& way) -> Expected<GuideSet> {
     if (!opened) {
@@ -230,7 +242,7 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
     SCUMBLE_ASSIGN(const GuideSet guides, cast(way));
     return trial.Judge(way, guides);
   };
-  return TakeWithin(options, ladder, circumstances, styles, picture, globals, {paint, judge});
+  return TakeWithin(options, ladder, circumstances, "exposure " + picture.exposure, styles, picture, globals, {paint, judge});
 }
 
 }  // namespace scumble

@@ -30,10 +30,10 @@ void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts);
 Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options);
 
 // Chooses and puts what was chosen into `styles` and `picture`; says so on stderr, and in picture.chosen for JSON.
-// Nothing changes where nothing is to be chosen. Of the guides only size and coverage count, and their times. `over`:
-// the picture underneath theirs; empty: none.
-Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, const std::string& name,
-                       const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals);
+// Nothing changes where nothing is to be chosen. Of the guides only size and coverage count for times; what they
+// show, for which of two ways is nearer. `frame` is theirs; none: 0. `over`: the picture underneath theirs; empty: none.
+Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std::optional<int> frame,
+                       const std::string& name, const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals);
 
 // The same where the guides are cast, too, and may be smaller than the picture; scene.size is that of the picture, or
 // of its guides where --upsample was given. `frame` is that of the scene; none: at rest. Where times

@@ -11,6 +11,7 @@
 #include "image/check.h"
 #include "image/stopwatch.h"
 #include "io/picture_file.h"
+#include "style/style_keyframes.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -22,17 +23,17 @@ std::size_t PixelsOf(const PreparedStyle& style) {
   return std::size_t(exemplar.width()) * std::size_t(exemplar.height()) * std::size_t(exemplar.count());
 }
 
-// What the energy takes beside all that this process has had: 250 bytes for each place (measure/energy.h), and the planes
+// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy.h), and the planes
 // that it is made of.
 bool HasMemoryFor(std::size_t places, const Globals& globals) {
   constexpr std::uint64_t kEachPlace = 250 + 100;
   const MemoryLimit limit = LimitFor(globals);
-  return limit.bytes == 0 || PeakMemory() + kEachPlace * places <= limit.bytes;
+  return limit.bytes == 0 || ResidentMemory() + kEachPlace * places <= limit.bytes;
 }
 
 }  // namespace
 
-// `bare`: without paper.
+// `bare`: without paper, and without the scene's colours, which no exemplar has.
 Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample, bool bare) {
   const std::string wanted = way.name + (bare ? ", bare" : "");
   if (prepared_for_ == wanted) return Ok();
@@ -43,7 +44,8 @@ Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample,
   options.cache = &cache, options.threads = globals_.threads;
   prepared_.clear();
   for (Style& style : styles.styles) {
-    if (bare) style.paper = {};
+    SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame_.value_or(0)));
+    if (bare) style.paper = {}, style.transfer.colorize = 0.0;
     SCUMBLE_ASSIGN(PreparedStyle one, scumble::Prepare(style, guides.height() * upsample, options));
     prepared_.push_back(std::move(one));
   }
@@ -72,7 +74,7 @@ Status PaintTrial::Transfer(const GuideSet& guides, bool bare, TransferScratch& 
   }
   TransferOptions options;
   options.seed = picture_.seed, options.exposure = exposure_, options.threads = globals_.threads;
-  options.frame = picture_.frame.value_or(0);
+  options.frame = frame_.value_or(0);
   SCUMBLE_ASSIGN(const FrameRate fps, RateFor(picture_, guides));
   options.fps_numerator = fps.numerator, options.fps_denominator = fps.denominator;
   options.keep_field = bare || KeepsField(picture_, globals_);

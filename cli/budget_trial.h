@@ -18,11 +18,11 @@ namespace scumble {
 
 class PaintTrial {
  public:
-  // All are borrowed. `styles` as the user has them, without any way. `name`: of the guides' file or scene. `over`: the
-  // file of the picture underneath; empty: none.
-  PaintTrial(StyleSet& styles, const PictureOptions& picture, const std::string& name, const std::string& over,
-             const Globals& globals)
-      : styles_(styles), picture_(picture), name_(name), over_file_(over), globals_(globals) {}
+  // All are borrowed. `styles` as the user has them, without any way. `frame`: whose guides are painted, for what changes over
+  // time. `name`: of the guides' file or scene. `over`: the file of the picture underneath; empty: none.
+  PaintTrial(StyleSet& styles, const PictureOptions& picture, std::optional<int> frame, const std::string& name,
+             const std::string& over, const Globals& globals)
+      : styles_(styles), picture_(picture), frame_(frame), name_(name), over_file_(over), globals_(globals) {}
 
   // Upsamples the guides, if the way or the picture's options say so, and paints with memory that is new, as the first
   // picture of a run is. What is underneath is read once and not counted; one of another size is left out, the run will
@@ -31,7 +31,7 @@ class PaintTrial {
 
   // How far the picture of a way that leaves the guides' size alone is from what the painting shows under these guides, and
   // what of the painting it misses: `both` of measure/energy.h, at kJudgedPatches patches, the same ones for each way. Without
-  // paper and what is underneath. 0 where nothing is covered; infinity where several styles paint, memory for it is not there
+  // paper, what is underneath, and the scene's colours. 0 where nothing is covered; infinity where several styles paint, memory for it is not there
   // or guides are no numbers. Errors as of Paint.
   Expected<double> Judge(const Way& way, const GuideSet& guides);
 
@@ -46,6 +46,7 @@ class PaintTrial {
 
   StyleSet& styles_;
   const PictureOptions& picture_;
+  const std::optional<int> frame_;
   const std::string& name_;
   const std::string& over_file_;
   const Globals& globals_;

@@ -30,11 +30,12 @@ bool IsNumber(const nlohmann::json& json, double& number) {
   return number >= 0.0 && std::isfinite(number);
 }
 
-// Times by way, as {"circumstances": …, "cold_ms": 3.5, "ways": {"--upsample 4": [12.5, …], …}, "off": {"--upsample 4": 0.3}}.
-// Nothing where the text is none of ours, or of others: keys are hashes.
+// Times by way, as {"circumstances": …, "cold_ms": 3.5, "ways": {"--upsample 4": [12.5, …], …}, "off_of": "", "off": {"--upsample 4": 0.3}},
+// null where it cannot be known. Nothing where the text is none of ours, or of others: keys are hashes.
 struct Known {
   std::map<std::string, Runs> ways;
   std::map<std::string, double> off;  // of ways that had rivals
+  std::string off_of;                 // Calibration::judged
   double cold_ms = 0.0;
 };
 std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::string& circumstances) {
@@ -57,8 +58,13 @@ std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::str
   const auto off = json.find("off");
   if (off == json.end() || !off->is_object()) return std::nullopt;
   for (const auto& [way, value] : off->items()) {
-    if (!IsNumber(value, known.off[way])) return std::nullopt;
+    if (value.is_null()) {
+      known.off[way] = std::numeric_limits<double>::infinity();
+    } else if (!IsNumber(value, known.off[way])) {
+      return std::nullopt;
+    }
   }
+  if (const auto of = json.find("off_of"); of != json.end() && of->is_string()) known.off_of = of->get<std::string>();
   return known;
 }
 
@@ -83,7 +89,7 @@ class Picker {
       const auto found = known->ways.find(calibration_.ways[way]);
       if (found != known->ways.end()) runs_[way] = found->second;
       const auto off = known->off.find(calibration_.ways[way]);
-      if (off != known->off.end()) off_[way] = off->second;
+      if (off != known->off.end() && known->off_of == calibration_.judged) off_[way] = off->second;
     }
   }
 
@@ -92,10 +98,12 @@ class Picker {
     nlohmann::ordered_json json{{"circumstances", calibration_.circumstances},
                                 {"cold_ms", cold_ms_.value_or(0.0)},
                                 {"ways", nlohmann::ordered_json::object()},
+                                {"off_of", calibration_.judged},
                                 {"off", nlohmann::ordered_json::object()}};
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       if (!runs_[way].empty()) json["ways"][calibration_.ways[way]] = runs_[way];
-      if (off_[way] && std::isfinite(*off_[way])) json["off"][calibration_.ways[way]] = *off_[way];
+      if (!off_[way]) continue;
+      json["off"][calibration_.ways[way]] = std::isfinite(*off_[way]) ? nlohmann::ordered_json(*off_[way]) : nullptr;
     }
     const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
     calibration_.cache->Store(Key(), std::as_bytes(std::span(text)));
@@ -134,6 +142,8 @@ class Picker {
       SCUMBLE_ASSIGN(off_[one], judge_(one));
       judged_ = true;
     }
+    const bool known = std::isfinite(*off_[way]) && std::isfinite(*off_[rival]);
+    if (!known) return Picked(way, true);
     PickedWay picked = Picked(*off_[rival] < *off_[way] ? rival : way, true);
     picked.compared = {{way, *off_[way]}, {rival, *off_[rival]}};
     return picked;

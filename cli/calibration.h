@@ -29,6 +29,7 @@ struct Calibration {
   bool anew = false;              // what is kept does not count
   // Of a way, a place in `ways`: one further down that may be nearer in this scene and style. Where both fit they are compared.
   std::map<std::size_t, std::size_t> rivals = {};
+  std::string judged = {};  // what errors depend on beside the circumstances; those of anything else do not count
 };
 
 // Milliseconds that the way, a place in Calibration::ways, takes once.
@@ -47,8 +48,8 @@ struct PickedWay {
 // What is predicted from times of equal runs, where the first run of a process takes `cold_ms` longer; infinity without any.
 double PredictedMs(std::span<const double> runs_ms, double cold_ms);
 
-// The first of the ways whose predicted time is within the budget, or its rival if that fits, too, and is nearer; where none
-// is, the quickest. How far off ways are is kept with their times. A way is given up at its
+// The first of the ways whose predicted time is within the budget, or its rival if that fits, too, and is known to be nearer;
+// where none is, the quickest. How far off ways are is kept with their times, and that it cannot be known, too. A way is given up at its
 // first run beyond the budget, so what is too slow costs one run. The first of all runs is one of the last way, and is
 // compared with the slower of two more. What was kept and makes no sense is measured again. Errors are those of `measure` and
 // `judge`, which is needed where there are rivals.

@@ -62,6 +62,8 @@ nlohmann::ordered_json MemoryToJson(const MemoryNeed& need);
 
 // The most that this process has had so far, as the system counts it (VmHWM of proc(5)); 0 where it does not.
 std::uint64_t PeakMemory();
+// What it has now (VmRSS); 0 likewise.
+std::uint64_t ResidentMemory();
 // From here on PeakMemory is that of what comes, beside what is there; where the system cannot forget, it stays.
 void ForgetPeakMemory();
 

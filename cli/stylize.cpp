@@ -236,7 +236,7 @@ Status ChooseForSequence(TransferVerb& verb, const Sequence& sequence, StyleSet&
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(file, read));
   EndStage(globals, "read");
   SCUMBLE_ASSIGN(const std::string over, OverOnTrial(verb.picture, sequence));
-  return ChooseForGuides(verb.budget, guides, file, over, styles, verb.picture, globals);
+  return ChooseForGuides(verb.budget, guides, frame, file, over, styles, verb.picture, globals);
 }
 
 // Fills places for a frame's number in the names of a single picture.
@@ -293,7 +293,8 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   const double read_ms = watch.Lap();
   EndStage(globals, "read");
-  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.guides, verb.picture.over, styles, verb.picture, globals));
+  SCUMBLE_RETURN_IF_ERROR(ChooseForGuides(verb.budget, guides, verb.picture.frame, verb.guides, verb.picture.over, styles,
+                                          verb.picture, globals));
   ProgressBar bar("transfer", globals.quiet);
   const GuideSource source{verb.guides, {{"read", read_ms}}, {}, {}, memory};
   return RunTransfer(styles, guides, source, verb.picture, globals, bar.Part(0.0, 1.0));
@@ -406,6 +407,7 @@ Status ChooseForStylize(StylizeVerb& verb, const std::optional<Sequence>& sequen
   scene.seed = verb.picture.seed, scene.fps = verb.picture.fps;
   scene.more_memory = PaintingOf(styles, verb.picture, sequence.has_value(), globals);  // pictures are painted on trial
   const std::optional<int> frame = sequence ? sequence->frames.front() : verb.picture.frame;
+  if (!frame && verb.scene.explain && verb.picture.output.empty()) scene.animation.clear();  // a plan is the same at any time
   const int before = verb.picture.upsample;
   SCUMBLE_ASSIGN(const std::string over, OverOnTrial(verb.picture, sequence));
   SCUMBLE_RETURN_IF_ERROR(ChooseForScene(verb.budget, scene, frame, over, styles, verb.picture, globals));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -106,18 +107,22 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
   return old;
 }
 
-// Whether a report of so many bytes finds room in the page's folder: they are taken, and given back at once. Where the
-// file system cannot tell beforehand, it does.
-Status CheckRoom(const fs::path& page, std::size_t bytes) {
+// Whether a report of so many bytes, its largest file of `largest`, finds room in the page's folder: they are taken, and given
+// back at once. Some file systems tell of a full disk only when the file is flushed or closed.
+Status CheckRoom(const fs::path& page, std::size_t bytes, std::size_t largest) {
   const internal::UnfinishedFile taken(page);
   int failure = errno;
-  if (taken.descriptor() >= 0) {
-    failure = ::posix_fallocate(taken.descriptor(), 0, static_cast<off_t>(bytes));
-    ::close(taken.descriptor());
+  const int file = taken.descriptor();
+  if (file >= 0) {
+    failure = ::posix_fallocate(file, 0, static_cast<off_t>(bytes));
+    if (failure == EFBIG) failure = ::posix_fallocate(file, 0, static_cast<off_t>(largest));  // a limit of each file
+    if (::fsync(file) != 0 && failure == 0) failure = errno;
+    if (::close(file) != 0 && failure == 0) failure = errno;
     if (failure != ENOSPC && failure != EDQUOT && failure != EFBIG) return Ok();
   }
-  return OutputError(fmt::format("cannot write {}: {}; the report takes {:.1f} MB: make room, or name another folder",
-                                 page.string(), std::strerror(failure), 1e-6 * static_cast<double>(bytes)));
+  const std::string mend = file < 0 ? "name another folder" : "make room, or name another folder";
+  return OutputError(fmt::format("cannot write {}: {}; the report takes {:.1f} MB: {}", page.string(), std::strerror(failure),
+                                 1e-6 * static_cast<double>(bytes), mend));
 }
 
 // Takes a file away, links followed as where it is written; what is not there, a device and a pipe are no matter.
@@ -139,10 +144,11 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
                                                                     {"chart.svg", TradeChart(report)},
                                                                     {kPage, TradeHtml(report)}}};
   constexpr std::size_t kBlock = 4096;  // what a file takes beside its bytes: the rest of its last block
-  std::size_t bytes = 0;
-  for (const auto& [name, text] : texts) bytes += text.size() + kBlock;
-  for (const TradeMeasure& way : report.ways) bytes += way.picture_png.size() + kBlock;
-  SCUMBLE_RETURN_IF_ERROR(CheckRoom(place / kPage, bytes));
+  std::size_t bytes = 0, largest = 0;
+  const auto add = [&](std::size_t size) { bytes += size + kBlock, largest = std::max(largest, size); };
+  for (const auto& [name, text] : texts) add(text.size());
+  for (const TradeMeasure& way : report.ways) add(way.picture_png.size());
+  SCUMBLE_RETURN_IF_ERROR(CheckRoom(place / kPage, bytes, largest));
 
   const std::vector<fs::path> old = OldPictures(folder, report);
   SCUMBLE_RETURN_IF_ERROR(Remove(place / kPage));

@@ -43,10 +43,6 @@ class Grid {
     AddGuides();
     AddSeeds();
     if (!options_.quick) AddCombinations();
-    if (options_.quick) {
-      grid_.left_out.push_back("by --quick guides of twice the size, robust mode, samples, combinations, and every other value of "
-                               "the axes that stay");
-    }
     return std::move(grid_);
   }
 
@@ -212,7 +208,19 @@ class Grid {
 
 }  // namespace
 
-TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options) { return Grid(style, options).Make(); }
+TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options) {
+  TradeGrid grid = Grid(style, options).Make();
+  if (!options.quick) return grid;
+  TradeGridOptions all = options;
+  all.quick = false;
+  const TradeGrid whole = Grid(style, all).Make();
+  const std::vector<std::string> kept = AxesOf(grid.ways);
+  std::vector<std::string> gone = AxesOf(whole.ways);
+  std::erase_if(gone, [&](const std::string& axis) { return std::find(kept.begin(), kept.end(), axis) != kept.end(); });
+  grid.left_out.push_back(fmt::format("by --quick {} of {} ways: the axes {}, and values of the others",
+                                      whole.ways.size() - grid.ways.size(), whole.ways.size(), fmt::join(gone, ", ")));
+  return grid;
+}
 
 std::vector<std::string> AxesOf(const std::vector<Way>& ways) {
   std::vector<std::string> axes;

@@ -114,7 +114,7 @@ class Trade {
     return UsageError("--only " + setup_.only + ": --quick leaves that out; leave out --quick");
   }
 
-  // Guides larger than the picture, and exemplars that fit them, may be too large to be made; that is told before all else.
+  // Guides larger than the picture, and exemplars that fit them, may be too large to be made; that is told before much else.
   Status LeaveOutWhatIsTooLarge(std::vector<Way>& ways) {
     std::vector<Way> left;
     for (Way& way : ways) {
@@ -133,10 +133,19 @@ class Trade {
     return Ok();
   }
 
+  // Sizes and memory, without a ray.
   Status TryWay(const Way& way, const Style& style) {
     SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
-    SCUMBLE_ASSIGN(const WayGuides made, MakeWayGuides(stage_.scene, setup_.scene, way, layers, silent_));
-    SCUMBLE_RETURN_IF_ERROR(scumble::Prepare(style, made.guides.height(), {}));
+    SceneOptions larger = setup_.scene;
+    const int factor = SupersampleOf(way);
+    larger.size = fmt::format("{}x{}", stage_.width * factor, stage_.height * factor);
+    SCUMBLE_RETURN_IF_ERROR(ParseSize(larger.size));
+    SCUMBLE_ASSIGN(const SceneGuides plan,
+                   CastScene(stage_.scene.scene, stage_.scene.view.camera, nullptr, larger, layers, silent_, {}, true));
+    SCUMBLE_RETURN_IF_ERROR(CheckMemory(plan.memory, globals_, "take a smaller --size"));
+    PrepareOptions options;
+    options.threads = globals_.threads;
+    SCUMBLE_RETURN_IF_ERROR(scumble::Prepare(style, stage_.height * factor, options));
     return Ok();
   }
 

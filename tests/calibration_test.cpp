@@ -255,10 +255,18 @@ TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
   const double unknown = std::numeric_limits<double>::infinity();
   off = {0.0, unknown, unknown, 0.0};
   EXPECT_EQ(pick(40.0).way, 1u) << "not known: the ladder's order";
+  EXPECT_TRUE(pick(40.0).compared.empty());
+  off = {0.0, unknown, 0.4, 0.0};
+  EXPECT_EQ(pick(40.0).way, 1u) << "one alone says nothing";
   ladder.anew = false;
   judged = 0, off = {0.0, 0.5, 0.4, 0.0};
+  EXPECT_EQ(pick(40.0).way, 1u);
+  EXPECT_EQ(judged, 0) << "that it cannot be known is kept";
+  ladder.judged = "another picture of the same cost";
+  const int before = clock.Total();
   EXPECT_EQ(pick(40.0).way, 2u);
-  EXPECT_EQ(judged, 2) << "what was not known is asked again";
+  EXPECT_EQ(judged, 2);
+  EXPECT_EQ(clock.Total(), before) << "times are the same";
 }
 
 // A way that the ladder has had and has no more does not matter.

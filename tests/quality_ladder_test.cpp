@@ -226,10 +226,18 @@ GuideSet GuidesOf(const std::string& scene_name, int width, int height) {
   return made ? std::move(made->guides) : GuideSet();
 }
 
-double JudgedAs(StyleSet& styles, const std::string& rung, const GuideSet& guides, const PictureOptions& picture = {},
-                const Globals& globals = {}) {
+Globals WithMemory(std::uint64_t bytes) {
+  Globals globals;
+  globals.max_memory = bytes;
+  return globals;
+}
+
+// Whatever the machine has.
+double JudgedAs(StyleSet& styles, const std::string& rung, const GuideSet& guides,
+                const Globals& globals = WithMemory(std::uint64_t(1) << 40)) {
+  const PictureOptions picture;
   const std::string name = "guides", none;
-  PaintTrial trial(styles, picture, name, none, globals);
+  PaintTrial trial(styles, picture, {}, name, none, globals);
   for (const Way& way : QualityLadder(styles, kGiven)) {
     if (way.name != rung) continue;
     const auto off = trial.Judge(way, guides);
@@ -259,6 +267,10 @@ TEST(PaintTrial, JudgesThePaintAloneAndTheSameEachTime) {
   const double off = JudgedAs(plain, kCrisp, guides);
   EXPECT_GT(off, 0.0);
   EXPECT_EQ(JudgedAs(papered, kCrisp, guides), off);
+  StyleSet tinted = Open("oil", {"transfer.paper=", "transfer.colorize=1"});
+  GuideSet colored = guides;
+  colored.Add(Layer::kAlbedo);
+  EXPECT_EQ(JudgedAs(tinted, kCrisp, colored), off) << "no exemplar has the scene's colours";
   EXPECT_EQ(JudgedAs(plain, kCrisp, guides), off);
 }
 
@@ -269,9 +281,7 @@ TEST(PaintTrial, WhatCannotBeJudgedIsNotAnError) {
   two.styles.push_back(Open("charcoal").styles.front());
   EXPECT_EQ(JudgedAs(two, kCrisp, guides), unknown) << "several styles";
   StyleSet oil = Open("oil");
-  Globals little;
-  little.max_memory = 1 << 20;
-  EXPECT_EQ(JudgedAs(oil, kCrisp, guides, {}, little), unknown) << "no memory";
+  EXPECT_EQ(JudgedAs(oil, kCrisp, guides, WithMemory(1 << 20)), unknown) << "no memory";
   std::fill(guides.Plane(Layer::kCoverage).begin(), guides.Plane(Layer::kCoverage).end(), 0.0f);
   EXPECT_EQ(JudgedAs(oil, kCrisp, guides), 0.0) << "nothing covered";
 }
@@ -289,9 +299,9 @@ TEST(PaintTrial, ReadsWhatLiesUnderneath) {
   const PictureOptions picture;
   const Globals globals;
   const std::string name = "guides", none, missing = "nowhere/under.png";  // they are borrowed
-  PaintTrial bare(styles, picture, name, none, globals);
+  PaintTrial bare(styles, picture, {}, name, none, globals);
   EXPECT_TRUE(bare.Paint(plain, guides).ok());
-  PaintTrial over(styles, picture, name, missing, globals);
+  PaintTrial over(styles, picture, {}, name, missing, globals);
   const auto painted = over.Paint(plain, guides);
   ASSERT_FALSE(painted.ok());
   EXPECT_NE(painted.error().message.find(missing), std::string::npos) << painted.error().message;

@@ -244,10 +244,14 @@ TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
 TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
   const Arguments arguments =
       Small(Scene("suzanne.glb"), {"--only", "nearest table 64,nearest table 1024", "--json"});
-  RunOk(arguments);
-  const nlohmann::json ways = RunOk(arguments).Json()["ways"];
-  std::map<std::string, double> ms;
-  for (const auto& way : ways) ms[way["way"]] = way["prepare_ms"];
+  std::map<std::string, double> ms;  // the least, whatever else the machine does
+  for (int run = 0; run < 4; ++run) {
+    const nlohmann::json report = RunOk(arguments).Json();
+    for (const auto& way : report["ways"]) {
+      const double least = ms.count(way["way"]) ? ms[way["way"]] : 1e9;
+      if (run > 0) ms[way["way"]] = std::min(least, way["prepare_ms"].get<double>());
+    }
+  }
   // 256 times as many cells to fill.
   EXPECT_GT(ms.at("nearest table 1024"), 4.0 * ms.at("nearest table 64"));
 }
