@@ -1,7 +1,7 @@
 // Builds small glTF files for the tests of the loaders.
 #pragma once
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cstring>
 #include <filesystem>
@@ -10,6 +10,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "guidegen/load_scene.h"
 
 namespace scumble {
 
@@ -137,6 +139,22 @@ struct GltfBuilder {
     glb.insert(glb.end(), data.begin(), data.end());
     return glb;
   }
+};
+
+// For scene files that must be refused.
+class RefusedScenes : public LoaderTest {
+ protected:
+  // The error, which names the file and is no longer than a screen.
+  std::string Refusal(const std::filesystem::path& path) {
+    const Expected<Scene> scene = LoadScene(path);
+    EXPECT_FALSE(scene.ok());
+    if (scene) return "";
+    EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
+    EXPECT_THAT(scene.error().message, testing::HasSubstr(path.filename().string()));
+    EXPECT_LT(scene.error().message.size(), 1000u);
+    return scene.error().message;
+  }
+  std::string Refusal(const GltfBuilder& builder) { return Refusal(Write("scene.glb", builder.Glb())); }
 };
 
 }  // namespace scumble

@@ -18,19 +18,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-class Greedy : public LoaderTest {
+class Greedy : public RefusedScenes {
  protected:
-  // The error of a file that must be refused.
-  std::string Refusal(const std::filesystem::path& path) {
-    const Expected<Scene> scene = LoadScene(path);
-    EXPECT_FALSE(scene.ok());
-    if (scene) return "";
-    EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
-    EXPECT_THAT(scene.error().message, HasSubstr(path.filename().string()));
-    EXPECT_LT(scene.error().message.size(), 1000u);
-    return scene.error().message;
-  }
-  std::string Refusal(const GltfBuilder& builder) { return Refusal(Write("scene.glb", builder.Glb())); }
   Scene Load(const std::filesystem::path& path, TextureLoading textures = TextureLoading::kNow) {
     Expected<Scene> scene = LoadScene(path, textures);
     EXPECT_TRUE(scene.ok()) << scene.error().message;

@@ -20,20 +20,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-class Hostile : public LoaderTest {
+class Hostile : public RefusedScenes {
  protected:
-  // The error of a file that must be refused.
-  std::string Refusal(const std::filesystem::path& path) {
-    const Expected<Scene> scene = LoadScene(path);
-    EXPECT_FALSE(scene.ok());
-    if (scene) return "";
-    EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
-    EXPECT_THAT(scene.error().message, HasSubstr(path.filename().string()));
-    EXPECT_LT(scene.error().message.size(), 1000u);
-    return scene.error().message;
-  }
-  std::string Refusal(const GltfBuilder& builder) { return Refusal(Write("scene.glb", builder.Glb())); }
-
   // Loads, whatever it is. True where it loaded; every index in it must then be right.
   bool Survives(const std::filesystem::path& path) {
     const Expected<Scene> scene = LoadScene(path);
