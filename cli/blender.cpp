@@ -139,6 +139,7 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& 
 BlenderRange::BlenderRange() = default;
 
 BlenderRange::~BlenderRange() {
+  EndAtOnceOnSignals(false);
   program_.reset();  // before the folder that it writes into
 }
 
@@ -159,10 +160,24 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   auto program = RunningProgram::Start(arguments, log);
   if (!program) return CheckProgramEnd(program.error(), *range->task_, log, {}).error();
   range->program_ = std::move(*program);
+  SCUMBLE_RETURN_IF_ERROR(range->LeaveAlone());
   return range;
 }
 
+// Until the next Load a frame is at work, for minutes perhaps: who ends the program does not want to wait for it.
+Status BlenderRange::LeaveAlone() {
+  EndAtOnceOnSignals(true);
+  return CheckNotSignalled(task_->scene);
+}
+
 Expected<Scene> BlenderRange::Load(int frame) {
+  EndAtOnceOnSignals(false);
+  Expected<Scene> scene = Await(frame);
+  SCUMBLE_RETURN_IF_ERROR(LeaveAlone());
+  return scene;
+}
+
+Expected<Scene> BlenderRange::Await(int frame) {
   SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(In(*scratch_, kRangeOutput).string()));
   const fs::path exported = name.At(frame);
   std::error_code failed;

@@ -50,7 +50,8 @@ class BlenderRange {
   BlenderRange(const BlenderRange&) = delete;
   BlenderRange& operator=(const BlenderRange&) = delete;
 
-  // Waits for the next frame of the range, loads it and deletes its file.
+  // Waits for the next frame of the range, loads it and deletes its file. kCancelled where a signal has come meanwhile;
+  // between two calls a signal ends the program at once, without this object's temporary files.
   Expected<Scene> Load(int frame);
 
   // Known when the first frame has been loaded.
@@ -58,6 +59,8 @@ class BlenderRange {
 
  private:
   BlenderRange();
+  Status LeaveAlone();
+  Expected<Scene> Await(int frame);
 
   std::unique_ptr<BlenderTask> task_;  // for messages
   std::unique_ptr<ScratchFolder> scratch_;

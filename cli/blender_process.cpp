@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -35,13 +36,42 @@ constexpr const char* kErrorMark = "scumble: error: ";
 constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU};
 std::atomic<pid_t> running_group = 0;
 std::atomic<int> caught_signal = 0;
-static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+std::atomic<bool> ends_at_once = false;
+std::atomic<const char*> scratch_folder = nullptr;
+static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
+              std::atomic<bool>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free);
 
 struct sigaction actions_before[std::size(kEndingSignals)];
 
+// So that it writes nothing more. A program that was killed may hang in its disk: not for long.
+void AwaitEnd(pid_t program) {
+  constexpr int kMostWaits = 300;
+  const timespec millisecond{0, 1000000};
+  for (int wait = 0; wait < kMostWaits && ::waitpid(program, nullptr, WNOHANG) == 0; ++wait) ::nanosleep(&millisecond, nullptr);
+}
+
+// By another program, as nothing in this one may be called that allocates: fork() would lock the heap, _Fork() does not.
+void RemoveWithoutHeap(const char* folder) {
+  const pid_t child = ::_Fork();
+  if (child == 0) {
+    const char* const remove[] = {"rm", "-rf", "--", folder, nullptr};
+    ::execv("/bin/rm", const_cast<char* const*>(remove));
+    ::_exit(127);
+  }
+  if (child > 0) ::waitpid(child, nullptr, 0);
+}
+
 void EndRunningGroup(int signal) {
   caught_signal = signal;
-  if (const pid_t group = running_group) ::kill(-group, SIGKILL);
+  const pid_t group = running_group;
+  if (group) ::kill(-group, SIGKILL);
+  if (!ends_at_once) return;
+  if (group) AwaitEnd(group);
+  if (const char* const folder = scratch_folder) RemoveWithoutHeap(folder);
+  for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
+    if (kEndingSignals[i] == signal) ::sigaction(signal, &actions_before[i], nullptr);
+  }
+  ::raise(signal);  // is delivered when this returns
 }
 
 // A signal that is ignored, as under nohup, stays ignored.
@@ -50,6 +80,7 @@ void CatchSignals() {
     struct sigaction ours = {};
     ours.sa_handler = EndRunningGroup;
     ours.sa_flags = SA_RESTART;
+    ::sigfillset(&ours.sa_mask);  // for what removes the folder, too: a second Ctrl-C does not stop it
     ::sigaction(kEndingSignals[i], nullptr, &actions_before[i]);
     if (actions_before[i].sa_handler != SIG_IGN) ::sigaction(kEndingSignals[i], &ours, nullptr);
   }
@@ -162,14 +193,19 @@ ScratchFolder::ScratchFolder() {
   CatchSignals();
   std::error_code failed;
   std::string name = (fs::temp_directory_path(failed) / "scumble-XXXXXX").string();
-  if (!failed && ::mkdtemp(name.data())) path_ = name;
+  if (failed || !::mkdtemp(name.data())) return;
+  path_ = name;
+  scratch_folder = path_.c_str();
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code failed;
   if (!path_.empty()) fs::remove_all(path_, failed);
+  scratch_folder = nullptr;
   ReleaseSignals();
 }
+
+void EndAtOnceOnSignals(bool at_once) { ends_at_once = at_once; }
 
 Status CheckNotSignalled(const std::string& scene) {
   const int signal = caught_signal;

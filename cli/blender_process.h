@@ -26,6 +26,11 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
+// For while a ScratchFolder lives and nobody asks CheckNotSignalled, whether a program runs or not: those signals then end it,
+// remove the folder and act as they would have without us, at once. One that came before still waits to be asked for. To be
+// switched off before the folder is destroyed.
+void EndAtOnceOnSignals(bool at_once);
+
 // What Blender is run for, for messages.
 struct BlenderTask {
   std::string scene;

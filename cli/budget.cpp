@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <utility>
 
 #include "cli/budget_trial.h"
@@ -15,10 +16,11 @@
 #include "cli/picture_settings.h"
 #include "cli/progress_bar.h"
 #include "cli/quality_ladder.h"
+#include "cli/run_files.h"
 #include "cli/scene_frames.h"
 #include "cli/timing.h"
 #include "image/hash.h"
-#include "io/atomic_file.h"
+#include "style/style_keyframes.h"
 
 namespace scumble {
 namespace {
@@ -84,7 +86,8 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
   int runs = 0;
   const MeasureWay measure = [&](std::size_t place) {
     if (runs == 0) Say(globals, fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
-    if (progress) progress(std::min(0.99, runs++ / usual_runs));
+    const double done = std::min(0.99, runs++ / usual_runs);
+    if (progress) progress(done);
     return trials.paint(ways[place]);
   };
   bool judges = false;
@@ -92,7 +95,8 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
     if (!std::exchange(judges, true)) {
       Say(globals, "--budget-ms: two ways fit whose order differs by style; which is nearer is measured here, once");
     }
-    if (progress) progress(std::min(0.99, runs++ / usual_runs));
+    const double done = std::min(0.99, runs++ / usual_runs);
+    if (progress) progress(done);
     return trials.judge(ways[place]);
   };
   SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure, judge));
@@ -118,14 +122,48 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
   return Take(way, styles, picture);
 }
 
-// What times depend on in either verb, as text. Not the frame: all frames of a scene are to look alike.
+// Of keys that change over time; 0 where none does.
+std::uint64_t HashOfTracks(const StyleSet& styles) {
+  std::uint64_t hash = 0;
+  for (const Style& style : styles.styles) {
+    for (const StyleTrack& track : style.tracks) {
+      std::string text = track.name;
+      for (const StyleTrack::Key& key : track.keys) {
+        std::visit([&](const auto& value) { text += fmt::format("; {} {}", key.frame, value); }, key.value);
+      }
+      hash = Hash(hash, HashText(text), HashText(style.name));
+    }
+  }
+  return hash;
+}
+
+// What times depend on in either verb, as text. Frames count by what the styles say of them alone: all frames of a scene are
+// to look alike.
 std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture, const Globals& globals) {
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
-  return fmt::format("{}; {}{}{}", MachineName(globals.threads),
+  const std::uint64_t tracks = HashOfTracks(styles);
+  return fmt::format("{}; {}{}{}{}{}", MachineName(globals.threads),
                      SettingsText(styles, SettingsOf(picture, {}, {}), hashes),
                      all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
+                     styles.options.scene_styles ? "" : "; without the scene's styles",
+                     tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "",
                      KeepsField(picture, globals) ? "; keeps the field" : "");
+}
+
+// Of the scene's file and of those that it names. What cannot be read counts for nothing: who needs it says so.
+std::uint64_t HashOfFiles(const std::string& scene) {
+  RunFiles files;
+  files.ReadsScene(scene);
+  std::uint64_t hash = 0;
+  std::string piece(std::size_t(1) << 20, '\0');
+  for (const std::string& path : files.Inputs()) {
+    std::ifstream stream(path, std::ios::binary);
+    while (stream.read(piece.data(), std::streamsize(piece.size())) || stream.gcount() > 0) {
+      hash = Hash(hash, HashText(std::string_view(piece).substr(0, std::size_t(stream.gcount()))));
+    }
+  }
+  return hash;
 }
 
 // What is opened when the first way is measured: the frame as the run will have it.
@@ -192,6 +230,7 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std
   if (!options.chooses()) return Ok();
   const LadderFrame ladder{false, guides.width(), guides.height(), true};
   if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
+  for (Style& style : styles.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame.value_or(0)));
   const auto coverage = guides.Plane(Layer::kCoverage);
   const auto covered = std::count_if(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
   // Frames of one shot are alike: how much is covered counts in 64ths.
@@ -211,10 +250,9 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
   SCUMBLE_ASSIGN(const Size size, ParseSize(scene.size));
   const LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed};
   if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
-  SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadWholeFile(scene.scene));
   const std::string circumstances =
       fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
-                  HashText({reinterpret_cast<const char*>(bytes.data()), bytes.size()}), scene.size,
+                  HashOfFiles(scene.scene), scene.size,
                   GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, globals));
   Globals silent = globals;
   silent.quiet = true, silent.timing = nullptr;

@@ -20,6 +20,7 @@
 namespace scumble {
 
 inline constexpr int kCalibrationRuns = 9;
+inline constexpr int kHopelessRuns = 3;  // of the quickest, where even that is over twice the budget
 
 struct Calibration {
   // Everything that times depend on, but for the ways themselves: machine, program, scene, style, size.

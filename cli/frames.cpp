@@ -16,6 +16,9 @@ Error BadFrames(const std::string& text, const std::string& part, const std::str
   return UsageError("--frames " + text + where + ": " + why);
 }
 
+// From the first frame that there may be to the last.
+constexpr std::int64_t kMaxStep = 2 * std::int64_t(kMaxFrame);
+
 // What one part between commas says.
 struct Part {
   std::int64_t first = 0, last = 0, step = 1;
@@ -54,6 +57,9 @@ Expected<Part> ParsePart(const std::string& text, const std::string& part) {
     if (at != end) {
       if ((*at != 'x' && *at != 'X') || !TakeNumber(++at, end, range.step) || at != end) return refuse(forms);
       if (range.step == 0) return refuse("a step of 0 leads nowhere");
+      if (range.step < -kMaxStep || range.step > kMaxStep) {
+        return refuse(fmt::format("a step is at most {}, as 1-24x2 has one of 2", kMaxStep));
+      }
       if (range.last < range.first && range.step > 0) range.step = -range.step;
       if (range.last > range.first && range.step < 0) {
         return refuse("a step backwards never gets to the last frame: 10-1x-1 counts down");
@@ -61,7 +67,7 @@ Expected<Part> ParsePart(const std::string& text, const std::string& part) {
     }
   }
   for (const std::int64_t frame : {range.first, range.last}) {
-    if (std::llabs(frame) > kMaxFrame) return refuse(fmt::format("frames go from {} to {}", -kMaxFrame, kMaxFrame));
+    if (frame < -kMaxFrame || frame > kMaxFrame) return refuse(fmt::format("frames go from {} to {}", -kMaxFrame, kMaxFrame));
   }
   return range;
 }

@@ -113,9 +113,8 @@ Expected<ExitCode> GuidegenSequence(const GuidegenVerb& verb, const Sequence& se
   return RunSequence(sequence, work, bar, globals);
 }
 
-Status CheckFiles(const GuidegenVerb& verb, const std::optional<Sequence>& sequence,
+Status CheckFiles(RunFiles& files, const GuidegenVerb& verb, const std::optional<Sequence>& sequence,
                   const std::optional<StyleSet>& styles) {
-  RunFiles files;
   files.ReadsScene(verb.scene.scene);
   if (styles) files.ReadsStyles(*styles);
   SCUMBLE_ASSIGN(const auto outputs, NamesOf(verb.output, sequence));
@@ -127,17 +126,21 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
   const bool motion = asked.Has(Layer::kMotion);
   std::optional<StyleSet> styles;
   if (!verb.style.style.empty()) {
+    if (!verb.output.empty()) verb.style.room = RoomForStyles(globals);  // a plan refuses nothing
     SCUMBLE_ASSIGN(styles, OpenStyles(verb.style));
     EndStage(globals, "style");
   }
+  SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.scene.blender.frame, verb.output));
+  const bool plan_only = verb.output.empty();
+  RunFiles files;
   const LayersFor layers_for = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
     LayerSet layers = asked;
     if (!styles) return layers;
     SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, wishes, verb.scene.scene));
+    // Once more, where the scene has asked for styles.
+    if (!plan_only && !files.KnowsStyles(*styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb, sequence, styles));
     return layers.Add(read);
   };
-  SCUMBLE_ASSIGN(const auto sequence, PlanSequence(verb.sequence, verb.scene.blender.frame, verb.output));
-  const bool plan_only = verb.output.empty();
   const std::optional<int> frame = verb.scene.blender.frame;
   if (plan_only && !verb.scene.explain)
     return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
@@ -151,7 +154,7 @@ Expected<ExitCode> RunGuidegenVerb(GuidegenVerb verb, const Globals& globals) {
   if (!sequence) {
     SCUMBLE_ASSIGN(verb.output, NameOfOne(verb.output, verb.scene.blender.frame));
   }
-  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(verb, sequence, styles));
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb, sequence, styles));
   verb.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers, MemoryNeed& need) {
     if (behind) AddGuidesBehind(size, layers, need);
     AddGuideFile(size, layers, need);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <sstream>
 
@@ -146,6 +147,13 @@ Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::
                   BytesToText(limit.bytes), mend,
                   limit.asked ? "allow more" : "say --max-memory " + BytesToOption(need.peak()) + " to try all the same");
   return limit.asked ? UsageError(message) : MemoryError(message);
+}
+
+std::function<Status(std::uint64_t bytes)> RoomForStyles(const Globals& globals) {
+  return [need = std::make_shared<MemoryNeed>(), limit = LimitFor(globals)](std::uint64_t bytes) {
+    need->Take("styles", bytes);
+    return CheckMemory(*need, limit, "take smaller exemplars");
+  };
 }
 
 std::string MemoryToText(const MemoryNeed& need) {

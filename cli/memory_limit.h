@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -54,6 +55,10 @@ Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::
 inline Status CheckMemory(const MemoryNeed& need, const Globals& globals, const std::string& mend) {
   return CheckMemory(need, LimitFor(globals), mend);
 }
+
+// For StyleOptions::room: adds up what the pictures of a run's styles take, and refuses as CheckMemory does where they
+// alone are more than there is. Copies add up together.
+std::function<Status(std::uint64_t bytes)> RoomForStyles(const Globals& globals);
 
 // "memory  1.2 GiB at most: guides 0.4 GiB, …", a line for --explain.
 std::string MemoryToText(const MemoryNeed& need);

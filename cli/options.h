@@ -143,6 +143,7 @@ struct StyleOptions {
   std::vector<std::string> sets;
   std::vector<std::string> assigned;  // "NAME=STYLE", or "@FILE" of such lines
   bool scene_styles = true;           // heed what the scene says
+  std::function<Status(std::uint64_t bytes)> room = {};  // as LoadStyle takes it
 };
 // --style and --set alone, for one style.
 void AddOneStyleOptions(CLI::App& verb, StyleOptions& options, bool required);

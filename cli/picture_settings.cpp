@@ -7,6 +7,7 @@
 #include <span>
 
 #include "image/hash.h"
+#include "io/whole_output.h"
 
 namespace scumble {
 namespace {
@@ -86,15 +87,15 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
 }
 
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
-  std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}", SCUMBLE_VERSION,
-                                 HashOfStyles(styles, styles.chosen, known), settings.seed, settings.over ? "a picture" : "nothing",
-                                 settings.show.empty() ? "result" : settings.show);
-  if (settings.upsample > 1) text += fmt::format("; upsample {}", settings.upsample);
-  if (settings.fps) text += fmt::format("; fps {}", double(settings.fps->numerator) / double(settings.fps->denominator));
-  const bool lit = std::any_of(styles.styles.begin(), styles.styles.begin() + std::ptrdiff_t(styles.chosen),
-                               LooksAtLight);
-  if (lit && settings.exposure) text += fmt::format("; exposure {}", *settings.exposure);
-  return text;
+  const auto& [seed, over, show, upsample, fps, exposure, measured] = settings;  // all: each makes another picture
+  const bool lit = std::any_of(styles.styles.begin(), styles.styles.begin() + std::ptrdiff_t(styles.chosen), LooksAtLight);
+  std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
+                                 HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
+                                 show.empty() ? "result" : show, upsample);
+  text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);
+  if (!lit) return text;
+  text += "; exposure " + (exposure ? fmt::format("{}", *exposure) : kAnySetting);
+  return text + "; measured " + (measured ? *measured ? "yes" : "no" : kAnySetting);
 }
 
 }  // namespace scumble

@@ -21,15 +21,17 @@ struct PictureSettings {
   std::string show;                // an explanation's name
   int upsample = 1;
   std::optional<FrameRate> fps;    // where it is known
-  std::optional<double> exposure;  // where it is known; counts for styles of several exemplars
+  std::optional<double> exposure;  // where it is known; counts for styles of several exemplars, as does the next
+  std::optional<bool> measured;    // whether --exposure auto found it; empty: the stops alone count
 };
 
 // Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.
 std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known);
 
-// The text: parts "name value" with semicolons between, as io/whole_output.h compares them. It holds nothing that stylize
-// and transfer do not both know, and nothing that makes no other picture, so that equal pictures stay equal files. The
-// styles must be at the picture's frame (SetStyleFrame); those that a scene asks for are not told of.
+// The text: parts "name value" with semicolons between, as io/whole_output.h compares them; what is not known agrees with
+// all. It holds nothing that stylize and transfer do not both know, and nothing that makes no other picture, so that equal
+// pictures stay equal files; but whether the exposure was measured, as --exposure auto is not known where it is compared.
+// The styles must be at the picture's frame (SetStyleFrame); those that a scene asks for are not told of.
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known);
 
 }  // namespace scumble

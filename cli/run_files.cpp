@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
@@ -32,14 +33,25 @@ std::optional<Identity> IdentityOf(const std::string& path) {
 // No system takes longer names.
 constexpr std::size_t kLongestName = 4096;
 
-// Its beginning, where files are named. Files of /proc, which say that they are empty, name none.
+// Its beginning, where files are named; of a .glb the description, which comes first. Files of /proc, which say that they
+// are empty, name none.
 std::string StartOf(const fs::path& path) {
   constexpr std::uintmax_t kMost = std::uintmax_t(16) << 20;
   std::error_code failed;
   const std::uintmax_t size = fs::file_size(path, failed);
   if (failed) return {};
   std::ifstream stream(path, std::ios::binary);
-  std::string text(static_cast<std::size_t>(std::min(size, kMost)), '\0');
+  constexpr std::size_t kLengthAt = 12, kBegin = 20;
+  std::array<char, kBegin> head{};
+  std::uintmax_t length = size;
+  if (stream.read(head.data(), kBegin) && std::string_view(head.data(), 4) == "glTF") {
+    length = 0;
+    for (std::size_t i = 4; i-- > 0;) length = length << 8 | static_cast<unsigned char>(head[kLengthAt + i]);
+  } else {
+    stream.clear();
+    stream.seekg(0);
+  }
+  std::string text(static_cast<std::size_t>(std::min({length, size, kMost})), '\0');
   stream.read(text.data(), std::streamsize(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
@@ -51,17 +63,32 @@ std::string Ending(const fs::path& path) {
   return ending;
 }
 
-// Calls use(name) with what may be a file at the end of a line: "c.png", "b c.png", "a b c.png" of "map_Kd a b c.png". A name
-// has no more than 64 words here: of a line of 100 KB, all such ends together would come to gigabytes.
+constexpr const char* kBlanks = " \t";
+
+// Of a name, and of a line of names: of a line of 100 KB, all ends together would come to gigabytes.
+constexpr int kMostWords = 64;
+
+// Calls use(name) with what may be a file at the end of a line: "c.png", "b c.png", "a b c.png" of "map_Kd a b c.png".
 template <class Use>
 void ForEachNameAtEnd(std::string_view line, const Use& use) {
-  constexpr int kMostWords = 64;
   line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
-  std::size_t space = line.rfind(' ');
+  std::size_t space = line.find_last_of(kBlanks);
   for (int words = 0; words < kMostWords && space != std::string_view::npos; ++words) {
     if (line.size() - space > kLongestName) return;
     use(std::string(line.substr(space + 1)));
-    space = space == 0 ? std::string_view::npos : line.rfind(' ', space - 1);
+    space = space == 0 ? std::string_view::npos : line.find_last_of(kBlanks, space - 1);
+  }
+}
+
+// Calls use(name) with what may be a library in "mtllib a.mtl b.mtl": either of the two, or one whose name has a blank.
+template <class Use>
+void ForEachLibrary(const std::string& line, const Use& use) {
+  ForEachNameAtEnd(line, use);
+  std::istringstream words(line);
+  std::string word;
+  words >> word;
+  for (int count = 0; count < kMostWords && words >> word; ++count) {
+    if (word.size() <= kLongestName) use(word);
   }
 }
 
@@ -101,14 +128,14 @@ void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, con
 void RunFiles::ReadsScene(const std::string& scene) {
   const std::string what = "a file of the scene " + scene, folder = fs::path(scene).parent_path().string();
   Reads("the scene", scene);
-  if (Ending(scene) == ".gltf") ReadsQuoted(what, scene, folder);
+  if (Ending(scene) == ".gltf" || Ending(scene) == ".glb") ReadsQuoted(what, scene, folder);
   if (Ending(scene) != ".obj") return;
-  // "mtllib a.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into once.
+  // "mtllib a.mtl b.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into once.
   std::set<Identity> libraries;
   std::istringstream lines(StartOf(scene));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("mtllib", 0) != 0) continue;
-    ForEachNameAtEnd(line, [&](const std::string& name) {
+    ForEachLibrary(line, [&](const std::string& name) {
       const std::string library = (fs::path(folder) / name).string();
       const auto identity = IdentityOf(library);
       if (!identity || !libraries.insert(*identity).second) return;
@@ -121,7 +148,15 @@ void RunFiles::ReadsScene(const std::string& scene) {
   }
 }
 
+std::vector<std::string> RunFiles::Inputs() const {
+  std::vector<std::string> paths;
+  for (const auto& [identity, input] : inputs_) paths.push_back(input.path);
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
 void RunFiles::ReadsStyles(const StyleSet& styles) {
+  styles_ = styles.opened.size();
   std::error_code failed;
   for (const auto& [path, place] : styles.opened) {
     const Style& style = styles.styles[place];

@@ -82,7 +82,9 @@ class PictureSequence {
     for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
     SCUMBLE_ASSIGN(const std::optional<double> exposure, ParseExposure(options_.exposure));
     PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {options_.bits}), {}};
-    shape.settings = SettingsText(styles_, SettingsOf(options_, fps, exposure), memory_.hashes);
+    PictureSettings settings = SettingsOf(options_, fps, exposure);
+    if (exposure) settings.measured.reset();  // stops that were measured may be given to go on with
+    shape.settings = SettingsText(styles_, settings, memory_.hashes);
     return CheckWholePicture(output, shape);
   }
   bool MustLookAhead(const Sequence& sequence) const {
@@ -162,8 +164,25 @@ nlohmann::ordered_json EndOfSequence(StyleSet& styles, const PictureOptions& pic
   return json;
 }
 
+// `files` has what the verb alone reads.
+Status CheckFiles(RunFiles& files, const PictureOptions& picture, const std::optional<Sequence>& sequence,
+                  const StyleSet& styles) {
+  SCUMBLE_ASSIGN(const auto overs, NamesOf(picture.over, sequence));
+  for (const std::string& over : overs) files.Reads("the picture of --over", over);
+  files.ReadsStyles(styles);
+  SCUMBLE_ASSIGN(const auto outputs, NamesOf(picture.output, sequence));
+  return files.CheckOutputs(outputs);
+}
+
+// CheckFiles once more, where scene or guides have asked for styles that were not open then.
+using FilesCheck = std::function<Status()>;
+FilesCheck CheckOfWishes(RunFiles& files, const PictureOptions& picture, const std::optional<Sequence>& sequence,
+                         const StyleSet& styles) {
+  return [&] { return files.KnowsStyles(styles) ? Ok() : CheckFiles(files, picture, sequence, styles); };
+}
+
 Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& sequence, StyleSet& styles,
-                                    const GuideReadOptions& read, const Globals& globals) {
+                                    const GuideReadOptions& read, const FilesCheck& check_files, const Globals& globals) {
   SCUMBLE_ASSIGN(const FrameName guides_name, FrameName::Parse(verb.guides));
   SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(verb.camera));
   PictureSequence pictures(styles, verb.picture, globals);
@@ -176,6 +195,7 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
     guides.reset();
     GuideReadOptions one = read;
     SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, file, one));
+    SCUMBLE_RETURN_IF_ERROR(check_files());
     one.blender_camera = camera.At(frame);
     SCUMBLE_ASSIGN(memory, CheckMemoryOfFile(verb, file, styles, one, true, globals));
     Stopwatch watch;
@@ -252,16 +272,6 @@ Status CheckNumbers(const PictureOptions& picture) {
   return Ok();
 }
 
-// `files` has what the verb alone reads.
-Status CheckFiles(RunFiles& files, const PictureOptions& picture, const std::optional<Sequence>& sequence,
-                  const StyleSet& styles) {
-  SCUMBLE_ASSIGN(const auto overs, NamesOf(picture.over, sequence));
-  for (const std::string& over : overs) files.Reads("the picture of --over", over);
-  files.ReadsStyles(styles);
-  SCUMBLE_ASSIGN(const auto outputs, NamesOf(picture.output, sequence));
-  return files.CheckOutputs(outputs);
-}
-
 Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
   if (IsScene(verb.guides)) {
     return InputError(verb.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
@@ -274,6 +284,7 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
     SCUMBLE_ASSIGN(verb.camera, NameOfOne(verb.camera, verb.picture.frame));
   }
   SCUMBLE_RETURN_IF_ERROR(CheckNumbers(verb.picture));
+  verb.style.room = RoomForStyles(globals);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
   EndStage(globals, "style");
   RunFiles files;
@@ -282,13 +293,15 @@ Expected<ExitCode> RunTransferVerb(TransferVerb verb, const Globals& globals) {
     for (const std::string& file : names) files.Reads(what, file);
   }
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
+  const FilesCheck check_files = CheckOfWishes(files, verb.picture, sequence, styles);
   GuideReadOptions read = ReadOptions(verb, styles);
   if (sequence) {
     SCUMBLE_RETURN_IF_ERROR(ChooseForSequence(verb, *sequence, styles, read, globals));
-    return TransferSequence(verb, *sequence, styles, read, globals);
+    return TransferSequence(verb, *sequence, styles, read, check_files, globals);
   }
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(RequireOfFile(styles, verb.guides, read));
+  SCUMBLE_RETURN_IF_ERROR(check_files());
   SCUMBLE_ASSIGN(const MemoryNeed memory, CheckMemoryOfFile(verb, verb.guides, styles, read, false, globals));
   SCUMBLE_ASSIGN(const GuideSet guides, ReadGuides(verb.guides, read));
   const double read_ms = watch.Lap();
@@ -308,8 +321,12 @@ struct StylizeVerb {
   SequenceOptions sequence;
 };
 
-LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene) {
-  return [&styles, scene](const StyleWishes& wishes) { return RequiredLayers(styles, wishes, scene); };
+LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene, const FilesCheck& check_files) {
+  return [&styles, scene, check_files](const StyleWishes& wishes) -> Expected<LayerSet> {
+    SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, wishes, scene));
+    SCUMBLE_RETURN_IF_ERROR(check_files());
+    return layers;
+  };
 }
 
 // The guides' size for a picture of --size that is painted upsampled.
@@ -336,11 +353,11 @@ decltype(SceneOptions::more_memory) PaintingOf(const StyleSet& styles, const Pic
 }
 
 Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequence, StyleSet& styles,
-                                   const Globals& globals) {
+                                   const FilesCheck& check_files, const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.scene.size));
   SceneOptions options = verb.scene;
   options.seed = verb.picture.seed, options.fps = verb.picture.fps;
-  SceneFrames scene(options, RequiredOfScene(styles, options.scene), false, globals);
+  SceneFrames scene(options, RequiredOfScene(styles, options.scene, check_files), false, globals);
   PictureSequence pictures(styles, verb.picture, globals);
   const auto source = [&](const SceneGuides& made) -> FrameGuides {
     GuideSource from{verb.scene.scene, made.times, verb.scene.explain ? made.plan : std::vector<PlanItem>(), made.cost,
@@ -392,7 +409,7 @@ Expected<ExitCode> PrintPlan(const StylizeVerb& verb, StyleSet& styles, const Gl
   scene.animation.clear();  // a plan is the same at any time
   scene.blender.frame = verb.picture.frame;
   ProgressBar bar("stylize", globals.quiet);
-  SCUMBLE_ASSIGN(SceneGuides made, MakeGuidesAtRest(scene, RequiredOfScene(styles, scene.scene), false, globals,
+  SCUMBLE_ASSIGN(SceneGuides made, MakeGuidesAtRest(scene, RequiredOfScene(styles, scene.scene, Ok), false, globals,
                                                     bar.Part(0.0, 1.0), true));
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
   bar.Clear();
@@ -432,19 +449,21 @@ Expected<ExitCode> RunStylizeVerb(StylizeVerb verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckNumbers(verb.picture));
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.scene));
   Stopwatch watch;
+  verb.style.room = RoomForStyles(globals);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(verb.style));
   const double style_ms = watch.Lap();
   EndStage(globals, "style");
   RunFiles files;
   files.ReadsScene(verb.scene.scene);
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, verb.picture, sequence, styles));
+  const FilesCheck check_files = CheckOfWishes(files, verb.picture, sequence, styles);
   SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(verb, sequence, styles, globals));
   verb.scene.more_memory = PaintingOf(styles, verb.picture, sequence.has_value(), globals);
-  if (sequence) return StylizeSequence(verb, *sequence, styles, globals);
+  if (sequence) return StylizeSequence(verb, *sequence, styles, check_files, globals);
   ProgressBar bar("stylize", globals.quiet);
   SceneOptions scene = verb.scene;
   scene.seed = verb.picture.seed, scene.fps = verb.picture.fps;
-  const LayersFor layers_for = RequiredOfScene(styles, scene.scene);
+  const LayersFor layers_for = RequiredOfScene(styles, scene.scene, check_files);
   const Progress progress = bar.Part(0.0, 0.5);
   SCUMBLE_ASSIGN(SceneGuides made, verb.picture.frame
                                        ? MakeGuidesAt(*verb.picture.frame, scene, layers_for, false, globals, progress)

@@ -18,12 +18,14 @@
 
 #include "cli/command.h"
 #include "cli/json_text.h"
+#include "cli/memory_limit.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
 #include "cli/run_files.h"
 #include "cli/sequence.h"
 #include "cli/style_set.h"
 #include "cli/tradeoff_run.h"
+#include "cli/transfer_run.h"
 #include "io/atomic_file.h"
 #include "io/unfinished_files.h"
 #include "measure/tradeoff_report.h"
@@ -164,8 +166,10 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
   return Ok();
 }
 
-Expected<ExitCode> RunTradeoffVerb(const TradeoffVerb& verb, const Globals& globals) {
+Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.setup.scene));
+  SCUMBLE_RETURN_IF_ERROR(ParseExposure(verb.setup.exposure));
+  verb.setup.writes = !verb.folder.empty();
   if (!verb.peak_of.empty()) {
     SCUMBLE_ASSIGN(const std::size_t bytes, PeakOfWay(verb.setup, verb.peak_of, globals));
     Print(fmt::format("{{\"peak_bytes\": {}}}\n", bytes));
@@ -178,12 +182,12 @@ Expected<ExitCode> RunTradeoffVerb(const TradeoffVerb& verb, const Globals& glob
   ProgressBar bar("tradeoff", globals.quiet);
   SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals, bar));
   bar.Clear();
+  Print(globals.json ? TradeJson(report) : TradeTable(report));  // first: minutes of work are not lost where writing fails
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) / kPictures);
     SCUMBLE_RETURN_IF_ERROR(WriteFolder(verb.folder, report));
     Say(globals, (fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");
   }
-  Print(globals.json ? TradeJson(report) : TradeTable(report));
   return ExitCode::kOk;
 }
 
@@ -195,9 +199,10 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "tradeoff", "what every way to stylise a scene costs on this machine, and how far off it is: a table, a chart, all pictures");
   sub->footer(
       "Each way changes one thing of the style, or a few; the energy says how far its picture is from what the exemplar shows:\n"
-      "`both` ranks, the less the better. Times are of the guides (with the acceleration structure) and of the transfer, after a run to warm up;\n"
-      "loading, preparing the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak\n"
-      "of a process that makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
+      "`both` ranks, the less the better. Times are of the guides (with the acceleration structure) and of the transfer, after a\n"
+      "run to warm up of which nothing is kept that a sequence would keep: they are those of a single picture. Loading, preparing\n"
+      "the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak of a process that\n"
+      "makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
       "says; colorized styles are measured before the scene's colours are on them. Blending mostly scores better: it takes\n"
       "seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each way.\n");
   AddViewOptions(*sub, verb->setup.scene);
@@ -209,6 +214,11 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
                "frames a second, with --frame: of a glTF animation frame N is at N / RATE s; left out: of a .blend its own, "
                "otherwise 24");
   AddAnimationOption(*sub, verb->setup.scene);
+  sub->add_option("--exposure", verb->setup.exposure,
+                  "stops by which the scene's light is brightened, as stylize has it; auto fits it to this frame, a sequence to "
+                  "its first")
+      ->type_name("auto|STOPS")
+      ->capture_default_str();
   AddCastOptions(*sub, verb->setup.scene);
   AddSampleOptions(*sub, verb->setup.scene);
   AddOneStyleOptions(*sub, verb->setup.style, true);
@@ -232,6 +242,7 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FOLDER")
       ->check(RefuseEmpty);
   sub->add_option("--peak-of", verb->peak_of)->group("");
+  AddMemoryOption(*sub, globals);
   AddGlobalOptions(*sub, globals);
   sub->callback([verb, &globals, &chosen] { chosen = [verb, &globals] { return RunTradeoffVerb(*verb, globals); }; });
 }

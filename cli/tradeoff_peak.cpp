@@ -24,6 +24,7 @@ std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup
   if (setup.frame) given.emplace_back("--frame", std::to_string(*setup.frame));
   add("--fps", scene.fps, usual.fps);
   add("--animation", scene.animation, usual.animation);
+  add("--exposure", setup.exposure, TradeSetup().exposure);
   return given;
 }
 
@@ -47,6 +48,7 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& 
   if (setup.quick) words.push_back("--quick");
   if (!setup.memory) words.push_back("--no-memory");
   if (globals.threads != 0) add("--threads", std::to_string(globals.threads));
+  if (globals.max_memory > 0) add("--max-memory", std::to_string(globals.max_memory));
   return words;
 }
 

@@ -11,7 +11,8 @@
 
 namespace scumble {
 
-// Options that say when, whence and how the scene is seen, with their values; only those that are not the usual ones.
+// Options that say when, whence, how and in how bright a light the scene is seen, with their values; only those that are not the
+// usual ones.
 std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup);
 
 // The verb's arguments that set this up, behind the program's name. No option of output is among them.

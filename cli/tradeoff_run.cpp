@@ -1,18 +1,22 @@
 #include "cli/tradeoff_run.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "cli/blender.h"
 #include "cli/machine.h"
 #include "cli/memory_limit.h"
+#include "cli/memory_need.h"
 #include "cli/shell_word.h"
+#include "cli/tradeoff_memory.h"
 #include "cli/tradeoff_peak.h"
 #include "cli/tradeoff_reference.h"
 #include "cli/tradeoff_way.h"
@@ -67,6 +71,10 @@ class Trade {
   Expected<TradeReport> Measure() {
     SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, globals_));
     SCUMBLE_ASSIGN(std::vector<Way> ways, ChosenWays());
+    if (setup_.exposure != "auto" && !LooksAtLight(stage_.style)) {
+      Warn("--exposure " + setup_.exposure + " changes nothing: style " + stage_.style.name +
+           " has one exemplar and no weight for light, so it does not look at it");
+    }
     report_.left_out = stage_.grid.left_out;
     SCUMBLE_RETURN_IF_ERROR(LeaveOutWhatIsTooLarge(ways));
     if (setup_.memory && !asks_for_memory_) {
@@ -117,46 +125,77 @@ class Trade {
   // Guides larger than the picture, and exemplars that fit them, may be too large to be made; that is told before much else.
   Status LeaveOutWhatIsTooLarge(std::vector<Way>& ways) {
     std::vector<Way> left;
-    for (Way& way : ways) {
+    for (const Way& way : ways) {
       if (SupersampleOf(way) > 1) {
         SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, way));
-        const Status fits = TryWay(way, style);
+        const Status fits = TryWay(way, style, ways);
         if (!fits.ok() && fits.error().kind == ErrorKind::kCancelled) return fits;
         if (!fits.ok()) {
           report_.left_out.push_back(way.name + ", as " + fits.error().message);
           continue;
         }
       }
-      left.push_back(std::move(way));
+      left.push_back(way);
     }
     ways = std::move(left);
     return Ok();
   }
 
-  // Sizes and memory, without a ray.
-  Status TryWay(const Way& way, const Style& style) {
+  // Sizes and memory, beside as many ways as may be at work with it, without a ray.
+  Status TryWay(const Way& way, const Style& style, const std::vector<Way>& ways) {
     SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
-    SceneOptions larger = setup_.scene;
     const int factor = SupersampleOf(way);
-    larger.size = fmt::format("{}x{}", stage_.width * factor, stage_.height * factor);
-    SCUMBLE_RETURN_IF_ERROR(ParseSize(larger.size));
-    SCUMBLE_ASSIGN(const SceneGuides plan,
-                   CastScene(stage_.scene.scene, stage_.scene.view.camera, nullptr, larger, layers, silent_, {}, true));
-    SCUMBLE_RETURN_IF_ERROR(CheckMemory(plan.memory, globals_, "take a smaller --size"));
+    SCUMBLE_RETURN_IF_ERROR(ParseSize(fmt::format("{}x{}", stage_.width * factor, stage_.height * factor)));
+    SCUMBLE_ASSIGN(MemoryNeed need, NeedOfAll(ways));
+    for (std::size_t i = 0; i < kTogether; ++i) memory_.AddWay(ways.front(), stage_.style, stage_.scene.layers, false, need);
+    memory_.AddWay(way, style, layers, true, need);
+    SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals_, "take a smaller --size"));
     PrepareOptions options;
     options.threads = globals_.threads;
     SCUMBLE_RETURN_IF_ERROR(scumble::Prepare(style, stage_.height * factor, options));
     return Ok();
   }
 
+  // What there is whichever ways are at work: among others the guides of the exact way and those of the style itself.
+  Expected<MemoryNeed> NeedOfAll(const std::vector<Way>& ways) {
+    const LayerSet& layers = stage_.scene.layers;
+    SCUMBLE_ASSIGN(SceneGuides plan,
+                   CastScene(stage_.scene.scene, stage_.scene.view.camera, nullptr, setup_.scene, layers, silent_, {}, true));
+    if (GuidesKey(ConvergedWay(), layers, true) != GuidesKey(ways.front(), layers, true)) {
+      AddGuides({stage_.width, stage_.height}, layers, setup_.scene, plan.memory);
+    }
+    memory_.AddReport(ways.size(), plan.memory);
+    return std::move(plan.memory);
+  }
+
+  // Each style is opened once, as what is wrong with one is told before minutes of work, and so is memory that is not there.
+  // None is kept: their pictures take memory.
   Status OpenStyles(const std::vector<Way>& ways) {
-    for (const Way& way : ways) {
-      SCUMBLE_ASSIGN(Style style, StyleOfWay(setup_, way));
+    SCUMBLE_ASSIGN(const MemoryNeed all, NeedOfAll(ways));
+    MemoryNeed most = all, together;
+    std::set<std::string> guides;
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, ways[i]));
       SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
       layers_.push_back(layers);
-      styles_.push_back(std::move(style));
+      if (i % kTogether == 0) {
+        together = all;
+        guides = {GuidesKey(ways.front(), layers_.front(), true)};
+        if (i > 0) memory_.AddWay(ways.front(), stage_.style, layers_.front(), false, together);
+      }
+      memory_.AddWay(ways[i], style, layers, guides.insert(GuidesKey(ways[i], layers, true)).second, together);
+      if (together.peak() > most.peak()) most = together;
     }
-    return Ok();
+    return CheckMemory(most, globals_, "take a smaller --size, or fewer ways by --only");
+  }
+
+  // What the others are measured against. Noise of its own: guides of as many samples would be compared with themselves, and
+  // those of fewer with their own beginning.
+  Way ConvergedWay() const {
+    Way way = *std::find_if(stage_.grid.ways.begin(), stage_.grid.ways.end(),
+                            [](const Way& one) { return one.axis == kExactAxis; });
+    if (stage_.chance) way.more_seed = kReferenceSeed;
+    return way;
   }
 
   // Kept as long as some way needs them.
@@ -170,12 +209,7 @@ class Trade {
   }
 
   Status MakeReference() {
-    const auto exact = std::find_if(stage_.grid.ways.begin(), stage_.grid.ways.end(),
-                                    [](const Way& way) { return way.axis == kExactAxis; });
-    // Noise of its own: guides of as many samples would be compared with themselves, and those of fewer with their own
-    // beginning.
-    Way converged = *exact;
-    if (stage_.chance) converged.more_seed = kReferenceSeed;
+    const Way converged = ConvergedWay();
     SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, converged));
     SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
     SCUMBLE_ASSIGN(exact_guides_, GuidesOf(converged, layers));
@@ -224,9 +258,12 @@ class Trade {
     std::vector<WayPainter> painters;
     std::vector<double> first_ms;
     std::vector<std::vector<double>> times(end - begin);
+    // Most ways have the style's own guides, and it has turns with all: they are cast once.
+    SCUMBLE_ASSIGN(style_guides_, GuidesOf(ways.front(), layers_.front()));
     for (std::size_t i = begin; i < end; ++i) {
+      SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, ways[i]));
       SCUMBLE_ASSIGN(auto guides, GuidesOf(ways[i], layers_[i]));
-      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways[i], styles_[i], std::move(guides), globals_));
+      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways[i], style, std::move(guides), globals_));
       painters.push_back(std::move(painter));
       SCUMBLE_ASSIGN(const double ms, painters.back().Paint(true));
       first_ms.push_back(ms);
@@ -236,10 +273,9 @@ class Trade {
     // The style as it is has turns with all others, so that it is compared with each at the same moments.
     const bool again = begin > 0 && style_first_ms_ <= kSlowMs;
     if (begin == 0) style_first_ms_ = first_ms.front();
+    if (begin == 0 && LooksAtLight(stage_.style)) report_.exposure = painters.front().exposure();
     if (again) {
-      SCUMBLE_ASSIGN(auto guides, GuidesOf(ways.front(), layers_.front()));
-      SCUMBLE_ASSIGN(WayPainter painter,
-                     WayPainter::Prepare(setup_, ways.front(), styles_.front(), std::move(guides), globals_));
+      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways.front(), stage_.style, style_guides_, globals_));
       painters.push_back(std::move(painter));
       SCUMBLE_ASSIGN(const double ms, painters.back().Paint());
       first_ms.push_back(ms);
@@ -348,11 +384,11 @@ class Trade {
   Progress progress_;
   double work_ = 1.0, done_ = 0.0;
   TradeStage stage_;
-  std::vector<Style> styles_;     // by way
+  TradeMemory memory_{setup_, stage_, globals_};
   std::vector<LayerSet> layers_;  // by way
   std::map<std::string, std::weak_ptr<const WayGuides>> guides_;
   std::map<std::string, std::vector<double>> guides_ms_;
-  std::shared_ptr<const WayGuides> exact_guides_;
+  std::shared_ptr<const WayGuides> exact_guides_, style_guides_;
   std::optional<TradeReference> reference_;
   std::map<std::size_t, std::size_t> pictures_;  // of ways, by a hash of 64 bits
   double style_first_ms_ = 0.0;                  // of the style as it is, the first way
@@ -377,9 +413,13 @@ Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name
   const auto way =
       std::find_if(stage.grid.ways.begin(), stage.grid.ways.end(), [&](const Way& one) { return one.name == name; });
   if (way == stage.grid.ways.end()) return UsageError("--peak-of " + name + ": there is no such way");
+  stage.style = Style();  // the way has its own: a run of stylize has its pictures once
   SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way));
   SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
-  ForgetPeakMemory();  // what opening scene and style took for a moment is the same for all ways, and may hide theirs
+  // What opening scene and style took for a moment is the same for all ways, and may hide theirs. Memory that is given back
+  // stays with the process until it is trimmed, and would count as there.
+  malloc_trim(0);
+  ForgetPeakMemory();
   SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, layers, globals));
   auto guides = std::make_shared<const WayGuides>(std::move(made));
   SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup, *way, style, std::move(guides), globals));

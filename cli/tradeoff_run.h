@@ -19,14 +19,17 @@ struct TradeSetup {
   bool quick = false;
   bool memory = true;
   std::string only;
-  std::optional<int> frame;  // as stylize has it
+  std::optional<int> frame;       // as stylize has it
+  std::string exposure = "auto";  // likewise
+  bool writes = false;            // the report is to be written too, which counts in the estimate of memory
 };
 
 // A run that takes longer than this is not repeated.
 inline constexpr double kSlowMs = 5000.0;
 
 // Everything that was measured. Guides are timed first, all ways' in turn, then transfers, those of a few ways in turn, quick ones
-// before slow ones: what else the machine does then is spread over ways. Wrong options are kUsage; a scene that shows nothing is kInput.
+// before slow ones: what else the machine does then is spread over ways. Each run is one of a single picture (WayPainter::Paint).
+// Wrong options are kUsage; a scene that shows nothing is kInput; what would take more memory than there is, as CheckMemory.
 Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const Globals& globals, ProgressBar& bar);
 
 // The command line that measures all this again.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "cli/quality_ladder.h"
@@ -115,7 +116,8 @@ Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way
   Stopwatch watch;
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
   painter.prepare_ms_ = watch.Lap();
-  const auto stops = MeasureExposure({&painter.prepared_, 1}, painter.guides_->ForExposure(), globals.threads);
+  SCUMBLE_ASSIGN(std::optional<double> stops, ParseExposure(setup.exposure));
+  if (!stops) stops = MeasureExposure({&painter.prepared_, 1}, painter.guides_->ForExposure(), globals.threads);
   painter.options_.exposure = stops.value_or(0.0);
   PictureOptions picture;
   picture.fps = setup.scene.fps;
@@ -130,6 +132,7 @@ Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way
 
 Expected<double> WayPainter::Paint(bool keep_field) {
   options_.keep_field = keep_field;
+  scratch_ = TransferScratch(), picture_ = Picture();  // what the run before leaves would be a sequence's
   Stopwatch watch;
   SCUMBLE_RETURN_IF_ERROR(Transfer(prepared_, guides_->guides, options_, scratch_, picture_));
   if (factor_ > 1) small_ = Averaged(picture_, factor_);

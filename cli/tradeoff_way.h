@@ -41,7 +41,8 @@ class WayPainter {
   static Expected<WayPainter> Prepare(const TradeSetup& setup, const Way& way, const Style& style,
                                       std::shared_ptr<const WayGuides> guides, const Globals& globals);
 
-  // Returns the milliseconds of wall clock that it took.
+  // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the first
+  // picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
   Expected<double> Paint(bool keep_field = false);
 
   // The same without base colours of the scene, which no exemplar has. Only for measures of the paint.

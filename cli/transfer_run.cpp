@@ -202,7 +202,7 @@ Status ReadOver(const std::string& file, TransferMemory& memory) {
 }
 
 PictureSettings SettingsOf(const PictureOptions& options, std::optional<FrameRate> fps, std::optional<double> exposure) {
-  return {options.seed, !options.over.empty(), options.show, options.upsample, fps, exposure};
+  return {options.seed, !options.over.empty(), options.show, options.upsample, fps, exposure, options.exposure == "auto"};
 }
 
 Expected<FrameRate> RateFor(const PictureOptions& options, const GuideSet& guides) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <stdexcept>
 
 #include "guidegen/bsdf.h"
@@ -67,6 +68,31 @@ std::string AvailableIsas() {
   return names;
 }
 
+// Whether the ray leaves the plane of the triangle, or runs along it, so that it cannot meet it: to float, what lies in a
+// large ground or just above it may be below that ground.
+bool LeavesPlane(const PlacedObject& object, std::uint32_t primitive, const glm::dvec3& origin, const glm::dvec3& direction) {
+  const Triangle triangle = ViewTriangle(object, primitive);
+  const glm::dvec3 normal =
+      glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
+  return glm::dot(normal, origin - triangle.corner[0]) * glm::dot(normal, direction) >= 0.0;
+}
+
+// Whether any triangle is longer than half of its largest coordinate. On a shorter one no place has a coordinate below
+// half of the largest, so rays of light from anything that lies on it start high enough (docs/numerics.md).
+bool ReachesFar(const PlacedObject& object) {
+  const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
+  std::atomic<bool> found = false;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end() && !found.load(std::memory_order_relaxed); ++i) {
+      const Triangle triangle = ViewTriangle(object, static_cast<std::uint32_t>(i));
+      double coordinate = 0.0;
+      for (const glm::dvec3& corner : triangle.corner) coordinate = std::max(coordinate, LargestCoordinate(corner));
+      if (LongestEdgeSquared(triangle) > 0.25 * coordinate * coordinate) found = true;
+    }
+  });
+  return found;
+}
+
 void FilterHits(const RTCFilterFunctionNArguments* args) {
   const PlacedObject& object = *static_cast<const PlacedObject*>(args->geometryUserPtr);
   const CastContext& context = *reinterpret_cast<const CastContext*>(args->context);
@@ -97,7 +123,16 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
       }
     }
     const glm::dvec2 barycentric(RTCHitN_u(args->hit, count, i), RTCHitN_v(args->hit, count, i));
-    if (IsHole(object, RTCHitN_primID(args->hit, count, i), barycentric)) args->valid[i] = 0;
+    const std::uint32_t primitive = RTCHitN_primID(args->hit, count, i);
+    if (IsHole(object, primitive, barycentric)) {
+      args->valid[i] = 0;
+    } else if (!context.camera_rays) {
+      RTCRayN* const ray = args->ray;
+      const glm::dvec3 origin(RTCRayN_org_x(ray, count, i), RTCRayN_org_y(ray, count, i), RTCRayN_org_z(ray, count, i));
+      const glm::dvec3 direction(RTCRayN_dir_x(ray, count, i), RTCRayN_dir_y(ray, count, i),
+                                 RTCRayN_dir_z(ray, count, i));
+      if (LeavesPlane(object, primitive, origin, direction)) args->valid[i] = 0;
+    }
   }
 }
 
@@ -116,15 +151,15 @@ void FillVertices(RTCGeometry geometry, const PlacedObject& object) {
   });
 }
 
-// Of what shines, only rays to its light ask whether they may pass.
+// Of what shines, and of what reaches far, only rays of light ask whether they may pass.
 RTCGeometry MakeMesh(RTCDevice device, const PlacedObject& object, bool light_rays) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   FillVertices(geometry, object);
   const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                              sizeof(glm::uvec3), triangles.size());
-  const bool is_target = light_rays && MayEmit(*object.material);
-  if (!object.material->double_sided || MayHaveHoles(*object.material) || is_target) {
+  const bool asks_light = light_rays && (MayEmit(*object.material) || ReachesFar(object));
+  if (!object.material->double_sided || MayHaveHoles(*object.material) || asks_light) {
     rtcSetGeometryIntersectFilterFunction(geometry, FilterHits);
     rtcSetGeometryOccludedFilterFunction(geometry, FilterHits);
   }

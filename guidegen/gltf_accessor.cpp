@@ -7,6 +7,8 @@
 #include <cstring>
 #include <optional>
 
+#include "image/check.h"
+
 namespace scumble {
 namespace {
 
@@ -263,35 +265,61 @@ Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::str
   return reader.accessor().count;
 }
 
+void ElementChoice::Clear() {
+  for (std::uint32_t element : elements_) places_[element] = kNone;
+  elements_.clear();
+}
+
+std::uint32_t ElementChoice::Add(std::uint32_t element) {
+  if (element >= places_.size()) places_.resize(std::size_t(element) + 1, kNone);
+  std::uint32_t& place = places_[element];
+  if (place == kNone) {
+    place = static_cast<std::uint32_t>(elements_.size());
+    elements_.push_back(element);
+  }
+  return place;
+}
+
 namespace {
 
 // `reader` is open.
-Expected<FloatTable> ReadTable(const Reader& reader) {
+Expected<FloatTable> ReadTable(const Reader& reader, const ElementChoice* choice = nullptr) {
   const int type = reader.accessor().componentType;
   const bool normalized = reader.accessor().normalized;
   FloatTable table;
-  table.count = reader.accessor().count;
+  table.count = choice ? choice->elements().size() : reader.accessor().count;
   table.components = reader.components();
   table.values.assign(table.count * std::size_t(table.components), 0.0f);
-  const auto put = [&](std::size_t element, const unsigned char* bytes) {
-    float* out = table.values.data() + element * std::size_t(table.components);
+  const auto put = [&](std::size_t row, const unsigned char* bytes) {
+    float* out = table.values.data() + row * std::size_t(table.components);
     for (int c = 0; c < table.components; ++c) {
       out[c] = LoadComponent(bytes + c * reader.component_bytes(), type, normalized);
     }
   };
   const Block& block = reader.main();
-  for (std::size_t i = 0; i < block.count; ++i) put(i, block.data + i * block.stride);
-  SCUMBLE_RETURN_IF_ERROR(reader.ForEachSparse(put));
+  if (!choice) {
+    for (std::size_t i = 0; i < block.count; ++i) put(i, block.data + i * block.stride);
+    SCUMBLE_RETURN_IF_ERROR(reader.ForEachSparse(put));
+    return table;
+  }
+  for (std::size_t row = 0; row < table.count; ++row) {
+    const std::size_t element = choice->elements()[row];
+    SCUMBLE_DCHECK(element < reader.accessor().count);
+    if (block.count > 0) put(row, block.data + element * block.stride);
+  }
+  SCUMBLE_RETURN_IF_ERROR(reader.ForEachSparse([&](std::size_t element, const unsigned char* bytes) {
+    if (const std::uint32_t row = choice->PlaceOf(element); row != ElementChoice::kNone) put(row, bytes);
+  }));
   return table;
 }
 
 }  // namespace
 
 Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
-                                const std::string& what) {
+                                const std::string& what, const ElementChoice* choice) {
   Reader reader(model, file, accessor, what);
   SCUMBLE_RETURN_IF_ERROR(reader.Open());
-  return ReadTable(reader);
+  return ReadTable(reader, choice);
 }
 
 Expected<std::vector<glm::dmat4>> ReadMatrices(const tinygltf::Model& model, const std::string& file, int accessor,

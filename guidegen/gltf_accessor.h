@@ -49,9 +49,29 @@ class ZeroBudget {
   std::uint64_t taken_ = 0;
 };
 
-// Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused.
+// Elements of a list that many readers share, in the order in which they were added. No call costs more for a longer list,
+// but for the first that reaches so far, so one choice serves reader after reader.
+class ElementChoice {
+ public:
+  static constexpr std::uint32_t kNone = ~std::uint32_t(0);
+
+  void Clear();
+  // Its place among the chosen ones; an element that is among them keeps the place that it has.
+  std::uint32_t Add(std::uint32_t element);
+  // kNone where it is not among them.
+  std::uint32_t PlaceOf(std::size_t element) const { return element < places_.size() ? places_[element] : kNone; }
+  std::span<const std::uint32_t> elements() const { return elements_; }
+
+ private:
+  std::vector<std::uint32_t> elements_;
+  std::vector<std::uint32_t> places_;  // by element, as far as any reached
+};
+
+// Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused. With a choice,
+// whose elements must all exist, the table has those alone, at their places; the values of a sparse accessor are looked
+// through all the same.
 Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
-                                const std::string& what);
+                                const std::string& what, const ElementChoice* choice = nullptr);
 
 // A list of 4 × 4 matrices of floats, column by column; each value finite.
 Expected<std::vector<glm::dmat4>> ReadMatrices(const tinygltf::Model& model, const std::string& file, int accessor,

@@ -224,6 +224,53 @@ Expected<float> UnitFactor(double value, const char* what, const std::string& wh
   return InputError(where + " has the " + what + " factor " + std::to_string(value) + "; expected 0 … 1");
 }
 
+tinygltf::TextureInfo TextureInExtension(const tinygltf::Value& from) {
+  tinygltf::TextureInfo info;
+  if (from.Has("index") && from.Get("index").IsInt()) info.index = from.Get("index").GetNumberAsInt();
+  if (from.Has("texCoord") && from.Get("texCoord").IsInt()) info.texCoord = from.Get("texCoord").GetNumberAsInt();
+  const char* transform = "KHR_texture_transform";
+  if (from.Has("extensions") && from.Get("extensions").Has(transform)) {
+    info.extensions[transform] = from.Get("extensions").Get(transform);
+  }
+  return info;
+}
+
+// KHR_materials_pbrSpecularGlossiness, the model before metalness, as far as the present one can say it. Its metals have a
+// black diffuse colour and are their specular one, which has no place here.
+Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::Value& extension,
+                                                                const std::string& where) {
+  tinygltf::PbrMetallicRoughness pbr;
+  pbr.metallicFactor = 0.0;
+  if (extension.Has("diffuseFactor")) {
+    const auto factor = Numbers(extension, "diffuseFactor", 4);
+    if (!factor) return InputError(where + " has a diffuse factor that is not 4 numbers; export it again");
+    pbr.baseColorFactor = *factor;
+  }
+  if (extension.Has("diffuseTexture")) pbr.baseColorTexture = TextureInExtension(extension.Get("diffuseTexture"));
+  // With a texture the factor is only the most that it may reach, a mirror if nothing else is said.
+  if (extension.Has("specularGlossinessTexture")) return pbr;
+  double glossiness = 1.0;
+  if (extension.Has("glossinessFactor")) {
+    const tinygltf::Value& value = extension.Get("glossinessFactor");
+    glossiness = value.IsNumber() ? value.GetNumberAsDouble() : -1.0;
+  }
+  SCUMBLE_RETURN_IF_ERROR(UnitFactor(glossiness, "glossiness", where));
+  pbr.roughnessFactor = 1.0 - glossiness;
+  return pbr;
+}
+
+// What exporters write beside that extension is for programs without it, and knows metals: it goes first if it has a colour.
+Expected<tinygltf::PbrMetallicRoughness> MetallicRoughness(const tinygltf::Material& from, const std::string& file,
+                                                           const std::string& owner, WarningCounter& warnings) {
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  const auto extension = from.extensions.find("KHR_materials_pbrSpecularGlossiness");
+  const bool has_color = pbr.baseColorTexture.index >= 0 || pbr.baseColorFactor != std::vector<double>(4, 1.0);
+  if (extension == from.extensions.end() || has_color) return pbr;
+  warnings.Add("of KHR_materials_pbrSpecularGlossiness the diffuse colour is taken, and 1 - glossiness as roughness, but "
+               "not the specular colour; where a texture has the glossiness, roughness is 1", owner);
+  return FromSpecularGlossiness(extension->second, file + ": " + owner);
+}
+
 // KHR_materials_emissive_strength: emission above 1, 1 where it is absent.
 Expected<double> EmissiveStrength(const tinygltf::Material& from, const std::string& where) {
   const auto extension = from.extensions.find("KHR_materials_emissive_strength");
@@ -263,10 +310,11 @@ Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, 
   TextureLoader textures(model, file, scene, warnings);
   UniqueNames names;
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
-    const tinygltf::Material& from = model.materials[i];
+    tinygltf::Material from = model.materials[i];
     const std::string owner = Label("material", static_cast<int>(i), from.name);
     Material material;
     material.name = names.Take(from.name.empty() ? "material_" + std::to_string(i) : from.name);
+    SCUMBLE_ASSIGN(from.pbrMetallicRoughness, MetallicRoughness(from, file, owner, warnings));
     const std::vector<double>& factor = from.pbrMetallicRoughness.baseColorFactor;
     for (int c = 0; c < 4 && std::size_t(c) < factor.size(); ++c) {
       const float value = static_cast<float>(factor[std::size_t(c)]);

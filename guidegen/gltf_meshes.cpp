@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "guidegen/gltf_accessor.h"
@@ -24,46 +25,6 @@ glm::uvec3 TriangleCorners(int mode, std::uint32_t i) {
   return {3 * i, 3 * i + 1, 3 * i + 2};
 }
 
-// Drops the vertices that no triangle uses: exporters share one long vertex list between many primitives.
-void DropUnusedVertices(Mesh& mesh, MeshDeformation& deformation) {
-  constexpr std::uint32_t kUnused = ~0u;
-  std::vector<std::uint32_t> renamed(mesh.positions.size(), kUnused);
-  std::vector<std::uint32_t> kept;
-  for (glm::uvec3& triangle : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) {
-      std::uint32_t& name = renamed[triangle[i]];
-      if (name == kUnused) {
-        name = static_cast<std::uint32_t>(kept.size());
-        kept.push_back(triangle[i]);
-      }
-      triangle[i] = name;
-    }
-  }
-  const auto gather = [&](auto& values, std::size_t of_each = 1) {
-    if (values.empty()) return;
-    std::remove_reference_t<decltype(values)> chosen;
-    chosen.reserve(kept.size() * of_each);
-    for (std::uint32_t vertex : kept) {
-      for (std::size_t i = 0; i < of_each; ++i) chosen.push_back(values[vertex * of_each + i]);
-    }
-    values = std::move(chosen);
-  };
-  gather(mesh.positions);
-  gather(mesh.normals);
-  gather(mesh.uvs[0]);
-  gather(mesh.uvs[1]);
-  gather(mesh.tangents);
-  gather(mesh.colors);
-  gather(mesh.rest_positions);
-  for (MorphTarget& target : deformation.targets) {
-    gather(target.positions);
-    gather(target.normals);
-    gather(target.tangents);
-  }
-  gather(deformation.joints, std::size_t(deformation.influences));
-  gather(deformation.weights, std::size_t(deformation.influences));
-}
-
 // Loads one primitive; the members only save passing them on.
 class PrimitiveLoader {
  public:
@@ -76,7 +37,8 @@ class PrimitiveLoader {
         warnings_(load.warnings),
         primitive_(primitive),
         name_(std::move(name)),
-        request_(request) {}
+        request_(request),
+        shared_choice_(load.choice) {}
 
   // After Load, where one was requested.
   MeshDeformation TakeDeformation() { return std::move(deformation_); }
@@ -92,31 +54,24 @@ class PrimitiveLoader {
       warnings_.Add("primitives without positions are left out", name_);
       return std::optional<Mesh>();
     }
-    SCUMBLE_ASSIGN(const std::size_t vertices, AccessorCount(model_, file_, position, name_ + ", POSITION"));
-    std::size_t corners = vertices;
+    SCUMBLE_ASSIGN(vertices_, AccessorCount(model_, file_, position, name_ + ", POSITION"));
+    std::size_t corners = vertices_;
     if (primitive_.indices >= 0) {
       SCUMBLE_ASSIGN(corners, AccessorCount(model_, file_, primitive_.indices, name_ + ", indices"));
     }
-    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, vertices, TriangleCount(primitive_.mode, corners)));
-    SCUMBLE_RETURN_IF_ERROR(ReadPlaces(position, "POSITION", mesh_.positions));
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, 0, TriangleCount(primitive_.mode, corners)));
     SCUMBLE_RETURN_IF_ERROR(ReadTriangles());
+    if (mesh_.triangles.size() < vertices_ / 4) ChooseVertices();
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, choice_ ? choice_->elements().size() + SparseValues() : vertices_, 0));
+    SCUMBLE_RETURN_IF_ERROR(ReadPlaces(position, "POSITION", mesh_.positions));
     SCUMBLE_RETURN_IF_ERROR(ReadAttributes());
     if (request_) {
       SCUMBLE_RETURN_IF_ERROR(ReadTargets());
       SCUMBLE_RETURN_IF_ERROR(ReadInfluences());
     } else if (const int rest = Accessor("_SCUMBLE_REST"); rest >= 0) {
       SCUMBLE_RETURN_IF_ERROR(ReadPlaces(rest, "_SCUMBLE_REST", mesh_.rest_positions));
-      if (mesh_.rest_positions.size() != mesh_.positions.size()) {
-        return InputError(file_ + ": " + name_ + ", _SCUMBLE_REST: " + std::to_string(mesh_.rest_positions.size()) +
-                          " elements for " + std::to_string(mesh_.positions.size()) + " positions; expected as many");
-      }
     }
     SCUMBLE_RETURN_IF_ERROR(ChooseMaterial());
-    if (mesh_.triangles.size() < mesh_.positions.size() / 4) {
-      const std::size_t before = mesh_.positions.size();
-      DropUnusedVertices(mesh_, deformation_);
-      budget_.GiveBackVertices(before - mesh_.positions.size());
-    }
     if (mesh_.triangles.empty()) {
       warnings_.Add("primitives without a triangle are left out", name_);
       return std::optional<Mesh>();
@@ -138,16 +93,58 @@ class PrimitiveLoader {
     return it == primitive_.attributes.end() ? -1 : it->second;
   }
 
+  // Exporters share one long vertex list between many primitives: of such a list only what the triangles use is read, in the
+  // order of its first use, and they are renumbered to it. Reading all of it for each would take their product.
+  void ChooseVertices() {
+    shared_choice_.Clear();
+    for (glm::uvec3& triangle : mesh_.triangles) {
+      for (int i = 0; i < 3; ++i) triangle[i] = shared_choice_.Add(triangle[i]);
+    }
+    choice_ = &shared_choice_;
+  }
+
+  // A vertex of the mesh as the file counts it.
+  std::size_t NumberInFile(std::size_t vertex) const { return choice_ ? choice_->elements()[vertex] : vertex; }
+
+  // Of all accessors that may be read. Where vertices are chosen, these are still looked through, and count as vertices.
+  std::uint64_t SparseValues() const {
+    std::uint64_t values = 0;
+    const auto add = [&](const std::map<std::string, int>& attributes) {
+      for (const auto& [attribute, accessor] : attributes) {
+        if (accessor < 0 || std::size_t(accessor) >= model_.accessors.size()) continue;
+        const auto& sparse = model_.accessors[std::size_t(accessor)].sparse;
+        if (sparse.isSparse) values += std::uint64_t(std::max(sparse.count, 0));
+      }
+    };
+    add(primitive_.attributes);
+    if (request_ && request_->targets > 0) {
+      for (const auto& target : primitive_.targets) add(target);
+    }
+    return values;
+  }
+
+  // The mesh's vertices of an accessor, which must have one for each of the file's.
+  Expected<FloatTable> ReadVertices(int accessor, const std::string& attribute) {
+    const std::string what = name_ + ", " + attribute;
+    SCUMBLE_ASSIGN(const std::size_t count, AccessorCount(model_, file_, accessor, what));
+    if (count != vertices_) {
+      return InputError(file_ + ": " + what + ": accessor " + std::to_string(accessor) + " has " +
+                        std::to_string(count) + " elements for " + std::to_string(vertices_) +
+                        " positions; expected as many");
+    }
+    return ReadFloats(model_, file_, accessor, what, choice_);
+  }
+
   Status ReadPlaces(int accessor, const std::string& attribute, std::vector<glm::vec3>& places) {
     const std::string where = file_ + ": " + name_ + ", " + attribute;
-    SCUMBLE_ASSIGN(const FloatTable table, ReadFloats(model_, file_, accessor, name_ + ", " + attribute));
+    SCUMBLE_ASSIGN(const FloatTable table, ReadVertices(accessor, attribute));
     if (table.components != 3) return InputError(where + ": expected three components");
     places.resize(table.count);
     for (std::size_t i = 0; i < table.count; ++i) {
       const glm::vec3 place(table.values[3 * i], table.values[3 * i + 1], table.values[3 * i + 2]);
       if (!IsFinite(place)) {
         return InputError(where + ": accessor " + std::to_string(accessor) + " has NaN or infinity at vertex " +
-                          std::to_string(i) + "; expected finite numbers");
+                          std::to_string(NumberInFile(i)) + "; expected finite numbers");
       }
       places[i] = place;
     }
@@ -155,13 +152,12 @@ class PrimitiveLoader {
   }
 
   Status ReadTriangles() {
-    const std::size_t vertices = mesh_.positions.size();
     std::vector<std::uint32_t> indices;
     const bool indexed = primitive_.indices >= 0;
     if (indexed) {
-      SCUMBLE_ASSIGN(indices, ReadIndices(model_, file_, primitive_.indices, vertices, name_ + ", indices"));
+      SCUMBLE_ASSIGN(indices, ReadIndices(model_, file_, primitive_.indices, vertices_, name_ + ", indices"));
     }
-    const std::uint64_t corners = indexed ? indices.size() : vertices;
+    const std::uint64_t corners = indexed ? indices.size() : vertices_;
     const std::uint64_t count = TriangleCount(primitive_.mode, corners);
     if (primitive_.mode == TINYGLTF_MODE_TRIANGLES && corners % 3 != 0) {
       warnings_.Add("incomplete triangles at the end of a list are left out", name_);
@@ -184,15 +180,10 @@ class PrimitiveLoader {
 
   template <class Put>
   Status ReadRows(int accessor, const std::string& attribute, int min_components, int max_components, Put put) {
-    SCUMBLE_ASSIGN(const FloatTable table, ReadFloats(model_, file_, accessor, name_ + ", " + attribute));
+    SCUMBLE_ASSIGN(const FloatTable table, ReadVertices(accessor, attribute));
     if (table.components < min_components || table.components > max_components) {
       return InputError(file_ + ": " + name_ + ", " + attribute + ": accessor " + std::to_string(accessor) + " has " +
                         std::to_string(table.components) + " components; expected " + std::to_string(min_components));
-    }
-    if (table.count != mesh_.positions.size()) {
-      return InputError(file_ + ": " + name_ + ", " + attribute + ": accessor " + std::to_string(accessor) + " has " +
-                        std::to_string(table.count) + " elements for " + std::to_string(mesh_.positions.size()) +
-                        " positions; expected as many");
     }
     for (std::size_t i = 0; i < table.count; ++i)
       put(i, table.values.data() + i * std::size_t(table.components), table);
@@ -253,7 +244,8 @@ class PrimitiveLoader {
         }));
         if (broken == vertices) return Ok();
         return InputError(file_ + ": " + name_ + ", " + what + ": accessor " + std::to_string(it->second) +
-                          " has NaN or infinity at vertex " + std::to_string(broken) + "; expected finite numbers");
+                          " has NaN or infinity at vertex " + std::to_string(NumberInFile(broken)) +
+                          "; expected finite numbers");
       };
       SCUMBLE_RETURN_IF_ERROR(read("POSITION", target.positions));
       SCUMBLE_RETURN_IF_ERROR(read("NORMAL", target.normals));
@@ -288,7 +280,7 @@ class PrimitiveLoader {
     const auto complain = [&](const std::string& attribute, std::size_t vertex, const std::string& what) {
       if (!fault.empty()) return;
       fault = attribute + ": accessor " + std::to_string(Accessor(attribute)) + " has " + what + " at vertex " +
-              std::to_string(vertex);
+              std::to_string(NumberInFile(vertex));
     };
     SCUMBLE_RETURN_IF_ERROR(ReadAttribute(weights, 4, 4, [&](std::size_t v, const float* w, const FloatTable&) {
       for (std::size_t i = 0; i < 4; ++i) {
@@ -378,6 +370,9 @@ class PrimitiveLoader {
   const tinygltf::Primitive& primitive_;
   const std::string name_;
   const DeformationRequest* request_;
+  ElementChoice& shared_choice_;
+  const ElementChoice* choice_ = nullptr;  // which of the file's vertices the mesh has; null: all
+  std::size_t vertices_ = 0;               // in the file
   Mesh mesh_;
   MeshDeformation deformation_;
 };

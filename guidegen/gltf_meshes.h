@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "guidegen/gltf_accessor.h"
 #include "guidegen/gltf_skin.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/scene.h"
@@ -22,6 +23,7 @@ struct GltfLoad {
   Scene& scene;
   GeometryBudget& budget;
   WarningCounter& warnings;
+  ElementChoice& choice;  // of vertices; each primitive makes its own
 };
 
 // Loads the primitives of one glTF mesh into scene.meshes and returns their indices. Points, lines and primitives

@@ -66,44 +66,139 @@ Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::s
   return json;
 }
 
+// Lists of the top level whose elements tinygltf makes far larger than they may be spelled, as `{}` or little more: 2 KB for a
+// material, half a KB for a node. Of what a file may show, a million instances, none needs so many. Accessors and buffer
+// views cannot be spelled so shortly, and there are several for each mesh.
+struct ListLimit {
+  std::string_view list;
+  std::size_t most;
+};
+constexpr std::size_t kMostElements = 100'000;
+constexpr ListLimit kListLimits[] = {{"nodes", 2'000'000},         {"meshes", 2'000'000},      {"materials", kMostElements},
+                                     {"textures", kMostElements},  {"images", kMostElements},  {"samplers", kMostElements},
+                                     {"scenes", kMostElements},    {"cameras", kMostElements}, {"skins", kMostElements},
+                                     {"animations", kMostElements}};
+// Each value inside extras and extensions takes tinygltf 150 bytes: 2 are enough to spell it. A million nodes with ten of
+// Blender's custom properties each have 10 million.
+constexpr std::uint64_t kMaxFreeValues = 16'000'000;
+
 // What a cheap look ahead of the parser proper finds in the JSON.
 struct JsonOutline {
-  int depth = 0;                // of the deepest brackets
-  int buffers_without_uri = 0;  // or with one that is empty or no text, which tinygltf takes for none
+  int depth = 0;                  // of the deepest brackets
+  int buffers_without_uri = 0;    // or with one that is empty or no text, which tinygltf takes for none
+  std::string_view long_list;     // one of the top level that has more elements than it may; empty: none
+  std::size_t elements = 0;       // which it has,
+  std::size_t most = 0;           // and may have
+  std::uint64_t free_values = 0;  // inside extras and extensions, as often as tinygltf copies them
 };
 
 // Keys are compared as they are spelled. One with an escape may be any, so it counts for the worst: no exporter writes
 // such.
-JsonOutline OutlineOf(std::string_view json) {
-  JsonOutline outline;
-  int depth = 0;
-  bool in_buffers = false, at_uri = false, has_uri = false;
-  std::string_view text;  // the last string
-  const auto may_be = [&](std::string_view key) { return text == key || text.find('\\') != text.npos; };
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (c == '"') {
-      const std::size_t begin = i + 1;
-      for (++i; i < json.size() && json[i] != '"'; ++i) i += json[i] == '\\';
-      text = json.substr(begin, i - begin);
-      if (depth == 3 && at_uri) has_uri = !text.empty();
-    } else if (c == ':' && depth == 1) {
-      in_buffers = may_be("buffers");
-    } else if (c == ':' && depth == 3 && in_buffers) {
-      at_uri = text == "uri";
-      if (may_be("uri")) has_uri = false;
-    } else if (c == ',' && depth == 3) {
-      at_uri = false;
-    } else if (c == '{' || c == '[') {
-      outline.depth = std::max(outline.depth, ++depth);
-      if (depth == 3) at_uri = has_uri = false;
-    } else if (c == '}' || c == ']') {
-      outline.buffers_without_uri += depth == 3 && in_buffers && !has_uri;
-      --depth;
+class Outliner {
+ public:
+  JsonOutline Read(std::string_view json) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const char c = json[i];
+      if (c == '"') {
+        const std::size_t begin = i + 1;
+        for (++i; i < json.size() && json[i] != '"'; ++i) i += json[i] == '\\';
+        text_ = json.substr(begin, i - begin);
+        escaped_ = text_.find('\\') != text_.npos;
+        if (depth_ == 3 && at_uri_) has_uri_ = !text_.empty();
+      } else if (c == ':') {
+        TakeKey();
+      } else if (c == ',') {
+        TakeComma();
+      } else if (c == '{' || c == '[') {
+        Open();
+      } else if (c == '}' || c == ']') {
+        Close();
+      }
+    }
+    return outline_;
+  }
+
+ private:
+  bool MayBe(std::string_view key) const { return escaped_ || text_ == key; }
+
+  void TakeKey() {
+    if (free_depth_ == 0) at_free_ = MayBe("extras") || MayBe("extensions");
+    if (depth_ == 1) {
+      list_ = text_;
+      list_escaped_ = escaped_;
+      in_buffers_ = MayBe("buffers");
+      in_animations_ = MayBe("animations");
+    } else if (depth_ == 3 && in_buffers_) {
+      at_uri_ = text_ == "uri";
+      if (MayBe("uri")) has_uri_ = false;
+    } else if (depth_ == 3 && in_animations_) {
+      at_samplers_ = MayBe("samplers");
+      at_copied_ = MayBe("extensions");
     }
   }
-  return outline;
-}
+
+  void TakeComma() {
+    elements_ += depth_ == 2;
+    samplers_ += depth_ == 4 && at_samplers_;
+    CountFreeValue();
+    if (depth_ == 3) at_uri_ = false;
+    at_free_ = false;
+  }
+
+  void Open() {
+    outline_.depth = std::max(outline_.depth, ++depth_);
+    if (depth_ == 2) elements_ = 1;
+    if (depth_ == 3) {
+      at_uri_ = has_uri_ = at_samplers_ = at_copied_ = false;
+      samplers_ = copied_values_ = 0;
+    }
+    if (at_free_) free_depth_ = depth_;
+    at_free_ = false;
+    CountFreeValue();
+  }
+
+  void Close() {
+    if (depth_ == 2) CheckElements();
+    if (depth_ == 3) {
+      outline_.buffers_without_uri += in_buffers_ && !has_uri_;
+      // tinygltf gives each of an animation's samplers a copy of the animation's extensions.
+      outline_.free_values += samplers_ * copied_values_;
+    }
+    if (depth_ == free_depth_) free_depth_ = 0;
+    at_free_ = false;
+    --depth_;
+  }
+
+  void CountFreeValue() {
+    if (free_depth_ == 0) return;
+    ++outline_.free_values;
+    copied_values_ += at_copied_;
+  }
+
+  void CheckElements() {
+    for (const ListLimit& limit : kListLimits) {
+      const std::size_t most = list_escaped_ ? kMostElements : limit.most;
+      if ((!list_escaped_ && list_ != limit.list) || elements_ <= most) continue;
+      outline_.long_list = list_;
+      outline_.elements = elements_;
+      outline_.most = most;
+    }
+  }
+
+  JsonOutline outline_;
+  int depth_ = 0;
+  std::string_view text_;  // the last string
+  bool escaped_ = false;   // has it an escape?
+  std::string_view list_;  // key of the top level
+  bool list_escaped_ = false;
+  std::size_t elements_ = 0;
+  bool in_buffers_ = false, at_uri_ = false, has_uri_ = false;
+  bool at_free_ = false;  // what comes next is the value of extras or extensions,
+  int free_depth_ = 0;    // of whose brackets this is the depth; 0 outside
+  bool in_animations_ = false, at_samplers_ = false, at_copied_ = false;
+  std::uint64_t samplers_ = 0;       // of one animation, less one
+  std::uint64_t copied_values_ = 0;  // inside its extensions
+};
 
 bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, int, int, const unsigned char* bytes,
                  int size, void*) {
@@ -239,10 +334,20 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
   if (IsGlb(bytes)) {
     SCUMBLE_ASSIGN(json, GlbJson(file, bytes));
   }
-  const JsonOutline outline = OutlineOf({reinterpret_cast<const char*>(json.data()), json.size()});
+  const JsonOutline outline = Outliner().Read({reinterpret_cast<const char*>(json.data()), json.size()});
   if (outline.depth > kMaxJsonDepth) {
     return InputError(file + " nests its JSON more than " + std::to_string(kMaxJsonDepth) +
                       " levels deep; no scene needs that");
+  }
+  if (!outline.long_list.empty()) {
+    return InputError(file + " has " + std::to_string(outline.elements) + " elements in '" +
+                      Excerpt(std::string(outline.long_list), 80) + "'; expected at most " +
+                      std::to_string(outline.most) + ": export it in parts, or without those that nothing uses");
+  }
+  if (outline.free_values > kMaxFreeValues) {
+    return InputError(file + " has at least " + std::to_string(outline.free_values) +
+                      " values in extras and extensions; expected at most " + std::to_string(kMaxFreeValues) +
+                      ": export it without custom properties");
   }
   // Each of them would be a copy of the binary chunk. glTF allows it to the first alone; where meshopt packs the meshes,
   // others stand for what they become.

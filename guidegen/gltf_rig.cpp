@@ -1,7 +1,8 @@
 #include "guidegen/gltf_rig.h"
 
-#include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "guidegen/matrix_util.h"
 
@@ -18,6 +19,12 @@ glm::dmat4 SkinFrame(const glm::dmat4& first_joint, const glm::dmat4& first_matr
   return frame;
 }
 
+struct PlacedSkin {
+  bool moves = false;
+  glm::dmat4 frame{1.0};             // of the meshes that hang on it
+  std::vector<glm::dmat4> matrices;  // by joint, from rest to that frame
+};
+
 // Poses one scene at one time; the members only save passing them on.
 class Poser {
  public:
@@ -26,8 +33,8 @@ class Poser {
 
   Status Run() {
     SCUMBLE_RETURN_IF_ERROR(PlaceNodes());
-    frames_.resize(rig_.meshes.size());
-    for (std::size_t i = 0; i < rig_.meshes.size(); ++i) SCUMBLE_RETURN_IF_ERROR(Deform(i));
+    PlaceSkins();
+    for (const RigMesh& mesh : rig_.meshes) SCUMBLE_RETURN_IF_ERROR(Deform(mesh));
     PlaceInstances();
     if (!seconds_) return Ok();
     SCUMBLE_RETURN_IF_ERROR(Place(
@@ -59,29 +66,32 @@ class Poser {
     return Ok();
   }
 
+  // Once for each skin, of which any number of meshes may hang.
+  void PlaceSkins() {
+    for (const GltfSkin& from : rig_.skins) {
+      PlacedSkin skin;
+      for (std::size_t i = 0; i < from.joints.size(); ++i) {
+        skin.moves = skin.moves || rig_.nodes[std::size_t(from.joints[i])].moves;
+        skin.matrices.push_back(world_[std::size_t(from.joints[i])] * from.inverse_bind[i]);
+      }
+      skin.frame = SkinFrame(world_[std::size_t(from.joints[0])], skin.matrices[0]);
+      for (glm::dmat4& matrix : skin.matrices) {
+        matrix[3] = glm::dvec4(glm::dvec3(matrix[3]) - glm::dvec3(skin.frame[3]), 1.0);
+        for (int column = 0; column < 4; ++column) matrix[column][0] *= skin.frame[0][0];
+      }
+      skins_.push_back(std::move(skin));
+    }
+  }
+
   // Whether its shape at a time may be another than at rest.
   bool Changes(const RigMesh& mesh) const {
     if (rig_.animation.Morphs(rig_.nodes[std::size_t(mesh.node)].node)) return true;
-    if (mesh.skin < 0) return false;
-    const std::vector<int>& joints = rig_.skins[std::size_t(mesh.skin)].joints;
-    return std::any_of(joints.begin(), joints.end(), [&](int joint) { return rig_.nodes[std::size_t(joint)].moves; });
+    return mesh.skin >= 0 && skins_[std::size_t(mesh.skin)].moves;
   }
 
-  Status Deform(std::size_t index) {
-    const RigMesh& mesh = rig_.meshes[index];
-    std::vector<glm::dmat4> matrices;
-    if (mesh.skin >= 0) {
-      const GltfSkin& skin = rig_.skins[std::size_t(mesh.skin)];
-      for (std::size_t i = 0; i < skin.joints.size(); ++i) {
-        matrices.push_back(world_[std::size_t(skin.joints[i])] * skin.inverse_bind[i]);
-      }
-      const glm::dmat4 frame = SkinFrame(world_[std::size_t(skin.joints[0])], matrices[0]);
-      frames_[index] = frame;
-      for (glm::dmat4& matrix : matrices) {
-        matrix[3] = glm::dvec4(glm::dvec3(matrix[3]) - glm::dvec3(frame[3]), 1.0);
-        for (int column = 0; column < 4; ++column) matrix[column][0] *= frame[0][0];
-      }
-    }
+  Status Deform(const RigMesh& mesh) {
+    std::span<const glm::dmat4> matrices;
+    if (mesh.skin >= 0) matrices = skins_[std::size_t(mesh.skin)].matrices;
     if (seconds_ && !Changes(mesh)) return Ok();
     const int node = rig_.nodes[std::size_t(mesh.node)].node;
     const bool morphs = seconds_ && rig_.animation.Morphs(node);
@@ -94,8 +104,8 @@ class Poser {
     scene_.instances.clear();
     for (const RigInstance& from : rig_.instances) {
       Instance instance = from.instance;
-      const bool skinned = from.rig_mesh >= 0 && rig_.meshes[std::size_t(from.rig_mesh)].skin >= 0;
-      instance.world_from_object = skinned ? frames_[std::size_t(from.rig_mesh)] : world_[std::size_t(from.node)];
+      const int skin = from.rig_mesh < 0 ? -1 : rig_.meshes[std::size_t(from.rig_mesh)].skin;
+      instance.world_from_object = skin < 0 ? world_[std::size_t(from.node)] : skins_[std::size_t(skin)].frame;
       if (!Flattens(instance.world_from_object)) scene_.instances.push_back(std::move(instance));
     }
   }
@@ -118,8 +128,8 @@ class Poser {
   const GltfRig& rig_;
   const std::optional<double> seconds_;
   Scene& scene_;
-  std::vector<glm::dmat4> world_;   // of the rig's nodes
-  std::vector<glm::dmat4> frames_;  // of the rig's meshes that are skinned
+  std::vector<glm::dmat4> world_;  // of the rig's nodes
+  std::vector<PlacedSkin> skins_;  // of the rig's
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <cmath>
+#include <utility>
 
 #include "guidegen/gltf_accessor.h"
 #include "guidegen/loader_util.h"
@@ -36,42 +37,49 @@ glm::dmat4 BlendJoints(const MeshDeformation& deformation, std::size_t vertex, s
   return blend;
 }
 
-// `rest` plus what the targets add, in double.
-template <class Member>
-glm::dvec3 Morphed(const glm::dvec3& rest, const MeshDeformation& deformation, std::span<const double> weights,
-                   Member member, std::size_t vertex) {
-  glm::dvec3 sum = rest;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const std::vector<glm::vec3>& deltas = deformation.targets[i].*member;
-    if (weights[i] != 0.0 && !deltas.empty()) sum += weights[i] * glm::dvec3(deltas[vertex]);
-  }
-  return sum;
-}
-
-bool MovesAnything(const MeshDeformation& deformation, std::span<const double> weights) {
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (weights[i] != 0.0 && !deformation.targets[i].positions.empty()) return true;
-  }
-  return false;
-}
-
-void MorphMesh(const MeshDeformation& deformation, std::span<const double> weights, Mesh& mesh) {
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const glm::dvec3 rest(mesh.rest_positions[v]);
-    mesh.positions[v] = glm::vec3(Morphed(rest, deformation, weights, &MorphTarget::positions, v));
-  }
-  if (deformation.smooth_normals && MovesAnything(deformation, weights)) {
-    mesh.normals = SmoothNormals(mesh.positions, mesh.triangles, WeldByPosition(mesh.rest_positions));
-  } else {
-    for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
-      const glm::vec3& rest = deformation.normals[v];
-      mesh.normals[v] = UnitOr(Morphed(rest, deformation, weights, &MorphTarget::normals, v), rest);
+// What the targets that move anything add to one attribute: collected once, because of any number of targets most may be
+// empty or at rest, and no vertex then looks at those.
+class ActiveDeltas {
+ public:
+  ActiveDeltas(const MeshDeformation& deformation, std::span<const double> weights,
+               std::vector<glm::vec3> MorphTarget::* attribute) {
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const std::vector<glm::vec3>& deltas = deformation.targets[i].*attribute;
+      if (weights[i] != 0.0 && !deltas.empty()) active_.emplace_back(weights[i], deltas.data());
     }
   }
+
+  bool empty() const { return active_.empty(); }
+
+  // `rest` plus what they add, in double.
+  glm::dvec3 Add(const glm::dvec3& rest, std::size_t vertex) const {
+    glm::dvec3 sum = rest;
+    for (const auto& [weight, deltas] : active_) sum += weight * glm::dvec3(deltas[vertex]);
+    return sum;
+  }
+
+ private:
+  std::vector<std::pair<double, const glm::vec3*>> active_;  // by vertex, each
+};
+
+void MorphMesh(const MeshDeformation& deformation, std::span<const double> weights, Mesh& mesh) {
+  const ActiveDeltas positions(deformation, weights, &MorphTarget::positions);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    mesh.positions[v] = glm::vec3(positions.Add(glm::dvec3(mesh.rest_positions[v]), v));
+  }
+  if (deformation.smooth_normals && !positions.empty()) {
+    mesh.normals = SmoothNormals(mesh.positions, mesh.triangles, WeldByPosition(mesh.rest_positions));
+  } else {
+    const ActiveDeltas normals(deformation, weights, &MorphTarget::normals);
+    for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+      const glm::vec3& rest = deformation.normals[v];
+      mesh.normals[v] = UnitOr(normals.Add(rest, v), rest);
+    }
+  }
+  const ActiveDeltas tangents(deformation, weights, &MorphTarget::tangents);
   for (std::size_t v = 0; v < mesh.tangents.size(); ++v) {
     const glm::vec4& rest = deformation.tangents[v];
-    const glm::dvec3 tangent = Morphed(glm::dvec3(rest), deformation, weights, &MorphTarget::tangents, v);
-    mesh.tangents[v] = glm::vec4(UnitOr(tangent, glm::vec3(rest)), rest.w);
+    mesh.tangents[v] = glm::vec4(UnitOr(tangents.Add(glm::dvec3(rest), v), glm::vec3(rest)), rest.w);
   }
 }
 

@@ -29,19 +29,23 @@ constexpr std::uint64_t kMaxNameBytes = std::uint64_t(1) << 29;
 // Morph targets are what exporters write without data: 100 that do nothing to the positions and normals of 100,000 vertices
 // are 20 million.
 constexpr std::uint64_t kMaxZerosOfTargets = 4 * kMaxZeroElements;
+// Counted for each node. 100,000 meshes of 150 targets with three attributes have 60 million; the vertices of all those targets
+// come to more than their own limit long before.
+constexpr std::uint64_t kMaxParts = 64'000'000;
 // Skins have as many inverse bind matrices as joints; more are allowed, and not looked at.
 constexpr std::size_t kMaxSpareMatrices = 1024;
 constexpr double kLumensPerWatt = 683.0;
 constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
-// Extensions that a file may require: those read here, and those that change only shading that no guide holds.
+// Extensions that a file may require: those read here, in part if need be, and those that change only shading that no guide
+// holds.
 bool IsKnownExtension(std::string_view name) {
   constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
                                          "EXT_texture_webp"};
   for (std::string_view known : kKnown) {
     if (name == known) return true;
   }
-  return name.rfind("KHR_materials_", 0) == 0 && name != "KHR_materials_pbrSpecularGlossiness";
+  return name.rfind("KHR_materials_", 0) == 0;
 }
 
 class GltfLoader {
@@ -340,6 +344,7 @@ class GltfLoader {
     }
     Instance instance{names_[index], 0, visit.world};
     SCUMBLE_RETURN_IF_ERROR(ReadObjectExtras(node, file_ + ": " + NodeLabel(visit.node), instance));
+    SCUMBLE_RETURN_IF_ERROR(TakeTargets(node.mesh));
     SCUMBLE_ASSIGN(const std::vector<double> weights, MorphWeights(visit.node));
     const bool morphs = rig_.animation.Morphs(visit.node) ||
                         std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0.0; });
@@ -349,12 +354,40 @@ class GltfLoader {
     const auto [loaded, is_new] = loaded_meshes_.try_emplace(node.mesh);
     if (is_new) {
       SCUMBLE_RETURN_IF_ERROR(TakeZeros(node.mesh, false));
-      SCUMBLE_ASSIGN(loaded->second, LoadGltfMesh({model_, file_, scene_, budget_, warnings_}, node.mesh));
+      SCUMBLE_ASSIGN(loaded->second, LoadGltfMesh({model_, file_, scene_, budget_, warnings_, choice_}, node.mesh));
     }
     for (int mesh : loaded->second) {
       SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh)], is_new));
       instance.mesh = mesh;
       AddInstance({instance, static_cast<int>(index), -1});
+    }
+    return Ok();
+  }
+
+  Status TakeParts(std::uint64_t more) {
+    parts_ += more;
+    if (parts_ <= kMaxParts) return Ok();
+    return InputError(file_ + " has at least " + std::to_string(parts_) + " morph targets and attributes of deformed " +
+                      "meshes, each node counted; expected at most " + std::to_string(kMaxParts) +
+                      ": simplify the scene");
+  }
+
+  // Each node has a weight for each target of its mesh, also where that does nothing.
+  Status TakeTargets(int mesh) {
+    const std::vector<tinygltf::Primitive>& primitives = model_.meshes[std::size_t(mesh)].primitives;
+    return primitives.empty() ? Ok() : TakeParts(primitives[0].targets.size());
+  }
+
+  // Before a mesh is read for one more node, which has it for itself: its primitives, those among them that will be left
+  // out, and what each consists of, however empty that is. It is all looked through for each node.
+  Status TakeDeformed(int mesh, bool with_targets) {
+    for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
+      SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, Mesh(), true));
+      std::uint64_t parts = primitive.attributes.size();
+      if (with_targets) {
+        for (const std::map<std::string, int>& target : primitive.targets) parts += 1 + target.size();
+      }
+      SCUMBLE_RETURN_IF_ERROR(TakeParts(parts));
     }
     return Ok();
   }
@@ -408,14 +441,14 @@ class GltfLoader {
     if (node.skin >= 0) {
       SCUMBLE_ASSIGN(skin, LoadSkin(node.skin));
     }
+    SCUMBLE_RETURN_IF_ERROR(TakeDeformed(node.mesh, !weights.empty()));
     SCUMBLE_RETURN_IF_ERROR(TakeZeros(node.mesh, !weights.empty()));
     DeformationRequest request;
     request.joints = skin < 0 ? 0 : rig_.skins[std::size_t(skin)].joints.size();
     request.targets = weights.size();
     SCUMBLE_ASSIGN(std::vector<DeformableMesh> loaded,
-                   LoadDeformableMesh({model_, file_, scene_, budget_, warnings_}, node.mesh, request));
+                   LoadDeformableMesh({model_, file_, scene_, budget_, warnings_, choice_}, node.mesh, request));
     for (DeformableMesh& mesh : loaded) {
-      SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, scene_.meshes[std::size_t(mesh.mesh)], true));
       instance.mesh = mesh.mesh;
       const bool skinned = mesh.deformation.influences > 0;
       AddInstance({instance, index, static_cast<int>(rig_.meshes.size())});
@@ -573,6 +606,8 @@ class GltfLoader {
   tinygltf::Model model_;
   Scene scene_;
   GeometryBudget budget_;
+  ElementChoice choice_;
+  std::uint64_t parts_ = 0;
   ZeroBudget zeros_{kMaxZeroElements};
   ZeroBudget zeros_of_targets_{kMaxZerosOfTargets};
   WarningCounter warnings_;

@@ -3,7 +3,8 @@
 //
 // Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
 // strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
-// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations. Ignored with
+// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations;
+// KHR_materials_pbrSpecularGlossiness in part, with a warning. Ignored with
 // a warning: points, lines, the range of lights (Blender's lamps have none). A file that *requires* another extension
 // is refused by the extension's name.
 //

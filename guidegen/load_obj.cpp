@@ -3,6 +3,7 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <glm/gtc/matrix_transform.hpp>
@@ -10,6 +11,7 @@
 #include <memory>
 #include <numeric>
 #include <set>
+#include <span>
 #include <sstream>
 #include <system_error>
 #include <unordered_map>
@@ -84,6 +86,15 @@ class LibraryReader : public tinyobj::MaterialReader {
   std::set<std::filesystem::path> read_;
 };
 
+// Where an object's middle lies within this distance of 0 or of a neighbour's origin, that is good enough: floats step
+// by 1/256 there at most. So scenes in millimetres, 60 m of them, keep the one origin of the file.
+constexpr double kOneOrigin = 65536.0;
+
+bool IsFar(const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 away = glm::abs(a - b);
+  return std::max({away.x, away.y, away.z}) > kOneOrigin;
+}
+
 // `normal` is an index into the file's normals, or -1 - an index into the smooth ones.
 struct Corner {
   int position = 0;
@@ -121,8 +132,10 @@ class ObjLoader {
   Expected<Scene> Load() {
     SCUMBLE_RETURN_IF_ERROR(Parse());
     SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
+    for (const tinyobj::shape_t& shape : shapes_) SCUMBLE_RETURN_IF_ERROR(CheckShape(shape));
+    ChooseOrigins();
     PlacePositions();
-    for (std::size_t s = 0; s < shapes_.size(); ++s) SCUMBLE_RETURN_IF_ERROR(AddShape(s));
+    for (std::size_t s = 0; s < shapes_.size(); ++s) AddShape(s);
     if (lacks_normals_) ComputeNormals();
     LoadMaterials();
     BuildMeshes();
@@ -164,16 +177,76 @@ class ObjLoader {
     return Ok();
   }
 
-  // Text holds any number of digits: surveyors' files stand millions of metres from 0.
-  void PlacePositions() {
-    std::vector<glm::dvec3> places;
-    for (std::size_t i = 0; i + 2 < attributes_.vertices.size(); i += 3) {
-      const double* v = attributes_.vertices.data() + i;
-      places.emplace_back(v[0], v[1], v[2]);
+  glm::dvec3 PlaceOf(std::size_t vertex) const {
+    const double* v = attributes_.vertices.data() + 3 * vertex;
+    return {v[0], v[1], v[2]};
+  }
+
+  // Text holds any number of digits: surveyors' files stand millions of metres from 0. One origin does for most files,
+  // and then they have one, as objects that touch must round their corners alike. In the others a thing at 0 may stand
+  // beside a surveyor's, and what is far has origins of its own.
+  void ChooseOrigins() {
+    PlaceBox whole;
+    for (const tinyobj::shape_t& shape : shapes_) {
+      PlaceBox box;
+      for (const tinyobj::index_t& index : shape.mesh.indices) box.Add(PlaceOf(std::size_t(index.vertex_index)));
+      origins_.push_back(OriginOf(box));
+      if (shape.mesh.indices.empty()) continue;
+      whole.Add(box.low);
+      whole.Add(box.high);
     }
-    origin_ = OriginOf(places);
-    positions_.reserve(places.size());
-    for (const glm::dvec3& place : places) positions_.emplace_back(place - origin_);
+    const glm::dvec3 common = OriginOf(whole);
+    frames_.push_back({0, common});
+    // In the order of their places, so that neighbours and copies share an origin wherever they stand in the file.
+    std::map<std::array<double, 3>, std::vector<std::size_t>> far_shapes;
+    for (std::size_t s = 0; s < shapes_.size(); ++s) {
+      const glm::dvec3 own = origins_[s];
+      if (common == glm::dvec3(0.0) && IsFar(own, common)) {
+        far_shapes[{own.x, own.y, own.z}].push_back(s);
+      } else {
+        origins_[s] = common;
+      }
+    }
+    for (const auto& [place, shapes] : far_shapes) {
+      const glm::dvec3 own(place[0], place[1], place[2]);
+      if (IsFar(own, frames_.back().origin)) frames_.push_back({attributes_.vertices.size() / 3, own});
+      for (const std::size_t s : shapes) {
+        origins_[s] = frames_.back().origin;
+        CopyVertices(shapes_[s].mesh);
+      }
+    }
+  }
+
+  // Gives a shape vertices of its own, behind all others.
+  void CopyVertices(tinyobj::mesh_t& mesh) {
+    const bool has_colors = HasColors();
+    const auto copy = [](std::vector<double>& values, std::size_t vertex) {
+      for (std::size_t axis = 0; axis < 3; ++axis) values.push_back(double(values[3 * vertex + axis]));
+    };
+    std::vector<int> used;
+    for (const tinyobj::index_t& index : mesh.indices) used.push_back(index.vertex_index);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    const std::size_t first = attributes_.vertices.size() / 3;
+    for (const int vertex : used) {
+      copy(attributes_.vertices, std::size_t(vertex));
+      if (has_colors) copy(attributes_.colors, std::size_t(vertex));
+    }
+    for (tinyobj::index_t& index : mesh.indices) {
+      const auto at = std::lower_bound(used.begin(), used.end(), index.vertex_index) - used.begin();
+      index.vertex_index = static_cast<int>(first + std::size_t(at));
+    }
+  }
+
+  std::size_t EndOf(std::size_t frame) const {
+    return frame + 1 < frames_.size() ? frames_[frame + 1].first : attributes_.vertices.size() / 3;
+  }
+
+  void PlacePositions() {
+    positions_.reserve(attributes_.vertices.size() / 3);
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      for (std::size_t v = frames_[f].first; v < EndOf(f); ++v) positions_.emplace_back(PlaceOf(v) - frames_[f].origin);
+    }
   }
 
   // One of the file's lists that faces point into.
@@ -191,8 +264,7 @@ class ObjLoader {
                       "; the file is corrupt or was cut short");
   }
 
-  Status AddShape(std::size_t shape_index) {
-    const tinyobj::shape_t& shape = shapes_[shape_index];
+  Status CheckShape(const tinyobj::shape_t& shape) {
     const tinyobj::mesh_t& mesh = shape.mesh;
     const std::size_t corners =
         std::accumulate(mesh.num_face_vertices.begin(), mesh.num_face_vertices.end(), std::size_t(0));
@@ -212,14 +284,19 @@ class ObjLoader {
       SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.normal_index, normals, shape.name));
       lacks_normals_ |= index.normal_index < 0;
     }
-    std::size_t first = 0;
-    for (std::size_t f = 0; f < mesh.num_face_vertices.size(); ++f) {
-      const std::size_t count = mesh.num_face_vertices[f];
+    for (const std::size_t count : mesh.num_face_vertices) {
       if (count >= 3) SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, count, count - 2));
-      AddFace(shape_index, f, first, count);
-      first += count;
     }
     return Ok();
+  }
+
+  void AddShape(std::size_t shape_index) {
+    const tinyobj::mesh_t& mesh = shapes_[shape_index].mesh;
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < mesh.num_face_vertices.size(); ++f) {
+      AddFace(shape_index, f, first, mesh.num_face_vertices[f]);
+      first += mesh.num_face_vertices[f];
+    }
   }
 
   void AddFace(std::size_t shape_index, std::size_t face, std::size_t first, std::size_t count) {
@@ -246,10 +323,23 @@ class ObjLoader {
     ++faces_;
   }
 
-  // Smooth over the whole file, so that no seam shows between shapes or materials. In a file with smoothing groups a
-  // normal is shared inside a group only, and group 0 means flat faces; a file without any is smooth everywhere.
+  // Each frame by itself: positions that are equal are one place only where they have one origin.
+  std::vector<std::uint32_t> WeldFrames() const {
+    std::vector<std::uint32_t> weld = WeldByPosition(std::span(positions_).first(EndOf(0)));
+    for (std::size_t f = 1; f < frames_.size(); ++f) {
+      const std::size_t first = frames_[f].first;
+      for (const std::uint32_t id : WeldByPosition(std::span(positions_).subspan(first, EndOf(f) - first))) {
+        weld.push_back(static_cast<std::uint32_t>(first) + id);
+      }
+    }
+    return weld;
+  }
+
+  // Smooth over all that has one origin, so that no seam shows between shapes or materials. In a file with smoothing
+  // groups a normal is shared inside a group only, and group 0 means flat faces; a file without any is smooth
+  // everywhere.
   void ComputeNormals() {
-    const std::vector<std::uint32_t> weld = WeldByPosition(positions_);
+    const std::vector<std::uint32_t> weld = WeldFrames();
     std::unordered_map<SmoothKey, std::uint32_t, SmoothKeyHash> ids;
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
@@ -378,8 +468,9 @@ class ObjLoader {
     const TextureUse& normal_map = scene_.materials[std::size_t(mesh.material)].normal_texture;
     if (normal_map.texture >= 0 && has_uvs) FillTangents(mesh, 0, normal_map.uv_transform);
     scene_.meshes.push_back(std::move(mesh));
+    const glm::dvec3& origin = origins_[std::size_t(triangles_[members[0]].shape)];
     scene_.instances.push_back(
-        {object, static_cast<int>(scene_.meshes.size()) - 1, glm::translate(glm::dmat4(1.0), origin_)});
+        {object, static_cast<int>(scene_.meshes.size()) - 1, glm::translate(glm::dmat4(1.0), origin)});
   }
 
   glm::vec3 NormalAt(const Corner& corner) const {
@@ -401,6 +492,13 @@ class ObjLoader {
     return IsFinite(color) ? glm::max(color, glm::vec4(0.0f)) : glm::vec4(1.0f);
   }
 
+  // The file's vertices, or what far shapes have of their own: from the first one to the next frame's, relative to one
+  // origin.
+  struct Frame {
+    std::size_t first = 0;
+    glm::dvec3 origin{0.0};
+  };
+
   const std::filesystem::path& path_;
   const std::string file_;
   tinyobj::attrib_t attributes_;
@@ -411,8 +509,9 @@ class ObjLoader {
   WarningCounter warnings_;
   UniqueNames material_names_;
   int plain_material_ = -1;
-  glm::dvec3 origin_{0.0};
-  std::vector<glm::vec3> positions_;  // relative to it
+  std::vector<glm::dvec3> origins_;  // of the shapes
+  std::vector<Frame> frames_;
+  std::vector<glm::vec3> positions_;  // of all vertices, each relative to its frame's origin
   std::shared_ptr<MtlLibrary> mtl_;  // once it is loaded
   std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
   std::vector<Triangle> triangles_;

@@ -187,6 +187,8 @@ class PlyLoader {
         SCUMBLE_RETURN_IF_ERROR(ReadFaces(element, values));
       }
     }
+    PlaceVertices();
+    CutPolygons();
     return Finish();
   }
 
@@ -308,7 +310,6 @@ class PlyLoader {
     const bool normals = has[kNx] && has[kNy] && has[kNz], colors = has[kRed] && has[kGreen] && has[kBlue];
     const bool uvs = has[kU] && has[kV];
     const bool doubles = HasDoublePlaces(element);
-    std::vector<glm::dvec3> places;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       float v[kSkip + 1] = {};
       glm::dvec3 place(0.0);
@@ -330,14 +331,11 @@ class PlyLoader {
       if (!IsFinite(position))
         return Bad("vertex " + std::to_string(i) + " is NaN or infinite; expected finite numbers");
       mesh_.positions.push_back(position);
-      if (doubles) places.push_back(place);
+      if (doubles) places_.push_back(place);
       if (normals) mesh_.normals.emplace_back(v[kNx], v[kNy], v[kNz]);
       if (uvs) mesh_.uvs[0].push_back(Uv(v[kU], v[kV]));
       if (colors) mesh_.colors.push_back(Color(v[kRed], v[kGreen], v[kBlue], v[kAlpha]));
     }
-    origin_ = OriginOf(places);
-    if (origin_ == glm::dvec3(0.0)) return Ok();
-    for (std::size_t i = 0; i < places.size(); ++i) mesh_.positions[i] = glm::vec3(places[i] - origin_);
     return Ok();
   }
 
@@ -382,7 +380,6 @@ class PlyLoader {
     double count = 0.0, value = 0.0;
     if (!values.Next(*property.list_count, count) || !(count >= 0.0)) return CutShort(element, face);
     std::vector<std::uint32_t> corners;
-    std::vector<glm::vec3> polygon;
     for (double c = 0.0; c < count; ++c) {
       if (!values.Next(property.type, value)) return CutShort(element, face);
       if (!(value >= 0.0) || value != std::floor(value) || value >= static_cast<double>(mesh_.positions.size())) {
@@ -391,14 +388,46 @@ class PlyLoader {
         return Bad(reason.str());
       }
       corners.push_back(static_cast<std::uint32_t>(value));
-      polygon.push_back(mesh_.positions[corners.back()]);
     }
     if (corners.size() < 3) return Ok();
-    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, 0, corners.size() - 2));
-    cuts_.clear();
-    TriangulatePolygon(polygon, cuts_);
-    for (const glm::uvec3& cut : cuts_) mesh_.triangles.emplace_back(corners[cut.x], corners[cut.y], corners[cut.z]);
+    const std::size_t cuts = corners.size() - 2;
+    SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, 0, cuts));
+    if (cuts > 1) polygons_.push_back({static_cast<std::uint32_t>(mesh_.triangles.size()), std::uint32_t(cuts)});
+    for (std::size_t i = 0; i < cuts; ++i) mesh_.triangles.emplace_back(corners[0], corners[i + 1], corners[i + 2]);
     return Ok();
+  }
+
+  // Moves the shape to its origin, which is known once all faces are. A vertex that no face uses goes to where one is
+  // used: it may be any distance away, and all vertices are framed.
+  void PlaceVertices() {
+    if (places_.empty()) return;
+    PlaceBox box;
+    for (const glm::uvec3& triangle : mesh_.triangles) {
+      for (int i = 0; i < 3; ++i) box.Add(places_[triangle[i]]);
+    }
+    origin_ = OriginOf(box);
+    if (origin_ == glm::dvec3(0.0)) return;
+    mesh_.positions.assign(places_.size(), glm::vec3(places_[mesh_.triangles[0].x] - origin_));
+    for (const glm::uvec3& triangle : mesh_.triangles) {
+      for (int i = 0; i < 3; ++i) mesh_.positions[triangle[i]] = glm::vec3(places_[triangle[i]] - origin_);
+    }
+  }
+
+  // Cuts the polygons, which are fans so far, as their corners stand now.
+  void CutPolygons() {
+    std::vector<glm::uvec3> cuts;
+    for (const Polygon& polygon : polygons_) {
+      const auto fan = std::span(mesh_.triangles).subspan(polygon.first, polygon.triangles);
+      std::vector<std::uint32_t> corners = {fan[0].x, fan[0].y};
+      for (const glm::uvec3& triangle : fan) corners.push_back(triangle.z);
+      std::vector<glm::vec3> positions;
+      for (const std::uint32_t corner : corners) positions.push_back(mesh_.positions[corner]);
+      cuts.clear();
+      TriangulatePolygon(positions, cuts);
+      for (std::size_t i = 0; i < cuts.size(); ++i) {
+        fan[i] = {corners[cuts[i].x], corners[cuts[i].y], corners[cuts[i].z]};
+      }
+    }
   }
 
   Expected<Scene> Finish() {
@@ -417,14 +446,20 @@ class PlyLoader {
     return scene;
   }
 
+  // Triangles of the mesh, one behind the other.
+  struct Polygon {
+    std::uint32_t first = 0, triangles = 0;
+  };
+
   const std::filesystem::path& path_;
   const std::string file_;
   Header header_;
   Mesh mesh_;
+  std::vector<glm::dvec3> places_;  // of the vertices, where the file has doubles
+  std::vector<Polygon> polygons_;   // that have more than three corners
   glm::dvec3 origin_{0.0};
   GeometryBudget budget_;
   WarningCounter warnings_;
-  std::vector<glm::uvec3> cuts_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 // cloud of points without faces is a scene without geometry. The object is named after the file. Its surface is
 // Lambert, in the file's colours or in Blender's grey of 0.8. Positions of type double that lie far from 0, as
 // surveyors' do, keep their digits: the object then stands at the middle of its shape instead of at 0, and its rest
-// positions are relative to that.
+// positions are relative to that. The shape is what faces use, whatever else the file lists.
 #pragma once
 
 #include <filesystem>

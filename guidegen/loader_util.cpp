@@ -209,16 +209,11 @@ std::uint64_t TriangulatePolygon(std::span<const glm::vec3> corners, std::vector
   return ears.looks();
 }
 
-glm::dvec3 OriginOf(std::span<const glm::dvec3> places) {
-  if (places.empty()) return glm::dvec3(0.0);
-  glm::dvec3 low = places[0], high = places[0];
-  for (const glm::dvec3& place : places) {
-    low = glm::min(low, place);
-    high = glm::max(high, place);
-  }
-  const glm::dvec3 size = high - low;
+glm::dvec3 OriginOf(const PlaceBox& box) {
+  if (box.low.x > box.high.x) return glm::dvec3(0.0);
+  const glm::dvec3 size = box.high - box.low;
   constexpr double kFar = 16.0;
-  const glm::dvec3 middle = glm::round(0.5 * low + 0.5 * high);
+  const glm::dvec3 middle = glm::round(0.5 * box.low + 0.5 * box.high);
   const glm::dvec3 away = glm::abs(middle);
   const bool far = std::max({away.x, away.y, away.z}) > kFar * std::max({size.x, size.y, size.z});
   return far ? middle : glm::dvec3(0.0);

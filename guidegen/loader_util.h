@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <limits>
 #include <map>
 #include <set>
 #include <span>
@@ -64,7 +65,6 @@ class GeometryBudget {
   Status Take(const std::string& file, std::uint64_t vertices, std::uint64_t triangles);
   // One more instance of a mesh. The first one's triangles were taken when the mesh was loaded.
   Status TakeInstance(const std::string& file, const Mesh& mesh, bool is_first);
-  void GiveBackVertices(std::uint64_t vertices) { vertices_.taken -= vertices; }
 
  private:
   struct Account {
@@ -85,9 +85,21 @@ class GeometryBudget {
 // than 4 times the square of the corners, whatever their shape.
 std::uint64_t TriangulatePolygon(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles);
 
-// The place that positions are stored relative to, so that floats can hold them: the middle of the whole, in whole
-// metres, where it is so far from 0 that floats would lose four bits or more of the shape; else 0.
-glm::dvec3 OriginOf(std::span<const glm::dvec3> places);
+// What encloses places; empty at first.
+struct PlaceBox {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+  void Add(const glm::dvec3& place) {
+    low = glm::min(low, place);
+    high = glm::max(high, place);
+  }
+};
+
+// The place that positions in the box are stored relative to, so that floats can hold them: the middle of the box, in
+// whole metres, where it is so far from 0 that floats would lose four bits or more of the shape; else 0. The box is
+// that of what faces use: files list vertices that none does, often at 0.
+glm::dvec3 OriginOf(const PlaceBox& box);
 
 bool IsFinite(const glm::vec2& v);
 bool IsFinite(const glm::vec3& v);

@@ -32,6 +32,9 @@ struct GuideCamera {
   std::string name;
   glm::dmat4 view_from_world{1.0};
   glm::dmat4 clip_from_view{1.0};  // OpenGL's clip space, y up
+
+  // Whether depth says nothing of sizes.
+  bool IsOrthographic() const { return clip_from_view[2][3] == 0.0 && clip_from_view[3][3] != 0.0; }
 };
 
 // Owns its pixels: every layer is `ChannelCount` planes of width × height floats, rows from the top.

@@ -95,7 +95,8 @@ struct TransferSettings {
   int blend_radius = 1;      // voting window of (2r + 1)² pixels, 0 … 64
   bool edge_aware = true;    // votes do not cross object borders, depth steps and creases
   double crease = 60.0;      // 0 … 180 degrees between normals, from which on an edge is a crease; 180: none is
-  double depth_tolerance = 0.002;  // 0 … 1: how far depth may leave the surface's slope, as a share of the distance
+  // 0 … 1: how far depth may leave the surface's slope, as a share of the distance, or of an orthographic view's height
+  double depth_tolerance = 0.002;
   float luminance_weight = 0.3f;  // 0 or more: how much a pixel's own light counts inside a chunk; several exemplars only
   LuminanceError luminance_error = LuminanceError::kExcess;
   double colorize = 0.0;     // 0 … 1: how much of the scene's base colour the paint takes on

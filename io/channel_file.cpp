@@ -23,7 +23,6 @@ Expected<std::vector<OIIO::ImageSpec>> ReadPartHeaders(OIIO::ImageInput& input, 
   for (int part = 0; input.seek_subimage(part, 0); ++part) {
     const OIIO::ImageSpec spec = input.spec();
     SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
-    if (spec.deep) return InputError(name + " holds deep pixels: expected flat ones; flatten it first");
     channels += spec.nchannels;
     if (channels > kMaxChannels) {
       return InputError(name + " claims more than " + std::to_string(kMaxChannels) + " channels: it may be damaged");

@@ -16,7 +16,7 @@ namespace scumble::internal {
 namespace {
 
 constexpr std::array<char, 4> kMagic = {0x76, 0x2f, 0x31, 0x01};
-constexpr std::uint32_t kManyParts = 0x1000;
+constexpr std::uint32_t kNotOnlyImages = 0x800, kManyParts = 0x1000;
 constexpr std::size_t kLongestName = 255;
 
 // By the number in the header: none; rle, 64 to 1; zips, zip; piz, whose Huffman code of 510 bytes in 9 bits is below
@@ -147,13 +147,17 @@ void Take(const std::string& name, const std::string& type, const std::string& v
 }
 
 Status CheckPart(const Part& part, std::uint64_t file_bytes, const std::string& name) {
+  if (part.is_deep) {
+    return InputError("cannot read " + name + ": it holds deep pixels, and flat ones are expected; flatten it, or save " +
+                      "its flat parts as a file of their own");
+  }
   const std::string size = std::to_string(part.width) + "×" + std::to_string(part.height) + " pixels";
   constexpr std::uint64_t kAnyTile = 1 << 20;  // may be larger than the picture
   if (part.tile_pixels > std::max(kAnyTile, part.width * part.height)) {
     return InputError("cannot read " + name + ": its tiles of " + std::to_string(part.tile_pixels) +
                       " pixels are larger than its picture of " + size + "; it is damaged, copy or save it again");
   }
-  if (part.is_deep || part.compression >= std::size(kMostPacked)) return Ok();  // none of ours, and said so later
+  if (part.compression >= std::size(kMostPacked)) return Ok();  // none of ours, and said so later
   const std::uint64_t pixel_bytes = std::max<std::uint64_t>(part.pixel_bytes, 1);
   // Divided, because the product may not fit: the sides are below 2³².
   if (part.width * part.height / kMostPacked[part.compression] <= file_bytes / pixel_bytes) return Ok();
@@ -167,12 +171,15 @@ Status Check(std::istream& file, std::uint64_t file_bytes, const std::string& na
   if (!file.read(magic.data(), magic.size()) || magic != kMagic) return Ok();
   const auto version = ReadNumber(file);
   if (!version) return Ok();
+  // Without either flag the library takes an image for what it reads, whatever an attribute calls it.
+  const bool may_be_deep = *version & (kNotOnlyImages | kManyParts);
   bool is_first = true;
   for (Part part;;) {
     const auto attribute = ReadName(file);
     if (!attribute) return Ok();
     if (attribute->empty()) {  // the header's end; of several, the last one is empty
       if (is_first && (*version & kManyParts)) return Ok();
+      part.is_deep = part.is_deep && may_be_deep;
       SCUMBLE_RETURN_IF_ERROR(CheckPart(part, file_bytes, name));
       if (!(*version & kManyParts)) return Ok();
       part = Part(), is_first = true;

@@ -43,13 +43,20 @@ std::map<std::string, std::string> Parts(const std::string& settings) {
   return parts;
 }
 
+// What only one side says differs as well: another version may do otherwise what it does not tell of.
 Status CheckSettings(const std::filesystem::path& path, const std::string& found, const std::string& wanted) {
-  const auto there = Parts(found);
-  for (const auto& [name, value] : Parts(wanted)) {
-    const auto other = there.find(name);
-    if (other == there.end() || other->second == value) continue;
-    return InputError(path.string() + " was made with other settings (" + name + " " + other->second + ", not " + value +
-                      ")");
+  if (found.empty() || wanted.empty()) return Ok();
+  const auto there = Parts(found), here = Parts(wanted);
+  const auto value_of = [](const std::map<std::string, std::string>& parts, const std::string& name) {
+    const auto part = parts.find(name);
+    return part == parts.end() ? std::string("untold") : part->second;
+  };
+  auto all = here;
+  all.insert(there.begin(), there.end());
+  for (const auto& [name, any] : all) {
+    const std::string other = value_of(there, name), value = value_of(here, name);
+    if (value == other || value == kAnySetting) continue;
+    return InputError(path.string() + " was made with other settings (" + name + " " + other + ", not " + value + ")");
   }
   return Ok();
 }

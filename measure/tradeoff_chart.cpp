@@ -88,6 +88,7 @@ Chart ChartOf(const TradeReport& report, const ChartLook& look) {
   if (!look.page) chart.right -= kLegend;
   std::vector<double> times, errors;
   std::vector<TradePoint> trade;
+  const std::vector<bool> may = MayBeOnFront(report);
   for (const Point& point : chart.points) {
     for (const double time : {point.time.lower, point.time.median, point.time.upper}) {
       if (time > 0.0 && std::isfinite(time)) times.push_back(time);
@@ -96,7 +97,7 @@ Chart ChartOf(const TradeReport& report, const ChartLook& look) {
       const double error = point.error.mean + side * point.error.standard_error;
       if (std::isfinite(error)) errors.push_back(error);
     }
-    const bool counts = look.time != ChartTime::kMemory && MayBeOnFront(report, point.way);
+    const bool counts = look.time != ChartTime::kMemory && may[point.way];
     trade.push_back({counts ? point.time.median : std::numeric_limits<double>::quiet_NaN(), point.error.mean});
   }
   chart.across = ScaleFor(times, true, kLeft, chart.right);

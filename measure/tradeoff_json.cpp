@@ -53,6 +53,7 @@ std::string TradeJson(const TradeReport& report) {
   Json json{{"scene", report.scene},
             {"style", report.style},
             {"frame", report.frame ? Json(*report.frame) : Json()},
+            {"exposure", NumberJson(report.exposure)},
             {"width", report.width},
             {"height", report.height},
             {"machine", report.machine},

@@ -13,9 +13,9 @@ namespace scumble::internal {
 std::optional<double> Taken(double time_or_memory);
 std::optional<double> Taken(const Estimate& estimate);
 
-// Whether a front may have the way, if its figures are good enough: it differs by more than chance, no way before it makes the
-// same picture, and it can be chosen, since `stylize` has options for it.
-bool MayBeOnFront(const TradeReport& report, std::size_t i);
+// For each way, whether a front may have it, if its figures are good enough: it was timed, differs by more than chance, can be
+// chosen, since `stylize` has options for it, and stands for its picture, as at FrontOf.
+std::vector<bool> MayBeOnFront(const TradeReport& report);
 
 // For each way, whether it is on the front.
 std::vector<bool> OnFront(const TradeReport& report);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "measure/pareto.h"
 #include "measure/tradeoff_parts.h"
@@ -84,20 +85,29 @@ std::vector<std::string> AxesOf(const TradeReport& report) {
 
 namespace {
 
-// Guides alone are timed in turns with those of all other ways. One run has no quartiles to be sure by.
-bool HasQuickerGuides(const TradeMeasure& way, const TradeMeasure& other) {
-  const bool once = way.guides_ms.lower == way.guides_ms.upper || other.guides_ms.lower == other.guides_ms.upper;
-  return !once && way.guides_ms.upper < other.guides_ms.lower;
+bool CanBeChosen(const TradeMeasure& way) { return !way.by_chance && (way.chosen || !way.options.empty()); }
+
+// One run has no quartiles to be sure by.
+bool IsSurelyQuicker(const TradeMeasure& way, const TradeMeasure& other) {
+  const bool once = way.total_ms.lower == way.total_ms.upper || other.total_ms.lower == other.total_ms.upper;
+  return !once && way.total_ms.upper < other.total_ms.lower;
 }
 
 }  // namespace
 
 namespace internal {
 
-bool MayBeOnFront(const TradeReport& report, std::size_t i) {
-  const TradeMeasure& way = report.ways[i];
-  const bool again = way.same_as && !HasQuickerGuides(way, report.ways[*way.same_as]);
-  return !way.by_chance && !again && (way.chosen || !way.options.empty());
+std::vector<bool> MayBeOnFront(const TradeReport& report) {
+  std::map<std::size_t, std::size_t> standing;  // who stands for a picture, by the first way that makes it
+  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+    const TradeMeasure& way = report.ways[i];
+    if (!CanBeChosen(way) || !Taken(way.total_ms.median)) continue;
+    const auto [place, is_new] = standing.try_emplace(way.same_as.value_or(i), i);
+    if (!is_new && IsSurelyQuicker(way, report.ways[place->second])) place->second = i;
+  }
+  std::vector<bool> may(report.ways.size(), false);
+  for (const auto& [picture, i] : standing) may[i] = true;
+  return may;
 }
 
 }  // namespace internal
@@ -105,9 +115,9 @@ bool MayBeOnFront(const TradeReport& report, std::size_t i) {
 std::vector<std::size_t> FrontOf(const TradeReport& report) {
   constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   std::vector<TradePoint> points;
+  const std::vector<bool> may = internal::MayBeOnFront(report);
   for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const double time = internal::Taken(report.ways[i].total_ms.median).value_or(kNotMeasured);
-    points.push_back({internal::MayBeOnFront(report, i) ? time : kNotMeasured, report.ways[i].both.mean});
+    points.push_back({may[i] ? report.ways[i].total_ms.median : kNotMeasured, report.ways[i].both.mean});
   }
   return ParetoFront(points);
 }

@@ -51,13 +51,16 @@ struct TradeReport {
   double lambda = 0.0;
   std::string command = {};       // that measures all this again; empty: not said
   std::optional<int> frame = {};  // of the scene and the style; none: as they stand
+  // Stops by which the light of the style's own picture is brightened, given or fitted; none: the style looks at no light.
+  std::optional<double> exposure = {};
   std::vector<TradeMeasure> ways;
   std::vector<std::string> left_out = {};  // ways that were not measured, or figures, in words and with why
 };
 
 // Places in `ways` of the Pareto front of median total time and `both`, by rising time. What was not measured is not
-// there, nor is what differs from the style by chance alone, nor what `stylize` has no options for. Of ways that make the same picture it is the first, and
-// others only where their guides are quicker by more than their quartiles: else the moment would choose.
+// there, nor is what differs from the style by chance alone, nor what `stylize` has no options for. Of the others that make
+// the same picture one stands for it: the first, unless a later one is quicker in total by more than the quartiles of both,
+// else the moment would choose. One run has no quartiles.
 std::vector<std::size_t> FrontOf(const TradeReport& report);
 
 // Places in `ways`, the axes in the order in which they first come, ways of one axis in the order given.

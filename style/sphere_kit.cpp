@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -174,7 +175,21 @@ Status RefusePaintedTemplate(const fs::path& path, const KitLight& light, const 
   return MayBePainting(path);
 }
 
-// A painting fits the guides that it was painted with.
+// Whether the luminance differs by more than a thousandth of the brightest, as that of lights a tenth of a degree apart does.
+// Other instruction sets round otherwise, by some millionths. Pixels of the edge depend on --aa, so they do not count.
+bool HasOtherLight(const GuideSet& old, const GuideSet& now) {
+  const auto was = old.Plane(Layer::kLuminance), is = now.Plane(Layer::kLuminance);
+  const auto had = old.Plane(Layer::kCoverage), has = now.Plane(Layer::kCoverage);
+  float brightest = 0.0f, difference = 0.0f;
+  for (std::size_t i = 0; i < now.pixel_count(); ++i) {
+    if (had[i] < 1.0f || has[i] < 1.0f) continue;
+    brightest = std::max({brightest, was[i], is[i]});
+    difference = std::max(difference, std::fabs(was[i] - is[i]));
+  }
+  return difference > 1e-3f * brightest;
+}
+
+// A painting fits the guides that it was painted with. Guides that cannot be read are of no use to it.
 Status RefuseOtherGuides(const fs::path& folder, const KitLight& light, std::size_t index) {
   const int size = light.guides.width();
   const fs::path guides = folder / GuidesName(light, index);
@@ -182,10 +197,19 @@ Status RefuseOtherGuides(const fs::path& folder, const KitLight& light, std::siz
     const fs::path painting = folder / name;
     if (!Exists(painting)) continue;
     const auto old = InspectGuides(guides);
-    if (!old || (old->width == size && old->height == size)) continue;
-    return OutputError(guides.string() + " is of " + std::to_string(old->width) + "² pixels and belongs to " +
-                       painting.string() + ": take --size " + std::to_string(old->width) +
-                       ", or write to another folder");
+    if (!old) continue;
+    if (old->width != size || old->height != size) {
+      return OutputError(guides.string() + " is of " + std::to_string(old->width) + "² pixels and belongs to " +
+                         painting.string() + ": take --size " + std::to_string(old->width) +
+                         ", or write to another folder");
+    }
+    GuideReadOptions lit;
+    lit.required = {Layer::kCoverage, Layer::kNormal, Layer::kLuminance};  // guides are none without normals
+    const auto read = ReadGuides(guides, lit);
+    if (!read || !HasOtherLight(*read, light.guides)) continue;
+    return OutputError(guides.string() + " has another light than " + AnglesInWords(light) + " and belongs to " +
+                       painting.string() + ": take the --light that it was made with, give this one a --name of its own, " +
+                       "or write to another folder");
   }
   return Ok();
 }

@@ -27,7 +27,7 @@ struct KitOptions {
 // style.toml that lists them all, and HOWTO.txt. A style.toml that is there already may be the artist's: lights with
 // names that it does not list are added at its end, otherwise it is kept. Paintings (lit.png, shade.ora) are never
 // written. A template that is not as it was drawn, in whichever of its files, may be one, and guides of another size
-// belong to one: either is an error, as is a fifth light in style.toml or a template that does not fit the paper, and
+// or light belong to one that is there: either is an error, as is a fifth light in style.toml or a template that does not fit the paper, and
 // nothing is written. Returns the files written.
 Expected<std::vector<std::filesystem::path>> WriteSphereKit(const std::filesystem::path& folder,
                                                             std::vector<KitLight> lights,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "io/atomic_file.h"
@@ -159,8 +160,30 @@ Status FitToSphere(int size, int margin, const fs::path& guides, Exemplar& exemp
   return Ok();
 }
 
+// What cannot be counted cannot be read either, and reading it says why.
+Expected<Picture> ReadWithin(const StyleRoom& room, const fs::path& path) {
+  constexpr std::uint64_t kPixelBytes = 4 * sizeof(std::uint16_t);
+  if (room) {
+    if (const auto pixels = CountPixels(path)) SCUMBLE_RETURN_IF_ERROR(room(kPixelBytes * *pixels));
+  }
+  return ReadPicture(path);
+}
+
+// `info` is the file's own.
+Expected<GuideSet> ReadWithin(const StyleRoom& room, const fs::path& path, const GuideFileInfo& info,
+                              const GuideReadOptions& options) {
+  std::uint64_t channels = 0;
+  for (const LayerInfo& layer : AllLayers()) {
+    const bool read = options.required.Has(layer.layer) || options.optional.Has(layer.layer);
+    if (read) channels += static_cast<std::uint64_t>(ChannelCount(layer.layer));
+  }
+  const auto pixels = static_cast<std::uint64_t>(info.width) * static_cast<std::uint64_t>(info.height);
+  if (room) SCUMBLE_RETURN_IF_ERROR(room(sizeof(float) * channels * pixels));
+  return ReadGuides(path, options);
+}
+
 // Gives the exemplar its guides. `measure` says whether its luminance is wanted and not known.
-Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar) {
+Status ReadExemplarGuides(const fs::path& path, bool measure, const StyleRoom& room, Exemplar& exemplar) {
   exemplar.guides_file = path;
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
   GuideReadOptions options;
@@ -170,7 +193,7 @@ Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar
     const auto layers = info.layers.find("");
     if (!measure || layers == info.layers.end() || !layers->second.Has(Layer::kLuminance)) return Ok();
     options.required.Remove(Layer::kDepth).Remove(Layer::kObject).Remove(Layer::kMaterial).Add(Layer::kLuminance);
-    SCUMBLE_ASSIGN(exemplar.guides, ReadGuides(path, options));
+    SCUMBLE_ASSIGN(exemplar.guides, ReadWithin(room, path, info, options));
     return Ok();
   }
   const Picture& picture = exemplar.picture;
@@ -181,7 +204,7 @@ Status ReadExemplarGuides(const fs::path& path, bool measure, Exemplar& exemplar
   }
   options.required.Remove(Layer::kDepth).Remove(Layer::kObject).Remove(Layer::kMaterial);
   if (measure) options.optional.Add(Layer::kLuminance);
-  SCUMBLE_ASSIGN(exemplar.guides, ReadGuides(path, options));
+  SCUMBLE_ASSIGN(exemplar.guides, ReadWithin(room, path, info, options));
   exemplar.is_sphere = false;
   return Ok();
 }
@@ -210,9 +233,16 @@ Status CheckPaintingIsThere(const fs::path& image, const fs::path& drawn, bool s
                     (several ? ", or take its [[exemplar]] out of " + file : ""));
 }
 
+// The style.toml that is read, and whom to ask before its pictures are.
+struct StyleSource {
+  fs::path path;
+  const StyleRoom& room;
+};
+
 // `several`: the style has more than one exemplar, so that their luminances matter.
-Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& file, const fs::path& folder,
-                                bool several) {
+Expected<Exemplar> ReadExemplar(const toml::table& table, const StyleSource& source, bool several) {
+  const std::string file = source.path.string();
+  const fs::path folder = source.path.parent_path();
   std::string image, guides;
   std::optional<double> luminance;
   for (const auto& [key, node] : table) {
@@ -238,15 +268,15 @@ Expected<Exemplar> ReadExemplar(const toml::table& table, const std::string& fil
   Exemplar exemplar;
   exemplar.name = image_path.string();
   exemplar.luminance = luminance;
-  SCUMBLE_ASSIGN(exemplar.picture, ReadPicture(image_path));
+  SCUMBLE_ASSIGN(exemplar.picture, ReadWithin(source.room, image_path));
   if (!guides.empty()) {
-    SCUMBLE_RETURN_IF_ERROR(ReadExemplarGuides(folder / guides, several && !luminance, exemplar));
+    SCUMBLE_RETURN_IF_ERROR(ReadExemplarGuides(folder / guides, several && !luminance, source.room, exemplar));
   }
   return exemplar;
 }
 
 // The layers that the style's weights name, for exemplars that do not hold them yet.
-Status ReadWeighedGuides(Style& style) {
+Status ReadWeighedGuides(Style& style, const StyleRoom& room) {
   const LayerSet wanted = style.transfer.guide_weights.Layers().Remove(Layer::kNormal);
   if (wanted.empty()) return Ok();
   for (Exemplar& exemplar : style.exemplars) {
@@ -267,12 +297,13 @@ Status ReadWeighedGuides(Style& style) {
     GuideReadOptions options;
     options.required = LayerSet{Layer::kCoverage, Layer::kNormal}.Add(wanted);
     if (exemplar.guides) options.required.Add(exemplar.guides->layers());
-    SCUMBLE_ASSIGN(exemplar.guides, ReadGuides(exemplar.guides_file, options));
+    SCUMBLE_ASSIGN(exemplar.guides, ReadWithin(room, exemplar.guides_file, info, options));
   }
   return Ok();
 }
 
-Status ReadExemplars(const toml::node& node, const std::string& file, const fs::path& folder, Style& style) {
+Status ReadExemplars(const toml::node& node, const StyleSource& source, Style& style) {
+  const std::string file = source.path.string();
   const auto* array = node.as_array();
   if (!array) return InputError(Where(file, node) + ": write [[exemplar]] with two brackets");
   if (array->size() > std::size_t(kMaxExemplars)) {
@@ -282,23 +313,22 @@ Status ReadExemplars(const toml::node& node, const std::string& file, const fs::
   for (const auto& item : *array) {
     const auto* table = item.as_table();
     if (!table) return InputError(Where(file, item) + ": write [[exemplar]] with two brackets");
-    SCUMBLE_ASSIGN(Exemplar exemplar, ReadExemplar(*table, file, folder, array->size() > 1));
+    SCUMBLE_ASSIGN(Exemplar exemplar, ReadExemplar(*table, source, array->size() > 1));
     style.exemplars.push_back(std::move(exemplar));
   }
   return Ok();
 }
 
-Expected<Style> ReadStyleFile(const fs::path& path) {
+Expected<Style> ReadStyleFile(const fs::path& path, const StyleRoom& room) {
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxStyleBytes));
   const std::string file = path.string();
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(const toml::table root, ParseToml(text, file));
   Style style;
-  const fs::path folder = path.parent_path();
   for (const auto& [key, node] : root) {
     const std::string name(key.str());
     if (name == "exemplar") {
-      SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, file, folder, style));
+      SCUMBLE_RETURN_IF_ERROR(ReadExemplars(node, {path, room}, style));
     } else if (const auto* table = node.as_table(); table && name == "transfer") {
       SCUMBLE_RETURN_IF_ERROR(SetKeysInFile(style, name, *table, path));
     } else {
@@ -359,14 +389,14 @@ Status ApplyOverride(Style& style, const std::string& text) {
 
 // A picture named as a style. One that belongs to a style is that style: taken by itself, a painted template would show
 // its margin.
-Expected<Style> ReadPictureStyle(const fs::path& path) {
+Expected<Style> ReadPictureStyle(const fs::path& path, const StyleRoom& room) {
   const fs::path beside = path.parent_path() / "style.toml";
   if (Exists(beside)) {
-    if (auto style = ReadStyleFile(beside); style && fs::path(style->exemplars.front().name).filename() == path.filename()) {
+    if (auto style = ReadStyleFile(beside, room); style && fs::path(style->exemplars.front().name).filename() == path.filename()) {
       return style;
     }
   }
-  SCUMBLE_ASSIGN(Picture picture, ReadPicture(path));
+  SCUMBLE_ASSIGN(Picture picture, ReadWithin(room, path));
   if (LooksLikeTemplate(picture)) {
     return InputError(path.string() + " is a whole template, margin and marks included: name the folder that "
                       "`scumble sphere` wrote as the style, or crop the picture to the sphere");
@@ -380,22 +410,22 @@ Expected<Style> ReadPictureStyle(const fs::path& path) {
 
 }  // namespace
 
-Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& overrides) {
+Expected<Style> LoadStyle(const fs::path& path, const std::vector<std::string>& overrides, const StyleRoom& room) {
   std::error_code failed;
   const fs::file_status kind = fs::status(path, failed);
   if (!fs::exists(kind)) return InputError("cannot read style " + path.string() + ": there is no such file or folder");
   Style style;
   if (fs::is_directory(kind)) {
     if (!Exists(path / "style.toml")) return InputError("style folder " + path.string() + " holds no style.toml");
-    SCUMBLE_ASSIGN(style, ReadStyleFile(path / "style.toml"));
+    SCUMBLE_ASSIGN(style, ReadStyleFile(path / "style.toml", room));
   } else if (path.extension() == ".toml") {
-    SCUMBLE_ASSIGN(style, ReadStyleFile(path));
+    SCUMBLE_ASSIGN(style, ReadStyleFile(path, room));
   } else {
-    SCUMBLE_ASSIGN(style, ReadPictureStyle(path));
+    SCUMBLE_ASSIGN(style, ReadPictureStyle(path, room));
   }
   if (style.name.empty()) style.name = NameFor(path, fs::is_directory(kind));
   for (const std::string& text : overrides) SCUMBLE_RETURN_IF_ERROR(ApplyOverride(style, text));
-  SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style));
+  SCUMBLE_RETURN_IF_ERROR(ReadWeighedGuides(style, room));
   for (const Exemplar& exemplar : style.exemplars) {
     const Picture& picture = exemplar.picture;
     if (!exemplar.is_sphere || picture.width == picture.height) continue;

@@ -1,7 +1,9 @@
 // Styles from files: a folder with a style.toml, the style.toml itself, or just a picture of a painted sphere.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,10 @@
 #include "image/style.h"
 
 namespace scumble {
+
+// Asked before so many bytes are taken for a picture of an exemplar or its guides, besides those before: what it refuses
+// is not read. Null: there is room for everything.
+using StyleRoom = std::function<Status(std::uint64_t bytes)>;
 
 // Reads a style and its pictures. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
 // writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Of [[exemplar]] the luminance
@@ -23,7 +29,8 @@ namespace scumble {
 // An [[exemplar]] picture is a square that the sphere fills. With `guides` naming the guides.exr that `scumble sphere`
 // wrote, the picture may also be the whole painted template: its margin is cut off. Any other guides with A and normal,
 // of the picture's size, make it a painting of that scene, of any shape.
-Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
+                          const StyleRoom& room = {});
 
 // The folders under `root` that hold a style.toml, sorted by name.
 std::vector<std::filesystem::path> FindStyles(const std::filesystem::path& root);

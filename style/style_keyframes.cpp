@@ -4,9 +4,12 @@
 #include <cmath>
 #include <iterator>
 #include <optional>
+#include <set>
 
 namespace scumble {
 namespace {
+
+constexpr const char* kPaperKey = "transfer.paper";
 
 std::optional<double> AsNumber(const KeyValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
@@ -43,13 +46,19 @@ Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
   }
   if (track.keys.empty()) return UsageError(key.name + " = []: expected a value, or pairs of frame and value");
   Style scratch;
+  std::set<std::string> read;  // words may name pictures, and come back in thousands of frames
   const std::int64_t* before = nullptr;
   for (const auto& [frame, value] : track.keys) {
+    if (frame < -kMaxTrackFrame || frame > kMaxTrackFrame) {
+      return UsageError(key.name + ": there is no frame " + std::to_string(frame) + ": expected " +
+                        std::to_string(-kMaxTrackFrame) + " to " + std::to_string(kMaxTrackFrame));
+    }
     if (before && *before >= frame) {
       return UsageError(key.name + ": frame " + std::to_string(frame) + " comes after frame " +
                         std::to_string(*before) + ": name each frame once, in rising order");
     }
     before = &frame;
+    if (const auto* text = std::get_if<std::string>(&value); text && !read.insert(*text).second) continue;
     if (auto done = key.set(scratch, value, track.folder); !done) {
       return Error{done.error().kind, key.name + " at frame " + std::to_string(frame) + " = " + ToText(value) + ": " +
                                           done.error().message};
@@ -69,7 +78,7 @@ void RemoveTrack(Style& style, const std::string& name) {
 
 KeyValue ValueAt(const StyleTrack& track, std::int64_t frame) {
   const auto next =
-      std::find_if(track.keys.begin(), track.keys.end(), [&](const auto& key) { return key.frame > frame; });
+      std::partition_point(track.keys.begin(), track.keys.end(), [&](const auto& key) { return key.frame <= frame; });
   if (next == track.keys.begin()) return next->value;
   const auto& [from, value] = *std::prev(next);
   if (next == track.keys.end() || from == frame || !track.straight) return value;
@@ -92,16 +101,23 @@ Expected<std::vector<std::string>> SetStyleFrame(Style& style, std::int64_t fram
 }
 
 Expected<LayerSet> LayersOverTime(const Style& style) {
-  LayerSet layers = RequiredLayers(style);
-  Style moving = style;
+  // Layers depend on no picture, and this is asked for every frame: paper is not read again, exemplars are not copied.
+  Style moving;
+  moving.transfer = style.transfer;
+  moving.exemplars.resize(style.exemplars.size());
+  std::vector<std::int64_t> frames;
   for (const StyleTrack& track : style.tracks) {
-    for (const auto& key : track.keys) {
-      // Between two frames that are named a key is on only where it is at one of them.
-      for (const std::int64_t frame : {key.frame, key.frame + 1}) {
-        if (auto set = SetStyleFrame(moving, frame); !set) return set.error();
-        layers.Add(RequiredLayers(moving));
-      }
-    }
+    if (track.name == kPaperKey) continue;
+    moving.tracks.push_back(track);
+    // Between two frames that are named a key is on only where it is at one of them.
+    for (const auto& key : track.keys) frames.insert(frames.end(), {key.frame, key.frame + 1});
+  }
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  LayerSet layers = RequiredLayers(style);
+  for (const std::int64_t frame : frames) {
+    if (auto set = SetStyleFrame(moving, frame); !set) return set.error();
+    layers.Add(RequiredLayers(moving));
   }
   return layers;
 }

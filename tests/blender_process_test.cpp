@@ -95,6 +95,41 @@ TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
   EXPECT_FALSE(Exists("g.exr"));
 }
 
+// While a frame of a range is cast, nobody waits for Blender, which may be at work or have ended. The casting alone would
+// take longer than the test has patience.
+TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
+  fs::create_directory(At("tmp"));
+  const Setting temporary("TMPDIR", At("tmp").string());
+  WriteText("shot.blend", "");
+  const auto exported = [&](const std::string& frame) {
+    for (const auto& folder : fs::directory_iterator(At("tmp"))) {
+      if (fs::exists(folder.path() / ("scene." + frame + ".glb"))) return true;
+    }
+    return false;
+  };
+  for (const auto& [last_words, signal] : {std::pair("sleep 50", SIGTERM), {"exit 0", SIGINT}}) {
+    WriteProgram("blender",
+                 "while [ \"$1\" != --output ]; do shift; done; folder=$(dirname \"$2\")\n"
+                 "for frame in 1 2; do cp " + Scene("suzanne.glb") + " \"$folder/part\"; "
+                 "mv \"$folder/part\" \"$folder/scene.$frame.glb\"; done; echo $$ > self; " + last_words);
+    fs::remove(At("self"));
+    const pid_t child = Start({"guidegen", "shot.blend", "--blender", "./blender", "--frames", "1-2", "--size", "1024",
+                               "--layers", "lpe.full", "--samples", "65536", "-o", "g.#.exr"});
+    for (int tries = 0; tries < 2000 && (Bytes("self").empty() || exported("1")); ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(exported("2")) << "the first is loaded, the second waits";
+    ::kill(child, signal);
+    const CommandResult result = Finish(child);
+    EXPECT_EQ(result.code, 128 + signal) << result.err;
+    EXPECT_TRUE(fs::is_empty(At("tmp"))) << last_words;
+    std::string blender = Bytes("self");
+    if (!blender.empty()) blender.pop_back();
+    EXPECT_TRUE(EndsSoon(blender)) << last_words;
+  }
+  EXPECT_FALSE(Exists("g.1.exr"));
+}
+
 TEST_F(BlenderProcess, BothVerbsTellTheSameFailureInTheSameWords) {
   WriteProgram("talking", "echo 'Fra:1 Mem:1M'; echo 'out of paint'; echo 'Fra:2 Mem:1M'; exit 1");
   WriteProgram("killed", "kill -KILL $$");

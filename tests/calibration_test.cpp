@@ -150,6 +150,29 @@ TEST(Calibration, WhereNothingFitsTheQuickestIsTakenAndItsTimeNamed) {
   EXPECT_FALSE(picked.fits);
   EXPECT_EQ(picked.predicted_ms, 9.0);
   EXPECT_EQ(clock.runs[1], kCalibrationRuns);
+  FakeClock slow{clock.ms};
+  EXPECT_EQ(MustPick(Ladder(3), 4.0, slow).predicted_ms, 9.0);
+  EXPECT_EQ(slow.runs[1], kHopelessRuns) << "over twice the budget: more runs would change nothing";
+}
+
+// What another process keeps while this one measures is not lost: it had a larger budget, and has measured the first way.
+TEST(Calibration, TimesOfTwoProcessesAreJoined) {
+  MemoryCache cache;
+  FakeClock one{{{50.0}, {30.0}, {5.0}}}, other{one.ms};
+  bool begun = false;
+  const MeasureWay measure = [&](std::size_t way) -> Expected<double> {
+    if (!std::exchange(begun, true)) {
+      EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, other).way, 0u);
+    }
+    return one.Measure()(way);
+  };
+  const auto picked = PickWay(Ladder(3, &cache), 30.0, measure);
+  ASSERT_TRUE(picked.ok());
+  EXPECT_EQ(picked->way, 1u);
+  FakeClock later{one.ms};
+  EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, later).way, 0u);
+  EXPECT_EQ(MustPick(Ladder(3, &cache), 30.0, later).way, 1u);
+  EXPECT_EQ(later.Total(), 0);
 }
 
 TEST(Calibration, KnownTimesAreNotMeasuredAgain) {

@@ -140,6 +140,39 @@ TEST_F(CliBudget, StylesThatGuidesNameCount) {
   EXPECT_GT(Budget(Transfer(), "3600000").at("measured_runs").get<int>(), 0);
 }
 
+// Nor does it hold without the scene's styles, or for a scene of which a file was replaced.
+TEST_F(CliBudget, WhatElseTheSceneIsMadeOfCounts) {
+  WriteText("tri.obj", "mtllib tri.mtl\nusemtl m\n" + TriangleObj());
+  WriteText("tri.mtl", "newmtl m\nKd 1 1 1\n");
+  const Arguments stylize = {"stylize", "tri.obj", "--style", "style", "--size", "16"};
+  EXPECT_GT(Budget(stylize, "3600000").at("measured_runs").get<int>(), 0);
+  EXPECT_EQ(Budget(stylize, "3600000").at("measured_runs"), 0);
+  EXPECT_GT(Budget(stylize, "3600000", {"--no-scene-styles"}).at("measured_runs").get<int>(), 0);
+  WriteText("tri.mtl", "newmtl m\nKd 0.5 1 1\n");
+  EXPECT_GT(Budget(stylize, "3600000").at("measured_runs").get<int>(), 0);
+}
+
+// A radius of 32 takes longer than none: a frame's times are those of its own values, and an edited key is another style.
+TEST_F(CliBudget, KeysThatChangeOverTimeCount) {
+  const auto write = [&](const std::string& radius) {
+    WriteText("style/style.toml", "[transfer]\nblend_radius = [[0, 0], [100, " + radius + "]]\n[[exemplar]]\nimage = \"lit.png\"\n");
+  };
+  write("8");
+  for (const char* const frame : {"0", "100"}) {
+    EXPECT_GT(Budget(Transfer(), "3600000", {"--frame", frame}).at("measured_runs").get<int>(), 0) << frame;
+    EXPECT_EQ(Budget(Transfer(), "3600000", {"--frame", frame}).at("measured_runs"), 0) << frame;
+  }
+  write("9");
+  EXPECT_GT(Budget(Transfer(), "3600000", {"--frame", "0"}).at("measured_runs").get<int>(), 0);
+}
+
+TEST_F(CliBudget, MeasuringIsSaidOnce) {
+  const std::string told = RunOk(With(Stylize(), {"--budget-ms", "3600000", "-o", "p.png"})).err;
+  const std::size_t first = told.find("measuring up to");
+  EXPECT_NE(first, std::string::npos) << told;
+  EXPECT_EQ(told.find("measuring up to", first + 1), std::string::npos) << told;
+}
+
 // What lies underneath is part of the work, so trials read it: of a sequence the first frame's.
 TEST_F(CliBudget, TrialsPaintOverWhatLiesUnderneath) {
   WritePainted("under.0007.png", 48, 48);

@@ -57,16 +57,36 @@ TEST_F(CliFiles, NoOutputTakesThePlaceOfAnInput) {
 
 TEST_F(CliFiles, NorThatOfFilesThatASceneNames) {
   WriteStyle("style");
-  WriteText("tri.obj", "mtllib tri.mtl\nusemtl m\n" + TriangleObj());
-  WriteText("tri.mtl", "newmtl m\nKd 1 1 1\nmap_Kd -s 1 1 1 skin.png\n");
+  WriteText("tri.obj", "mtllib\ttri.mtl lost.mtl\nusemtl m\n" + TriangleObj());
+  WriteText("tri.mtl", "newmtl m\nKd 1 1 1\nmap_Kd -s 1 1 1 skin.png\nmap_Ks\tgloss.png\n");
   WritePainted("skin.png", 8, 8);
+  WritePainted("gloss.png", 8, 8);
   WritePainted("paper.png", 8, 8);
   const Arguments stylize = {"stylize", "tri.obj", "--style", "style", "--size", "16"};
-  ExpectError(With(stylize, {"-o", "skin.png"}), 2, {"skin.png", "overwrite a file of the scene tri.obj"});
+  for (const std::string picture : {"skin.png", "gloss.png"}) {
+    ExpectError(With(stylize, {"-o", picture}), 2, {picture, "overwrite a file of the scene tri.obj"});
+  }
   ExpectError(With(stylize, {"--set", "transfer.paper=paper.png", "-o", "paper.png"}), 2, {"paper.png", "overwrite"});
   WriteText("tri.gltf", TriangleGltf(false).insert(1, R"("images":[{"uri":"the%20skin.png"}],)"));
   WritePainted("the skin.png", 8, 8);
   ExpectError({"stylize", "tri.gltf", "--style", "style", "--size", "16", "-o", "the skin.png"}, 2, {"overwrite"});
+}
+
+// A .glb may leave pictures and buffers beside it, though exporters put them into it.
+TEST_F(CliFiles, NorThatOfFilesThatABinarySceneNames) {
+  WriteStyle("style");
+  std::string text = TriangleGltf(false).insert(1, R"("images":[{"uri":"the%20skin.png"}],)");
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto word = [](std::size_t value) {
+    std::string bytes;
+    for (int i = 0; i < 4; ++i) bytes += static_cast<char>(value >> (8 * i));
+    return bytes;
+  };
+  WriteText("tri.glb", "glTF" + word(2) + word(20 + text.size()) + word(text.size()) + "JSON" + text);
+  WritePainted("the skin.png", 8, 8);
+  const Arguments stylize = {"stylize", "tri.glb", "--style", "style", "--size", "16"};
+  ExpectError(With(stylize, {"-o", "the skin.png"}), 2, {"the skin.png", "overwrite a file of the scene tri.glb"});
+  RunOk(With(stylize, {"-o", "new.png"}));
 }
 
 // A name is what follows any space of a line. Of 50,000 words all such ends were kept at once: 50,000 times 50 KB, 2.5 GB.

@@ -97,6 +97,20 @@ TEST_F(CliQuality, SequencesArePaintedByOneWayAndResumed) {
   EXPECT_NE(Bytes("d.1.png"), draft) << "another quality: made again";
 }
 
+// Of a style that looks at light a preview is the style as it is on smaller guides.
+TEST_F(CliQuality, APreviewIsNotTakenForTheFinalPicture) {
+  const auto kept = [&](const std::string& quality) {
+    return RunOk(With(Stylize("chiaroscuro"),
+                      {"--frames", "1-2", "--quality", quality, "--resume", "--json", "-o", "q.#.png"}))
+        .Json()["kept"];
+  };
+  EXPECT_EQ(kept("preview"), 0);
+  EXPECT_EQ(kept("preview"), 2);
+  EXPECT_EQ(kept("final"), 0);
+  EXPECT_EQ(kept("final"), 2);
+  EXPECT_EQ(kept("preview"), 0);
+}
+
 TEST_F(CliQuality, WhatMakesNoSenseIsRefused) {
   WriteStyle("style");
   const Arguments stylize = With(Stylize("style"), {"-o", "out.png"});

@@ -80,6 +80,24 @@ TEST_F(CliSphere, OnlySomeFiles) {
   RunOk({"sphere", "--size", "32", "-o", "other", "--only", "png", "--page", "a4", "--dpi", "72", "-q"});
 }
 
+// Without a template in pixels nothing but the guides tells what light a painting has.
+TEST_F(CliSphere, GuidesOfAnotherLightDoNotReplaceThoseOfAPainting) {
+  const Arguments sphere = {"sphere", "--size", "128", "--only", "pdf", "-q", "-o", "kit"};
+  RunOk(With(sphere, {"--light", "10,20"}));
+  RunOk(sphere);
+  const std::string guides = Bytes("kit/guides.exr");
+  WritePainted("kit/lit.png", 128, 128);
+  for (const char* light : {"90,0", "-39.8,40", "180,0"}) {
+    ExpectError(With(sphere, {std::string("--light=") + light}), 4,
+                {"kit/guides.exr has another light", "belongs to kit/lit.png", "--light", "--name"});
+  }
+  EXPECT_EQ(Bytes("kit/guides.exr"), guides);
+  RunOk(With(sphere, {"--light", "90,0", "--name", "shade"}));
+  RunOk(With(sphere, {"--aa", "4"}));
+  RunOk(With(sphere, {"--light=-40,40"}));
+  EXPECT_EQ(Bytes("kit/guides.exr"), guides) << "the same again";
+}
+
 TEST_F(CliSphere, PaperThatIsOfLittleUse) {
   ExpectError({"sphere", "--size", "127", "--only", "pdf", "-o", "kit"}, 2, {"127 pixels", "--rectify", "--size 128"});
   EXPECT_FALSE(Exists("kit"));

@@ -71,6 +71,21 @@ TEST_F(Upsample, ASequenceIsResumedAtThePicturesSize) {
   EXPECT_EQ(Bytes("p.0001.png"), first);
 }
 
+// Of stylize all pictures have the size of --size, whatever their guides had.
+TEST_F(Upsample, StylizeKeepsFramesOfTheSameFactorAlone) {
+  WriteStyle("style");
+  const auto kept = [&](const std::string& factor) {
+    return RunOk({"stylize", Scene("ball.glb"), "--style", "style", "--size", "32", "--frames", "1-2", "--upsample", factor,
+                  "--json", "--resume", "-o", "p#.png"})
+        .Json()["kept"];
+  };
+  EXPECT_EQ(kept("1"), 0);
+  EXPECT_EQ(kept("1"), 2);
+  EXPECT_EQ(kept("2"), 0);
+  EXPECT_EQ(kept("2"), 2);
+  EXPECT_EQ(kept("1"), 0);
+}
+
 TEST_F(Upsample, TheStylesStepAndHybridAreKeysLikeOthers) {
   WriteStyle("style");
   WriteGuideFile("ball.exr", Ball(48));

@@ -107,19 +107,22 @@ TEST(ExtremeScale, EveryDecadeFromAMicrometreToAThousandKilometresIsTheFormulas)
 
 // --- Triangles that are hardly any --------------------------------------------------------------------------------
 
-// A triangle 2 m long and 2 m / aspect high, at random before the eye. Rays are aimed at it and, by float's blur,
-// beside it. Where it is met, what is shown lies on the ray, and the normal is the triangle's own: it comes from
-// corners in double, each a sum of four products below 2 m: two of them are off by 16 steps of 2^-52, over the height.
+// A triangle 2 m long and 2 m / aspect high, at random before the eye. The middle of nine rays is aimed at it and, by
+// less than float's blur, beside it; the others pass 3e-5 m and more beside that one. Where the plain caster is
+// decided, rays meet the triangle as it says. Wherever it is met, what is shown lies on the ray, and the normal is the
+// triangle's own: it comes from corners in double, each a sum of four products below 2 m: two of them are off by 16
+// steps of 2^-52, over the height.
 TEST(Slivers, OfAnyAspectAreShownWhereTheRayPassesThem) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> spread(-1.0, 1.0);
   const auto vector = [&] { return glm::dvec3(spread(random), spread(random), spread(random)); };
-  GuidegenOptions options = Sized(1, 1, {Layer::kPosition});
+  const double three_apart = glm::degrees(2.0 * std::atan(1.5 * 3e-5 / 5.0));  // of the picture, from 5 m
+  GuidegenOptions options = Sized(3, 3, {Layer::kPosition});
   options.threads = 1;
   for (const double aspect : {1e2, 1e3, 2e3, 1e4, 1e5, 1e6, 1e7, 1e8}) {
     SCOPED_TRACE("aspect " + std::to_string(aspect));
     const double height = 2.0 / aspect;
-    int met = 0;
+    int met = 0, must_meet = 0, must_miss = 0;
     for (int trial = 0; trial < 400; ++trial) {
       Mesh mesh;
       mesh.positions = {{-1, 0, 0}, {1, 0, 0}, {0.3, height, 0}};
@@ -130,20 +133,40 @@ TEST(Slivers, OfAnyAspectAreShownWhereTheRayPassesThem) {
       const glm::dvec3 beside = 3e-7 * vector();
       const glm::dvec3 aim(placed * glm::dvec4(0.7 * spread(random), 0.1 * height + beside.y, beside.z, 1.0));
       const Scene scene = SceneOf(mesh, placed);
-      const Camera camera = LookingAt({0, 0, 5}, aim);
+      const Camera camera = LookingAt({0, 0, 5}, aim, three_apart);
       const GuideSet guides = Render(scene, camera, options).guides;
-      if (guides.Plane(Layer::kCoverage)[0] == 0.0f) continue;
-      ++met;
-      const glm::dvec3 from_eye = glm::dvec3(guides.Vec3(Layer::kPosition, 0)) - glm::dvec3(0, 0, 5);
-      EXPECT_LE(PixelRay(camera, 1, 1, 0, 0).DistanceTo(from_eye), 7.0 * kFloatSight);
       const glm::dvec3 normal = glm::dmat3(guides.camera->view_from_world) * glm::dvec3(placed[2]);
-      const glm::dvec3 seen(guides.Vec3(Layer::kNormal, 0));
-      EXPECT_LE(std::min(glm::distance(seen, normal), glm::distance(seen, -normal)),
-                2.0 * kRounded + 16.0 * 0x1p-52 / height);
+      for (std::size_t i = 0; i < 9; ++i) {
+        const bool middle = i == 4, covered = guides.Plane(Layer::kCoverage)[i] == 1.0f;
+        const ExactRay ray = PixelRay(camera, 3, 3, double(i % 3), double(i / 3));
+        const ExactHit hit = MeetExactly(scene, camera, ray);
+        if (!hit.Undecided()) {
+          must_meet += middle && hit.instance >= 0;
+          must_miss += !middle && hit.instance < 0;
+          EXPECT_EQ(covered, hit.instance >= 0) << "trial " << trial << ", ray " << i << ", clear " << hit.clearance;
+        }
+        if (!covered) continue;
+        met += middle;
+        const glm::dvec3 from_eye = glm::dvec3(guides.Vec3(Layer::kPosition, i)) - glm::dvec3(0, 0, 5);
+        EXPECT_LE(ray.DistanceTo(from_eye), 7.0 * kFloatSight);
+        const glm::dvec3 seen(guides.Vec3(Layer::kNormal, i));
+        EXPECT_LE(std::min(glm::distance(seen, normal), glm::distance(seen, -normal)),
+                  2.0 * kRounded + 16.0 * 0x1p-52 / height);
+      }
     }
     // Aimed from 3e-7 m below to as much above, one ray in thirty meets the 2e-8 m of the thinnest: 13 of 400, ten
     // fewer in a run of a few hundred.
     EXPECT_GT(met, 3);
+    // The middle ray passes a tenth of the height above the long edge, and as it sees it that is the cosine less of an
+    // angle that may be any: more than float's sight of some 6 m for four in five at 1e4, and nearly all below.
+    if (aspect <= 1e4) {
+      EXPECT_GT(must_meet, 300);
+    }
+    // The eight others are off the line of what is thinner than float's sight by that much as seldom as any angle's
+    // sine is below a fifth: one in eight.
+    if (aspect >= 1e5) {
+      EXPECT_GT(must_miss, 2400);
+    }
   }
 }
 

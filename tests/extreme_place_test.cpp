@@ -23,8 +23,9 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class ExtremePlace : public LoaderTest {
  protected:
-  // A quad under two nodes whose places add up to `place`, turned, and a camera that stands 3 m before it.
-  Expected<Scene> SceneAt(const glm::dvec3& place, const std::vector<float>& corners) {
+  // A quad under two nodes whose places add up to `place`, turned, and a camera that stands 3 m before it. Where it is
+  // lit, a lamp beside the camera, and between them a lid that throws its shadow on the quad.
+  Expected<Scene> SceneAt(const glm::dvec3& place, const std::vector<float>& corners, bool lit = false) {
     GltfBuilder gltf;
     const int position = gltf.Floats(corners, 3);
     const int index = gltf.Indices({0, 1, 2, 0, 2, 3});
@@ -36,7 +37,19 @@ class ExtremePlace : public LoaderTest {
                                             {"translation", {0.0625, -0.125, 0.25}},
                                             {"rotation", {0.0, 0.28, 0.0, 0.96}}});
     const int camera = gltf.Append("nodes", {{"name", "eye"}, {"camera", lens}, {"translation", {0.0, 0.0, 3.0}}});
-    gltf.Root({{"name", "far"}, {"children", {thing, camera}}, {"translation", {place.x, place.y, place.z}}});
+    std::vector<int> children = {thing, camera};
+    if (lit) {
+      gltf.json["extensionsUsed"] = {"KHR_lights_punctual"};
+      gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 683.0}}};
+      children.push_back(gltf.Append("nodes", {{"name", "lamp"},
+                                               {"translation", {0.75, 0.5, 2.5}},
+                                               {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+      children.push_back(gltf.Append("nodes", {{"name", "lid"},
+                                               {"mesh", mesh},
+                                               {"translation", {0.375, 0.25, 1.25}},
+                                               {"scale", {0.25, 0.25, 0.25}}}));
+    }
+    gltf.Root({{"name", "far"}, {"children", children}, {"translation", {place.x, place.y, place.z}}});
     return LoadScene(Write("far.glb", gltf.Glb()));
   }
 
@@ -45,14 +58,24 @@ class ExtremePlace : public LoaderTest {
 
 // A float at 1e7 m steps by 1 m, a double by 2e-9 m. The file's node translations are doubles, and they are kept and
 // subtracted as such: these places have few enough bits that nothing is rounded at all, so the guides have the same
-// bits but for the positions, which are floats in the world's own frame and can be no better than half a metre.
+// bits but for the positions, which are floats in the world's own frame and can be no better than half a metre. The
+// same goes for light: a lamp's place is a node's, its distance from the eye is a difference of doubles without a
+// rounding, and from there on all is relative to the eye; chance is hashed by pixel.
 TEST_F(ExtremePlace, NodesTenThousandKilometresAwayLoseNothing) {
-  const auto here = SceneAt({0, 0, 0}, kQuad);
+  const auto here = SceneAt({0, 0, 0}, kQuad, true);
   ASSERT_TRUE(here) << here.error().message;
-  const GuidegenOptions options = Sized(40, 40, {Layer::kPosition, Layer::kPref});
+  GuidegenOptions options = Sized(40, 40, {Layer::kPosition, Layer::kPref, Layer::kLuminance, Layer::kShadow,
+                                           Layer::kLpeLDE, Layer::kLpeFull});
+  options.samples = 4;
   auto near_by = Render(*here, here->cameras[0], options);
+  for (const Layer light : {Layer::kLuminance, Layer::kLpeLDE, Layer::kLpeFull}) {
+    const auto plane = near_by.guides.Plane(light);
+    EXPECT_GT(std::count_if(plane.begin(), plane.end(), [](float value) { return value > 0.0f; }), 100);
+  }
+  const auto shadow = near_by.guides.Plane(Layer::kShadow);
+  EXPECT_GT(std::count(shadow.begin(), shadow.end(), 1.0f), 30);  // 0.8 m² behind the lid, partly hidden by it
   for (const glm::dvec3 place : {glm::dvec3(1e7, -1e7, 1e7), glm::dvec3(1e7 + 0.125, 3.5, -2e7 - 0.75)}) {
-    const auto there = SceneAt(place, kQuad);
+    const auto there = SceneAt(place, kQuad, true);
     ASSERT_TRUE(there) << there.error().message;
     auto far_away = Render(*there, there->cameras[0], options);
     int covered = 0;

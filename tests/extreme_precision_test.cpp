@@ -368,6 +368,89 @@ void CheckPixels(NearestSearch search) {
 TEST(Precision, TheSourceInPixelsByTree) { CheckPixels(NearestSearch::kTree); }
 TEST(Precision, TheSourceInPixelsByTable) { CheckPixels(NearestSearch::kTable); }
 
+// Floats are what both searches take, so rounding to them changes nothing that could be compared; the truth is told in
+// double here. What they find, for each ring of each sphere.
+constexpr int kFloatDirections = 1000;
+void CheckPixelsInFloats(NearestSearch search, int rings,
+                         const std::function<Source(const PreparedExemplar&, int, const glm::dvec3&, Source)>& truth) {
+  for (const int radius : kPixelRadii) {
+    PreparedExemplar sphere(NoisePicture(64), 0.0, 2 * radius);
+    ASSERT_TRUE(sphere.SearchBy(search, LookUpTable::kResolution, nullptr).ok());
+    for (int ring = 0; ring < rings; ++ring) {
+      SCOPED_TRACE("radius " + std::to_string(radius) + ", ring " + std::to_string(ring));
+      double worst = 0.0;
+      int others = 0;
+      ForDirections(ring, kFloatDirections, [&](const glm::dvec3& n) {
+        const Source found = sphere.NearestNeighbour(glm::vec3(n)), at = truth(sphere, ring, n, found);
+        worst = std::max(worst, std::hypot(double(at.x - found.x), double(at.y - found.y)));
+        others += !(at == found);
+      });
+      std::printf("pixels, %s, float, R %d, ring %.3f: worst %.2f, other pixel %d of %d\n",
+                  search == NearestSearch::kTree ? "tree" : "table", radius, kRings[std::size_t(ring) + 1], worst,
+                  others, kFloatDirections);
+    }
+  }
+}
+
+// The usable pixel whose normal is nearest to n, of those within `reach` pixels of its place: tried one by one.
+Source NearestPixel(const PreparedExemplar& sphere, const glm::dvec3& n, int reach) {
+  const glm::ivec2 middle(glm::floor(glm::dvec2(1.0 + n.x, 1.0 - n.y) * (0.5 * sphere.size())));
+  Source nearest{};
+  double least = std::numeric_limits<double>::infinity();
+  for (int y = middle.y - reach; y <= middle.y + reach; ++y) {
+    for (int x = middle.x - reach; x <= middle.x + reach; ++x) {
+      if (!sphere.Usable(x, y)) continue;
+      const glm::dvec3 off = n - glm::dvec3(sphere.Normal(x, y));
+      if (glm::dot(off, off) < least) least = glm::dot(off, off), nearest = {x, y};
+    }
+  }
+  return nearest;
+}
+
+// The tree sums squares in double, so all that is lost is the normal's own, in u = 2^-24: half of one in each component
+// where it is stored, √¾ in all; where it is brought to unit length 2.5 for the length (three squares, two sums, the
+// root) and one for the quotients. That is 4.4 u, on the way to the pixel that is found and to the nearest: 9 u.
+TEST(Precision, TheSourceInPixelsByTreeInFloats) {
+  CheckPixelsInFloats(NearestSearch::kTree, int(kRings.size()) - 1,
+                      [](const PreparedExemplar& sphere, int ring, const glm::dvec3& n, Source found) {
+                        const int radius = sphere.size() / 2;
+                        const double gap = LargestGap(kRings[std::size_t(ring) + 1], radius);
+                        const Source nearest = NearestPixel(sphere, n, int(gap * radius) + 2);
+                        const auto off = [&](Source at) {
+                          return glm::distance(n, glm::dvec3(sphere.Normal(at.x, at.y)));
+                        };
+                        EXPECT_LE(off(found), off(nearest) + 9.0 * 0x1p-24);
+                        return nearest;
+                      });
+}
+
+// The source that a table holds for a place of the projection: what it finds for the middle of the cell there, which
+// no rounding takes out of it.
+Source SourceOfCell(const PreparedExemplar& sphere, const glm::dvec2& place) {
+  constexpr double kHalf = 0.5 * LookUpTable::kResolution;
+  const glm::dvec2 middle = (glm::floor((place + 1.0) * kHalf) + 0.5) / kHalf - 1.0;
+  return sphere.NearestNeighbour(DirectionAt(middle.x, middle.y));
+}
+
+// A table is asked at (x, y) / √(1 + z), which in floats is off by 10 u along either axis at most: the normal's 4.4,
+// which that takes to 4.9 at the rim, where it is steepest (√1¼); 2.5 for the sum, the root and the reciprocal, one for
+// the product, and one for the place in the table, which is counted in cells up to 512. So it is the source of the
+// formula's cell, or of another where that much is across a border. In the last ring middles of cells lie beyond the
+// disc, where none can be asked for.
+TEST(Precision, TheSourceInPixelsByTableInFloats) {
+  CheckPixelsInFloats(NearestSearch::kTable, int(kRings.size()) - 2,
+                      [](const PreparedExemplar& sphere, int, const glm::dvec3& n, Source found) {
+                        const glm::dvec2 place = glm::dvec2(n) / std::sqrt(1.0 + n.z);
+                        bool is_near = false;
+                        for (int corner = 0; corner < 4; ++corner) {
+                          const glm::dvec2 off(corner & 1 ? -1.0 : 1.0, corner & 2 ? -1.0 : 1.0);
+                          is_near = is_near || SourceOfCell(sphere, place + 10.0 * 0x1p-24 * off) == found;
+                        }
+                        EXPECT_TRUE(is_near);
+                        return SourceOfCell(sphere, place);
+                      });
+}
+
 // --- A scene ------------------------------------------------------------------------------------------------------
 
 GuideSet Suzanne() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/every_instruction_set.h"
 #include "tests/transfer_fixtures.h"
 
 namespace scumble {
@@ -67,6 +68,48 @@ TEST(ExtremeLight, TheLimitIsReachedWhereTheLeastExcessUsesUpTheThreshold) {
     EXPECT_TRUE(SameField(field, limit) && field.exemplar == limit.exemplar) << weight;
   }
   EXPECT_GT(NotTheBest(MustTransfer(TwoLights(128, 0x1.0p20f), guides).field, guides), 0u);
+}
+
+// Pixels that a seed settled and that are not painted with the exemplar whose light is nearest.
+std::size_t TakenInOtherLight(const SourceField& field, const GuideSet& guides) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < field.level.size(); ++i) {
+    count += field.level[i] > 0 && (field.exemplar[i] == 0) != (guides.Plane(Layer::kLuminance)[i] > kMiddle);
+  }
+  return count;
+}
+
+// Every pixel is as bright as one of the lights, whose errors for the other's pixels are both ½: a weight of the threshold takes
+// half of it, exactly, and leaves half. The square of that is 2.5e-41 for 1e-20 and rounds to 0 for the others. The sphere's
+// normals are the exemplar's own, so every offer is at distance 0, which is less than what is left: the field is that of no
+// weight at all, and in every chunk the pixels in the other light, about half of them, are taken above level 0, where each
+// would take its own light's exemplar. Twice the weight leaves nothing, and none is.
+void ExpectCopiesWithinTinyThresholds(LuminanceError form, float normal_weight) {
+  const GuideSet guides = LitSphere(48, {kBright, kDark});
+  for (const float threshold : {1e-20f, 1e-30f, 0x1.0p-148f}) {
+    for (const ThresholdMetric metric : {ThresholdMetric::kL2, ThresholdMetric::kL1}) {
+      const auto field = [&](float weight) {
+        Style style = TwoLights(48, weight, form);
+        style.transfer.threshold = threshold, style.transfer.threshold_metric = metric;
+        style.transfer.guide_weights[Layer::kNormal] = normal_weight;
+        return MustTransfer(style, guides).field;
+      };
+      const SourceField half = field(threshold), all = field(0.0f);
+      EXPECT_GT(TakenInOtherLight(half, guides), guides.pixel_count() / 8) << threshold;
+      EXPECT_TRUE(SameField(half, all) && half.exemplar == all.exemplar) << threshold;
+      EXPECT_EQ(TakenInOtherLight(field(2 * threshold), guides), 0u) << threshold;
+    }
+  }
+}
+
+TEST(ExtremeLight, WhatItLeavesOfATinyThresholdTakesExactCopies) {
+  OnEveryInstructionSet([] { ExpectCopiesWithinTinyThresholds(LuminanceError::kExcess, 1.0f); });
+  ExpectCopiesWithinTinyThresholds(LuminanceError::kPublished, 1.0f);
+}
+
+// By the plain form, which matches in a space: normals that count double are 0 apart, too.
+TEST(ExtremeLight, WhatItLeavesOfATinyThresholdTakesExactCopiesInASpace) {
+  ExpectCopiesWithinTinyThresholds(LuminanceError::kExcess, 2.0f);
 }
 
 // A pixel has one other exemplar and one excess: what a weight rejects, all above it reject.

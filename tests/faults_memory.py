@@ -16,7 +16,7 @@ import faults
 
 MB = 1024  # in kB, as ulimit counts
 FORESEEN = "this takes up to"
-FORESEES = ("guidegen", "transfer", "stylize", "sphere")
+FORESEES = ("guidegen", "transfer", "stylize", "sphere", "tradeoff")
 
 
 def limits_for(kilobytes):

@@ -40,6 +40,10 @@ TEST(Frames, RangesAsAnimationProgramsWriteThem) {
   EXPECT_EQ(Frames("5-5x-3"), List({5}));
   EXPECT_EQ(Frames(" 1 , 3 "), List({1, 3}));
   EXPECT_EQ(Frames("0008"), List({8}));
+  // The longest step there is leads from the first frame that there may be to the last, and back.
+  EXPECT_EQ(Frames("-999999999-999999999x1999999998"), List({-999999999, 999999999}));
+  EXPECT_EQ(Frames("999999999--999999999x-1999999998"), List({999999999, -999999999}));
+  EXPECT_EQ(Frames(FramesToText(List({-999999999, 999999999, 7}))), List({-999999999, 999999999, 7}));
 }
 
 TEST(Frames, AFrameThatComesAgainCountsOnce) {
@@ -65,6 +69,11 @@ TEST(Frames, WhatIsWrongIsSaid) {
                                                     {"1-9:2", "1-24x2"},
                                                     {"1-9x0", "step of 0"},
                                                     {"1-9x-1", "counts down"},
+                                                    {"1-24x9223372036854775807", "at most 1999999998, as 1-24x2"},
+                                                    {"-5--7x-9223372036854775808", "at most 1999999998"},
+                                                    {"-5--7x-9223372036854775807", "at most 1999999998"},
+                                                    {"1-24x1999999999", "at most 1999999998"},
+                                                    {"-9223372036854775808", "-999999999 to 999999999"},
                                                     {"1-1000000000", "999999999"},
                                                     {"99999999999999999999", "1-24"},
                                                     {"1-2000000", "more than 1000000 frames"},

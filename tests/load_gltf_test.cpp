@@ -245,6 +245,129 @@ TEST_F(LoadGltf, MaterialsAndTextures) {
   EXPECT_EQ(scene.meshes[0].uvs[1][2], glm::vec2(2, 2));
 }
 
+// What a primitive has of a list that others share is what it would have of a list of its own, in the order in which its
+// triangles name it. Nothing else of the list is read: it may be NaN.
+TEST_F(LoadGltf, SharedListsGiveWhatListsOfTheirOwnWould) {
+  constexpr int kLong = 40;
+  const std::vector<std::uint16_t> used = {31, 7, 12};
+  const float nan = std::nanf("");
+  // 17 is prime and divides no factor, so none is 0 and weights and directions can be used.
+  const auto value = [](int attribute, int vertex, int c) {
+    return float((attribute + 1) * (3 * vertex + 1) * (c + 2) % 17) / 16;
+  };
+  const auto build = [&](bool shared) {
+    GltfBuilder b;
+    const auto list = [&](int attribute, int components) {
+      std::vector<float> values(std::size_t(kLong * components), nan);
+      std::vector<float> own;
+      for (const int vertex : used) {
+        for (int c = 0; c < components; ++c) {
+          own.push_back(values[std::size_t(vertex * components + c)] = value(attribute, vertex, c));
+        }
+      }
+      return b.Floats(shared ? values : own, components);
+    };
+    const json attributes = {{"POSITION", list(0, 3)},   {"NORMAL", list(1, 3)},     {"TEXCOORD_0", list(2, 2)},
+                             {"TEXCOORD_1", list(3, 2)}, {"COLOR_0", list(4, 4)},    {"TANGENT", list(5, 4)},
+                             {"JOINTS_0", 0},            {"WEIGHTS_0", list(6, 4)}, {"_SCUMBLE_REST", list(7, 3)}};
+    json primitive = {{"attributes", attributes}};
+    const std::vector<std::uint8_t> joints((shared ? kLong : used.size()) * 4, 0);
+    primitive["attributes"]["JOINTS_0"] = b.Accessor(b.View(joints), kUbyte, joints.size() / 4, "VEC4");
+    primitive["indices"] = b.Indices(shared ? used : std::vector<std::uint16_t>{0, 1, 2});
+    primitive["targets"] = {{{"POSITION", list(8, 3)}, {"NORMAL", list(9, 3)}, {"TANGENT", list(10, 3)}}};
+    primitive["material"] = 0;
+    b.Append("images", {{"bufferView", b.View(Png())}, {"mimeType", "image/png"}});
+    b.Append("textures", {{"source", 0}});
+    b.Append("materials", {{"normalTexture", {{"index", 0}}}});
+    b.Mesh(json::array({primitive}));
+    b.Root({{"mesh", 0}});
+    b.Root({{"mesh", 0}, {"weights", {0.5}}});
+    b.Append("skins", {{"joints", {0}}});
+    b.Root({{"mesh", 0}, {"skin", 0}, {"weights", {0.25}}});
+    return b;
+  };
+  GltfBuilder shared = build(true);
+  const Scene expected = Load(build(false)), scene = Load(shared);
+  ASSERT_EQ(scene.meshes.size(), 3u) << testing::PrintToString(scene.warnings);
+  ASSERT_EQ(expected.meshes.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Mesh &mesh = scene.meshes[i], &own = expected.meshes[i];
+    EXPECT_EQ(mesh.triangles, (std::vector<glm::uvec3>{{0, 1, 2}})) << i;
+    EXPECT_EQ(mesh.positions, own.positions) << i;
+    EXPECT_EQ(mesh.normals, own.normals) << i;
+    EXPECT_EQ(mesh.uvs, own.uvs) << i;
+    EXPECT_EQ(mesh.colors, own.colors) << i;
+    EXPECT_FALSE(mesh.tangents.empty()) << i;
+    EXPECT_EQ(mesh.tangents, own.tangents) << i;
+    EXPECT_EQ(mesh.rest_positions, own.rest_positions) << i;
+  }
+  EXPECT_EQ(scene.meshes[0].positions[0], glm::vec3(value(0, 31, 0), value(0, 31, 1), value(0, 31, 2)));
+  EXPECT_THAT(scene.warnings, testing::IsEmpty());
+  shared.json["meshes"][0]["primitives"][0]["indices"] = shared.Indices({31, 7, 13});
+  EXPECT_THAT(ErrorOf(shared), HasSubstr("NaN or infinity at vertex 13;")) << "as the file counts them";
+}
+
+// A choice is made anew for each primitive; values of sparse accessors stand at their vertices in the file.
+TEST_F(LoadGltf, SharedListsMayBeSparse) {
+  GltfBuilder b;
+  std::vector<float> many(3 * 100, 0.0f);
+  for (int i = 0; i < 100; ++i) many[std::size_t(3 * i)] = float(i), many[std::size_t(3 * i + 1)] = float(i * i);
+  const int position = b.Floats(many, 3);
+  b.json["accessors"][position]["sparse"] = {
+      {"count", 2},
+      {"indices", {{"bufferView", b.View(std::vector<std::uint16_t>{5, 60})}, {"componentType", kUshort}}},
+      {"values", {{"bufferView", b.View(std::vector<float>{0, 0, 9, 0, 0, 8})}}}};
+  const json attributes = {{"POSITION", position}};
+  b.Root({{"mesh", b.Mesh({{{"attributes", attributes}, {"indices", b.Indices({60, 7, 8})}},
+                           {{"attributes", attributes}, {"indices", b.Indices({8, 5, 60, 8, 60, 5})}}})}});
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  EXPECT_EQ(scene.meshes[0].positions, (std::vector<glm::vec3>{{0, 0, 8}, {7, 49, 0}, {8, 64, 0}}));
+  EXPECT_EQ(scene.meshes[1].positions, (std::vector<glm::vec3>{{8, 64, 0}, {0, 0, 9}, {0, 0, 8}}));
+  EXPECT_EQ(scene.meshes[1].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 1}}));
+}
+
+// The extension's own defaults: white, glossiness 1. Its metals are their specular colour, which nothing here can hold, so
+// what it means is never metallic.
+TEST_F(LoadGltf, SpecularGlossinessIsReadAsFarAsItGoes) {
+  const char* name = "KHR_materials_pbrSpecularGlossiness";
+  GltfBuilder b = TexturedSquare();
+  b.json["extensionsUsed"] = {name};
+  const auto add = [&](const json& extension) { b.Append("materials", {{"extensions", {{name, extension}}}}); };
+  add({{"diffuseFactor", {0.25, 0.5, 0.75, 0.5}},
+       {"diffuseTexture",
+        {{"index", 0}, {"texCoord", 1}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 3}}}}}}}},
+       {"specularFactor", {1, 0, 0}},
+       {"glossinessFactor", 0.75}});
+  add(json::object());
+  add({{"diffuseFactor", {1, 0, 0, 1}}, {"specularGlossinessTexture", {{"index", 0}}}});
+  b.json["materials"][0]["extensions"][name] = {{"diffuseFactor", {0, 0, 0, 1}}};
+  const Scene scene = Load(b);
+  ASSERT_EQ(scene.materials.size(), 4u);
+  EXPECT_EQ(scene.materials[0].base_color, glm::vec4(0.25f, 0.5f, 0.75f, 1.0f)) << "the newer model goes first";
+  EXPECT_EQ(scene.materials[0].metallic, 1.0f);
+  const Material& full = scene.materials[1];
+  EXPECT_EQ(full.base_color, glm::vec4(0.25f, 0.5f, 0.75f, 0.5f));
+  EXPECT_EQ(full.base_color_texture.texture, 0);
+  EXPECT_EQ(full.base_color_texture.uv_set, 1);
+  ExpectNear(full.base_color_texture.uv_transform * glm::vec3(1, 1, 1), {2, 3, 1});
+  EXPECT_EQ(full.metallic, 0.0f);
+  EXPECT_EQ(full.roughness, 0.25f);
+  EXPECT_EQ(scene.materials[2].base_color, glm::vec4(1.0f));
+  EXPECT_EQ(scene.materials[2].roughness, 0.0f);
+  EXPECT_EQ(scene.materials[3].base_color, glm::vec4(1, 0, 0, 1));
+  EXPECT_EQ(scene.materials[3].roughness, 1.0f) << "its texture is not read";
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(testing::AllOf(HasSubstr(name), HasSubstr("specular colour"),
+                                                                  HasSubstr("material 1"), HasSubstr("3 in all"))));
+  b.json["extensionsRequired"] = {name};
+  EXPECT_EQ(Load(b).materials[1].roughness, 0.25f);
+  for (const json& bad : {json{{"glossinessFactor", 1.5}}, json{{"glossinessFactor", "x"}},
+                          json{{"diffuseFactor", {1, 1, 1}}}, json{{"diffuseFactor", {1, 1, -1, 1}}}}) {
+    b.json["materials"][2]["extensions"][name] = bad;
+    EXPECT_THAT(ErrorOf(b), HasSubstr("material 2 has ")) << bad;
+  }
+}
+
 TEST_F(LoadGltf, TangentsAreKeptOrComputed) {
   GltfBuilder b = TexturedSquare();
   // The square's picture stands upright: u runs along +X, and up in the picture is +Y.

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <cmath>
+#include <ctime>
 #include <iterator>
 
 #include "animation_fixtures.h"
@@ -123,6 +124,83 @@ TEST_F(Greedy, SparseAccessorsCountLess) {
       {"indices", {{"bufferView", b.View(std::vector<std::uint16_t>{1, 2})}, {"componentType", kUshort}}},
       {"values", {{"bufferView", b.View(std::vector<float>{5, 0, 0, 0, 7, 0})}}}};
   EXPECT_THAT(Refusal(b), HasSubstr("has 16000032 elements and no data")) << "what one accessor may have does not change";
+}
+
+// Where a primitive uses few vertices of a list, only those are read, but all values of a sparse accessor are looked through,
+// and count: 501 times a million and three vertices. What it claims is counted before it is read, and found to be too many.
+TEST_F(Greedy, SparseValuesCountForEachReading) {
+  GltfBuilder b;
+  b.Triangle();
+  json& primitive = b.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["POSITION"] = b.Floats(std::vector<float>(3 * 8, 1.0f), 3);
+  const int sparse = Zeros(b, 8, "VEC3");
+  b.json["accessors"][sparse]["sparse"] = {
+      {"count", 1'000'000},
+      {"indices", {{"bufferView", b.View(std::vector<std::uint16_t>{1})}, {"componentType", kUshort}}},
+      {"values", {{"bufferView", b.View(std::vector<float>{5, 0, 0})}}}};
+  const json target = {{"POSITION", sparse}};
+  primitive["targets"] = json(501, target);
+  b.json["meshes"][0]["weights"] = json(501, 1.0);
+  EXPECT_THAT(Refusal(b), HasSubstr("at least 501000003 vertices, each instance counted; expected at most 500000000"));
+}
+
+// A target of two bytes is a weight for each node that shows its mesh: 985 nodes have 64,025,000.
+TEST_F(Greedy, MorphTargetsCountForEachNode) {
+  GltfBuilder b;
+  b.Triangle();
+  b.json["meshes"][0]["primitives"][0]["targets"] = json(65'000, json::object());
+  for (int i = 1; i < 1000; ++i) b.Root({{"mesh", 0}});
+  EXPECT_THAT(Refusal(b), testing::AllOf(HasSubstr("at least 64025000 morph targets"), HasSubstr("at most 64000000")));
+}
+
+// 100,000 empty targets for 300,000 vertices without data. Looked at for each vertex, once for its place and once for its
+// normal, they were 6·10¹⁰ steps, twelve seconds at one in each cycle of 5 GHz.
+TEST_F(Greedy, TargetsThatHoldNothingCostNoVertexAnything) {
+  GltfBuilder b;
+  b.Triangle();
+  const int zeros = Zeros(b, 300'000, "VEC3");
+  b.json["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", zeros}}}};
+  b.json["meshes"][0]["primitives"][0]["targets"] = json(100'000, json::object());
+  b.json["meshes"][0]["weights"] = json(100'000, 1);
+  const std::filesystem::path file = Write("scene.glb", b.Glb());
+  const std::clock_t before = std::clock();
+  const Scene scene = Load(file);
+  EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 6.0);
+  ASSERT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.meshes[0].positions.size(), 300'000u);
+}
+
+// `{}` became a material of 2 KB, a node of half a KB. As many as may be are left to the parser, which here finds a bracket too
+// many.
+TEST_F(Greedy, ListsAreCountedBeforeTheyAreMade) {
+  const auto refusal = [&](const std::string& list, std::size_t elements, const std::string& behind = "") {
+    std::string text = R"({"asset":{"version":"2.0"},")" + list + R"(":[{})";
+    for (std::size_t i = 1; i < elements; ++i) text += ",{}";
+    return Refusal(Write("scene.gltf", text + "]" + behind + "}"));
+  };
+  EXPECT_THAT(refusal("materials", 100'001),
+              testing::AllOf(HasSubstr("100001 elements in 'materials'"), HasSubstr("at most 100000")));
+  EXPECT_THAT(refusal(R"(materials)", 100'001), HasSubstr("at most 100000"));
+  EXPECT_THAT(refusal("nodes", 2'000'001),
+              testing::AllOf(HasSubstr("2000001 elements in 'nodes'"), HasSubstr("at most 2000000")));
+  EXPECT_THAT(refusal("materials", 100'000, "]"), HasSubstr("cannot be read as glTF 2.0"));
+}
+
+// tinygltf gives each sampler the extensions of its animation: 4002 copies of 4000 numbers, 150 bytes each, from 100 KB. The
+// look ahead counts brackets and commas, 4002 of them, once for each of the 4001 commas between samplers and once more.
+TEST_F(Greedy, ExtensionsThatAreCopiedAreCounted) {
+  const auto scene = [&](int samplers) {
+    GltfBuilder b;
+    b.Triangle();
+    const json sampler = {{"input", 0}, {"output", 0}};
+    b.Append("animations", {{"channels", json::array()},
+                            {"extensions", {{"EXT_own", {{"list", json(4000, 0)}}}}},
+                            {"samplers", json(samplers, sampler)}});
+    return b;
+  };
+  EXPECT_THAT(Refusal(scene(4002)), testing::AllOf(HasSubstr("16016004 values in extras and extensions"),
+                                                   HasSubstr("expected at most 16000000")));
+  EXPECT_EQ(Load(scene(10)).meshes.size(), 1u);
 }
 
 // Channels that name one accessor each keep it: the second is one too many. One alone is refused before it is read.

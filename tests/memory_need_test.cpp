@@ -1,9 +1,12 @@
 // What a run says it takes at most, against what the system counted; and what is refused before anything is taken.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "io/picture_file.h"
 #include "tests/cli_harness.h"
 #include "tests/gltf_builder.h"
 
@@ -25,6 +28,15 @@ class MemoryNeedTest : public CliTest {
     EXPECT_LE(peak, estimated) << Joined(arguments);
     EXPECT_GE(peak, 0.25 * estimated) << Joined(arguments);
 #endif
+  }
+
+  // Within the addresses of one plane of 16384² floats, as a shell limits them. Two threads, whose stacks take few of them.
+  void ExpectErrorInOnePlane(const Arguments& arguments, int code, const std::vector<std::string>& parts) {
+    constexpr int kPlaneKilobytes = 16384 / 1024 * 16384 * 4;
+    CommandSettings shell;
+    shell.program = "/bin/sh";
+    const std::string limited = "ulimit -v " + std::to_string(kPlaneKilobytes) + R"( && exec "$0" "$@")";
+    ExpectError(With({"-c", limited, SCUMBLE_BINARY}, With(arguments, {"--threads", "2"})), code, parts, shell);
   }
 };
 
@@ -124,7 +136,9 @@ TEST_F(MemoryNeedTest, ThePlanSaysHowMuchAndForWhat) {
 }
 
 // The largest picture that there may be, under a gigabyte: 16384² pixels of guides alone are 7.5 GB. It is refused before
-// they are taken, which is why this test is quick, and nothing is written.
+// they are taken, which is why this test is quick, and nothing is written. Planes are taken without being touched, so what is
+// resident would not show that one was: but of 1 GiB of addresses, which is one plane of floats, the program itself has some,
+// and no plane has room. Told to try all the same, it does take one, and ends for want of memory.
 TEST_F(MemoryNeedTest, TheLargestPictureIsRefusedUnderAGigabyte) {
   WriteStyle("style");
   WriteText("p.png", "old");
@@ -134,11 +148,44 @@ TEST_F(MemoryNeedTest, TheLargestPictureIsRefusedUnderAGigabyte) {
   EXPECT_EQ(Bytes("p.png"), "old");
   ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "16384", "-o", "g.exr", "--max-memory", "1G"}, 2, {"guides 7.0 GiB"});
   EXPECT_FALSE(Exists("g.exr"));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take terabytes of addresses
+  ExpectErrorInOnePlane(huge, 2, {"guides 7.0 GiB", "--max-memory allows 1.0 GiB"});
+  const Arguments guidegen = {"guidegen", Scene("suzanne.glb"), "--size", "16384", "-o", "g.exr", "--max-memory"};
+  ExpectErrorInOnePlane(With(guidegen, {"1G"}), 2, {"guides 7.0 GiB"});
+  ExpectErrorInOnePlane(With(guidegen, {"1T"}), 6, {"memory"});
+  EXPECT_EQ(Bytes("p.png"), "old");
+  EXPECT_FALSE(Exists("g.exr"));
+#endif
   ExpectError({"sphere", "--size", "8192", "-o", "kit", "--max-memory", "1G"}, 2, {"guides ", "--only png"});
   EXPECT_FALSE(Exists("kit"));
   ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "9000", "--frames", "1-3", "-o", "f.#.exr", "--max-memory", "1G"}, 2,
               {"frame that is written"});
   EXPECT_FALSE(Exists("f.1.exr"));
+}
+
+// An exemplar of 2048² pixels, 8 bytes each, in a few kilobytes that are damaged at their end: whether it is refused for its
+// size or its damage tells whether it was read. Guides of 300² have four floats a pixel, their picture has 8 bytes.
+TEST_F(MemoryNeedTest, ExemplarsAreCountedBeforeTheyAreRead) {
+  WriteStyle("style");
+  std::vector<std::byte> png = *EncodePng(Picture(2048, 2048));
+  std::fill(png.end() - 12, png.end(), std::byte{0});  // the last chunk
+  WriteText("style/lit.png", std::string(reinterpret_cast<const char*>(png.data()), png.size()));
+  const Arguments guidegen = {"guidegen", Scene("ball.glb"), "--size", "16", "--style", "style", "-o", "g.exr"},
+                  stylize = {"stylize", Scene("ball.glb"), "--size", "16", "--style", "style", "-o", "p.png"};
+  WriteGuideFile("ball.exr", Ball(300));
+  for (const Arguments& arguments : {guidegen, stylize, {"transfer", "ball.exr", "--style", "style", "-o", "p.png"}}) {
+    ExpectError(With(arguments, {"--max-memory", "31M"}), 2,
+                {"this takes up to 32 MiB of memory (styles 32 MiB), and --max-memory allows 31 MiB: take smaller exemplars, or allow more"});
+    ExpectError(With(arguments, {"--max-memory", "1G"}), 3, {"lit.png", "ends before its picture does"});
+  }
+  EXPECT_FALSE(Exists("p.png"));
+  WriteStyle("scene");
+  WritePainted("scene/lit.png", 300, 300);
+  WriteText("scene/style.toml", "[[exemplar]]\nimage = \"lit.png\"\nguides = \"../ball.exr\"\n");
+  ExpectError({"transfer", "ball.exr", "--style", "scene", "-o", "p.png", "--max-memory", "1M"}, 2,
+              {"(styles 2.1 MiB)", "take smaller exemplars"});
+  ExpectError({"transfer", "ball.exr", "--style", "scene", "--assign", "Nobody=style", "-o", "p.png", "--max-memory", "3M"}, 2,
+              {"(styles 34 MiB)"});
 }
 
 TEST_F(MemoryNeedTest, GuidesOfAFileAreLookedAtBeforeTheyAreRead) {

@@ -62,6 +62,11 @@ class Promises : public testing::Test {
     EXPECT_FALSE(ReadChannels(path_));
     EXPECT_FALSE(InspectGuides(path_));
     EXPECT_FALSE(internal::CheckExrPromises(file, "g.exr"));
+    EXPECT_FALSE(CountPixels(path_));
+    for (const Expected<Picture>& picture : {ReadPicture(path_), DecodePicture(file, "g.exr")}) {
+      ASSERT_FALSE(picture);
+      EXPECT_THAT(picture.error().message, HasSubstr(why));
+    }
   }
 
   TemporaryFolder folder_;
@@ -128,6 +133,47 @@ TEST_F(Promises, ExrAttributesOfAnotherSize) {
   file = Guides("zip", 2);
   Patch(file, std::string("channels\0chlist\0", 16), 6, 3);  // behind the size, and the name A with its NUL
   ExpectRefused(file, "no chlist");
+}
+
+// Guides of a side with the attribute type, deepscanline, and these bits of the version, which stands at byte 4.
+std::vector<std::byte> CalledDeep(int side, std::uint32_t flags) {
+  const GuideSet guides = Nothing(side, side);
+  internal::ExrImage image{side, side, {}, "zips", {{"tYPE", "deepscanline"}}, {}};
+  for (const char* name : {"normal.X", "normal.Y", "normal.Z"})
+    image.channels.push_back({name, false, guides.Plane(Layer::kNormal, 0)});
+  image.channels.push_back({"A", false, guides.Plane(Layer::kCoverage, 0)});
+  std::vector<std::byte> file = *internal::EncodeExr("g.exr", image);
+  auto* const begin = reinterpret_cast<char*>(file.data());
+  const std::string name = "tYPE";  // the library would mend one that it is given
+  char* const at = std::search(begin, begin + file.size(), name.begin(), name.end());
+  EXPECT_NE(at, begin + file.size());
+  std::memcpy(at, "type", name.size());
+  file[5] |= std::byte(flags >> 8);
+  return file;
+}
+
+// Without the flags 0x800 (not only images) and 0x1000 (many parts) OpenEXR takes a file for what it reads, an image of
+// scan lines, whatever its type is called: it is read, and its window is believed no more than any other.
+TEST_F(Promises, ImagesThatAreCalledDeepAreImages) {
+  const auto file = CalledDeep(8, 0);
+  ASSERT_TRUE(WriteFileAtomically(path_, file));
+  GuideReadOptions options;
+  options.required = {Layer::kCoverage, Layer::kNormal};
+  const auto guides = ReadGuides(path_, options);
+  ASSERT_TRUE(guides) << guides.error().message;
+  EXPECT_EQ(guides->width(), 8);
+  const std::string window = std::string("dataWindow\0box2i\0\x10\0\0\0", 21);
+  for (const std::uint32_t last : {16383u, 32767u}) {
+    auto large = file;
+    Patch(large, window, 8, last);
+    Patch(large, window, 12, last);
+    ExpectRefused(large, "promises");
+  }
+}
+
+// A deep pixel has any number of samples, so that nothing bounds how many a file holds; no reader makes anything of them.
+TEST_F(Promises, DeepPixelsAreRefusedAsThat) {
+  for (const std::uint32_t flags : {0x800u, 0x1000u, 0x1800u}) ExpectRefused(CalledDeep(8, flags), "deep pixels");
 }
 
 // A PNG's header says its sides at bytes 16 and 20, and its sum follows.

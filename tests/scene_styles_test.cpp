@@ -103,6 +103,28 @@ TEST_F(CliSceneStyles, ObjectsAndMaterialsGetWhatTheirAuthorWants) {
   EXPECT_EQ(bundled[3], 'r');
 }
 
+// They are opened when the scene is, and are read all the same.
+TEST_F(CliSceneStyles, NoOutputTakesThePlaceOfTheirFiles) {
+  GltfBuilder b = Tiles(2, 1);
+  Want(b, 0, "green");
+  WriteGlb("scene/s.glb", b);
+  const std::string painting = Bytes("scene/green/lit.png");
+  std::filesystem::create_symlink(At("scene/green/lit.png"), At("p2.png"));
+  RunOk({"guidegen", "scene/s.glb", "--style", "red", "--size", "16x8", "-o", "scene/g.exr"});
+  for (const Arguments& verb : {Arguments{"stylize", "scene/s.glb", "--size", "16x8"}, {"transfer", "scene/g.exr"}}) {
+    const Arguments paint = With(verb, {"--style", "red"});
+    ExpectError(With(paint, {"-o", "scene/green/lit.png"}), 2, {"scene/green/lit.png", "overwrite a file of the style"});
+    ExpectError(With(paint, {"--frames", "1-2", "-o", "p#.png"}), 2, {"-o p2.png", "overwrite a file of the style"});
+    EXPECT_FALSE(Exists("p1.png"));
+    RunOk(With(paint, {"-o", "new.png"}));
+  }
+  std::filesystem::create_symlink(At("scene/green/lit.png"), At("g2.exr"));
+  ExpectError({"guidegen", "scene/s.glb", "--style", "red", "--size", "16x8", "--frames", "1-2", "-o", "g#.exr"}, 2,
+              {"-o g2.exr", "overwrite a file of the style"});
+  EXPECT_FALSE(Exists("g1.exr"));
+  EXPECT_EQ(Bytes("scene/green/lit.png"), painting);
+}
+
 TEST_F(CliSceneStyles, TheyTravelWithTheGuides) {
   GltfBuilder b = Tiles(4, 1);
   Want(b, 0, "green");

@@ -129,6 +129,29 @@ TEST_F(CliSequence, ResumeRepairsAndLeavesTheRest) {
   EXPECT_TRUE(Contains(RunOk(stylize).out, "6 frames: 6 made;"));
 }
 
+// Frames of another exposure are other pictures, whichever of the two was measured; stops that were printed go on with it.
+TEST_F(CliSequence, ResumeComparesTheExposure) {
+  WriteLitStyle("style");
+  for (const char* const name : {"g.1.exr", "g.2.exr"}) WriteLitBall(name, 0.2f);
+  double stops = 0.0;
+  const auto kept = [&](const std::string& exposure) {
+    const nlohmann::json report = RunOk({"transfer", "g.#.exr", "--style", "style", "--frames", "1-2", "-o", "p#.png",
+                                         "--exposure", exposure, "--json", "--resume"})
+                                      .Json();
+    if (report["frames"][0].contains("exposure")) stops = report["frames"][0]["exposure"];
+    return report["kept"];
+  };
+  EXPECT_EQ(kept("auto"), 0);
+  EXPECT_EQ(kept("auto"), 2);
+  char measured[32];
+  std::snprintf(measured, sizeof measured, "%.2f", stops);
+  EXPECT_EQ(kept(measured), 2);
+  EXPECT_EQ(kept("5"), 0);
+  EXPECT_EQ(kept("5"), 2);
+  EXPECT_EQ(kept("auto"), 0) << "measured it would be another";
+  EXPECT_EQ(kept("auto"), 2);
+}
+
 TEST_F(CliSequence, ResumeKnowsEveryKindOfOutput) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(48));
@@ -252,12 +275,14 @@ TEST_F(CliSequence, OneExposureForAllFrames) {
   std::snprintf(text, sizeof text, "%.2f", stops);
   EXPECT_TRUE(Contains(all.Warning(), "measured on frame 1")) << all.err;
   EXPECT_TRUE(Contains(all.Warning(), std::string("--exposure ") + text)) << all.err;
-  // The stops that were printed repeat it, whatever the range.
+  // The stops that were printed repeat it, whatever the range. Its file tells that they were given.
+  const std::string second = Pixels("p.0002.png");
   const CommandResult part = RunOk(With(transfer, {"--frames", "2-3", "--exposure", text}));
   EXPECT_EQ(part.Warning(), "");
-  EXPECT_EQ(AllBytes("p.", 1, 3), whole);
+  EXPECT_TRUE(Pixels("p.0002.png") == second && Pixels("p.0003.png") == third);
+  const std::string given = Bytes("p.0003.png");
   RunOk(With(transfer, {"--frame", "3", "--exposure", text}));
-  EXPECT_EQ(AllBytes("p.", 1, 3), whole);
+  EXPECT_TRUE(Bytes("p.0003.png") == given);
   // A frame that is kept is still the one to measure on.
   fs::remove(At("p.0003.png"));
   RunOk(With(transfer, {"--frames", "1-3", "--resume"}));

@@ -3,11 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "cli/frames.h"
 #include "io/picture_file.h"
 #include "style/style_file.h"
 #include "tests/refusal.h"
@@ -135,6 +139,48 @@ TEST_F(StyleKeyframes, LayersOfAllFrames) {
   ASSERT_TRUE(layers);
   EXPECT_TRUE(layers->Has(Layer::kAlbedo));
   EXPECT_EQ(*LayersOverTime(Loaded("threshold = 0.2")), RequiredLayers(Loaded("threshold = 0.2")));
+}
+
+// They are asked for in every frame, and no picture changes them: one that is gone by then is not missed.
+TEST_F(StyleKeyframes, LayersOfAllFramesAreKnownWithoutReadingPaper) {
+  ASSERT_TRUE(WritePicture(folder_ / "night.png", Picture(4, 4)));
+  Style style = Loaded("paper = [[1, \"#ffffff\"], [48, \"night.png\"]]\ncolorize = [[10, 0], [20, 1]]");
+  std::filesystem::remove(folder_ / "night.png");
+  const auto layers = LayersOverTime(style);
+  ASSERT_TRUE(layers) << layers.error().message;
+  EXPECT_TRUE(layers->Has(Layer::kAlbedo));
+  EXPECT_FALSE(SetStyleFrame(style, 48)) << "the frame that shows it reads it";
+}
+
+// As many frames as a style.toml of 1 MB names. To look at half the track for each of them and for the one behind comes to
+// 10¹⁰ keys of 48 bytes, seconds at any speed of memory; halving it, to 200,000 times 17, a thousandth of that.
+TEST_F(StyleKeyframes, TracksOfManyFramesAreSearchedByHalves) {
+  Style style = Loaded("");
+  StyleTrack track;
+  for (std::int64_t frame = 0; frame < 100'000; ++frame) track.keys.push_back({frame, KeyValue(double(frame % 2))});
+  const std::clock_t start = std::clock();
+  ASSERT_TRUE(AddTrack(style, *FindStyleKey("transfer.colorize"), std::move(track)));
+  const auto layers = LayersOverTime(style);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  ASSERT_TRUE(layers) << layers.error().message;
+  EXPECT_TRUE(layers->Has(Layer::kAlbedo));
+  EXPECT_EQ(At(style, 99'999).colorize, 1.0);
+  EXPECT_EQ(At(style, 50'000).colorize, 0.0);
+  EXPECT_LT(seconds, 3.0);
+}
+
+// Numbers of frames are those of pictures, and half way from the first to the last of all is frame 0.
+TEST_F(StyleKeyframes, FramesGoAsFarAsThoseOfPictures) {
+  static_assert(kMaxTrackFrame == kMaxFrame);
+  Style style = Loaded("threshold = [[-999999999, 0.25], [999999999, 0.75]]");
+  EXPECT_EQ(style.transfer.threshold, 0.5f);
+  EXPECT_EQ(At(style, std::numeric_limits<std::int64_t>::min()).threshold, 0.25f);
+  EXPECT_EQ(At(style, std::numeric_limits<std::int64_t>::max()).threshold, 0.75f);
+  EXPECT_TRUE(LayersOverTime(style));
+  for (const char* frame : {"-9223372036854775807", "-1000000000", "1000000000", "9223372036854775807"}) {
+    ExpectRefusal("threshold = [[" + std::string(frame) + ", 0.1]]",
+                  {"style.toml:2", "transfer.threshold", "no frame " + std::string(frame), "-999999999 to 999999999"});
+  }
 }
 
 TEST_F(StyleKeyframes, WhatIsWrongIsSaid) {

@@ -111,22 +111,54 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
 }
 
 // Of one picture the first way is there, whatever the moment made of the times; a later one only where even the upper
-// quartile of its guides is below the first's lower one.
+// quartile of its total is below the first's lower one.
 TEST(TradeReport, TheFrontHasAPictureOnce) {
   TradeReport report;
   for (const char* name : {"style", "again", "other"}) report.ways.push_back(MadeUpWay("axis", name, 10.0, 1.0));
   report.ways[2].both.mean = 2.0;
   report.ways[0].total_ms = {10.0, 9.0, 11.0};
-  report.ways[0].guides_ms = {5.0, 4.5, 5.5};
   report.ways[1].same_as = 0;
-  report.ways[1].total_ms = {8.5, 8.4, 8.6};
-  report.ways[1].guides_ms = report.ways[0].guides_ms;
+  report.ways[1].total_ms = {8.5, 8.4, 9.1};
   report.ways[2].total_ms = {9.8, 9.7, 9.9};
   EXPECT_EQ(FrontOf(report), (std::vector<std::size_t>{2, 0})) << "not pushed off by the one that is not there";
-  report.ways[1].guides_ms = {4.0, 4.0, 4.0};
+  report.ways[1].total_ms = {8.5, 8.5, 8.5};
   EXPECT_EQ(FrontOf(report), (std::vector<std::size_t>{2, 0})) << "one run says nothing";
-  report.ways[1].guides_ms = {4.0, 3.9, 4.1};
+  report.ways[1].total_ms = {8.5, 8.4, 8.6};
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
+}
+
+// A method that draws the same picture in half the time of the transfer, from the very same guides, is what to choose.
+TEST(TradeReport, AQuickerTransferOfTheSamePictureCounts) {
+  TradeReport report;
+  for (const char* name : {"slow", "quick", "quickest"}) report.ways.push_back(MadeUpWay("axis", name, 20.0, 1.0));
+  for (TradeMeasure& way : report.ways) way.guides_ms = {10.0, 9.0, 11.0};
+  report.ways[0].total_ms = {20.0, 19.0, 21.0};
+  report.ways[1].same_as = report.ways[2].same_as = 0;
+  report.ways[1].total_ms = {15.0, 14.0, 16.0};
+  report.ways[2].total_ms = {20.0, 19.0, 21.0};
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
+  report.ways[2].total_ms = {13.0, 12.0, 13.9};
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{2}) << "the quickest, and no other of that picture";
+  report.ways[2].total_ms = {13.0, 12.0, 14.1};
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1}) << "too near to call: the first of the two";
+}
+
+// A table of 256 cells comes first and cannot be chosen, one of 512 has options and makes the same picture: that one is
+// on the front, though it is the slower of them.
+TEST(TradeReport, APictureIsStoodForByAWayThatCanBeChosen) {
+  TradeReport report;
+  for (const char* name : {"style", "256", "512", "again"}) report.ways.push_back(MadeUpWay("nearest", name, 10.0, 1.0));
+  report.ways[0].both.mean = 2.0;
+  report.ways[1].options.clear();
+  report.ways[1].total_ms = {5.0, 4.9, 5.1};
+  report.ways[2].same_as = report.ways[3].same_as = 1;
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{2});
+  EXPECT_EQ(internal::MayBeOnFront(report), (std::vector<bool>{true, false, true, false}));
+  report.ways[2].by_chance = true;
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{3}) << "nor does chance stand for anything";
+  report.ways[2].by_chance = false;
+  report.ways[2].total_ms = {};
+  EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{3}) << "nor what was not timed";
 }
 
 // Table, JSON and chart tell of one front: each ringed point is one of it, and of memory there is none.
@@ -134,7 +166,7 @@ TEST(TradeReport, TheChartRingsTheFront) {
   TradeReport report = MadeUpReport();
   report.ways.push_back(MadeUpWay("levels", "9", 4.0, 0.5));
   report.ways.back().same_as = 2;
-  report.ways.back().guides_ms = report.ways[2].guides_ms;
+  report.ways.back().total_ms.upper = report.ways[2].total_ms.upper;  // not surely quicker
   report.ways.push_back(MadeUpWay("precision", "8 bits", 3.0, 0.4));
   report.ways.back().options.clear();  // nothing makes it
   const std::vector<bool> front = internal::OnFront(report);
@@ -312,6 +344,13 @@ TEST(TradeReport, JsonSaysNullForWhatWasNotMeasuredAndNamesWhatIsNoNumber) {
   }
   EXPECT_EQ(json["ways"][2]["repetition"], "nan");
   EXPECT_EQ(json["ways"][2]["chunk_area_pixels"], "-inf");
+}
+
+TEST(TradeReport, JsonHasTheExposureWhereLightIsLookedAt) {
+  TradeReport report = MadeUpReport();
+  EXPECT_TRUE(nlohmann::json::parse(TradeJson(report))["exposure"].is_null());
+  report.exposure = -1.25;
+  EXPECT_EQ(nlohmann::json::parse(TradeJson(report))["exposure"], -1.25);
 }
 
 TEST(TradeReport, JsonTakesNamesThatAreNotUtf8) {

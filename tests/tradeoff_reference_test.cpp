@@ -202,8 +202,10 @@ TEST(TradeReference, PaintForOtherLightCosts) {
   GuideSet dark = bright;
   for (float& value : dark.Plane(Layer::kLuminance)) value = 0.1f;
   const Painted wrong = Paint(style, dark);  // all in the second exemplar's paint
-  const double expected = 10.0 * std::pow(0.3 * (0.5 - 0.1), 2);
-  EXPECT_NEAR(Measured(reference, wrong).energy.mean, expected, 1e-5 * expected)
+  // In floats are the weight, 0.1 and their product, each off by 2^-24 of itself at most. Of the difference the last
+  // two are a quarter, so it is off by 1.5 · 2^-24 and its square by 3; the normals are as near as in a straight copy.
+  const double expected = 10.0 * std::pow(0.3 * (0.5 - 0.1), 2), normals = 10.0 * 3.0 * std::pow(4.0 * 0x1p-24, 2);
+  EXPECT_NEAR(Measured(reference, wrong).energy.mean, expected, 3.0 * 0x1p-24 * expected + normals)
       << "noise of random colours has no nearer patch";
 }
 
@@ -224,17 +226,20 @@ TEST(TradeReference, WhatVarietyGrantsOnAWallIsFree) {
     ASSERT_EQ(ball.width(), kSize);
     Picture copied(kWall, kWall);
     const double chord = 2.0 * std::sin(degrees / 2.0 * 3.14159265358979323846 / 180.0);
-    double sum = 0.0;
+    double sum = 0.0, slack = 0.0;
     for (int y = 0; y < kWall; ++y) {
       for (int x = 0; x < kWall; ++x) {
         std::copy_n(ball.picture().At(kLeft + x, kTop + y), 4, copied.At(x, y));
         const glm::dvec3 off = glm::dvec3(ball.Normal(kLeft + x, kTop + y)) - glm::dvec3(0.0, 0.0, 1.0);
-        sum += 10.0 * std::pow(std::max(0.0, glm::length(off) - chord), 2);
+        const double beyond = std::max(0.0, glm::length(off) - chord);
+        sum += 10.0 * beyond * beyond;
+        slack += 10.0 * 2.0 * beyond * (0x1p-24 * chord + 0x1p-50);
       }
     }
     TradeMeasure measure;
     ASSERT_TRUE(TradeReference(wall, *prepared, 0.0, 0).MeasurePaint(copied, nullptr, {}, measure).ok());
-    EXPECT_NEAR(measure.energy.mean, sum / (kWall * kWall), 1e-5) << degrees;
+    // The chord is kept as a float, all else is double: lengths that lose less than 2^-50, and a sum of 400.
+    EXPECT_NEAR(measure.energy.mean, sum / (kWall * kWall), (slack + 0x1p-43 * sum) / (kWall * kWall)) << degrees;
     EXPECT_EQ(sum == 0.0, degrees == 60.0) << "some costs, and at last nothing";
   }
 }

@@ -67,6 +67,7 @@ GuideSet RoughSurface(int width, int height, std::uint64_t seed) {
       if (seed % 4 == 3 && rare == 3) guides.Plane(Layer::kObject)[i] = std::numeric_limits<float>::quiet_NaN();
     }
   }
+  if (seed % 11 == 5) guides.camera = OrthographicCamera(scale * UnitFloat(Hash(seed, 13)));
   return guides;
 }
 

@@ -32,6 +32,13 @@ inline GuideSet MakeGuides(int width, int height, const std::function<glm::vec3(
   return guides;
 }
 
+// An orthographic view of `height` metres, by a camera that stands wherever depths say.
+inline GuideCamera OrthographicCamera(double height) {
+  GuideCamera camera{"flat"};
+  camera.clip_from_view[0][0] = camera.clip_from_view[1][1] = 2.0 / height;
+  return camera;
+}
+
 // The normals of the sphere that fills an N × N picture, by the formula.
 inline GuideSet SphereGuides(int size) {
   return MakeGuides(size, size, [size](int x, int y) {

@@ -1,12 +1,14 @@
 // StyleBlit sixteen pixels at a time gives what the plain form gives, pixel by pixel, with every set of vector
 // instructions that this machine has.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
+#include "tests/every_instruction_set.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/match.h"
 
@@ -17,6 +19,7 @@ using testing::AnyDirection;
 using testing::HillGuides;
 using testing::MakeGuides;
 using testing::NoisePicture;
+using testing::OnEveryInstructionSet;
 
 struct Case {
   int levels = 7;
@@ -29,6 +32,7 @@ struct Case {
   std::int64_t step = 0;
   std::optional<Region> region = std::nullopt;
   bool keep_moved = false;
+  std::uint64_t seed = 5;
 };
 
 // What both forms leave alone.
@@ -55,10 +59,11 @@ class Matches {
   std::vector<std::uint8_t>& wanted() { return wanted_; }
 
   // Both forms, the fast one on some threads.
-  // Three frames: one by itself, one that learns the seeds and one that knows them, unless `map` does already.
-  void ExpectEqual(const Case& c, const std::string& what, int threads = 2, internal::SeedMap* map = nullptr) const {
+  // Three frames: one by itself, one that learns the seeds and one that knows them, unless `map` does already. Returns what
+  // the plain form finds.
+  SourceField ExpectEqual(const Case& c, const std::string& what, int threads = 2, internal::SeedMap* map = nullptr) const {
     const Region whole{0, 0, guides_.width(), guides_.height()};
-    const SeedRules rules{5, c.step, c.jitter, c.level_offset};
+    const SeedRules rules{c.seed, c.step, c.jitter, c.level_offset};
     internal::MatchInput input{guides_,  active_,  exemplar_, illumination_,           luminance_, GuideTest(c.threshold, c.metric),
                                rules,    c.levels, c.variety, 4, c.region.value_or(whole)};
     input.wanted = wanted_;
@@ -81,6 +86,7 @@ class Matches {
       });
       ExpectSame(plain, again, what + frame);
     }
+    return plain;
   }
 
  private:
@@ -127,15 +133,7 @@ TEST(TransferTiles, EveryInstructionSetGivesThePlainBytes) {
   const GuideSet guides = MixedGuides(603, 301, 1);
   const PreparedExemplar exemplar(NoisePicture(96), 2.0, 200);
   const Matches matches(guides, exemplar);
-  std::int64_t tried = 0;
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
-    const std::int64_t target = targets & -targets;
-    hwy::SetSupportedTargetsForTest(target);
-    matches.ExpectEqual({}, hwy::TargetName(static_cast<std::uint32_t>(target)));
-    ++tried;
-    hwy::SetSupportedTargetsForTest(0);
-  }
-  EXPECT_GT(tried, 1);
+  OnEveryInstructionSet([&] { matches.ExpectEqual({}, "mixed"); });
 }
 
 TEST(TransferTiles, EveryLevelJitterAndThreshold) {
@@ -151,6 +149,86 @@ TEST(TransferTiles, EveryLevelJitterAndThreshold) {
   }
   matches.ExpectEqual({.levels = 6, .level_offset = 1, .step = 17}, "preview");
   matches.ExpectEqual({.least_level = 3}, "least level");
+}
+
+// A line of pixels as long as a picture may be, along x or y, which is as long as the largest cells: so seeds of theirs can stand
+// in it, and the runs of pixels that are near to them can end in it too.
+struct Line {
+  static constexpr int kLength = kMaxImageSide;
+  bool upright;
+
+  int width() const { return upright ? 1 : kLength; }
+  int height() const { return upright ? kLength : 1; }
+  int Along(PixelPosition p) const { return upright ? p.y : p.x; }
+  int Beside(PixelPosition p) const { return upright ? p.x : p.y; }
+  PixelPosition At(int along) const { return upright ? PixelPosition{0, along} : PixelPosition{along, 0}; }
+
+  // Where on the line the seed that is nearest to a pixel of it stands; -1: outside the picture.
+  int NearestSeed(const SeedRules& rules, int level, int along) const {
+    const PixelPosition p = At(along);
+    const SeedGrid grid(rules, level, Region{p.x, p.y, p.x + 1, p.y + 1});
+    const PixelPosition q = grid.Position(grid.Nearest(p.x, p.y));
+    return Beside(q) == 0 && Along(q) >= 0 && Along(q) < kLength ? Along(q) : -1;
+  }
+};
+
+// A random seed by which a seed of the level stands on the line at `at`, and the pixel `end`, at most `reach` from there, is near
+// to another: a run of the first seed's ends between them. One in 2^15 puts a seed of level 15 on the line.
+struct SeedOnLine {
+  std::uint64_t seed = 0;
+  int at = 0, end = 0;
+};
+SeedOnLine FindSeedOnLine(const Line& line, int level, int reach) {
+  constexpr std::uint64_t kMost = 1 << 20;
+  for (std::uint64_t seed = 0; seed < kMost; ++seed) {
+    const SeedRules rules{seed};
+    for (int cell = 0; cell << level < Line::kLength; ++cell) {
+      const PixelPosition of_cell = line.At(cell), q = SeedOfCell(rules, level, of_cell.x, of_cell.y);
+      if (line.Beside(q) != 0) continue;
+      const int at = line.Along(q);
+      for (const int end : {std::max(0, at - reach), std::min(Line::kLength - 1, at + reach)}) {
+        if (line.NearestSeed(rules, level, end) != at) return {seed, at, end};
+      }
+    }
+  }
+  ADD_FAILURE() << "no random seed reaches level " << level;
+  return {};
+}
+
+// The scene faces us; of the paint, a line as long, the middle alone does. So each seed's source is the middle, every pixel that
+// is nearest to it takes what is as far from there, at any distance of normals, and what no seed settles takes the middle.
+TEST(TransferTiles, SeedsOfTheLargestCells) {
+  constexpr int kPaint = 32767, kMiddle = kPaint / 2;
+  for (const Line line : {Line{false}, Line{true}}) {
+    const GuideSet guides = MakeGuides(line.width(), line.height(), [](int, int) { return glm::vec3(0, 0, 1); });
+    const Picture picture(std::min(kPaint, line.width()), std::min(kPaint, line.height()));
+    const GuideSet painted = MakeGuides(picture.width, picture.height, [](int x, int y) {
+      return x + y == kMiddle ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
+    });
+    const std::vector<const Picture*> pictures{&picture};
+    Expected<PreparedExemplar> exemplar =
+        PreparedExemplar::OfScene(pictures, painted, 0.0, picture.width, picture.height, "line");
+    ASSERT_TRUE(exemplar);
+    ASSERT_TRUE(exemplar->SearchBy(NearestSearch::kTree, 1, nullptr));
+    const Matches matches(guides, *exemplar);
+    for (int level = internal::kMaxSpreadLevel + 1; level <= 15; ++level) {
+      const SeedOnLine found = FindSeedOnLine(line, level, kMiddle);
+      const std::string what = (line.upright ? "column, level " : "row, level ") + std::to_string(level);
+      const SourceField field = matches.ExpectEqual({.levels = level + 1,
+                                                     .least_level = level,
+                                                     .threshold = std::numeric_limits<float>::infinity(),
+                                                     .seed = found.seed},
+                                                    what);
+      const auto source = [&](int p) { return int((line.upright ? field.y : field.x)[std::size_t(p)]); };
+      const auto taken_from = [&](int p) {
+        return field.level[std::size_t(p)] == level ? p + kMiddle - source(p) : -1;
+      };
+      EXPECT_EQ(taken_from(found.at), found.at) << what;
+      const int other = line.NearestSeed({found.seed}, level, found.end);
+      EXPECT_NE(other, found.at) << what;
+      EXPECT_EQ(taken_from(found.end), std::abs(found.end - other) <= kMiddle ? other : -1) << what;
+    }
+  }
 }
 
 TEST(TransferTiles, EverySizeAndRegion) {

@@ -296,6 +296,33 @@ TEST(EdgeAware, FingersSurviveRadiusEight) {
   }
 }
 
+// An orthographic camera sees the same from wherever it stands, so where it stands is no part of what an edge is: the step
+// is measured by the height that is seen. Depths are sixteenths of a metre below 2^20 m, exact wherever the camera stands.
+TEST(EdgeAware, AnOrthographicCameraMayStandAnywhere) {
+  Style style = PlainStyle(BlackAndWhite(128));
+  for (const int radius : {1, 3, 8}) {
+    style.transfer.blend_radius = radius;
+    for (const double height : {40.0, 2000.0}) {
+      std::size_t first = 0;
+      for (const float distance : {2.0f, 64.0f, 65536.0f, 524288.0f}) {
+        GuideSet guides = MakeGuides(96, 48, [](int x, int) {
+          return glm::normalize(glm::vec3(x % 16 < 4 ? 0.4f : -0.4f, 0, 1));
+        });
+        guides.camera = OrthographicCamera(height);
+        for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+          const float slanted = distance + 16.0f + 0.125f * static_cast<float>(i % 96) - 0.0625f * static_cast<float>(i / 96);
+          guides.Plane(Layer::kDepth)[i] = slanted - (guides.Plane(Layer::kNormal)[i] > 0.0f ? 1.0f : 0.0f);
+        }
+        // 0.002 of 40 m are 0.08 m, less than the step of 1 m; 0.002 of 2000 m are 4 m, more than it.
+        const std::size_t grey = GreyPixels(MustTransfer(style, guides).picture);
+        if (distance == 2.0f) first = grey;
+        EXPECT_EQ(grey, first) << height << " m high, " << distance << " m away, radius " << radius;
+        EXPECT_EQ(grey > 0, height == 2000.0) << distance << " m away, radius " << radius;
+      }
+    }
+  }
+}
+
 TEST(EdgeAware, TheCreaseAngleIsWhatItSays) {
   Style style = PlainStyle(BlackAndWhite(128));
   style.transfer.blend_radius = 3;

@@ -136,7 +136,7 @@ HWY_EXPORT(CalmWords);
 HWY_EXPORT(CompareBlocks);
 
 CalmMarks::CalmMarks(const EdgeRules& rules, int radius, const MarkedTile& tile) : radius_(radius), tile_(tile) {
-  bend_ = std::min(0.7f * rules.DepthTolerance() / float(radius * (radius + 1)) - 1e-6f, 1.0f / 64);
+  bend_ = std::min(0.7f * rules.Give().share / float(radius * (radius + 1)) - 1e-6f, 1.0f / 64);
   // As wide as it can be where blocks below each other share a normal, so that their middles are 2L apart at most: c·d
   // is then at least 1 - 2L² for normals of length 1, whose products are never below -1.
   const float crease = std::max(rules.CreaseCosine(), -1.0f);

@@ -31,7 +31,8 @@ struct EdgePair {
   EdgeRow here, there;
   int dx = 0, dy = 0;
   int width = 0;
-  float crease_cosine = 0, depth_tolerance = 0;
+  float crease_cosine = 0;
+  DepthGive give;
   // Words of a row: pixels to test, and those of which only the normals are in question; others keep their marks.
   const std::uint64_t* asked = nullptr;
   const std::uint64_t* creases = nullptr;
@@ -103,7 +104,8 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
   const float x = static_cast<float>(pair.dx), y = static_cast<float>(pair.dy);
   const F step_x = hn::Set(kFloat, x), step_y = hn::Set(kFloat, y), half = hn::Set(kFloat, 0.5f);
   const F far_x = hn::Set(kFloat, std::abs(x)), far_y = hn::Set(kFloat, std::abs(y));
-  const F tolerance = hn::Set(kFloat, pair.depth_tolerance), crease = hn::Set(kFloat, pair.crease_cosine);
+  const F share = hn::Set(kFloat, pair.give.share), fixed = hn::Set(kFloat, pair.give.fixed);
+  const F crease = hn::Set(kFloat, pair.crease_cosine);
   const EdgeRow &p = pair.here, &q = pair.there;
   std::uint64_t bits = 0;
   for (int i = 0; i < 64; i += lanes) {
@@ -117,7 +119,7 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
         half, hn::Add(hn::Mul(hn::Add(slope_px, slope_qx), step_x), hn::Mul(hn::Add(slope_py, slope_qy), step_y)));
     const F leeway = hn::Add(hn::Mul(Least(hn::Abs(slope_px), hn::Abs(slope_qx)), far_x),
                              hn::Mul(Least(hn::Abs(slope_py), hn::Abs(slope_qy)), far_y));
-    const F most = hn::Add(leeway, hn::Mul(tolerance, Least(depth_p, depth_q)));
+    const F most = hn::Add(leeway, hn::MulAdd(share, Least(depth_p, depth_q), fixed));
     auto one = hn::Le(hn::Abs(hn::Sub(hn::Sub(depth_q, depth_p), expected)), most);
     // Guides of the last and first pixels of the picture would be read beyond their ends.
     const bool inside = a >= -p.before && b >= -q.before && a + lanes <= p.readable && b + lanes <= q.readable;
@@ -438,6 +440,7 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& whole_tile,
   const BitRows& near = radius > 1 ? dilated : centres;
   EdgeRows rows(rules, radius, tile, centres);
   const float crease_cosine = rules.CreaseCosine();
+  const DepthGive give = rules.Give();
   const std::size_t words = std::size_t(tile.words);
   std::vector<std::uint64_t> asked(steps.size() * words), creases(asked.size());
   std::vector<EdgePair> pairs;
@@ -462,7 +465,7 @@ void MarkEdges(const EdgeRules& rules, int radius, const MarkedTile& whole_tile,
         rows.Slopes(y, tile.first_word + int(w), 0, full[w]);
         rows.Slopes(y + dy, tile.first_word + int(w), dx, full[w]);
       }
-      pairs.push_back({rows.At(y), rows.At(y + dy), dx, dy, rules.guides.width(), crease_cosine, rules.DepthTolerance(),
+      pairs.push_back({rows.At(y), rows.At(y + dy), dx, dy, rules.guides.width(), crease_cosine, give,
                        full, crease, same});
     }
     if (pairs.empty()) continue;

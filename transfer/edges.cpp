@@ -40,6 +40,14 @@ DepthSlopes::DepthSlopes(const GuideSet& guides) : x(guides.pixel_count(), 0.0f)
   });
 }
 
+DepthGive::DepthGive(const GuideSet& guides, double depth_tolerance) {
+  const bool flat = guides.camera && guides.camera->IsOrthographic();
+  const double height = flat ? 2.0 / std::abs(guides.camera->clip_from_view[1][1]) : 0.0;
+  const auto metres = static_cast<float>(depth_tolerance * height);
+  const bool seen = height > 0.0 && std::isfinite(metres);
+  (seen ? fixed : share) = seen ? metres : static_cast<float>(depth_tolerance);
+}
+
 float EdgeRules::CreaseCosine(double degrees) {
   return degrees < 180.0 ? static_cast<float>(CosDegrees(degrees)) : -std::numeric_limits<float>::infinity();
 }
@@ -53,7 +61,7 @@ EdgeTest::EdgeTest(const GuideSet& guides, const DepthSlopes& slopes, double cre
       normal_y_(guides.Plane(Layer::kNormal, 1)),
       normal_z_(guides.Plane(Layer::kNormal, 2)),
       crease_cosine_(EdgeRules::CreaseCosine(crease_degrees)),
-      depth_tolerance_(static_cast<float>(depth_tolerance)) {}
+      give_(guides, depth_tolerance) {}
 
 namespace {
 

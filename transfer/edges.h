@@ -38,12 +38,23 @@ class LateSlopes {
   std::optional<DepthSlopes> slopes_;
 };
 
+// How far depth may leave the slope of a surface between two pixels: a share of the nearer one's depth, or in orthographic
+// views, where depth depends on where the camera happens to stand, a share of the height that is seen. One of the two is 0,
+// so that the sum is rounded as the product alone is, fused or not.
+struct DepthGive {
+  DepthGive(const GuideSet& guides, double depth_tolerance);
+  float At(float depth) const { return share * depth + fixed; }
+
+  float share = 0.0f;
+  float fixed = 0.0f;  // metres
+};
+
 // What one style takes for an edge. The guides must hold depth and object; slopes are theirs.
 struct EdgeRules {
   // As the test has them; at 180 degrees even opposite normals pass, whose cosine rounding may put below -1.
   float CreaseCosine() const { return CreaseCosine(crease_degrees); }
   static float CreaseCosine(double degrees);
-  float DepthTolerance() const { return static_cast<float>(depth_tolerance); }
+  DepthGive Give() const { return {guides, depth_tolerance}; }
 
   const GuideSet& guides;
   LateSlopes& slopes;  // for who needs those of the whole picture
@@ -56,8 +67,9 @@ struct EdgeRules {
 //   - the same object id;
 //   - normals less than `crease` degrees apart; 180 takes any;
 //   - a depth difference that the surface's own slope explains: the mean of both pixels' slopes times their distance (the
-//     trapezoidal rule), give or take the gentler slope over that distance and `depth_tolerance` of the depth. All of it
-//     is relative, so one setting works near and far. The give grows with the distance, so far apart it says little.
+//     trapezoidal rule), give or take the gentler slope over that distance and `depth_tolerance` of the depth (DepthGive).
+//     All of it is relative, so one setting works near and far. The give grows with the distance, so far apart it says
+//     little.
 class EdgeTest {
  public:
   // Keeps references to both; `guides` must hold depth and object.
@@ -81,7 +93,7 @@ class EdgeTest {
     const float expected = 0.5f * ((p.slope_x + q.slope_x) * x + (p.slope_y + q.slope_y) * y);
     const float leeway = std::min(std::fabs(p.slope_x), std::fabs(q.slope_x)) * std::fabs(x) +
                          std::min(std::fabs(p.slope_y), std::fabs(q.slope_y)) * std::fabs(y);
-    const float tolerance = leeway + depth_tolerance_ * std::min(p.depth, q.depth);
+    const float tolerance = leeway + give_.At(std::min(p.depth, q.depth));
     if (!(std::fabs(q.depth - p.depth - expected) <= tolerance)) return false;
     const glm::vec3 &a = p.normal, &b = q.normal;
     return a.x * b.x + a.y * b.y + a.z * b.z > crease_cosine_;
@@ -89,7 +101,8 @@ class EdgeTest {
 
  private:
   std::span<const float> object_, depth_, slope_x_, slope_y_, normal_x_, normal_y_, normal_z_;
-  float crease_cosine_, depth_tolerance_;
+  float crease_cosine_;
+  DepthGive give_;
 };
 
 struct PixelStep {

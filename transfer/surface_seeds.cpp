@@ -21,10 +21,6 @@ double StraightLog2(double value) {
   return exponent - 1 + (2.0 * mantissa - 1.0);
 }
 
-bool IsOrthographic(const GuideSet& guides) {
-  return guides.camera && guides.camera->clip_from_view[2][3] == 0.0 && guides.camera->clip_from_view[3][3] != 0.0;
-}
-
 double Distance(const glm::vec3& a, const glm::vec3& b) {
   const double x = double(a.x) - b.x, y = double(a.y) - b.y, z = double(a.z) - b.z;
   return std::sqrt(x * x + y * y + z * z);
@@ -53,7 +49,7 @@ class ObjectNumbers {
 std::vector<float> SurfaceOctaves(const GuideSet& guides, std::span<const std::uint8_t> active) {
   const int width = guides.width(), height = guides.height();
   const auto object = guides.Plane(Layer::kObject), depth = guides.Plane(Layer::kDepth);
-  const bool flat = IsOrthographic(guides);
+  const bool flat = guides.camera && guides.camera->IsOrthographic();
   const auto is_finite = [&](std::size_t i) {
     const glm::vec3 p = guides.Vec3(Layer::kPref, i);
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);

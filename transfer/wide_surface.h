@@ -48,7 +48,8 @@ class BitPlane {
 
 // What votes may not cross, as EdgeTest has it.
 struct EdgeLimits {
-  float crease_cosine, depth_tolerance;
+  float crease_cosine;
+  DepthGive give;
 };
 
 // Kept from tile to tile by a thread.

@@ -30,10 +30,10 @@ bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress) {
   if (region.empty()) return !progress.cancelled();
   const UsableRows usable(input.exemplar);
   std::optional<WideWays> ways;
-  EdgeLimits limits{};
+  std::optional<EdgeLimits> limits;
   if (input.edges) {
     ways.emplace(input.radius);
-    limits = {input.edges->CreaseCosine(), input.edges->DepthTolerance()};
+    limits.emplace(EdgeLimits{input.edges->CreaseCosine(), input.edges->Give()});
   }
   const int columns = (region.x1 - region.x0 + kTileSide - 1) / kTileSide;
   const int rows = (region.y1 - region.y0 + kTileSide - 1) / kTileSide;
@@ -49,7 +49,7 @@ bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress) {
       mine.sums.Sum(mine.tile, input.exemplar, usable);
       if (input.edges) {
         mine.surface.Read(input.edges->guides, area, input.radius);
-        mine.joined.Withdraw(input, *ways, mine.tile, mine.surface, limits, mine.sums);
+        mine.joined.Withdraw(input, *ways, mine.tile, mine.surface, *limits, mine.sums);
       }
       mine.sums.Write(mine.tile, out);
       for (int y = area.y0; input.finished && y < area.y1; ++y) input.finished(y, area.x0, area.x1);

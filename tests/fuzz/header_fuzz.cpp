@@ -1,7 +1,9 @@
-// The texts in a guide file's header: Cryptomatte's manifests, names, matrices, and the names of channels.
+// The texts in a guide file's header: Cryptomatte's manifests, names, matrices, and the names of channels; and the texts
+// beside a render, which --camera names.
 #include <algorithm>
 #include <map>
 
+#include "io/blender_camera.h"
 #include "io/cryptomatte.h"
 #include "io/guide_header.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -25,6 +27,8 @@ void Run(Bytes input) {
   const auto names = internal::NamesFromText(text);
   SCUMBLE_CHECK(internal::NamesFromText(internal::NamesToText(names)) == names);
   static_cast<void>(internal::MatrixFromText(text));
+  // All else is refused at its first line, and to write a file takes as long as the rest together.
+  if (text.find("FromView") != text.npos) CheckRefusal(ReadBlenderCamera(InFile("any.camera", input)));
   const auto matte = ParseMatteChannel(text);
   SCUMBLE_CHECK(!matte || (matte->index >= 0 && matte->index < 128));
   const auto channel = ParseChannelName(text);

@@ -199,6 +199,17 @@ def make_text():
           + exemplar + 'luminance = 0.8\n' + exemplar + "luminance = 0.1\n\0transfer.scale=0.5\nexemplar.2.luminance=0.3\n")
     write("style", "tracks.toml", "[transfer]\nthreshold = [[1, 0.1], [24, 0.3]]\njitter = [[-5, 0], [5, 1.0]]\njitter_fps = 12\n"
           'edge = "exemplar"\nguide_weights = { normal = 2 }\nluminance_weight = inf\n' + exemplar)
+    write("style", "sphere.toml", "[transfer]\nguide_weights = { lpe.LDE = 0.5, luminance = 1 }\n" +
+          2 * (exemplar + 'guides = "sphere.exr"\n'))
+    write("style", "scene.toml", "[transfer]\ncolorize = [[-999999999, 0], [999999999, 1]]\n"
+          'paper = [[1, "#ffffff"], [48, "lit.png"]]\n' + 2 * (exemplar + 'guides = "scene.exr"\n'))
+    write("header", "camera", "camera Camera.001\nviewFromWorld 1 0 0 0 0 1 0 0 0 0 1 0 0 0 -5 1\n"
+          "clipFromView 1.5 0 0 0 0 2 0 0 0 0 -1 -1 0 0 -0.2 0\n")
+    scene = {"size": "640x360", "samples": 64, "max_bounces": 8, "limits": {"normal 99% within": 0.0007, "A": 0}}
+    write("baseline", "small.json", json.dumps({"scumble_baseline": 1, "blender": "3.4.1", "scenes": {"suzanne.glb": scene}}))
+    write("baseline", "more.json", json.dumps({"scumble_baseline": 1, "scenes": {
+        "a.blend": {**scene, "camera": "Camera.001", "frame": -7}, "\u00e9 b.glb": {**scene, "limits": {"lpe.LDE mean difference": 1e300}}}}))
+    write("options", "sheet", "\ufeff# who is painted how\nTree* = charcoal\n\nGlass=rendered\r\n  Ball=a=b\n")
     write("header", "manifest", '{"Ball":"40600000","A \\"b\\u00e9":"1a2b3c4d","c"d":"00000001"}')
     write("header", "names", "3 Ball\n4 A\\nB\n5 back\\\\slash\n")
     write("header", "matrix", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 -5 1e300")

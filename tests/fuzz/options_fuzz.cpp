@@ -1,5 +1,5 @@
 // The arguments of the command line, one a line: parsed as the program parses them; no verb is run. Every value is then
-// given to all that read text in options.
+// given to all that read text in options, and all of them are the lines of an @FILE of --assign.
 #include <CLI/CLI.hpp>
 
 #include "cli/assignments.h"
@@ -69,6 +69,8 @@ void Run(Bytes input) {
     text.remove_prefix(std::min(end + 1, text.size()));
   }
   for (const std::string& argument : arguments) ReadValue(argument);
+  // An argument could name any file of the system; this one is ours.
+  CheckRefusal(ReadAssignments({"@" + InFile("sheet.txt", input).string()}), 2000 + 2 * input.size());
   try {
     program.app.parse(ArgumentsLastFirst(std::move(arguments)));
   } catch (const CLI::Success&) {

@@ -31,26 +31,41 @@ inline bool IsSmall(const Scene& scene) {
   return triangles <= 10'000 && scene.lights.size() <= 100;
 }
 
-// Draws 4 × 4 pixels of it with all its light, by one ray for each question.
-inline void Draw(const Scene& scene, const Camera& camera) {
-  if (!IsSmall(scene)) return;
+// 4 × 4 pixels of these layers, by one ray for each question.
+inline GuidegenOptions SmallPicture(const LayerSet& layers) {
   GuidegenOptions options;
   options.width = options.height = 4;
-  options.layers = {Layer::kLuminance, Layer::kShadow, Layer::kAlbedo, Layer::kPosition, Layer::kLpeFull};
+  options.layers = layers;
   options.samples = options.threads = 1;
   options.max_bounces = 2;
-  CheckRefusal(RenderGuides(scene, camera, options));
+  return options;
 }
 
-// Loads a scene from a file of that name and looks at it, from its own camera or else from outside; draws it if told to.
-inline void LoadFrom(const std::string& name, Bytes input, bool draws = false) {
+// Draws it with all its light.
+inline void Draw(const Scene& scene, const Camera& camera) {
+  if (!IsSmall(scene)) return;
+  const LayerSet layers{Layer::kLuminance, Layer::kShadow, Layer::kAlbedo, Layer::kPosition, Layer::kLpeFull};
+  CheckRefusal(RenderGuides(scene, camera, SmallPicture(layers)));
+}
+
+// Draws how far it moves until it is the next one.
+inline void DrawMotion(Scene now, Scene next) {
+  if (!IsSmall(now) || !IsSmall(next)) return;
+  const Expected<PreparedView> view = PrepareView(now, "", std::nullopt, 1.0, false);
+  const Expected<PreparedView> then = PrepareView(next, "", std::nullopt, 1.0, false);
+  if (!view || !then) return;
+  CheckRefusal(RenderGuides(now, view->camera, NextFrame{next, then->camera}, SmallPicture({Layer::kMotion})));
+}
+
+// Loads a scene from a file of that name, looks at it, from its own camera or else from outside, and draws it.
+inline void LoadFrom(const std::string& name, Bytes input) {
   Expected<Scene> scene = LoadScene(InFile(name, input));
   CheckRefusal(scene);
   if (!scene) return;
   CheckScene(*scene);
   const Expected<PreparedView> view = PrepareView(*scene, "", std::nullopt, 1.0, true);
   CheckRefusal(view);
-  if (view && draws) Draw(*scene, view->camera);
+  if (view) Draw(*scene, view->camera);
 }
 
 inline void LoadObj(Bytes input) { LoadFrom("scene.obj", input); }

@@ -1,7 +1,10 @@
-// A style.toml beside a picture lit.png; behind its first NUL, one --set a line.
+// A style.toml beside a picture lit.png, guides of a template and guides of a scene; behind its first NUL, one --set a
+// line.
 #include <glm/glm.hpp>
 
+#include "io/guide_file.h"
 #include "io/picture_file.h"
+#include "style/sphere_template.h"
 #include "style/style_file.h"
 #include "style/style_keyframes.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -19,9 +22,22 @@ std::vector<std::string> Lines(std::string_view text) {
   return lines;
 }
 
+// A picture of 4 × 4, guides of a scene of its size, and of a sphere of 2 × 2 whose template has it.
+bool WriteFiles() {
+  const auto guides_of = [](int size) {
+    GuideSet guides(size, size);
+    for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance, Layer::kLpeLDE}) guides.Add(layer);
+    return guides;
+  };
+  GuideSet sphere = guides_of(2);
+  sphere.attributes[kMarginAttribute] = "1";
+  return WritePicture(Folder() / "lit.png", Picture(4, 4)) && WriteGuides(Folder() / "scene.exr", guides_of(4)) &&
+         WriteGuides(Folder() / "sphere.exr", sphere);
+}
+
 void Run(Bytes input) {
-  static const bool has_picture = WritePicture(Folder() / "lit.png", Picture(4, 4)).ok();
-  SCUMBLE_CHECK(has_picture);
+  static const bool has_files = WriteFiles();
+  SCUMBLE_CHECK(has_files);
   const std::string_view text = AsText(input);
   const std::size_t end = std::min(text.find('\0'), text.size());
   const auto path = InFile("style.toml", input.first(end));
