@@ -37,17 +37,17 @@ constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIG
 std::atomic<pid_t> running_group = 0;
 std::atomic<int> caught_signal = 0;
 std::atomic<bool> ends_at_once = false;
-std::atomic<const char*> scratch_folder = nullptr;
+std::atomic<bool> has_scratch_folder = false;
+char scratch_folder[4096];  // never freed: a handler on another thread may still read it
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
-              std::atomic<bool>::is_always_lock_free && std::atomic<const char*>::is_always_lock_free);
+              std::atomic<bool>::is_always_lock_free);
 
 struct sigaction actions_before[std::size(kEndingSignals)];
 
-// So that it writes nothing more. A program that was killed may hang in its disk: not for long.
-void AwaitEnd(pid_t program) {
-  constexpr int kMostWaits = 300;
+// A program that was killed, or works on a disk, may hang in that disk: not for long.
+void AwaitEnd(pid_t program, int most_milliseconds) {
   const timespec millisecond{0, 1000000};
-  for (int wait = 0; wait < kMostWaits && ::waitpid(program, nullptr, WNOHANG) == 0; ++wait) ::nanosleep(&millisecond, nullptr);
+  for (int wait = 0; wait < most_milliseconds && ::waitpid(program, nullptr, WNOHANG) == 0; ++wait) ::nanosleep(&millisecond, nullptr);
 }
 
 // By another program, as nothing in this one may be called that allocates: fork() would lock the heap, _Fork() does not.
@@ -58,7 +58,7 @@ void RemoveWithoutHeap(const char* folder) {
     ::execv("/bin/rm", const_cast<char* const*>(remove));
     ::_exit(127);
   }
-  if (child > 0) ::waitpid(child, nullptr, 0);
+  if (child > 0) AwaitEnd(child, 5000);
 }
 
 void EndRunningGroup(int signal) {
@@ -66,8 +66,8 @@ void EndRunningGroup(int signal) {
   const pid_t group = running_group;
   if (group) ::kill(-group, SIGKILL);
   if (!ends_at_once) return;
-  if (group) AwaitEnd(group);
-  if (const char* const folder = scratch_folder) RemoveWithoutHeap(folder);
+  if (group) AwaitEnd(group, 300);  // so that it writes nothing more
+  if (has_scratch_folder) RemoveWithoutHeap(scratch_folder);
   for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
     if (kEndingSignals[i] == signal) ::sigaction(signal, &actions_before[i], nullptr);
   }
@@ -195,13 +195,15 @@ ScratchFolder::ScratchFolder() {
   std::string name = (fs::temp_directory_path(failed) / "scumble-XXXXXX").string();
   if (failed || !::mkdtemp(name.data())) return;
   path_ = name;
-  scratch_folder = path_.c_str();
+  if (name.size() >= sizeof(scratch_folder)) return;
+  std::memcpy(scratch_folder, name.c_str(), name.size() + 1);
+  has_scratch_folder = true;
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code failed;
   if (!path_.empty()) fs::remove_all(path_, failed);
-  scratch_folder = nullptr;
+  has_scratch_folder = false;
   ReleaseSignals();
 }
 

@@ -143,8 +143,10 @@ std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture,
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
   const std::uint64_t tracks = HashOfTracks(styles);
+  PictureSettings settings = SettingsOf(picture, {}, {});
+  settings.measured.reset();  // stops that were measured before take as long as those that are measured now
   return fmt::format("{}; {}{}{}{}{}", MachineName(globals.threads),
-                     SettingsText(styles, SettingsOf(picture, {}, {}), hashes),
+                     SettingsText(styles, settings, hashes),
                      all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
                      styles.options.scene_styles ? "" : "; without the scene's styles",
                      tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "",
@@ -156,11 +158,11 @@ std::uint64_t HashOfFiles(const std::string& scene) {
   RunFiles files;
   files.ReadsScene(scene);
   std::uint64_t hash = 0;
-  std::string piece(std::size_t(1) << 20, '\0');
+  std::vector<char> piece(std::size_t(1) << 20);
   for (const std::string& path : files.Inputs()) {
     std::ifstream stream(path, std::ios::binary);
     while (stream.read(piece.data(), std::streamsize(piece.size())) || stream.gcount() > 0) {
-      hash = Hash(hash, HashText(std::string_view(piece).substr(0, std::size_t(stream.gcount()))));
+      hash = Hash(hash, HashBytes(std::span<const char>(piece).first(std::size_t(stream.gcount()))));
     }
   }
   return hash;

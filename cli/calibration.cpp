@@ -76,6 +76,7 @@ class Picker {
         measure_(measure),
         judge_(judge),
         runs_(calibration.ways.size()),
+        fresh_(calibration.ways.size()),
         off_(calibration.ways.size()) {}
 
   void Load() {
@@ -101,16 +102,20 @@ class Picker {
                                 {"off_of", calibration_.judged},
                                 {"off", nlohmann::ordered_json::object()}};
     // Another process may have measured other ways meanwhile.
+    Known known;
     if (const auto bytes = calibration_.cache->Load(Key()); bytes && !calibration_.anew) {
-      if (const auto other = ParseTimes(*bytes, calibration_.circumstances)) json["ways"] = other->ways;
+      if (const auto other = ParseTimes(*bytes, calibration_.circumstances)) known = *other;
     }
+    if (known.off_of != calibration_.judged) known.off.clear();
     for (std::size_t way = 0; way < runs_.size(); ++way) {
-      if (runs_[way].empty()) continue;
-      auto& kept = json["ways"][calibration_.ways[way]];
-      if (runs_[way].size() > kept.size()) kept = runs_[way];
-      if (!off_[way]) continue;
-      json["off"][calibration_.ways[way]] = std::isfinite(*off_[way]) ? nlohmann::ordered_json(*off_[way]) : nullptr;
+      const std::string& name = calibration_.ways[way];
+      if (fresh_[way] && runs_[way].size() > known.ways[name].size()) known.ways[name] = runs_[way];
+      if (off_[way]) known.off[name] = *off_[way];
     }
+    for (const auto& [name, runs] : known.ways) {
+      if (!runs.empty()) json["ways"][name] = runs;
+    }
+    for (const auto& [name, off] : known.off) json["off"][name] = std::isfinite(off) ? nlohmann::ordered_json(off) : nullptr;
     const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
     calibration_.cache->Store(Key(), std::as_bytes(std::span(text)));
   }
@@ -188,6 +193,7 @@ class Picker {
   Status Measure(std::size_t way) {
     SCUMBLE_ASSIGN(const double ms, measure_(way));
     runs_[way].push_back(ms);
+    fresh_[way] = true;
     ++measured_;
     return Ok();
   }
@@ -197,6 +203,7 @@ class Picker {
   const MeasureWay& measure_;
   const JudgeWay& judge_;
   std::vector<Runs> runs_;                  // by way
+  std::vector<bool> fresh_;                 // likewise: some were made now
   std::vector<std::optional<double>> off_;  // likewise, of those that were judged
   bool judged_ = false;                     // some now
   std::optional<double> cold_ms_;

@@ -272,7 +272,7 @@ std::string GuideSettings(const SceneOptions& options) {
   };
   add("camera", options.camera), add("view", options.view), add("animation", options.animation);
   add("fps", options.fps == kUsualFps ? "" : options.fps);
-  // All of them always: what a file does not name is not compared.
+  // All of them always: what a file does not name differs.
   const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
   return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no",
                             open_ended && !options.samples_given ? kMaxSamples : options.samples, options.max_bounces,

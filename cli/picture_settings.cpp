@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 
 #include "image/hash.h"
@@ -11,20 +10,6 @@
 
 namespace scumble {
 namespace {
-
-// Eight bytes at a time: pictures are large.
-template <class T>
-std::uint64_t HashBytes(std::span<const T> values) {
-  const auto bytes = std::as_bytes(values);
-  std::uint64_t state = bytes.size();
-  for (std::size_t i = 0; i < bytes.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
-    state = (state ^ word) * 0x9e3779b97f4a7c15ull;
-    state ^= state >> 32;
-  }
-  return Mix64(state);
-}
 
 std::string TextOf(const TransferSettings& settings) {
   // All members by name: one more does not compile until it is written below.

@@ -115,10 +115,7 @@ void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, con
   for (std::size_t begin = text.find_first_of("\"'"); begin != std::string::npos;) {
     const std::size_t end = text.find(text[begin], begin + 1);
     if (end == std::string::npos) return;
-    if (end - begin <= kLongestName) {
-      const std::string name = text.substr(begin + 1, end - begin - 1);
-      for (const std::string& spelling : {name, WithoutPercents(name)}) Reads(what, (fs::path(folder) / spelling).string());
-    }
+    if (end - begin <= kLongestName) Reads(what, (fs::path(folder) / text.substr(begin + 1, end - begin - 1)).string());
     // A quotation mark alone, as in a comment, must not hide the names after it.
     const std::size_t line = text.find('\n', begin);
     begin = text.find_first_of("\"'", (line < end ? line : end) + 1);
@@ -128,7 +125,7 @@ void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, con
 void RunFiles::ReadsScene(const std::string& scene) {
   const std::string what = "a file of the scene " + scene, folder = fs::path(scene).parent_path().string();
   Reads("the scene", scene);
-  if (Ending(scene) == ".gltf" || Ending(scene) == ".glb") ReadsQuoted(what, scene, folder);
+  if (Ending(scene) == ".gltf" || Ending(scene) == ".glb") ReadsUris(what, scene, folder);
   if (Ending(scene) != ".obj") return;
   // "mtllib a.mtl b.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into once.
   std::set<Identity> libraries;
@@ -153,6 +150,23 @@ std::vector<std::string> RunFiles::Inputs() const {
   for (const auto& [identity, input] : inputs_) paths.push_back(input.path);
   std::sort(paths.begin(), paths.end());
   return paths;
+}
+
+// Of all that a .gltf has in quotes only what stands behind "uri" names a file: a scene of 100,000 nodes has as many names.
+void RunFiles::ReadsUris(const std::string& what, const std::string& file, const std::string& folder) {
+  constexpr std::string_view kKey = "\"uri\"", kBlank = " \t\r\n";
+  const std::string text = StartOf(file);
+  for (std::size_t key = text.find(kKey); key != std::string::npos; key = text.find(kKey, key + 1)) {
+    const std::size_t colon = text.find_first_not_of(kBlank, key + kKey.size());
+    if (colon == std::string::npos || text[colon] != ':') continue;
+    const std::size_t begin = text.find_first_not_of(kBlank, colon + 1);
+    if (begin == std::string::npos || text[begin] != '"') continue;
+    const std::size_t end = text.find('"', begin + 1);
+    if (end == std::string::npos || end - begin > kLongestName) continue;
+    std::string name = text.substr(begin + 1, end - begin - 1);
+    for (std::size_t slash = name.find("\\/"); slash != std::string::npos; slash = name.find("\\/")) name.erase(slash, 1);
+    for (const std::string& spelling : {name, WithoutPercents(name)}) Reads(what, (fs::path(folder) / spelling).string());
+  }
 }
 
 void RunFiles::ReadsStyles(const StyleSet& styles) {

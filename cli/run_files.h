@@ -35,6 +35,8 @@ class RunFiles {
  private:
   // Files that a text names in quotes, from a folder.
   void ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder);
+  // Those that a .gltf or a .glb names.
+  void ReadsUris(const std::string& what, const std::string& file, const std::string& folder);
 
   struct Input {
     std::string what, path;

@@ -182,10 +182,14 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   ProgressBar bar("tradeoff", globals.quiet);
   SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals, bar));
   bar.Clear();
-  Print(globals.json ? TradeJson(report) : TradeTable(report));  // first: minutes of work are not lost where writing fails
+  Status written = Ok();
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) / kPictures);
-    SCUMBLE_RETURN_IF_ERROR(WriteFolder(verb.folder, report));
+    written = WriteFolder(verb.folder, report);
+  }
+  Print(globals.json ? TradeJson(report) : TradeTable(report));  // in any case: minutes of work are not lost where writing fails
+  SCUMBLE_RETURN_IF_ERROR(written);
+  if (!verb.folder.empty()) {
     Say(globals, (fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");
   }
   return ExitCode::kOk;

@@ -97,6 +97,7 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
   const PlacedObject& object = *static_cast<const PlacedObject*>(args->geometryUserPtr);
   const CastContext& context = *reinterpret_cast<const CastContext*>(args->context);
   const bool cull = context.camera_rays && !object.material->double_sided;
+  if (context.camera_rays && !cull && !MayHaveHoles(*object.material)) return;  // only rays of light have a question
   const bool may_be_target = context.target.object && MayEmit(*object.material);
   const unsigned count = args->N;
   for (unsigned i = 0; i < count; ++i) {
@@ -126,7 +127,7 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
     const std::uint32_t primitive = RTCHitN_primID(args->hit, count, i);
     if (IsHole(object, primitive, barycentric)) {
       args->valid[i] = 0;
-    } else if (!context.camera_rays) {
+    } else if (object.reaches_far && !context.camera_rays) {
       RTCRayN* const ray = args->ray;
       const glm::dvec3 origin(RTCRayN_org_x(ray, count, i), RTCRayN_org_y(ray, count, i), RTCRayN_org_z(ray, count, i));
       const glm::dvec3 direction(RTCRayN_dir_x(ray, count, i), RTCRayN_dir_y(ray, count, i),
@@ -152,13 +153,14 @@ void FillVertices(RTCGeometry geometry, const PlacedObject& object) {
 }
 
 // Of what shines, and of what reaches far, only rays of light ask whether they may pass.
-RTCGeometry MakeMesh(RTCDevice device, const PlacedObject& object, bool light_rays) {
+RTCGeometry MakeMesh(RTCDevice device, PlacedObject& object, bool light_rays) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   FillVertices(geometry, object);
   const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                              sizeof(glm::uvec3), triangles.size());
-  const bool asks_light = light_rays && (MayEmit(*object.material) || ReachesFar(object));
+  object.reaches_far = light_rays && ReachesFar(object);
+  const bool asks_light = object.reaches_far || (light_rays && MayEmit(*object.material));
   if (!object.material->double_sided || MayHaveHoles(*object.material) || asks_light) {
     rtcSetGeometryIntersectFilterFunction(geometry, FilterHits);
     rtcSetGeometryOccludedFilterFunction(geometry, FilterHits);

@@ -95,6 +95,30 @@ bool IsFar(const glm::dvec3& a, const glm::dvec3& b) {
   return std::max({away.x, away.y, away.z}) > kOneOrigin;
 }
 
+// Origins of which each is far from all others, found by cells of that size.
+struct NearOrigins {
+  std::vector<glm::dvec3> origins;
+  std::map<std::array<double, 3>, std::vector<std::size_t>> cells;
+
+  // The place of the first that is not far; otherwise this becomes one.
+  std::size_t Find(const glm::dvec3& place) {
+    const glm::dvec3 cell = glm::floor(place / kOneOrigin);
+    std::size_t first = origins.size();
+    for (int i = 0; i < 27; ++i) {
+      const auto found = cells.find({cell.x + i % 3 - 1, cell.y + i / 3 % 3 - 1, cell.z + i / 9 - 1});
+      if (found == cells.end()) continue;
+      for (const std::size_t origin : found->second) {
+        if (!IsFar(place, origins[origin])) first = std::min(first, origin);
+      }
+    }
+    if (first == origins.size()) {
+      origins.push_back(place);
+      cells[{cell.x, cell.y, cell.z}].push_back(first);
+    }
+    return first;
+  }
+};
+
 // `normal` is an index into the file's normals, or -1 - an index into the smooth ones.
 struct Corner {
   int position = 0;
@@ -197,7 +221,7 @@ class ObjLoader {
     }
     const glm::dvec3 common = OriginOf(whole);
     frames_.push_back({0, common});
-    // In the order of their places, so that neighbours and copies share an origin wherever they stand in the file.
+    // In the order of their places, so that it does not matter where they stand in the file.
     std::map<std::array<double, 3>, std::vector<std::size_t>> far_shapes;
     for (std::size_t s = 0; s < shapes_.size(); ++s) {
       const glm::dvec3 own = origins_[s];
@@ -207,11 +231,17 @@ class ObjLoader {
         origins_[s] = common;
       }
     }
+    NearOrigins near;
+    std::vector<std::vector<std::size_t>> of_origin;
     for (const auto& [place, shapes] : far_shapes) {
-      const glm::dvec3 own(place[0], place[1], place[2]);
-      if (IsFar(own, frames_.back().origin)) frames_.push_back({attributes_.vertices.size() / 3, own});
-      for (const std::size_t s : shapes) {
-        origins_[s] = frames_.back().origin;
+      const std::size_t origin = near.Find(glm::dvec3(place[0], place[1], place[2]));
+      of_origin.resize(near.origins.size());
+      of_origin[origin].insert(of_origin[origin].end(), shapes.begin(), shapes.end());
+    }
+    for (std::size_t i = 0; i < of_origin.size(); ++i) {
+      frames_.push_back({attributes_.vertices.size() / 3, near.origins[i]});
+      for (const std::size_t s : of_origin[i]) {
+        origins_[s] = near.origins[i];
         CopyVertices(shapes_[s].mesh);
       }
     }

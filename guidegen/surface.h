@@ -24,6 +24,8 @@ struct PlacedObject {
   // Follow from view_from_object; see Place.
   glm::dmat3 view_from_normal{1.0};  // the inverse transpose up to a positive factor, defined for flat objects too
   double winding = 1.0;              // −1 where the matrix mirrors and triangles turn their back
+
+  bool reaches_far = false;  // EmbreeScene finds out, where rays of light will ask
 };
 
 PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,

@@ -87,7 +87,7 @@ Status GuideSet::Validate(const std::string& name) const {
     const glm::vec3 n = Vec3(Layer::kNormal, i);
     const float squared_length = n.x * n.x + n.y * n.y + n.z * n.z;
     if (!(squared_length > 0.25f && squared_length < 4.0f)) bad_normal.Add(i);
-    if (!depth.empty() && !(depth[i] >= 0.0f && depth[i] <= std::numeric_limits<float>::max())) bad_depth.Add(i);
+    if (!depth.empty() && !(depth[i] >= 0.0f)) bad_depth.Add(i);
   }
   if (bad_coverage.any()) {
     return InputError(name + ": layer A is outside 0 to 1 on " + bad_coverage.Describe() +
@@ -100,8 +100,8 @@ Status GuideSet::Validate(const std::string& name) const {
                       "or set A to 0 there");
   }
   if (bad_depth.any()) {
-    return InputError(name + ": layer depth is negative, NaN or infinite on " + bad_depth.Describe() +
-                      " of the covered ones: write planar depth in metres, as floats (half floats end at 65504)");
+    return InputError(name + ": layer depth is negative or NaN on " + bad_depth.Describe() +
+                      " of the covered ones: write planar depth in metres");
   }
   for (const Layer layer : {Layer::kObject, Layer::kMaterial}) {
     if (!Has(layer)) continue;

@@ -2,7 +2,11 @@
 // of work, the number of threads or the way a sequence was cut.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string_view>
 
 namespace scumble {
@@ -36,6 +40,20 @@ constexpr float UnitFloat(std::uint64_t hash) { return static_cast<float>(hash >
 constexpr std::uint64_t HashText(std::string_view text) {
   std::uint64_t state = 0xcbf29ce484222325ull;
   for (char c : text) state = (state ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return Mix64(state);
+}
+
+// Of values as they lie in memory, eight bytes at a time: pictures are large.
+template <class T>
+std::uint64_t HashBytes(std::span<const T> values) {
+  const auto bytes = std::as_bytes(values);
+  std::uint64_t state = bytes.size();
+  for (std::size_t i = 0; i < bytes.size(); i += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
+    state = (state ^ word) * 0x9e3779b97f4a7c15ull;
+    state ^= state >> 32;
+  }
   return Mix64(state);
 }
 

@@ -352,6 +352,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     }
     internal::NormalizeNormals(guides);
   }
+  internal::LimitDepths(guides);
   SCUMBLE_RETURN_IF_ERROR(guides.Validate(name));
   return guides;
 }

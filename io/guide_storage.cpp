@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <iterator>
 
 #include "io/guide_file.h"
@@ -47,6 +48,14 @@ void NormalizeNormals(GuideSet& guides) {
     if (std::fabs(squared - 1.0f) <= kOfFloats || !(squared > 0.01f && squared < 100.0f)) continue;
     const float length = std::sqrt(squared);
     x[i] /= length, y[i] /= length, z[i] /= length;
+  }
+}
+
+void LimitDepths(GuideSet& guides) {
+  if (!guides.Has(Layer::kDepth) || !guides.Has(Layer::kCoverage)) return;
+  const auto coverage = guides.Plane(Layer::kCoverage), depth = guides.Plane(Layer::kDepth);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (coverage[i] > 0.0f && depth[i] == std::numeric_limits<float>::infinity()) depth[i] = 1e30f;
   }
 }
 

@@ -25,4 +25,7 @@ bool LookPacked(const GuideSet& guides);
 // it was written from; lengths that no rounding or filter explains are left for Validate to refuse.
 void NormalizeNormals(GuideSet& guides);
 
+// Depths of covered pixels beyond what half floats hold, which are infinite then, become 10^30 m: as far away as each other.
+void LimitDepths(GuideSet& guides);
+
 }  // namespace scumble::internal

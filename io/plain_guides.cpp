@@ -84,6 +84,7 @@ std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const
     if (guides.Has(Layer::kCoverage) && LookPacked(guides)) return std::nullopt;
     NormalizeNormals(guides);
   }
+  LimitDepths(guides);
   if (!guides.Validate(path.string())) return std::nullopt;
   return guides;
 }

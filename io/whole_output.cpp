@@ -43,19 +43,27 @@ std::map<std::string, std::string> Parts(const std::string& settings) {
   return parts;
 }
 
-// What only one side says differs as well: another version may do otherwise what it does not tell of.
+// What pictures do not tell of that were made before all of it was always told; anything where nobody can know.
+const std::map<std::string, std::string>& Untold() {
+  static const std::map<std::string, std::string> kValues = {
+      {"upsample", "1"}, {"fps", kAnySetting}, {"measured", kAnySetting}};
+  return kValues;
+}
+
+// What else only one side says differs: another version may do otherwise what it does not tell of.
 Status CheckSettings(const std::filesystem::path& path, const std::string& found, const std::string& wanted) {
   if (found.empty() || wanted.empty()) return Ok();
   const auto there = Parts(found), here = Parts(wanted);
   const auto value_of = [](const std::map<std::string, std::string>& parts, const std::string& name) {
-    const auto part = parts.find(name);
-    return part == parts.end() ? std::string("untold") : part->second;
+    if (const auto part = parts.find(name); part != parts.end()) return part->second;
+    const auto usual = Untold().find(name);
+    return usual == Untold().end() ? std::string("untold") : usual->second;
   };
   auto all = here;
   all.insert(there.begin(), there.end());
   for (const auto& [name, any] : all) {
     const std::string other = value_of(there, name), value = value_of(here, name);
-    if (value == other || value == kAnySetting) continue;
+    if (value == other || value == kAnySetting || other == kAnySetting) continue;
     return InputError(path.string() + " was made with other settings (" + name + " " + other + ", not " + value + ")");
   }
   return Ok();

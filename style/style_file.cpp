@@ -392,9 +392,9 @@ Status ApplyOverride(Style& style, const std::string& text) {
 Expected<Style> ReadPictureStyle(const fs::path& path, const StyleRoom& room) {
   const fs::path beside = path.parent_path() / "style.toml";
   if (Exists(beside)) {
-    if (auto style = ReadStyleFile(beside, room); style && fs::path(style->exemplars.front().name).filename() == path.filename()) {
-      return style;
-    }
+    auto style = ReadStyleFile(beside, room);
+    if (style && fs::path(style->exemplars.front().name).filename() == path.filename()) return style;
+    if (!style && style.error().kind != ErrorKind::kInput) return style.error();  // too large, which says nothing of whose it is
   }
   SCUMBLE_ASSIGN(Picture picture, ReadWithin(room, path));
   if (LooksLikeTemplate(picture)) {

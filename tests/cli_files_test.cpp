@@ -67,9 +67,12 @@ TEST_F(CliFiles, NorThatOfFilesThatASceneNames) {
     ExpectError(With(stylize, {"-o", picture}), 2, {picture, "overwrite a file of the scene tri.obj"});
   }
   ExpectError(With(stylize, {"--set", "transfer.paper=paper.png", "-o", "paper.png"}), 2, {"paper.png", "overwrite"});
-  WriteText("tri.gltf", TriangleGltf(false).insert(1, R"("images":[{"uri":"the%20skin.png"}],)"));
+  WriteText("tri.gltf",
+            TriangleGltf(false).insert(1, R"("images":[{"uri" : "the%20skin.png"},{"uri":".\/skin.png"}],)"));
   WritePainted("the skin.png", 8, 8);
-  ExpectError({"stylize", "tri.gltf", "--style", "style", "--size", "16", "-o", "the skin.png"}, 2, {"overwrite"});
+  for (const std::string name : {"the skin.png", "skin.png"}) {
+    ExpectError({"stylize", "tri.gltf", "--style", "style", "--size", "16", "-o", name}, 2, {"overwrite"});
+  }
 }
 
 // A .glb may leave pictures and buffers beside it, though exporters put them into it.

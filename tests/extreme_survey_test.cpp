@@ -141,7 +141,7 @@ TEST_F(ExtremeSurvey, PlyPolygonsAreCutAsTheirCornersStand) {
 // The walls share an origin, and so a smooth edge. The stone has a corner at the numbers that a corner of theirs has
 // relative to that origin, and its normals are its own all the same.
 TEST_F(ExtremeSurvey, ObjObjectsTooFarApartHaveOriginsOfTheirOwn) {
-  const Places wall = WallAt(kEast, kNorth), tower = WallAt(9e5, 1e6);
+  const Places wall = WallAt(kEast, kNorth), tower = WallAt(kEast + 1.0, kNorth - 1e6);  // between the others in the order of places
   const double x = kEast + 1.05;
   const Places wing = {
       {x, kNorth - 1.05, 0.25}, {x, kNorth - 1.05, -1.75}, {x, kNorth + 0.95, -1.75}, {x, kNorth + 0.95, 0.25}};
@@ -151,7 +151,7 @@ TEST_F(ExtremeSurvey, ObjObjectsTooFarApartHaveOriginsOfTheirOwn) {
   ASSERT_EQ(scene.instances.size(), 4u);
   EXPECT_EQ(OriginIn(scene, "wall"), glm::dvec3(kEast, kNorth, 0.0));
   EXPECT_EQ(OriginIn(scene, "wing"), OriginIn(scene, "wall"));
-  EXPECT_EQ(OriginIn(scene, "tower"), glm::dvec3(9e5, 1e6, 0.0));
+  EXPECT_EQ(OriginIn(scene, "tower"), glm::dvec3(kEast + 1.0, kNorth - 1e6, 0.0));
   EXPECT_EQ(Find(scene, "stone").world_from_object, glm::dmat4(1.0));
   ExpectCorners(scene, "wall", wall);
   ExpectCorners(scene, "wing", wing);

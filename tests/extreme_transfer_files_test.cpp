@@ -247,6 +247,26 @@ TEST_F(ExtremeFiles, ExemplarsInFloatsSaturate) {
 // ---- luminances of files -------------------------------------------------------------------------------------------
 
 // Negative light, which denoisers leave, is darkness; NaN and infinity are said with their place.
+// Half floats end at 65504, and what is farther is written as infinite. Two such pixels are as far away as each other, so
+// they are no edge: the picture is that of a wall at 60000 m, with the same step before it.
+TEST_F(ExtremeFiles, DepthsBeyondHalfFloats) {
+  WritePainted("style/lit.png", 32, 32);
+  WriteText("style/style.toml", "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = 3\n[[exemplar]]\nimage = \"lit.png\"\n");
+  const auto painted = [&](float wall, bool stepped) {
+    GuideSet guides = Ball(32);
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      if (guides.Plane(Layer::kCoverage)[i] > 0.0f) guides.Plane(Layer::kDepth)[i] = stepped && i % 32 < 16 ? 2.0f : wall;
+    }
+    WriteGuideFile("g.exr", guides);
+    RunOk({"transfer", "g.exr", "--style", "style", "-o", "p.png"});
+    return Pixels("p.png");
+  };
+  for (const bool stepped : {false, true}) {
+    EXPECT_TRUE(painted(kInfinity, stepped) == painted(60000.0f, stepped)) << stepped;
+  }
+  EXPECT_FALSE(painted(kInfinity, true) == painted(kInfinity, false)) << "the step is an edge";
+}
+
 TEST_F(ExtremeFiles, LuminancesThatAreNone) {
   WritePainted("style/lit.png", 32, 32), WritePainted("style/shade.png", 32, 32);
   WriteText("style/style.toml",

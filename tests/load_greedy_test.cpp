@@ -165,7 +165,7 @@ TEST_F(Greedy, TargetsThatHoldNothingCostNoVertexAnything) {
   const std::filesystem::path file = Write("scene.glb", b.Glb());
   const std::clock_t before = std::clock();
   const Scene scene = Load(file);
-  EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 6.0);
+  EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 6.0 * SCUMBLE_TESTS_SLOWER);
   ASSERT_EQ(scene.meshes.size(), 1u);
   EXPECT_EQ(scene.meshes[0].positions.size(), 300'000u);
 }
@@ -180,7 +180,7 @@ TEST_F(Greedy, ListsAreCountedBeforeTheyAreMade) {
   };
   EXPECT_THAT(refusal("materials", 100'001),
               testing::AllOf(HasSubstr("100001 elements in 'materials'"), HasSubstr("at most 100000")));
-  EXPECT_THAT(refusal(R"(materials)", 100'001), HasSubstr("at most 100000"));
+  EXPECT_THAT(refusal(R"(mat\u0065rials)", 100'001), HasSubstr("at most 100000"));
   EXPECT_THAT(refusal("nodes", 2'000'001),
               testing::AllOf(HasSubstr("2000001 elements in 'nodes'"), HasSubstr("at most 2000000")));
   EXPECT_THAT(refusal("materials", 100'000, "]"), HasSubstr("cannot be read as glTF 2.0"));

@@ -166,7 +166,7 @@ TEST_F(StyleKeyframes, TracksOfManyFramesAreSearchedByHalves) {
   EXPECT_TRUE(layers->Has(Layer::kAlbedo));
   EXPECT_EQ(At(style, 99'999).colorize, 1.0);
   EXPECT_EQ(At(style, 50'000).colorize, 0.0);
-  EXPECT_LT(seconds, 3.0);
+  EXPECT_LT(seconds, 3.0 * SCUMBLE_TESTS_SLOWER);
 }
 
 // Numbers of frames are those of pictures, and half way from the first to the last of all is frame 0.

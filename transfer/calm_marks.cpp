@@ -28,7 +28,7 @@ struct CalmFound {
 
 struct CalmLimits {
   int radius = 0;
-  float bend = 0, spread = 0;
+  float bend = 0, bend_fixed = 0, spread = 0;
 };
 
 }  // namespace scumble::internal
@@ -39,8 +39,9 @@ namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // The calm ones of 16 pixels.
-HWY_INLINE std::uint64_t CalmBits(const CalmRow& row, int begin, float most_bend) {
-  const F bend = hn::Set(kFloat, most_bend), tiny = hn::Set(kFloat, 1e-16f), share = hn::Set(kFloat, 1.0f / 32);
+HWY_INLINE std::uint64_t CalmBits(const CalmRow& row, int begin, const CalmLimits& limits) {
+  const F bend = hn::Set(kFloat, limits.bend), fixed = hn::Set(kFloat, limits.bend_fixed);
+  const F tiny = hn::Set(kFloat, 1e-16f), share = hn::Set(kFloat, 1.0f / 32);
   std::uint64_t bits = 0;
   for (int i = 0; i < kCalmBlock; i += int(hn::Lanes(kFloat))) {
     const int x = begin + i;
@@ -50,7 +51,7 @@ HWY_INLINE std::uint64_t CalmBits(const CalmRow& row, int begin, float most_bend
     const F front_y = hn::Sub(hn::LoadU(kFloat, row.below.depth + x), here);
     const F back_y = hn::Sub(here, hn::LoadU(kFloat, row.above + x));
     // Less, not less or equal: nothing that is NaN or infinite may pass.
-    const F most = hn::Sub(hn::Mul(bend, here), tiny);
+    const F most = hn::Sub(hn::Add(fixed, hn::Mul(bend, here)), tiny);
     auto calm =
         hn::And(hn::Lt(hn::Abs(hn::Sub(front_x, back_x)), most), hn::Lt(hn::Abs(hn::Sub(front_y, back_y)), most));
     calm = hn::And(calm, hn::Lt(hn::Add(hn::Abs(front_x), hn::Abs(front_y)), hn::Mul(share, here)));
@@ -94,7 +95,7 @@ void CalmWords(const CalmRow& row, const CalmLimits& limits, const std::uint8_t*
         hwy::Prefetch(row.below.object + row.width + x);
         for (int k = 0; k < 3; ++k) hwy::Prefetch(row.here.normal[k] + row.width + x);
       }
-      const std::uint64_t bits = CalmBits(row, x, limits.bend);
+      const std::uint64_t bits = CalmBits(row, x, limits);
       if (!bits) continue;
       calm |= bits << kCalmBlock * b;
       const float centre[3] = {row.here.normal[0][middle], row.here.normal[1][middle], row.here.normal[2][middle]};
@@ -136,7 +137,10 @@ HWY_EXPORT(CalmWords);
 HWY_EXPORT(CompareBlocks);
 
 CalmMarks::CalmMarks(const EdgeRules& rules, int radius, const MarkedTile& tile) : radius_(radius), tile_(tile) {
-  bend_ = std::min(0.7f * rules.Give().share / float(radius * (radius + 1)) - 1e-6f, 1.0f / 64);
+  const DepthGive give = rules.Give();
+  const float part = 0.7f / float(radius * (radius + 1));
+  bend_ = std::min(part * give.share - 1e-6f, 1.0f / 64);
+  bend_fixed_ = part * give.fixed;
   // As wide as it can be where blocks below each other share a normal, so that their middles are 2L apart at most: c·d
   // is then at least 1 - 2L² for normals of length 1, whose products are never below -1.
   const float crease = std::max(rules.CreaseCosine(), -1.0f);
@@ -163,11 +167,11 @@ void CalmMarks::AddNothing(int y) {
 
 void CalmMarks::Add(int y, const CalmRow& row, const std::uint8_t* wanted) {
   AddNothing(y);
-  if (!(bend_ > 0.0f)) return;
+  if (!(bend_ > 0.0f || bend_fixed_ > 0.0f)) return;
   Blocks& blocks = BlocksOf(y);
   std::uint64_t* calm = runs_[0].Row(y);
   const CalmFound out{calm, {blocks.centre[0].data(), blocks.centre[1].data(), blocks.centre[2].data()}};
-  HWY_DYNAMIC_DISPATCH(CalmWords)(row, {radius_, bend_, spread_}, wanted, tile_.first_word, tile_.words, out);
+  HWY_DYNAMIC_DISPATCH(CalmWords)(row, {radius_, bend_, bend_fixed_, spread_}, wanted, tile_.first_word, tile_.words, out);
   for (int k = 1; k <= radius_; ++k) {
     const std::uint64_t* shorter = runs_[std::size_t(k - 1)].Row(y);
     std::uint64_t* run = runs_[std::size_t(k)].Row(y);

@@ -37,6 +37,10 @@ struct CalmRow {
 // makes r(r + 1)·K less than 0.94·tolerance·m - 2·10^-6·m, and leeway is never negative. All values are below 0.35·m
 // and fewer than 30 are rounded, by 2^-24 of themselves: 10^-6·m at most.
 //
+// Where the test gives way by T metres whatever the depth (orthographic views), so may the bend, by 0.7·T / r(r + 1): that
+// is another 0.7·T at most in r(r + 1)·K. Depths of the rectangle are still within 1/32 of each other, being fronts of calm
+// pixels; slopes may now be larger by K, and their rounding, 30 · 2^-24 · 6·T, is far less than the 0.3·T that are left.
+//
 // Depth must be above 10^-16 / b ≥ 6·10^-15. So where a product of differences underflows, the smaller of them, below
 // 10^-22, is nothing beside 10^-6·m.
 //
@@ -69,7 +73,7 @@ class CalmMarks {
 
   int radius_;
   MarkedTile tile_;
-  float bend_, spread_, least_product_;
+  float bend_, bend_fixed_, spread_, least_product_;
   std::array<BitRows, kMaxRadius + 1> runs_;  // of k + 1 calm pixels, from this one to the right
   std::vector<Blocks> blocks_;                // of radius + 1 rows, one after the other
   std::vector<std::uint64_t> alike_, box_, level_, sure_;

@@ -119,7 +119,7 @@ HWY_INLINE std::uint64_t TestWord(const EdgePair& pair, int word, std::uint64_t 
         half, hn::Add(hn::Mul(hn::Add(slope_px, slope_qx), step_x), hn::Mul(hn::Add(slope_py, slope_qy), step_y)));
     const F leeway = hn::Add(hn::Mul(Least(hn::Abs(slope_px), hn::Abs(slope_qx)), far_x),
                              hn::Mul(Least(hn::Abs(slope_py), hn::Abs(slope_qy)), far_y));
-    const F most = hn::Add(leeway, hn::MulAdd(share, Least(depth_p, depth_q), fixed));
+    const F most = hn::Add(leeway, hn::Add(fixed, hn::Mul(share, Least(depth_p, depth_q))));
     auto one = hn::Le(hn::Abs(hn::Sub(hn::Sub(depth_q, depth_p), expected)), most);
     // Guides of the last and first pixels of the picture would be read beyond their ends.
     const bool inside = a >= -p.before && b >= -q.before && a + lanes <= p.readable && b + lanes <= q.readable;

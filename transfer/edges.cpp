@@ -45,7 +45,8 @@ DepthGive::DepthGive(const GuideSet& guides, double depth_tolerance) {
   const double height = flat ? 2.0 / std::abs(guides.camera->clip_from_view[1][1]) : 0.0;
   const auto metres = static_cast<float>(depth_tolerance * height);
   const bool seen = height > 0.0 && std::isfinite(metres);
-  (seen ? fixed : share) = seen ? metres : static_cast<float>(depth_tolerance);
+  fixed = seen ? metres : 0.0f;
+  share = seen ? 0x1p-20f : static_cast<float>(depth_tolerance);
 }
 
 float EdgeRules::CreaseCosine(double degrees) {

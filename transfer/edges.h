@@ -38,12 +38,12 @@ class LateSlopes {
   std::optional<DepthSlopes> slopes_;
 };
 
-// How far depth may leave the slope of a surface between two pixels: a share of the nearer one's depth, or in orthographic
-// views, where depth depends on where the camera happens to stand, a share of the height that is seen. One of the two is 0,
-// so that the sum is rounded as the product alone is, fused or not.
+// How far depth may leave the slope of a surface between two pixels: a share of the nearer one's depth. In orthographic
+// views depth depends on where the camera happens to stand, so it is a share of the height that is seen; of the depth only
+// what float's rounding in casting comes to, 2^-20.
 struct DepthGive {
   DepthGive(const GuideSet& guides, double depth_tolerance);
-  float At(float depth) const { return share * depth + fixed; }
+  float At(float depth) const { return fixed + share * depth; }
 
   float share = 0.0f;
   float fixed = 0.0f;  // metres

@@ -235,9 +235,8 @@ HWY_ATTR WideCells::Bits DoubtBitsOf(const CellPairs& pair, const EdgeLimits& li
         hn::Mul(hn::Set(d, 4e-6f), hn::Add(hn::Add(of_p(WideCells::kFarthest), of_q(WideCells::kFarthest)),
                                            hn::Mul(steepest, hn::Set(d, static_cast<float>(pair.radius + 2 * kSide)))));
     const V off = hn::Add(hn::Add(hn::Add(step, twist), bends), hn::Add(drifts, slack));
-    const V tolerance = hn::MulAdd(hn::Set(d, limits.give.share),
-                                   hn::Min(of_p(WideCells::kLeastDepth), of_q(WideCells::kLeastDepth)),
-                                   hn::Set(d, limits.give.fixed));
+    const V nearest = hn::Min(of_p(WideCells::kLeastDepth), of_q(WideCells::kLeastDepth));
+    const V tolerance = hn::Add(hn::Set(d, limits.give.fixed), hn::Mul(hn::Set(d, limits.give.share), nearest));
     const auto seen = hn::Gt(hn::Min(of_p(WideCells::kSeen), of_q(WideCells::kSeen)), zero);
     const auto put = [&](hn::Mask<DF> sure, std::uint32_t& word) HWY_ATTR {
       std::uint8_t bytes[8] = {};

@@ -46,7 +46,7 @@ HWY_ATTR HWY_INLINE std::uint64_t PassBits(const WideSurface& surface, const Edg
     const auto expected = hn::Mul(hn::Set(d, 0.5f), along);
     const auto leeway =
         hn::Add(hn::Mul(hn::Min(hn::Abs(px), hn::Abs(qx)), wide), hn::Mul(hn::Min(hn::Abs(py), hn::Abs(qy)), high));
-    const auto give = hn::MulAdd(hn::Set(d, limits.give.share), hn::Min(near, far), hn::Set(d, limits.give.fixed));
+    const auto give = hn::Add(hn::Set(d, limits.give.fixed), hn::Mul(hn::Set(d, limits.give.share), hn::Min(near, far)));
     const auto tolerance = hn::Add(leeway, give);
     auto same = hn::Le(hn::Abs(hn::Sub(hn::Sub(far, near), expected)), tolerance);
     if constexpr (kFacing) {
