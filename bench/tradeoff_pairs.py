@@ -72,7 +72,7 @@ def choose(reports):
 
 
 def draw(arguments):
-    subprocess.run(["oiiotool"] + [str(argument) for argument in arguments], check=True)
+    subprocess.run(["oiiotool", "--nosoftwareattrib"] + [str(argument) for argument in arguments], check=True)
 
 
 def panel(file, piece, output):
