@@ -2,7 +2,8 @@
 //
 // Walter et al., "Microfacet models for refraction", EGSR 2007; Heitz, "Sampling the GGX distribution of visible
 // normals", JCGT 2018. Masking and shadowing are Smith's, separable, as in glTF 2.0 and in Cycles 3.4; what bounces
-// between microfacets is lost, so no surface returns more than it receives.
+// between microfacets is lost, so no surface returns more than it receives, but for white under
+// a coat: 0.13% at most, as the diffuse part goes by the eye's angle alone.
 #pragma once
 
 #include <glm/glm.hpp>
