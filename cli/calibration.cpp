@@ -76,7 +76,7 @@ class Picker {
         measure_(measure),
         judge_(judge),
         runs_(calibration.ways.size()),
-        fresh_(calibration.ways.size()),
+        kept_(calibration.ways.size()),
         off_(calibration.ways.size()) {}
 
   void Load() {
@@ -88,30 +88,36 @@ class Picker {
     cold_ms_ = known->cold_ms;
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       const auto found = known->ways.find(calibration_.ways[way]);
-      if (found != known->ways.end()) runs_[way] = found->second;
+      if (found != known->ways.end()) runs_[way] = found->second, kept_[way] = runs_[way].size();
       const auto off = known->off.find(calibration_.ways[way]);
       if (off != known->off.end() && known->off_of == calibration_.judged) off_[way] = off->second;
     }
   }
 
   void Store() const {
-    if (!calibration_.cache || (measured_ == 0 && !judged_) || !cold_ms_) return;
+    if (!calibration_.cache || (measured_ == 0 && judged_.empty()) || !cold_ms_) return;
     nlohmann::ordered_json json{{"circumstances", calibration_.circumstances},
-                                {"cold_ms", cold_ms_.value_or(0.0)},
+                                {"cold_ms", *cold_ms_},
                                 {"ways", nlohmann::ordered_json::object()},
                                 {"off_of", calibration_.judged},
                                 {"off", nlohmann::ordered_json::object()}};
-    // Another process may have measured other ways meanwhile.
+    // Another process may have measured other ways meanwhile, or all of them anew: only what was found out here joins what is kept.
     Known known;
     if (const auto bytes = calibration_.cache->Load(Key()); bytes && !calibration_.anew) {
-      if (const auto other = ParseTimes(*bytes, calibration_.circumstances)) known = *other;
+      if (const auto other = ParseTimes(*bytes, calibration_.circumstances)) {
+        known = *other;
+        if (!warmed_up_) json["cold_ms"] = known.cold_ms;
+      }
     }
     if (known.off_of != calibration_.judged) known.off.clear();
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       const std::string& name = calibration_.ways[way];
-      if (fresh_[way] && runs_[way].size() > known.ways[name].size()) known.ways[name] = runs_[way];
-      if (off_[way]) known.off[name] = *off_[way];
+      Runs& runs = known.ways[name];
+      for (std::size_t run = kept_[way]; run < runs_[way].size() && runs.size() < std::size_t(kCalibrationRuns); ++run) {
+        runs.push_back(runs_[way][run]);
+      }
     }
+    for (const std::size_t way : judged_) known.off[calibration_.ways[way]] = *off_[way];
     for (const auto& [name, runs] : known.ways) {
       if (!runs.empty()) json["ways"][name] = runs;
     }
@@ -154,7 +160,7 @@ class Picker {
     for (const std::size_t one : {way, rival}) {
       if (off_[one]) continue;
       SCUMBLE_ASSIGN(off_[one], judge_(one));
-      judged_ = true;
+      judged_.push_back(one);
     }
     const bool known = std::isfinite(*off_[way]) && std::isfinite(*off_[rival]);
     if (!known) return Picked(way, true);
@@ -186,6 +192,7 @@ class Picker {
     SCUMBLE_ASSIGN(const double cold, measure_(last));
     SCUMBLE_RETURN_IF_ERROR(Measure(last));
     SCUMBLE_RETURN_IF_ERROR(Measure(last));
+    warmed_up_ = true;
     cold_ms_ = std::max(0.0, cold - std::max(runs_[last][0], runs_[last][1]));
     return Ok();
   }
@@ -193,7 +200,6 @@ class Picker {
   Status Measure(std::size_t way) {
     SCUMBLE_ASSIGN(const double ms, measure_(way));
     runs_[way].push_back(ms);
-    fresh_[way] = true;
     ++measured_;
     return Ok();
   }
@@ -203,10 +209,11 @@ class Picker {
   const MeasureWay& measure_;
   const JudgeWay& judge_;
   std::vector<Runs> runs_;                  // by way
-  std::vector<bool> fresh_;                 // likewise: some were made now
+  std::vector<std::size_t> kept_;           // likewise: how many of them were known
   std::vector<std::optional<double>> off_;  // likewise, of those that were judged
-  bool judged_ = false;                     // some now
+  std::vector<std::size_t> judged_;         // ways, now
   std::optional<double> cold_ms_;
+  bool warmed_up_ = false;  // now
   int measured_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -161,10 +162,12 @@ void RunFiles::ReadsUris(const std::string& what, const std::string& file, const
     if (colon == std::string::npos || text[colon] != ':') continue;
     const std::size_t begin = text.find_first_not_of(kBlank, colon + 1);
     if (begin == std::string::npos || text[begin] != '"') continue;
-    const std::size_t end = text.find('"', begin + 1);
-    if (end == std::string::npos || end - begin > kLongestName) continue;
-    std::string name = text.substr(begin + 1, end - begin - 1);
-    for (std::size_t slash = name.find("\\/"); slash != std::string::npos; slash = name.find("\\/")) name.erase(slash, 1);
+    std::size_t end = begin + 1;
+    while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
+    if (end >= text.size() || end - begin > kLongestName) continue;
+    const auto json = nlohmann::json::parse(text.substr(begin, end - begin + 1), nullptr, false);  // "gr\u00fcn.png"
+    if (!json.is_string()) continue;
+    const auto name = json.get<std::string>();
     for (const std::string& spelling : {name, WithoutPercents(name)}) Reads(what, (fs::path(folder) / spelling).string());
   }
 }

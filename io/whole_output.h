@@ -10,7 +10,7 @@
 
 namespace scumble {
 
-// As the value of a setting that is wanted: it is not known, and agrees with all.
+// As the value of a setting on either side: it is not known, and agrees with all.
 inline constexpr const char* kAnySetting = "?";
 
 // What a picture must be; 0 stands for anything.
@@ -20,7 +20,8 @@ struct PictureShape {
   int channels = 0;
   int bits = 0;          // a channel, as PictureBits has them
   std::string settings;  // as WritePicture keeps them: "scumble 0.1; seed 0; exposure 0.52". All that either side says
-                         // must agree; a file that says nothing, and "" here, are not compared
+                         // must agree, but for what older versions never told (upsample, fps, measured); a file that says
+                         // nothing, and "" here, are not compared
 };
 
 // Channels of a picture that WritePicture writes to a file of that name: 4, and 3 for JPEG, which has no alpha.

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace scumble {
@@ -173,6 +174,31 @@ TEST(Calibration, TimesOfTwoProcessesAreJoined) {
   EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, later).way, 0u);
   EXPECT_EQ(MustPick(Ladder(3, &cache), 30.0, later).way, 1u);
   EXPECT_EQ(later.Total(), 0);
+}
+
+// Times were kept on a busy machine. While one process measures one more way, another measures all of them anew: what was known
+// before, the cost of a first run too, does not come back.
+TEST(Calibration, WhatAnotherProcessMeasuresAnewStays) {
+  MemoryCache cache;
+  FakeClock busy{{{90.0}, {30.0}, {25.0, 5.0, 5.0}}}, quiet{{{40.0}, {10.0}, {4.0}}};
+  EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, busy).predicted_ms, 50.0) << "30, and 20 for the first run";
+  bool begun = false;
+  const MeasureWay measure = [&](std::size_t way) -> Expected<double> {
+    if (!std::exchange(begun, true)) {
+      Calibration anew = Ladder(3, &cache);
+      anew.anew = true;
+      EXPECT_EQ(MustPick(anew, 20.0, quiet).way, 1u);
+    }
+    return busy.Measure()(way);
+  };
+  const auto picked = PickWay(Ladder(3, &cache), 200.0, measure);
+  ASSERT_TRUE(picked.ok());
+  EXPECT_EQ(picked->way, 0u);
+  FakeClock never{{{1e9}, {1e9}, {1e9}}};
+  const PickedWay later = MustPick(Ladder(3, &cache), 20.0, never);
+  EXPECT_EQ(later.way, 1u);
+  EXPECT_EQ(later.predicted_ms, 10.0);
+  EXPECT_EQ(never.Total(), 0);
 }
 
 TEST(Calibration, KnownTimesAreNotMeasuredAgain) {

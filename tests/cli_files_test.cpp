@@ -78,7 +78,7 @@ TEST_F(CliFiles, NorThatOfFilesThatASceneNames) {
 // A .glb may leave pictures and buffers beside it, though exporters put them into it.
 TEST_F(CliFiles, NorThatOfFilesThatABinarySceneNames) {
   WriteStyle("style");
-  std::string text = TriangleGltf(false).insert(1, R"("images":[{"uri":"the%20skin.png"}],)");
+  std::string text = TriangleGltf(false).insert(1, R"("images":[{"uri":"the%20skin.png"},{"uri":"gr\u00fcn.png"}],)");
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const auto word = [](std::size_t value) {
     std::string bytes;
@@ -86,9 +86,11 @@ TEST_F(CliFiles, NorThatOfFilesThatABinarySceneNames) {
     return bytes;
   };
   WriteText("tri.glb", "glTF" + word(2) + word(20 + text.size()) + word(text.size()) + "JSON" + text);
-  WritePainted("the skin.png", 8, 8);
   const Arguments stylize = {"stylize", "tri.glb", "--style", "style", "--size", "16"};
-  ExpectError(With(stylize, {"-o", "the skin.png"}), 2, {"the skin.png", "overwrite a file of the scene tri.glb"});
+  for (const std::string name : {"the skin.png", "gr\xc3\xbcn.png"}) {
+    WritePainted(name, 8, 8);
+    ExpectError(With(stylize, {"-o", name}), 2, {name, "overwrite a file of the scene tri.glb"});
+  }
   RunOk(With(stylize, {"-o", "new.png"}));
 }
 

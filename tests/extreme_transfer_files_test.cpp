@@ -246,7 +246,6 @@ TEST_F(ExtremeFiles, ExemplarsInFloatsSaturate) {
 
 // ---- luminances of files -------------------------------------------------------------------------------------------
 
-// Negative light, which denoisers leave, is darkness; NaN and infinity are said with their place.
 // Half floats end at 65504, and what is farther is written as infinite. Two such pixels are as far away as each other, so
 // they are no edge: the picture is that of a wall at 60000 m, with the same step before it.
 TEST_F(ExtremeFiles, DepthsBeyondHalfFloats) {
@@ -267,6 +266,7 @@ TEST_F(ExtremeFiles, DepthsBeyondHalfFloats) {
   EXPECT_FALSE(painted(kInfinity, true) == painted(kInfinity, false)) << "the step is an edge";
 }
 
+// Negative light, which denoisers leave, is darkness; NaN and infinity are said with their place.
 TEST_F(ExtremeFiles, LuminancesThatAreNone) {
   WritePainted("style/lit.png", 32, 32), WritePainted("style/shade.png", 32, 32);
   WriteText("style/style.toml",

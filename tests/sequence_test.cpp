@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/whole_output.h"
 #include "tests/cli_harness.h"
 
 namespace scumble {
@@ -150,6 +151,28 @@ TEST_F(CliSequence, ResumeComparesTheExposure) {
   EXPECT_EQ(kept("5"), 2);
   EXPECT_EQ(kept("auto"), 0) << "measured it would be another";
   EXPECT_EQ(kept("auto"), 2);
+}
+
+// Pictures of older versions do not tell of everything: what they were all made with is taken for granted, what nobody can know
+// agrees with anything, and all else that one side alone tells of differs.
+TEST_F(CliSequence, ResumeTakesForGrantedWhatOlderPicturesDoNotTell) {
+  const auto agrees = [&](const std::string& found, const std::string& wanted) {
+    PictureWriteOptions options;
+    options.settings = "scumble 0.1; " + found;
+    EXPECT_TRUE(WritePicture(At("p.png"), Painted(8, 8), options));
+    return CheckWholePicture(At("p.png"), {8, 8, 4, 8, "scumble 0.1; " + wanted}).ok();
+  };
+  for (const std::string made : {"seed 0", "seed 0; upsample 1", "seed 0; fps 24; measured 1"}) {
+    for (const std::string wanted : {"seed 0", "seed 0; upsample 1; fps 24; measured 1"}) EXPECT_TRUE(agrees(made, wanted)) << made;
+    EXPECT_FALSE(agrees(made, "seed 0; upsample 2")) << made;
+    EXPECT_FALSE(agrees(made, "seed 1; upsample 1")) << made;
+    EXPECT_FALSE(agrees(made, "seed 0; show chunks")) << made;
+  }
+  EXPECT_TRUE(agrees("seed 0; upsample 2", "seed 0; upsample 2; measured 0"));
+  EXPECT_FALSE(agrees("seed 0; upsample 2", "seed 0"));
+  EXPECT_FALSE(agrees("seed 0; fps 12", "seed 0; fps 24"));
+  EXPECT_FALSE(agrees("seed 0; show chunks", "seed 0"));
+  EXPECT_TRUE(agrees("seed 0", "seed ?"));
 }
 
 TEST_F(CliSequence, ResumeKnowsEveryKindOfOutput) {

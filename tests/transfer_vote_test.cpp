@@ -297,7 +297,7 @@ TEST(EdgeAware, FingersSurviveRadiusEight) {
 }
 
 // An orthographic camera sees the same from wherever it stands, so where it stands is no part of what an edge is: the step
-// is measured by the height that is seen. Depths are sixteenths of a metre below 2^20 m, exact wherever the camera stands.
+// is measured by the height that is seen, for steps above 2^-20 of the distance at least. Depths are sixteenths of a metre below 2^20 m, exact wherever the camera stands.
 TEST(EdgeAware, AnOrthographicCameraMayStandAnywhere) {
   Style style = PlainStyle(BlackAndWhite(128));
   for (const int radius : {1, 3, 8}) {
