@@ -56,27 +56,33 @@ TEST_F(CliBudget, CalibrationIsAStageOfItsOwn) {
   }
 }
 
-// A plan alone is that of the way that was picked, which is said; on a busy machine that may be any.
+// A plan alone is that of the way that was picked, which is said: whichever the clock decides on.
 TEST_F(CliBudget, APlanIsOfWhatIsPicked) {
-  int smaller = 1;
-  const auto guides_of = [&](const Arguments& more) {
-    const CommandResult run = RunOk(With(With(Stylize(), {"--explain", "--json"}), more));
+  struct Plan {
+    int smaller = 1;  // how much smaller than the picture the guides are said to be
+    double guides = 0.0;
+  };
+  const auto plan_of = [&](const Arguments& command, const Arguments& more) {
+    const CommandResult run = RunOk(With(With(command, {"--explain", "--json"}), more));
+    Plan plan;
     const std::string option = "--upsample ";
     const std::size_t at = run.err.find(option);
-    smaller = at == std::string::npos ? 1 : std::stoi(run.err.substr(at + option.size()));
-    const nlohmann::json report = run.Json();
-    for (const auto& part : report.at("memory").at("parts").items()) {
-      if (part.key() == "guides") return part.value().get<double>();
-    }
-    return 0.0;
+    if (at != std::string::npos) plan.smaller = std::stoi(run.err.substr(at + option.size()));
+    plan.guides = run.Json().at("memory").at("parts").at("guides").get<double>();
+    return plan;
   };
-  const double whole = guides_of({});
-  EXPECT_GT(whole, 0.0);
-  EXPECT_EQ(guides_of({"--quality", "draft"}), whole) << "guides of normals alone stay as they are";
-  EXPECT_EQ(smaller, 1);
-  const double picked = guides_of({"--budget-ms", "1e-6"});
-  EXPECT_GT(smaller, 1);
-  EXPECT_EQ(picked * smaller * smaller, whole);
+  const Plan whole = plan_of(Stylize(), {});
+  EXPECT_GT(whole.guides, 0.0);
+  const Plan draft = plan_of(Stylize(), {"--quality", "draft"});
+  EXPECT_EQ(draft.smaller, 1) << "guides of normals alone stay as they are";
+  EXPECT_EQ(draft.guides, whole.guides);
+  const Plan picked = plan_of(Stylize(), {"--budget-ms", "1e-6"});
+  EXPECT_EQ(picked.guides * picked.smaller * picked.smaller, whole.guides);
+
+  const Arguments lit = {"stylize", Scene("suzanne.glb"), "--style", "chiaroscuro", "--size", "128x72"};
+  const Plan preview = plan_of(lit, {"--quality", "preview"});
+  EXPECT_EQ(preview.smaller, 2);
+  EXPECT_EQ(preview.guides * 4, plan_of(lit, {}).guides);
 }
 
 // Memory is checked before anything is painted on trial.
