@@ -100,7 +100,10 @@ TEST_P(PngShapes, AnyThreadsSameBytesAndTheyHoldThePicture) {
 // A row of the widest is more than a band, a hundred rows of 1,000 pixels are two, 300 are five.
 INSTANTIATE_TEST_SUITE_P(All, PngShapes,
                          ::testing::Values(Shape{1, 1}, Shape{1, 300}, Shape{301, 1}, Shape{37, 23}, Shape{1000, 100},
-                                           Shape{1000, 300}, Shape{32768, 3}));
+                                           Shape{1000, 300}, Shape{32768, 3}),
+                         [](const auto& shape) {
+                           return std::to_string(shape.param.width) + "x" + std::to_string(shape.param.height);
+                         });
 
 // So many bytes are left of 8-bit rows as they are.
 std::size_t PackedUnfiltered(const Picture& picture) {

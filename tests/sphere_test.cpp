@@ -53,7 +53,8 @@ TEST_P(SphereOfSize, IsTheAnalyticSphere) {
   EXPECT_EQ(result.rays.primary, std::size_t(n) * n);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, SphereOfSize, ::testing::Values(1, 2, 63, 64, 512, 1024));
+INSTANTIATE_TEST_SUITE_P(Sizes, SphereOfSize, ::testing::Values(1, 2, 63, 64, 512, 1024),
+                         [](const auto& size) { return std::to_string(size.param); });
 
 TEST(Sphere, FillsThePictureExactly) {
   SphereOptions options;
