@@ -22,11 +22,11 @@ test: ## install what is missing (Blender too), build everything, run all tests
 	@cmake --build build -j $(JOBS)
 	@ctest --test-dir build --output-on-failure -j $(JOBS)
 
-test-asan: ## all tests but those of Blender and the longest of the painter's under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/
+test-asan: ## all tests but the longest of the painter's under AddressSanitizer and UndefinedBehaviorSanitizer, in build-asan/; takes an hour or two
 	@.ci/install test
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)
-	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -LE blender -E painting_repeats
+	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -E painting_repeats
 
 # GCC 12's sanitizer guesses where the C library keeps what libraries have for each thread, wrongly once one is loaded late, and
 # then dies of looking for leaks there.

@@ -44,7 +44,8 @@ def main():
     parser.add_argument("--scumble", default=SOURCE / "build" / "scumble")
     parser.add_argument("--size", default="1280x720")
     parser.add_argument("--verbs", default="stylize,transfer")
-    parser.add_argument("--scenes", default="suzanne,stilllife,toys,snail")
+    parser.add_argument("--scenes", default="suzanne,stilllife,toys,snail,ball",
+                        help="of ball the light takes samples")
     parser.add_argument("--styles", default="oil,charcoal,sumi-e,chiaroscuro")
     parser.add_argument("--shares", default="0.6,0.8,1.2,2",
                         help="budgets, as shares of what the style itself took in a first run")

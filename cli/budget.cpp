@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <span>
 #include <utility>
 
 #include "cli/budget_trial.h"
@@ -19,6 +21,7 @@
 #include "cli/run_files.h"
 #include "cli/scene_frames.h"
 #include "cli/timing.h"
+#include "cli/tradeoff_guides.h"
 #include "image/hash.h"
 #include "style/style_keyframes.h"
 
@@ -39,6 +42,8 @@ struct Trials {
   PaintWay judge;  // how far off the picture is: PaintTrial::Judge
 };
 
+FileCache TimesCache() { return FileCache(CacheFolder() ? *CacheFolder() / "times" : std::filesystem::path()); }
+
 std::string WordsOf(const Way& way) {
   const std::string options = OptionsOf(way);
   return options.empty() ? "the style as it is" : options;
@@ -47,6 +52,7 @@ std::string WordsOf(const Way& way) {
 nlohmann::ordered_json OptionsJson(const Way& way) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   if (UpsampleOf(way) > 1) json.insert(json.end(), {"--upsample", std::to_string(UpsampleOf(way))});
+  if (way.samples > 0) json.insert(json.end(), {"--samples", std::to_string(way.samples)});
   for (const std::string& setting : way.settings) json.insert(json.end(), {"--set", setting});
   return json;
 }
@@ -56,19 +62,20 @@ Status Take(const Way& way, StyleSet& styles, PictureOptions& picture) {
   return ApplyWay(way, styles);
 }
 
-Status TakeQuality(const BudgetOptions& options, const LadderFrame& frame, StyleSet& styles, PictureOptions& picture,
-                   const Globals& globals) {
+Way NamedWay(const BudgetOptions& options, const LadderFrame& frame, const StyleSet& styles, PictureOptions& picture,
+             const Globals& globals) {
   const Way way = WayOf(QualityOf(options.quality), styles, frame);
   const bool as_it_is = OptionsOf(way).empty();
   Say(globals, fmt::format("quality {}: {}{}", options.quality, WordsOf(way), as_it_is ? "" : ", which repeats it"));
   picture.chosen["quality"] = {{"name", options.quality}, {"options", OptionsJson(way)}};
-  return Take(way, styles, picture);
+  return way;
 }
 
-Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const std::string& circumstances, const std::string& judged,
-                  StyleSet& styles, PictureOptions& picture, const Globals& globals, const Trials& trials) {
+Expected<Way> WayWithin(const BudgetOptions& options, const LadderFrame& frame, const std::string& circumstances,
+                        const std::string& judged, const StyleSet& styles, PictureOptions& picture, const Globals& globals,
+                        const Trials& trials) {
   const std::vector<Way> ways = QualityLadder(styles, frame);
-  FileCache cache(CacheFolder() ? *CacheFolder() / "times" : std::filesystem::path());
+  FileCache cache = TimesCache();
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
   for (const Way& way : ways) calibration.ways.push_back(way.name);
   calibration.judged = judged;
@@ -119,7 +126,7 @@ Status TakeWithin(const BudgetOptions& options, const LadderFrame& frame, const 
   for (const auto& [place, off] : picked.compared) {
     if (std::isfinite(off)) picture.chosen["budget"]["compared"][ways[place].name] = off;
   }
-  return Take(way, styles, picture);
+  return way;
 }
 
 // Of keys that change over time; 0 where none does.
@@ -143,7 +150,7 @@ std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture,
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
   const std::uint64_t tracks = HashOfTracks(styles);
-  PictureSettings settings = SettingsOf(picture, {}, {});
+  PictureSettings settings = SettingsOf(picture, {}, {}, {});
   settings.measured.reset();  // stops that were measured before take as long as those that are measured now
   return fmt::format("{}; {}{}{}{}{}", MachineName(globals.threads),
                      SettingsText(styles, settings, hashes),
@@ -166,6 +173,16 @@ std::uint64_t HashOfFiles(const std::string& scene) {
     }
   }
   return hash;
+}
+
+// Kept beside the times, as it takes reading the scene to know.
+Expected<bool> KeptAnswer(const std::string& question, const std::function<Expected<bool>()>& find) {
+  FileCache cache = TimesCache();
+  if (const auto bytes = cache.Load(question); bytes && bytes->size() == 1) return bytes->front() != std::byte(0);
+  SCUMBLE_ASSIGN(const bool answer, find());
+  const std::byte byte{static_cast<unsigned char>(answer)};
+  cache.Store(question, std::span(&byte, 1));
+  return answer;
 }
 
 // What is opened when the first way is measured: the frame as the run will have it.
@@ -196,22 +213,21 @@ std::string PictureText(const GuideSet& guides, const PictureOptions& picture) {
 }  // namespace
 
 void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
-  const std::string smaller = casts ? "smaller guides, " : "";
+  const std::string smaller = casts ? "smaller guides, fewer samples, " : "";
+  const std::string wins = std::string("--set") + (casts ? ", --upsample and --samples" : " and --upsample") + " win over it";
   verb.add_option("--quality", options.quality,
                   "final: the style as it is; preview and draft take less time where there is much to take, by " + smaller +
-                      "simpler ways to find the paint; what is taken is printed as options that repeat it. --set and "
-                      "--upsample win over it")
+                      "simpler ways to find the paint; what is taken is printed as options that repeat it. " + wins)
       ->type_name("NAME")
       ->check(CLI::IsMember(kQualities));
   verb.add_option(
           "--budget-ms", options.budget_ms,
           std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
-              " of one picture may take, without start-up, reading, preparing the style and writing: the most "
-              "accurate way that fits is taken, by times that are measured once on this machine and kept in the "
-              "user's cache folder; one way for all frames; the options that repeat it are printed. --set and "
-              "--upsample win over it")
+              " of one picture may take, without start-up, reading, preparing the style and writing: of a dozen "
+              "ways, ordered by what they cost in accuracy, the first that fits is taken, by times that are measured once on this "
+              "machine and kept in the user's cache folder; one way for all frames; the options that repeat it are printed. " + wins)
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(RefuseNoAmount("milliseconds, as 40"));
   verb.add_flag("--recalibrate", options.recalibrate, "with --budget-ms: measure anew");
 }
 
@@ -220,7 +236,6 @@ Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options) {
   if (!options.quality.empty() && options.budget_ms > 0) {
     return UsageError("--quality " + options.quality + " and --budget-ms exclude each other: give one of them");
   }
-  if (!std::isfinite(options.budget_ms)) return UsageError("--budget-ms: expected a number of milliseconds");
   if (options.recalibrate && !(options.budget_ms > 0)) {
     return UsageError("--recalibrate is for --budget-ms: give both, or leave it out");
   }
@@ -231,7 +246,7 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std
                        const std::string& name, const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
   if (!options.chooses()) return Ok();
   const LadderFrame ladder{false, guides.width(), guides.height(), true};
-  if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
+  if (!options.quality.empty()) return Take(NamedWay(options, ladder, styles, picture, globals), styles, picture);
   for (Style& style : styles.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame.value_or(0)));
   const auto coverage = guides.Plane(Layer::kCoverage);
   const auto covered = std::count_if(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
@@ -241,17 +256,25 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
                   guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
   PaintTrial trial(styles, picture, frame, name, over, globals);
-  return TakeWithin(options, ladder, circumstances, PictureText(guides, picture), styles, picture, globals,
-                    {[&](const Way& way) { return trial.Paint(way, guides); },
-                     [&](const Way& way) { return trial.Judge(way, guides); }});
+  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, PictureText(guides, picture), styles, picture, globals,
+                                          {[&](const Way& one) { return trial.Paint(one, guides); },
+                                           [&](const Way& one) { return trial.Judge(one, guides); }}));
+  return Take(way, styles, picture);
 }
 
-Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, std::optional<int> frame,
+Status ChooseForScene(const BudgetOptions& options, SceneOptions& scene, std::optional<int> frame,
                       const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
   if (!options.chooses()) return Ok();
   SCUMBLE_ASSIGN(const Size size, ParseSize(scene.size));
-  const LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed};
-  if (!options.quality.empty()) return TakeQuality(options, ladder, styles, picture, globals);
+  // Named points do not look at the scene: where its light takes no samples, fewer make no difference.
+  const bool may_have_fewer =
+      !scene.samples_given && std::any_of(styles.styles.begin(), styles.styles.end(), AsksForLight);
+  LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed, may_have_fewer ? scene.samples : 0};
+  const auto take = [&](const Way& way) {
+    if (way.samples > 0) scene.samples = way.samples;
+    return Take(way, styles, picture);
+  };
+  if (!options.quality.empty()) return take(NamedWay(options, ladder, styles, picture, globals));
   const std::string circumstances =
       fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
                   HashOfFiles(scene.scene), scene.size,
@@ -260,13 +283,25 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
   silent.quiet = true, silent.timing = nullptr;
   std::optional<SceneAtRest> opened;
   PaintTrial trial(styles, picture, frame, scene.scene, over, globals);
+  const auto open = [&]() -> Status {
+    if (opened) return Ok();
+    SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
+    return Ok();
+  };
+  const auto needs_samples = [&]() -> Expected<bool> {
+    SCUMBLE_RETURN_IF_ERROR(open());
+    return NeedSamples(opened->scene, opened->layers, scene);
+  };
+  if (ladder.samples > 0) {
+    SCUMBLE_ASSIGN(const bool needed, KeptAnswer("samples; " + circumstances, needs_samples));
+    if (!needed) ladder.samples = 0;
+  }
   double casting_ms = 0.0;
   const auto cast = [&](const Way& way) -> Expected<GuideSet> {
-    if (!opened) {
-      SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
-    }
+    SCUMBLE_RETURN_IF_ERROR(open());
     SceneOptions small = scene;
     small.size = fmt::format("{}x{}", size.width / UpsampleOf(way), size.height / UpsampleOf(way));
+    if (way.samples > 0) small.samples = way.samples;
     Stopwatch watch;
     SCUMBLE_ASSIGN(SceneGuides made,
                    CastScene(opened->scene, opened->view.camera, nullptr, small, opened->layers, silent, {}, false));
@@ -282,7 +317,9 @@ Status ChooseForScene(const BudgetOptions& options, const SceneOptions& scene, s
     SCUMBLE_ASSIGN(const GuideSet guides, cast(way));
     return trial.Judge(way, guides);
   };
-  return TakeWithin(options, ladder, circumstances, "exposure " + picture.exposure, styles, picture, globals, {paint, judge});
+  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, "exposure " + picture.exposure, styles, picture, globals,
+                                          {paint, judge}));
+  return take(way);
 }
 
 }  // namespace scumble

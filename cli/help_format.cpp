@@ -80,11 +80,16 @@ HelpFormat::HelpFormat() {
   label("Positionals", "Arguments");
 }
 
+std::string HelpFormat::make_option_name(const CLI::Option* option, bool is_positional) const {
+  const std::string name = CLI::Formatter::make_option_name(option, is_positional);
+  return name.substr(0, name.find('{'));  // the value that a flag sets
+}
+
 std::string HelpFormat::make_option_opts(const CLI::Option* option) const {
   std::string text;
   if (option->get_type_size() != 0) {
-    const std::string type = option->get_type_name();
-    text = " " + type.substr(0, type.find(':'));
+    const std::string type = option->get_type_name();  // what checks its values stands behind a colon
+    text = " " + type.substr(0, type.find(':', type.starts_with('[') ? type.find(']') : 0));
     if (!option->get_default_str().empty()) text += " = " + option->get_default_str();
   }
   return text;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -147,6 +148,17 @@ Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::
                   BytesToText(limit.bytes), mend,
                   limit.asked ? "allow more" : "say --max-memory " + BytesToOption(need.peak()) + " to try all the same");
   return limit.asked ? UsageError(message) : MemoryError(message);
+}
+
+Status CheckMemory(const MemoryNeed& need, const Globals& globals, const std::string& mend) {
+  const MemoryLimit limit = LimitFor(globals);
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, limit, mend));
+  static std::atomic<std::uint64_t> said = 0;
+  if (globals.quiet || need.peak() < kMuchMemory || need.peak() < said + said / 2) return Ok();
+  said = need.peak();
+  Say(globals, fmt::format("takes up to {} of memory{}", BytesToText(need.peak()),
+                           limit.who.empty() ? "" : fmt::format("; {} {}", limit.who, BytesToText(limit.bytes))));
+  return Ok();
 }
 
 std::function<Status(std::uint64_t bytes)> RoomForStyles(const Globals& globals) {

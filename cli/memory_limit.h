@@ -52,9 +52,10 @@ MemoryLimit LimitFor(const Globals& globals, const std::filesystem::path& root =
 // Ok, or an error that says how much is needed, for what, how much there is, and what to do: kUsage where it was
 // --max-memory, kMemory otherwise. A machine that does not tell refuses nothing.
 Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& mend);
-inline Status CheckMemory(const MemoryNeed& need, const Globals& globals, const std::string& mend) {
-  return CheckMemory(need, LimitFor(globals), mend);
-}
+// The same for this machine. From kMuchMemory on what fits is said before it is taken: once, and again where a later check of
+// the run comes to half as much more.
+Status CheckMemory(const MemoryNeed& need, const Globals& globals, const std::string& mend);
+inline constexpr std::uint64_t kMuchMemory = std::uint64_t(4) << 30;
 
 // For StyleOptions::room: adds up what the pictures of a run's styles take, and refuses as CheckMemory does where they
 // alone are more than there is. Copies add up together.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <system_error>
 
 #include "cli/memory_need.h"
@@ -35,6 +36,16 @@ CLI::Option* AddFastIoOption(CLI::App& verb, bool& fast_io) {
 
 std::string RefuseNegative(const std::string& text) {
   return text.rfind('-', 0) == 0 ? text + " is negative: expected a whole number, 0 or more" : "";
+}
+
+std::function<std::string(const std::string&)> RefuseNoAmount(const std::string& example) {
+  return [example](const std::string& text) -> std::string {
+    double value = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [read, failure] = std::from_chars(text.data(), end, value);
+    if (failure == std::errc() && read == end && std::isfinite(value) && value > 0.0) return "";
+    return "'" + text + "' is no number above 0: expected " + example;
+  };
 }
 
 std::string RefuseEmpty(const std::string& text) { return text.empty() ? "it is empty: give a name, or leave it out" : ""; }
@@ -156,11 +167,11 @@ void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
       "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most there may be");
   verb.add_option("--noise", options.noise, "sample lpe.* layers, 16 times or more, until the estimated error, RMS over mean, is below this")
       ->type_name("X")
-      ->check(CLI::PositiveNumber);
+      ->check(RefuseNoAmount("an error, as 0.05"));
   verb.add_option("--time-budget", options.time_budget_seconds,
                   "sample lpe.* layers for so many seconds, once at least; the samples that repeat it are printed")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(RefuseNoAmount("seconds, as 2.5"));
 }
 
 namespace {

@@ -72,13 +72,14 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
 }
 
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
-  const auto& [seed, over, show, upsample, fps, exposure, measured] = settings;  // all: each makes another picture
-  const bool lit = std::any_of(styles.styles.begin(), styles.styles.begin() + std::ptrdiff_t(styles.chosen), LooksAtLight);
+  const auto& [seed, over, show, upsample, fps, exposure, measured, samples] = settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
                                  show.empty() ? "result" : show, upsample);
+  const auto chosen = std::span(styles.styles).first(styles.chosen);
+  if (samples && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += fmt::format("; samples {}", *samples);
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);
-  if (!lit) return text;
+  if (std::none_of(chosen.begin(), chosen.end(), LooksAtLight)) return text;
   text += "; exposure " + (exposure ? fmt::format("{}", *exposure) : kAnySetting);
   return text + "; measured " + (measured ? *measured ? "yes" : "no" : kAnySetting);
 }

@@ -23,6 +23,7 @@ struct PictureSettings {
   std::optional<FrameRate> fps;    // where it is known
   std::optional<double> exposure;  // where it is known; counts for styles of several exemplars, as does the next
   std::optional<bool> measured;    // whether --exposure auto found it; empty: the stops alone count
+  std::optional<int> samples;      // of a pixel of light in the guides, where it is known; counts for styles that ask for any
 };
 
 // Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.

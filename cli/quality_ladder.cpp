@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -44,9 +45,14 @@ const Lever& LeverOf(const std::string& setting) {
   return Levers().front();
 }
 
+// Of a pixel: what they cost is noise that the energy does not see, so they go before all else, but for those that the
+// eye sees.
+constexpr int kManySamples = std::numeric_limits<int>::max(), kSomeSamples = 16, kFewSamples = 4;
+
 struct Rung {
   int upsample;
   std::vector<std::string> settings;
+  int samples = kFewSamples;  // at most
 };
 
 constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "transfer.method=litsphere",
@@ -56,6 +62,8 @@ constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "t
 // sees: they stand below no blending and the Lit Sphere, which have whole outlines.
 const std::vector<Rung>& Rungs() {
   static const std::vector<Rung> kRungs = {
+      {1, {}, kManySamples},
+      {1, {}, kSomeSamples},
       {1, {}},
       {1, {kStyleBlit}},
       {1, {kStyleBlit, kUnsplit}},
@@ -116,6 +124,7 @@ int SmallerBy(int upsample, const LadderFrame& frame) {
 Way MakeWay(const Rung& rung, const StyleSet& styles, const LadderFrame& frame) {
   Way way;
   way.guide_scale = 1.0 / SmallerBy(rung.upsample, frame);
+  if (rung.samples < frame.samples) way.samples = rung.samples;
   for (std::string setting : rung.settings) {
     if (setting == kLitSphere && WeighGuides(styles)) setting = kStyleBlit;
     if (!ChangesSomething(LeverOf(setting), styles)) continue;
@@ -145,7 +154,7 @@ bool AreRivals(const Way& a, const Way& b) {
   const auto has = [](const Way& way, const char* setting) {
     return std::find(way.settings.begin(), way.settings.end(), setting) != way.settings.end();
   };
-  return a.guide_scale == b.guide_scale && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
+  return a.guide_scale == b.guide_scale && a.samples == b.samples && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
          has(a, kCrisp) != has(b, kCrisp);
 }
 
@@ -165,6 +174,7 @@ std::string OptionsOf(const Way& way) {
   std::string text;
   const auto add = [&](const std::string& option) { text += (text.empty() ? "" : " ") + option; };
   if (UpsampleOf(way) > 1) add(fmt::format("--upsample {}", UpsampleOf(way)));
+  if (way.samples > 0) add(fmt::format("--samples {}", way.samples));
   for (const std::string& setting : way.settings) add("--set " + setting);
   return text;
 }

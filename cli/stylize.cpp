@@ -78,11 +78,13 @@ class PictureSequence {
   }
 
   // Whether a picture that is there is one that Make would make, as far as can be told without its guides.
-  Status Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps) {
+  // `samples`: of its guides' light, where that is known.
+  Status Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
+               std::optional<int> samples) {
     for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
     SCUMBLE_ASSIGN(const std::optional<double> exposure, ParseExposure(options_.exposure));
     PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {options_.bits}), {}};
-    PictureSettings settings = SettingsOf(options_, fps, exposure);
+    PictureSettings settings = SettingsOf(options_, fps, exposure, samples);
     if (exposure) settings.measured.reset();  // stops that were measured may be given to go on with
     shape.settings = SettingsText(styles_, settings, memory_.hashes);
     return CheckWholePicture(output, shape);
@@ -208,10 +210,11 @@ Expected<ExitCode> TransferSequence(const TransferVerb& verb, const Sequence& se
   work.check = [&](int frame, const std::string& output) -> Status {
     // Guides that are gone cannot say how large their picture was to be, and how fast it plays.
     const auto info = InspectGuides(guides_name.At(frame));
-    if (!info) return pictures.Check(frame, output, 0, 0, {});
+    if (!info) return pictures.Check(frame, output, 0, 0, {}, {});
     SCUMBLE_ASSIGN(const FrameRate fps, RateFor(verb.picture, info->header));
     const int factor = verb.picture.upsample;
-    return pictures.Check(frame, output, info->width * factor, info->height * factor, fps);
+    return pictures.Check(frame, output, info->width * factor, info->height * factor, fps,
+                          SamplesTold(info->header.attributes));
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     if (!verb.camera.empty() && !camera.has_place()) SCUMBLE_RETURN_IF_ERROR(ReadBlenderCamera(verb.camera));
@@ -381,7 +384,7 @@ Expected<ExitCode> StylizeSequence(const StylizeVerb& verb, const Sequence& sequ
   }
   const int width = size.width * verb.picture.upsample, height = size.height * verb.picture.upsample;
   work.check = [&](int frame, const std::string& output) {
-    return pictures.Check(frame, output, width, height, fps);
+    return pictures.Check(frame, output, width, height, fps, options.samples);
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
@@ -428,6 +431,7 @@ Status ChooseForStylize(StylizeVerb& verb, const std::optional<Sequence>& sequen
   const int before = verb.picture.upsample;
   SCUMBLE_ASSIGN(const std::string over, OverOnTrial(verb.picture, sequence));
   SCUMBLE_RETURN_IF_ERROR(ChooseForScene(verb.budget, scene, frame, over, styles, verb.picture, globals));
+  verb.scene.samples = scene.samples;
   return verb.picture.upsample == before ? Ok() : ShrinkGuides(verb);
 }
 

@@ -228,7 +228,8 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
   AddOneStyleOptions(*sub, verb->setup.style, true);
   sub->add_option("--only", verb->setup.only,
                   "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "
-                  "measured in any case")
+                  "measured in any case. A name that is no axis of this style and scene lists those that are, of precision, samples, "
+                  "resolution, robust, nearest, method, levels, threshold, blend_radius and more")
       ->type_name("AXIS,…")
       ->check(RefuseEmpty);
   sub->add_flag("--quick", verb->setup.quick, "the small grid: a dozen ways or two");

@@ -38,10 +38,12 @@ Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
   StyleOptions options = setup.style;
   options.scene_styles = false;
   SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(options));
+  const int samples = stage.chance && !setup.scene.samples_given ? setup.scene.samples : 0;
   const std::pair<const char*, Quality> kNamed[] = {{"preview", Quality::kPreview}, {"draft", Quality::kDraft}};
   for (const auto& [name, quality] : kNamed) {
-    Way way = WayOf(quality, styles, {.casts = true, .width = stage.width, .height = stage.height});
-    if (way.settings.empty() && way.guide_scale == 1.0) continue;
+    Way way = WayOf(quality, styles, 
+                    {.casts = true, .width = stage.width, .height = stage.height, .samples = samples});
+    if (way.settings.empty() && way.guide_scale == 1.0 && way.samples == 0) continue;
     way.axis = "quality", way.value = name, way.name = std::string("quality ") + name;
     stage.grid.ways.push_back(std::move(way));
   }

@@ -18,6 +18,7 @@
 #include "cli/show.h"
 #include "cli/timing.h"
 #include "io/atomic_file.h"
+#include "io/formats.h"
 #include "io/picture_file.h"
 #include "measure/coherence.h"
 #include "style/style_keyframes.h"
@@ -201,8 +202,22 @@ Status ReadOver(const std::string& file, TransferMemory& memory) {
   return Ok();
 }
 
-PictureSettings SettingsOf(const PictureOptions& options, std::optional<FrameRate> fps, std::optional<double> exposure) {
-  return {options.seed, !options.over.empty(), options.show, options.upsample, fps, exposure, options.exposure == "auto"};
+PictureSettings SettingsOf(const PictureOptions& options, std::optional<FrameRate> fps, std::optional<double> exposure,
+                           std::optional<int> samples) {
+  return {options.seed, !options.over.empty(), options.show,   options.upsample, fps,
+          exposure,     options.exposure == "auto", samples};
+}
+
+std::optional<int> SamplesTold(const std::map<std::string, std::string>& attributes) {
+  const auto told = attributes.find(kSettingsKey);
+  if (told == attributes.end()) return std::nullopt;
+  const std::string name = "; samples ";
+  const std::size_t at = told->second.find(name);
+  if (at == std::string::npos) return std::nullopt;
+  const char* const begin = told->second.data() + at + name.size();
+  int samples = 0;  // guides may come from anywhere
+  const auto [end, failure] = std::from_chars(begin, told->second.data() + told->second.size(), samples);
+  return failure == std::errc() ? std::optional(samples) : std::nullopt;
 }
 
 Expected<FrameRate> RateFor(const PictureOptions& options, const GuideSet& guides) {
@@ -445,7 +460,7 @@ Expected<FrameWrite> TransferFrame(StyleSet& styles, const GuideSet& given, cons
   made.output = options.output, made.repeat = options.repeat;
   made.write = {options.bits, options.png_level};
   made.write.fast = options.fast_io;
-  made.write.settings = SettingsText(styles, SettingsOf(options, fps, transfer.exposure), memory.hashes);
+  made.write.settings = SettingsText(styles, SettingsOf(options, fps, transfer.exposure, SamplesTold(given.attributes)), memory.hashes);
   for (const auto& [name, ms] : times) made.steps.emplace_back(name, Spread{ms, ms, ms});
   made.steps.emplace_back("match", SpreadOf(match));
   made.steps.emplace_back("vote", SpreadOf(vote));

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -35,9 +36,13 @@ struct PictureOptions {
 // `needed`: the verb does nothing without an output.
 void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed);
 
-// What is written for --resume to compare, of styles that are at the picture's frame. Rate and exposure where they are
-// known already.
-PictureSettings SettingsOf(const PictureOptions& options, std::optional<FrameRate> fps, std::optional<double> exposure);
+// What is written for --resume to compare, of styles that are at the picture's frame. Rate, exposure and the samples of the
+// guides' light where they are known already.
+PictureSettings SettingsOf(const PictureOptions& options, std::optional<FrameRate> fps, std::optional<double> exposure,
+                           std::optional<int> samples);
+
+// The samples of a pixel of light that guides by their attributes were cast with; nothing where they do not tell.
+std::optional<int> SamplesTold(const std::map<std::string, std::string>& attributes);
 
 // The rate that was asked for, or that of a .blend, which its guides keep in the attribute scumble:fps.
 Expected<FrameRate> RateFor(const PictureOptions& options, const GuideSet& guides);

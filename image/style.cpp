@@ -1,5 +1,7 @@
 #include "image/style.h"
 
+#include <algorithm>
+
 namespace scumble {
 
 LayerSet GuideWeights::Layers() const {
@@ -41,6 +43,13 @@ LayerSet RequiredLayers(const Style& style) {
   if (settings.edge == EdgeMode::kExemplar) layers.Add(Layer::kObject).Add(Layer::kDepth);
   if (settings.colorize > 0.0) layers.Add(Layer::kAlbedo);
   return layers;
+}
+
+bool AsksForLight(const Style& style) {
+  const LayerSet layers = RequiredLayers(style);
+  return std::any_of(AllLayers().begin(), AllLayers().end(), [&](const LayerInfo& info) {
+    return layers.Has(info.layer) && (info.layer == Layer::kShadow || GuideWeights::IsRadiance(info.layer));
+  });
 }
 
 bool LooksAtLight(const Style& style) {

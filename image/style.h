@@ -165,4 +165,7 @@ LayerSet RequiredLayers(const Style& style);
 // Whether the exposure of the scene's light matters: to styles of several exemplars, and to those that weigh radiance.
 bool LooksAtLight(const Style& style);
 
+// Whether it asks guides for any light or shadow, which may take samples.
+bool AsksForLight(const Style& style);
+
 }  // namespace scumble

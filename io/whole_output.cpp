@@ -46,7 +46,7 @@ std::map<std::string, std::string> Parts(const std::string& settings) {
 // What pictures do not tell of that were made before all of it was always told; anything where nobody can know.
 const std::map<std::string, std::string>& Untold() {
   static const std::map<std::string, std::string> kValues = {
-      {"upsample", "1"}, {"fps", kAnySetting}, {"measured", kAnySetting}};
+      {"upsample", "1"}, {"fps", kAnySetting}, {"measured", kAnySetting}, {"samples", kAnySetting}};
   return kValues;
 }
 

@@ -118,6 +118,30 @@ TEST_F(CliBudget, WhateverIsPickedIsRepeatedByTheOptionsThatAreNamed) {
   }
 }
 
+// The ball's lamp has an extent, so its light takes samples; suzanne's suns and points need none, and then no way has fewer.
+TEST_F(CliBudget, FewerSamplesWhereLightTakesThem) {
+  const auto stylize = [&](const char* scene) {
+    return Arguments{"stylize", Scene(scene), "--style", "chiaroscuro", "--size", "64x36"};
+  };
+  const auto ways_of = [&](const Arguments& command) {
+    const std::string told = RunOk(With(command, {"--budget-ms", "3600000", "--recalibrate", "-o", "p.png"})).err;
+    const std::string words = "measuring up to ";
+    const std::size_t at = told.find(words);
+    return at == std::string::npos ? 0 : std::stoi(told.substr(at + words.size()));
+  };
+  const int ways = ways_of(stylize("suzanne.glb"));
+  EXPECT_GT(ways, 2);
+  EXPECT_EQ(ways_of(stylize("ball.glb")), ways + 2) << "16 and 4 samples";
+  EXPECT_EQ(ways_of(With(stylize("ball.glb"), {"--samples", "64"})), ways) << "the user has said how many";
+  EXPECT_GT(Budget(stylize("ball.glb"), "3600000").at("measured_runs"), 0) << "--json has times of its own";
+  EXPECT_EQ(Budget(stylize("ball.glb"), "3600000").at("measured_runs"), 0) << "the same ways as before";
+  for (const char* const ms : {"0.000001", "8", "3600000"}) {
+    const nlohmann::json picked = Budget(stylize("ball.glb"), ms);
+    RunOk(With(With(stylize("ball.glb"), Options(picked)), {"-o", "again.png"}));
+    EXPECT_EQ(Bytes("again.png"), Bytes("picked.png")) << picked;
+  }
+}
+
 TEST_F(CliBudget, TimesAreKeptUntilTheyAreMeasuredAnew) {
   for (const Arguments& command : {Stylize(), Transfer()}) {
     const nlohmann::json first = Budget(command, "3600000");

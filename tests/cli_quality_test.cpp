@@ -111,6 +111,30 @@ TEST_F(CliQuality, APreviewIsNotTakenForTheFinalPicture) {
   EXPECT_EQ(kept("preview"), 0);
 }
 
+// Nor is a noisy one, in either verb: samples are told where a style asks for light, and nowhere else.
+TEST_F(CliQuality, FewerSamplesAreNotTakenForMore) {
+  WriteStyle("style");
+  for (const bool lit : {true, false}) {
+    const std::string style = lit ? "chiaroscuro" : "style", name = lit ? "lit" : "unlit";
+    const auto kept = [&](const char* samples) {
+      const Arguments stylize = {"stylize",   Scene("ball.glb"), "--style", style,      "--size", "32",
+                                 "--samples", samples,           "--frames", "1-2",     "--resume", "--json",
+                                 "-o",        name + ".#.png"};
+      return RunOk(stylize).Json().at("kept").get<int>();
+    };
+    EXPECT_EQ(kept("2"), 0);
+    EXPECT_EQ(kept("2"), 2);
+    EXPECT_EQ(kept("3"), lit ? 0 : 2);
+    EXPECT_EQ(kept("3"), 2);
+  }
+  RunOk({"guidegen", Scene("ball.glb"), "--style", "chiaroscuro", "--size", "32", "--samples", "3", "-o", "g.1.exr"});
+  const Arguments transfer = {"transfer", "g.#.exr", "--style", "chiaroscuro", "--frames", "1-1", "--resume", "--json",
+                              "-o",       "lit.#.png"};
+  EXPECT_EQ(RunOk(transfer).Json().at("kept"), 1) << "guides tell how many samples they have";
+  RunOk({"guidegen", Scene("ball.glb"), "--style", "chiaroscuro", "--size", "32", "--samples", "2", "-o", "g.1.exr"});
+  EXPECT_EQ(RunOk(transfer).Json().at("kept"), 0);
+}
+
 TEST_F(CliQuality, WhatMakesNoSenseIsRefused) {
   WriteStyle("style");
   const Arguments stylize = With(Stylize("style"), {"-o", "out.png"});
@@ -118,8 +142,9 @@ TEST_F(CliQuality, WhatMakesNoSenseIsRefused) {
   ExpectError(With(stylize, {"--quality", "draft", "--budget-ms", "20"}), 2, {"--quality draft", "--budget-ms"});
   ExpectError(With(stylize, {"--recalibrate"}), 2, {"--recalibrate", "--budget-ms"});
   ExpectError(With(stylize, {"--quality", "draft", "--recalibrate"}), 2, {"--recalibrate", "--budget-ms"});
-  for (const char* const budget : {"0", "-5", "soon", "nan"}) {
-    ExpectError(With(stylize, {"--budget-ms", budget}), 2, {"--budget-ms"});
+  for (const char* const budget : {"0", "-5", "soon", "nan", "inf", "1e400", "40ms", ""}) {
+    ExpectError(With(stylize, {"--budget-ms", budget}), 2,
+                {"--budget-ms: '" + std::string(budget) + "' is no number above 0: expected milliseconds, as 40"});
   }
   EXPECT_FALSE(Exists("out.png"));
 }

@@ -38,9 +38,10 @@ TEST_F(CliUsage, EveryVerbHasHelp) {
     for (const char* option : {"--quiet", "--json", "--threads N = 0", "Exit codes: 0 ok"}) {
       EXPECT_TRUE(Contains(help.out, option)) << verb << " lacks " << option;
     }
-    for (const char* jargon : {"TEXT", "INT", "UINT", "FLOAT", "SUBCOMMAND"}) {
+    for (const char* jargon : {"TEXT", "INT", "UINT", "FLOAT", "SUBCOMMAND", "{false}", "{true}"}) {
       EXPECT_FALSE(Contains(help.out, jargon)) << verb << " says " << jargon;
     }
+    EXPECT_EQ(Contains(help.out, "--set "), Contains(help.out, "--set [NAME:]KEY=VALUE ")) << verb;
     for (std::size_t begin = 0; begin < help.out.size();) {
       const std::size_t end = help.out.find('\n', begin);
       EXPECT_LE(end - begin, 130u) << help.out.substr(begin, end - begin);  // bytes; a few signs take two

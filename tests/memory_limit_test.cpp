@@ -132,5 +132,26 @@ TEST(MemoryAmounts, AreSaidWithTwoDigits) {
   EXPECT_EQ(BytesToText(4 * kGiga + kGiga / 2), "4.5 GiB");
 }
 
+// What takes much says so before it takes it; frames that take the same do not say it again.
+TEST(MuchMemory, IsSaidOnceBeforeItIsTaken) {
+  Globals globals;
+  globals.max_memory = 1024 * kGiga;
+  const auto said = [&](std::uint64_t bytes) {
+    MemoryNeed need;
+    need.Take("guides", bytes);
+    testing::internal::CaptureStderr();
+    EXPECT_TRUE(CheckMemory(need, globals, "").ok());
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(said(kMuchMemory - 1), "");
+  globals.quiet = true;
+  EXPECT_EQ(said(8 * kGiga), "");
+  globals.quiet = false;
+  EXPECT_EQ(said(8 * kGiga), "takes up to 8.0 GiB of memory; --max-memory allows 1.0 TiB\n");
+  EXPECT_EQ(said(8 * kGiga), "");
+  EXPECT_EQ(said(11 * kGiga), "");
+  EXPECT_EQ(said(12 * kGiga), "takes up to 12 GiB of memory; --max-memory allows 1.0 TiB\n");
+}
+
 }  // namespace
 }  // namespace scumble

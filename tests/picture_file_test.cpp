@@ -412,6 +412,10 @@ TEST(PictureFile, FormatsThatNobodyPaintsInAreRefused) {
   ExpectRefusal(ReadPicture(folder / "small.png"), {"small.png", "it is a GIF", "save it as a PNG"});
   std::ofstream(folder / "block.dds") << "DDS |" << std::string(200, '\0');
   ExpectRefusal(ReadPicture(folder / "block.dds"), {"block.dds", "it is a DDS", "save it as a PNG"});
+  for (const std::string order : {"SDPX", "XPDS"}) {
+    std::ofstream(folder / "film.dpx") << order << std::string(2100, '\0');
+    ExpectRefusal(ReadPicture(folder / "film.dpx"), {"film.dpx", "it is a DPX", "save it as a PNG"});
+  }
   // Raw photographs are TIFF files whose first picture is a small preview.
   WriteWith(folder / "preview.tif", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), std::vector<std::uint8_t>(3 * 8 * 8, 9));
   ASSERT_TRUE(ReadPicture(folder / "preview.tif"));

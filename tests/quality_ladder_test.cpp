@@ -72,6 +72,42 @@ TEST(QualityLadder, GuidesAreSmallerOnlyWhereTheyMayBe) {
   EXPECT_EQ(factors(kGiven), (std::vector<int>{1}));
 }
 
+// Where light takes samples, sixteen and four of them stand right below the style as it is, and four in all that is below:
+// what they leave is noise, which lies far below a style's own error, and they take most of the time there is.
+TEST(QualityLadder, SamplesGoFirstWhereThereAreAny) {
+  LadderFrame frame = kCast;
+  frame.samples = 64;
+  const std::vector<Way> ways = QualityLadder(Open("chiaroscuro"), frame);
+  ASSERT_GE(ways.size(), 5u);
+  EXPECT_EQ(ways[0].samples, 0) << "as many as the verb has";
+  EXPECT_EQ(ways[1].name, "--samples 16");
+  EXPECT_EQ(ways[2].name, "--samples 4");
+  EXPECT_EQ(ways[3].name, "--upsample 2 --samples 4");
+  for (std::size_t i = 2; i < ways.size(); ++i) EXPECT_EQ(ways[i].samples, 4) << ways[i].name;
+  const auto most = [&](int samples) {
+    frame.samples = samples;
+    int all = 0;
+    for (const Way& way : QualityLadder(Open("chiaroscuro"), frame)) all = std::max(all, way.samples);
+    return all;
+  };
+  EXPECT_EQ(most(17), 16);
+  EXPECT_EQ(most(16), 4) << "no rung takes more than there are, or as many";
+  EXPECT_EQ(most(4), 0);
+  EXPECT_EQ(most(0), 0) << "no choice";
+  frame.samples = 64;
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kFinal, Open("chiaroscuro"), frame)), "");
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kPreview, Open("chiaroscuro"), frame)), "--upsample 2 --samples 4");
+  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, Open("chiaroscuro"), frame)),
+            "--upsample 4 --samples 4 --set transfer.method=litsphere");
+}
+
+TEST(QualityLadder, StylesThatAskForLight) {
+  EXPECT_FALSE(AsksForLight(Open("oil").styles.front()));
+  EXPECT_TRUE(AsksForLight(Open("chiaroscuro").styles.front())) << "exemplars by their light";
+  EXPECT_TRUE(AsksForLight(Open("scene-oil").styles.front())) << "weighs it";
+  EXPECT_TRUE(AsksForLight(Open("oil", {"transfer.shadow=paint"}).styles.front()));
+}
+
 // Rungs hold nothing that the style has anyway, and nothing that makes its look.
 TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
   EXPECT_FALSE(Sets(QualityLadder(Open("oil"), kCast), "transfer.hybrid")) << "oil is not split";
@@ -168,8 +204,8 @@ TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
 TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
   for (const char* const style : {"oil", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
     const StyleSet styles = Open(style);
-    for (const LadderFrame& frame :
-         {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false}}) {
+    for (const LadderFrame& frame : {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false},
+                                     LadderFrame{true, 1280, 720, false, 64}, LadderFrame{true, 961, 541, true, 8}}) {
       const std::vector<std::string> names = Names(QualityLadder(styles, frame));
       const auto place = [&](Quality quality) {
         const Way way = WayOf(quality, styles, frame);
