@@ -104,8 +104,14 @@ Expected<Baseline> ParseBaseline(std::string_view text, const std::string& file)
   Json json;
   try {
     json = Json::parse(text);
-  } catch (const nlohmann::json::exception& problem) {
-    return InputError(file + " is no baseline: " + problem.what() + "; " + kMend);
+  } catch (const nlohmann::json::parse_error& problem) {  // whose own words quote what it read, of any length
+    const std::string_view read = text.substr(0, problem.byte == 0 ? 0 : problem.byte - 1);
+    const auto line = 1 + std::count(read.begin(), read.end(), '\n');
+    const std::size_t column = read.size() - (read.rfind('\n') + 1) + 1;  // npos + 1 is 0
+    return InputError(fmt::format("{} is no baseline: no JSON at line {}, column {}; {}", file, line, column, kMend));
+  } catch (const nlohmann::json::exception& problem) {  // "[name.id] number overflow parsing '1e999'"
+    const std::string words = problem.what();
+    return InputError(fmt::format("{} is no baseline: {:.60}; {}", file, words.substr(words.find("] ") + 2), kMend));
   }
   if (!json.is_object() || !json.contains("scumble_baseline")) {
     return InputError(file + " is no baseline: it has no \"scumble_baseline\"; " + kMend);

@@ -121,6 +121,9 @@ TEST(CrosscheckBaseline, HostileFilesAreRefusedByPlace) {
   };
   const std::pair<std::string, std::string> cases[] = {
       {"", "no baseline"},
+      {"{\n  \"a\": }", "no JSON at line 2, column 8"},
+      {"{\"a\"" + std::string(100000, '\n'), "no JSON at line 100001, column 1"},
+      {"{\"a\": 1" + std::string(1000, '0') + "}", "number overflow parsing '1000"},
       {"{", "line 1"},
       {"\n\n{\"scumble_baseline\": 1,]", "line 3"},
       {"[]", "scumble_baseline"},
@@ -160,6 +163,7 @@ TEST(CrosscheckBaseline, HostileFilesAreRefusedByPlace) {
     ASSERT_FALSE(refused.ok()) << text.substr(0, 200);
     EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
     EXPECT_EQ(refused.error().message.rfind("b.json", 0), 0u) << refused.error().message;
+    EXPECT_LT(refused.error().message.size(), 400u) << "whatever it quotes";
     EXPECT_NE(refused.error().message.find(place), std::string::npos) << refused.error().message.substr(0, 300);
     EXPECT_NE(refused.error().message.find("--write-baseline"), std::string::npos);
   }
