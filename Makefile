@@ -32,12 +32,12 @@ test-asan: ## all tests but the longest of the painter's under AddressSanitizer 
 # then dies of looking for leaks there.
 NO_GUESSED_TLS := intercept_tls_get_addr=0
 
-test-tsan: ## all tests but those of Blender and the painter under ThreadSanitizer, in build-tsan/; takes hours
+test-tsan: ## all tests but the longest of Blender's and of the painter's under ThreadSanitizer, in build-tsan/; takes hours
 	@.ci/install tsan
 	@.ci/tsan_tbb build-tsan/onetbb
 	@cmake --preset tsan
 	@cmake --build build-tsan -j $(JOBS)
-	@TSAN_OPTIONS=history_size=7:suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -LE "blender|paint"
+	@TSAN_OPTIONS=history_size=7:suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -E "painting_repeats|cycles_matrix_test"
 
 fuzz: ## libFuzzer (clang) on everything that reads other people's files, 60 s each; FUZZ="600 gltf" 600 s of one
 	@.ci/install fuzz
