@@ -175,10 +175,12 @@ std::uint64_t HashOfFiles(const std::string& scene) {
   return hash;
 }
 
-// Kept beside the times, as it takes reading the scene to know.
-Expected<bool> KeptAnswer(const std::string& question, const std::function<Expected<bool>()>& find) {
+// Kept beside the times, as it takes reading the scene to know, and as little true as they are of what no circumstance tells:
+// `anew` does not look there.
+Expected<bool> KeptAnswer(const std::string& question, bool anew, const std::function<Expected<bool>()>& find) {
   FileCache cache = TimesCache();
-  if (const auto bytes = cache.Load(question); bytes && bytes->size() == 1) return bytes->front() != std::byte(0);
+  const auto bytes = anew ? std::nullopt : cache.Load(question);
+  if (bytes && bytes->size() == 1) return bytes->front() != std::byte(0);
   SCUMBLE_ASSIGN(const bool answer, find());
   const std::byte byte{static_cast<unsigned char>(answer)};
   cache.Store(question, std::span(&byte, 1));
@@ -293,7 +295,7 @@ Status ChooseForScene(const BudgetOptions& options, SceneOptions& scene, std::op
     return NeedSamples(opened->scene, opened->layers, scene);
   };
   if (ladder.samples > 0) {
-    SCUMBLE_ASSIGN(const bool needed, KeptAnswer("samples; " + circumstances, needs_samples));
+    SCUMBLE_ASSIGN(const bool needed, KeptAnswer("samples; " + circumstances, options.recalibrate, needs_samples));
     if (!needed) ladder.samples = 0;
   }
   double casting_ms = 0.0;

@@ -36,8 +36,8 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std
                        const std::string& name, const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals);
 
 // The same where the guides are cast, too, and may be smaller than the picture; scene.size is that of the picture, or
-// of its guides where --upsample was given. The samples that were chosen are put into scene.samples. `frame` is that of the scene; none: at rest. Where times
-// are not known, the scene is read for measuring them.
+// of its guides where --upsample was given. The samples that were chosen are put into scene.samples. `frame` is that of
+// the scene; none: at rest. Where times are not known, the scene is read for measuring them.
 Status ChooseForScene(const BudgetOptions& options, SceneOptions& scene, std::optional<int> frame,
                       const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals);
 

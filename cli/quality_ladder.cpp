@@ -154,7 +154,8 @@ bool AreRivals(const Way& a, const Way& b) {
   const auto has = [](const Way& way, const char* setting) {
     return std::find(way.settings.begin(), way.settings.end(), setting) != way.settings.end();
   };
-  return a.guide_scale == b.guide_scale && a.samples == b.samples && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
+  const bool same_guides = a.guide_scale == b.guide_scale && a.samples == b.samples;
+  return same_guides && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
          has(a, kCrisp) != has(b, kCrisp);
 }
 

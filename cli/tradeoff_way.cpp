@@ -41,7 +41,7 @@ Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
   const int samples = stage.chance && !setup.scene.samples_given ? setup.scene.samples : 0;
   const std::pair<const char*, Quality> kNamed[] = {{"preview", Quality::kPreview}, {"draft", Quality::kDraft}};
   for (const auto& [name, quality] : kNamed) {
-    Way way = WayOf(quality, styles, 
+    Way way = WayOf(quality, styles,
                     {.casts = true, .width = stage.width, .height = stage.height, .samples = samples});
     if (way.settings.empty() && way.guide_scale == 1.0 && way.samples == 0) continue;
     way.axis = "quality", way.value = name, way.name = std::string("quality ") + name;
