@@ -38,7 +38,7 @@ SHEET_SAMPLES = 8  # times as many: differences are shown four times as large
 EXPOSURE = 0.6  # of the sheet
 LUMA = np.array([0.2126, 0.7152, 0.0722])
 KEY = np.array([math.cos(math.radians(40)) * math.sin(math.radians(-40)), math.sin(math.radians(40)),
-                math.cos(math.radians(40)) * math.cos(math.radians(-40))])  # image/direction.h
+                math.cos(math.radians(40)) * math.cos(math.radians(-40))])  # core/image/direction.h
 
 
 # ---- The two models, for one pixel or many ---------------------------------------------------------------------------

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/style.h"
 
 namespace scumble::bench {
 

@@ -11,7 +11,7 @@
 
 #include "bench/bare_embree.h"
 #include "guidegen/guidegen.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 #include "tests/guidegen_scenes.h"
 
 namespace scumble::testing {

@@ -18,7 +18,7 @@
 #include "cli/tradeoff_reference.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 #include "measure/pareto.h"
 #include "style/style_file.h"
 #include "transfer/transfer.h"

@@ -21,7 +21,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "blender_scripts"))
 import export_scene  # noqa: E402
 
-AZIMUTH, ELEVATION = -40.0, 40.0  # the key light's, image/direction.h
+AZIMUTH, ELEVATION = -40.0, 40.0  # the key light's, core/image/direction.h
 LAMP_DISTANCE, LAMP_SIDE = 4.0, 2.0  # m
 
 

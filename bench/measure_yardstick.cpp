@@ -4,7 +4,7 @@
 
 #include "bench/performance.h"
 #include "bench/yardstick.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 #include "measure/coherence.h"
 
 namespace scumble::bench {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

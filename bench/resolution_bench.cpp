@@ -10,7 +10,7 @@
 #include "bench/or_stop.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 #include "style/style_file.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble::bench {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

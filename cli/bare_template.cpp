@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "guidegen/guidegen.h"
-#include "image/direction.h"
+#include "core/image/direction.h"
 #include "io/guide_file.h"
 #include "style/sphere_kit.h"
 

@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "image/picture.h"
-#include "image/status.h"
-#include "image/style.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

@@ -8,7 +8,7 @@
 
 #include "cli/command.h"
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -22,7 +22,7 @@
 #include "cli/scene_frames.h"
 #include "cli/timing.h"
 #include "cli/tradeoff_guides.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "style/style_keyframes.h"
 
 namespace scumble {

@@ -10,8 +10,8 @@
 #include "cli/options.h"
 #include "cli/style_set.h"
 #include "cli/transfer_run.h"
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

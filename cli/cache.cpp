@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/atomic_file.h"
 
 namespace scumble {

@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "image/check.h"
-#include "image/hash.h"
+#include "core/image/check.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

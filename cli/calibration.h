@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 #include "transfer/table_cache.h"
 
 namespace scumble {

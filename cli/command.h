@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "image/guides.h"
-#include "image/progress.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/progress.h"
+#include "core/image/status.h"
 #include "io/cycles_light.h"
 
 namespace scumble {

@@ -15,7 +15,7 @@
 #include "cli/help_format.h"
 #include "cli/last_words.h"
 #include "cli/verbs.h"
-#include "image/check.h"
+#include "core/image/check.h"
 #include "io/library.h"
 
 namespace scumble {

@@ -10,8 +10,8 @@
 #include "cli/transfer_run.h"
 #include "guidegen/scene.h"
 #include "guidegen/scene_textures.h"
-#include "image/layers.h"
-#include "image/style.h"
+#include "core/image/layers.h"
+#include "core/image/style.h"
 #include "io/guide_file.h"
 
 namespace scumble {

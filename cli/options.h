@@ -16,8 +16,8 @@
 #include "cli/memory_limit.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "image/stopwatch.h"
-#include "image/style.h"
+#include "core/image/stopwatch.h"
+#include "core/image/style.h"
 #include "io/picture_file.h"
 
 namespace scumble {

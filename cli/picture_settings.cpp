@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/whole_output.h"
 
 namespace scumble {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "image/progress.h"
+#include "core/image/progress.h"
 
 namespace scumble {
 

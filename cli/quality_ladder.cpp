@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "style/style_keyframes.h"
 #include "style/style_keys.h"
 

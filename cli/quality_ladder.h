@@ -10,7 +10,7 @@
 
 #include "cli/style_set.h"
 #include "cli/ways.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/style_set.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

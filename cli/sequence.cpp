@@ -13,7 +13,7 @@
 #include "cli/json_text.h"
 #include "cli/memory_limit.h"
 #include "cli/timing.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 
 namespace scumble {
 

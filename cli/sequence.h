@@ -13,8 +13,8 @@
 #include "cli/command.h"
 #include "cli/frames.h"
 #include "cli/progress_bar.h"
-#include "image/progress.h"
-#include "image/status.h"
+#include "core/image/progress.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

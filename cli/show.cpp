@@ -1,6 +1,6 @@
 #include "cli/show.h"
 
-#include "image/exact_math.h"
+#include "core/image/exact_math.h"
 
 namespace scumble {
 namespace {

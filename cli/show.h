@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
 #include "measure/explain.h"
 #include "transfer/transfer.h"
 

@@ -14,7 +14,7 @@
 #include "cli/options.h"
 #include "cli/rectify.h"
 #include "guidegen/guidegen.h"
-#include "image/direction.h"
+#include "core/image/direction.h"
 #include "style/fiducials.h"
 #include "style/sphere_kit.h"
 

@@ -9,8 +9,8 @@
 
 #include "cli/options.h"
 #include "guidegen/scene.h"
-#include "image/guides.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/style.h"
 #include "transfer/style_map.h"
 
 namespace scumble {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/ways.h"
-#include "image/style.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

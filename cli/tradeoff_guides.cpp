@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "guidegen/path_layers.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 #include "io/guide_precision.h"
 #include "transfer/upsample_guides.h"
 

@@ -6,7 +6,7 @@
 #include "cli/options.h"
 #include "cli/scene_frames.h"
 #include "cli/ways.h"
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble {
 

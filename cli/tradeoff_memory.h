@@ -7,8 +7,8 @@
 #include "cli/command.h"
 #include "cli/memory_limit.h"
 #include "cli/tradeoff_way.h"
-#include "image/layers.h"
-#include "image/style.h"
+#include "core/image/layers.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "image/exact_math.h"
+#include "core/image/exact_math.h"
 #include "measure/coherence.h"
 #include "measure/flat_surfaces.h"
 #include "measure/flip.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "measure/energy.h"
 #include "measure/tradeoff_report.h"
 #include "transfer/transfer.h"

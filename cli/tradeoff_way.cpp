@@ -11,7 +11,7 @@
 #include "cli/style_set.h"
 #include "cli/tradeoff_peak.h"
 #include "cli/transfer_run.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 #include "style/style_keyframes.h"
 
 namespace scumble {

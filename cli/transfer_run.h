@@ -13,7 +13,7 @@
 #include "cli/picture_settings.h"
 #include "cli/sequence.h"
 #include "cli/style_set.h"
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

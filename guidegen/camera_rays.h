@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "guidegen/scene.h"
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -21,7 +21,7 @@
 #include "guidegen/tile_caster.h"
 #include "guidegen/tile_store.h"
 #include "guidegen/work_tally.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "guidegen/work_tally.h"
-#include "image/color.h"
+#include "core/image/color.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 #include "guidegen/camera_rays.h"
 #include "guidegen/scene.h"
 #include "guidegen/surface.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

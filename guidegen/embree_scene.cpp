@@ -11,7 +11,7 @@
 #include "guidegen/bsdf.h"
 #include "guidegen/exact_copies.h"
 #include "guidegen/work_tally.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

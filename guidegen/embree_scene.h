@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "guidegen/surface.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

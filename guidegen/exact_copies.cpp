@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "guidegen/bsdf.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

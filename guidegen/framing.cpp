@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "guidegen/load_scene.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <optional>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "guidegen/loader_util.h"
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace tinygltf {
 class Model;

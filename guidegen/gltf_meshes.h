@@ -8,7 +8,7 @@
 #include "guidegen/gltf_skin.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace tinygltf {
 class Model;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "guidegen/loader_util.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace tinygltf {
 class Model;

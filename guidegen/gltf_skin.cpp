@@ -8,7 +8,7 @@
 #include "guidegen/gltf_accessor.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/mesh_normals.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

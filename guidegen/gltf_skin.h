@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace tinygltf {
 class Model;

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "guidegen/scene.h"
-#include "image/direction.h"
-#include "image/guides.h"
-#include "image/progress.h"
-#include "image/status.h"
+#include "core/image/direction.h"
+#include "core/image/guides.h"
+#include "core/image/progress.h"
+#include "core/image/status.h"
 
 namespace scumble {
 
@@ -93,7 +93,7 @@ struct GuidegenResult {
   double noise = 0.0;  // the error estimated where `noise` or a time budget was given
 };
 
-// Casts rays through pixel centres and returns the guides (conventions in image/guides.h). Transforms compose in
+// Casts rays through pixel centres and returns the guides (conventions in core/image/guides.h). Transforms compose in
 // double and Embree's scene is relative to the camera. Deterministic for one isa, whatever the threads; the isa in use
 // is recorded in guides.attributes["scumble:isa"]. Light-path layers are in light_paths.h; each is traced only as far
 // as its expression and the scene's lights and materials require. Layers that are not built in yet are a kUnavailable
@@ -118,7 +118,7 @@ struct SphereOptions {
   int size = 512;  // N × N pixels
   LayerSet layers;
   int aa = 1;
-  double light_azimuth = kKeyLightAzimuth;  // degrees, as in image/direction.h
+  double light_azimuth = kKeyLightAzimuth;  // degrees, as in core/image/direction.h
   double light_elevation = kKeyLightElevation;
   int threads = 0;
   std::string isa;

@@ -10,7 +10,7 @@
 #include "guidegen/bsdf.h"
 #include "guidegen/progress_gate.h"
 #include "guidegen/work_tally.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 
 namespace scumble {
 namespace {

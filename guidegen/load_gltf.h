@@ -19,7 +19,7 @@
 
 #include "guidegen/gltf_rig.h"
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

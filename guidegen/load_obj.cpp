@@ -19,8 +19,8 @@
 #include "guidegen/loader_util.h"
 #include "guidegen/mesh_normals.h"
 #include "guidegen/mtl_materials.h"
-#include "image/color.h"
-#include "image/hash.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
 #include "io/picture_file.h"
 
 namespace scumble {

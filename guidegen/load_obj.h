@@ -25,7 +25,7 @@
 #include <filesystem>
 
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

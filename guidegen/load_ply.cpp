@@ -13,7 +13,7 @@
 
 #include "guidegen/loader_util.h"
 #include "guidegen/mesh_normals.h"
-#include "image/color.h"
+#include "core/image/color.h"
 
 namespace scumble {
 namespace {

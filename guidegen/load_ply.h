@@ -12,7 +12,7 @@
 #include <filesystem>
 
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -12,7 +12,7 @@
 #include "guidegen/load_ply.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/scene_textures.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

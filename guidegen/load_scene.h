@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "guidegen/scene.h"
-#include "image/direction.h"
-#include "image/status.h"
+#include "core/image/direction.h"
+#include "core/image/status.h"
 
 namespace scumble {
 
@@ -74,7 +74,7 @@ struct ViewAngles {
 // A perspective camera that looks at the scene's centre. `aspect` is width / height of the picture.
 Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect);
 
-// A sun of strength π (white Lambert facing it has radiance 1) at these angles (image/direction.h) of the given
+// A sun of strength π (white Lambert facing it has radiance 1) at these angles (core/image/direction.h) of the given
 // camera's view space.
 Light KeyLight(const Camera& camera, double azimuth = kKeyLightAzimuth, double elevation = kKeyLightElevation);
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "guidegen/loader_util.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "guidegen/bsdf.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "guidegen/path_expression.h"
 #include "guidegen/scene.h"
-#include "image/layers.h"
+#include "core/image/layers.h"
 
 namespace scumble {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <mutex>
 
-#include "image/progress.h"
+#include "core/image/progress.h"
 
 namespace scumble {
 

@@ -8,7 +8,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/path_layers.h"
 #include "guidegen/scene_textures.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

@@ -1,6 +1,6 @@
 #include "guidegen/sampler.h"
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

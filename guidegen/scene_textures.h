@@ -9,7 +9,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/scene.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

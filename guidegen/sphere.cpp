@@ -4,7 +4,7 @@
 
 #include "guidegen/cast_guides.h"
 #include "guidegen/guidegen.h"
-#include "image/direction.h"
+#include "core/image/direction.h"
 
 namespace scumble {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "guidegen/camera_rays.h"
 #include "guidegen/scene.h"
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

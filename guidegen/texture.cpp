@@ -3,7 +3,7 @@
 
 #include "guidegen/surface.h"
 #include "guidegen/work_tally.h"
-#include "image/color.h"
+#include "core/image/color.h"
 
 namespace scumble {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "guidegen/soft_light.h"
 #include "guidegen/tile_store.h"
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

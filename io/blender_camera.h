@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

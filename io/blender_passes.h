@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 #include "io/cryptomatte.h"
 
 namespace scumble {

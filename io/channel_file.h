@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "image/channel_image.h"
-#include "image/status.h"
+#include "core/image/channel_image.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <string>
 
-#include "image/channel_image.h"
+#include "core/image/channel_image.h"
 #include "io/channel_file.h"
 
 namespace scumble {

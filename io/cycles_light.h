@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -23,7 +23,7 @@
 #include <system_error>
 #include <thread>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "io/formats.h"
 #include "io/guide_storage.h"
 #include "io/whole_exr.h"

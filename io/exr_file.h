@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::internal {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "image/status.h"
+#include "core/image/status.h"
 #include "io/oiio.h"
 
 namespace scumble::internal {

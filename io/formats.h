@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "image/channel_image.h"
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/channel_image.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

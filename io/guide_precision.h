@@ -1,7 +1,7 @@
 // What guides lose in files that hold fewer bits than floats.
 #pragma once
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble::internal {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <system_error>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "io/atomic_file.h"
 #include "io/flat_psd.h"
 #include "io/formats.h"

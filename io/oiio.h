@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::internal {
 

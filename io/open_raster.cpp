@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "io/picture_file.h"
 #include "io/whole_png.h"
 #include "io/zip_archive.h"

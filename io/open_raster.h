@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

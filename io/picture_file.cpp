@@ -4,7 +4,7 @@
 #include <fstream>
 #include <utility>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "io/atomic_file.h"
 #include "io/exr_file.h"
 #include "io/formats.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
 #include "io/guide_header.h"

@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble::internal {
 namespace {

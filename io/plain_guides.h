@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "io/guide_file.h"
 
 namespace scumble::internal {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble::internal {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 #include "io/formats.h"
 
 namespace scumble::internal {

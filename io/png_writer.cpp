@@ -10,7 +10,7 @@
 #include <span>
 #include <string_view>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "io/parallel.h"
 #include "io/png_filter.h"
 

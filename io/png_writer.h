@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble::internal {
 

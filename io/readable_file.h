@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::internal {
 

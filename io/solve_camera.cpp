@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

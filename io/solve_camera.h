@@ -9,8 +9,8 @@
 #include <span>
 #include <string>
 
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

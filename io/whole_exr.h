@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::internal {
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "image/layers.h"
-#include "image/status.h"
+#include "core/image/layers.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::internal {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

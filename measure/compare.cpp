@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "image/check.h"
-#include "image/layers.h"
+#include "core/image/check.h"
+#include "core/image/layers.h"
 
 namespace scumble {
 namespace {

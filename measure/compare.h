@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "image/channel_image.h"
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/channel_image.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <set>
 
-#include "image/color.h"
-#include "image/hash.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
 #include "measure/crosscheck_parts.h"
 
 namespace scumble {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 #include "io/cycles_light.h"
 
 namespace scumble {

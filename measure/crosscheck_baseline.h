@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 #include "measure/crosscheck.h"
 
 namespace scumble {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 #include "measure/crosscheck.h"
 
 namespace scumble {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "measure/crosscheck.h"
 #include "measure/crosscheck_parts.h"
 

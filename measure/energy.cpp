@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/parallel.h"
 #include "measure/patch_search.h"
 #include "measure/stratified_sample.h"

@@ -36,8 +36,8 @@
 #include <span>
 #include <vector>
 
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 #include "measure/coherence.h"
 #include "measure/stratified_sample.h"
 

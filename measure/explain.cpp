@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "image/check.h"
-#include "image/color.h"
-#include "image/hash.h"
-#include "image/oklab.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
+#include "core/image/oklab.h"
 
 namespace scumble {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble {
 

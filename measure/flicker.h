@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "image/check.h"
-#include "image/color.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
 #include "io/parallel.h"
 #include "measure/on_white.h"
 

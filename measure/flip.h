@@ -13,8 +13,8 @@
 #include <numbers>
 #include <vector>
 
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "measure/compare.h"
 
 namespace scumble {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "image/channel_image.h"
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/channel_image.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "image/bare_paper.h"
+#include "core/image/bare_paper.h"
 
 namespace scumble {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/check.h"
-#include "image/color.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
 
 namespace scumble {
 namespace {

@@ -6,12 +6,12 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "image/style.h"
+#include "core/image/style.h"
 
 namespace scumble {
 
 // Refers to the exemplar, which must outlive it. Pixels are those of the exemplar's picture, rows from the top; angles and
-// axes are those of view space (image/guides.h).
+// axes are those of view space (core/image/guides.h).
 class PaintSheet {
  public:
   // Usable is, on a sphere, what lies `rim` pixels or more inside the circle that fills the square; in a painted scene, what

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "image/direction.h"
+#include "core/image/direction.h"
 
 namespace scumble {
 namespace {

@@ -18,7 +18,7 @@ ToneReport MeasureTone(const PaintSheet& sheet);
 
 // The direction of a distant light under which a matt surface would be light and dark where the painting is.
 struct PaintedLight {
-  double azimuth = 0.0;      // degrees, as in image/direction.h
+  double azimuth = 0.0;      // degrees, as in core/image/direction.h
   double elevation = 0.0;
   double correlation = 0.0;  // Pearson's, 0 … 1, of the painting's L* with max(0, n · light); 0: no light to be seen
 };

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "image/check.h"
-#include "image/direction.h"
+#include "core/image/check.h"
+#include "core/image/direction.h"
 
 namespace scumble {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/bare_paper.h"
+#include "core/image/bare_paper.h"
 #include "measure/paint_sheet.h"
 #include "measure/patches.h"
 

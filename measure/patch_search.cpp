@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble::internal {
 namespace {

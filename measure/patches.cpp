@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "measure/gaussian_blur.h"
 
 namespace scumble {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "image/check.h"
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "measure/gaussian_blur.h"
 
 namespace scumble {

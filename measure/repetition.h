@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 #include "measure/coherence.h"
 
 namespace scumble {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble::internal {
 

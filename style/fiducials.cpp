@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "image/check.h"
-#include "image/color.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
 
 namespace scumble {
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "image/check.h"
-#include "image/direction.h"
+#include "core/image/check.h"
+#include "core/image/direction.h"
 
 namespace scumble {
 namespace {

@@ -3,7 +3,7 @@
 // formula, so that they are as sharp at any size.
 #pragma once
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 #include "style/sphere_template.h"
 
 namespace scumble {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "image/color.h"
+#include "core/image/color.h"
 
 namespace scumble {
 namespace {

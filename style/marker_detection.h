@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 #include "style/fiducials.h"
 
 namespace scumble {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "style/homography.h"
 
 namespace scumble {

@@ -4,7 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 #include "style/template_fit.h"
 
 namespace scumble {

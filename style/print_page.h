@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "image/check.h"
-#include "image/color.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
 #include "style/homography.h"
 #include "style/marker_detection.h"
 #include "style/paper_light.h"

@@ -7,8 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include "image/check.h"
-#include "image/style.h"
+#include "core/image/check.h"
+#include "core/image/style.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/open_raster.h"

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <system_error>
 
-#include "image/check.h"
-#include "image/color.h"
-#include "image/direction.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
+#include "core/image/direction.h"
 #include "style/fiducials.h"
 
 namespace scumble {

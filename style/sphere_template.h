@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

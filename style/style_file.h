@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "image/status.h"
-#include "image/style.h"
+#include "core/image/status.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "image/layers.h"
-#include "image/status.h"
-#include "image/style.h"
+#include "core/image/layers.h"
+#include "core/image/status.h"
+#include "core/image/style.h"
 #include "style/style_keys.h"
 
 namespace scumble {

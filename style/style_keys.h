@@ -8,8 +8,8 @@
 #include <string>
 #include <variant>
 
-#include "image/status.h"
-#include "image/style.h"
+#include "core/image/status.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

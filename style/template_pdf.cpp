@@ -8,7 +8,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "image/direction.h"
+#include "core/image/direction.h"
 #include "style/fiducials.h"
 
 namespace scumble {

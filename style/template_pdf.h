@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "image/status.h"
+#include "core/image/status.h"
 #include "style/print_page.h"
 #include "style/sphere_template.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::internal {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/atomic_file.h"
 #include "io/blender_camera.h"
 #include "io/blender_passes.h"

@@ -14,7 +14,7 @@ import sys
 # Each library: its folder, the libraries that it may include, and its stages in order. A stage's own stages follow as
 # "parent/child".
 LIBRARIES = {
-    "image": ("image", set(), []),
+    "image": ("core/image", set(), []),
     "io": ("io", {"image"}, []),
     "guidegen": ("guidegen", {"image", "io"}, []),
     "style": ("style", {"image", "io"}, []),

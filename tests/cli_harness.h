@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/hash.h"
+#include "core/image/guides.h"
+#include "core/image/hash.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 #include "tests/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "measure/crosscheck_html.h"
 #include "tests/crosscheck_fixtures.h"
 

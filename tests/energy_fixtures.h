@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/hash.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/hash.h"
+#include "core/image/picture.h"
 #include "measure/energy.h"
 
 namespace scumble::testing {

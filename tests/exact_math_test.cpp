@@ -1,5 +1,5 @@
 // Functions whose bits must not depend on the machine, against the C library's in long double.
-#include "image/exact_math.h"
+#include "core/image/exact_math.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

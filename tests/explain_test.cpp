@@ -6,8 +6,8 @@
 #include <array>
 #include <set>
 
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 
 namespace scumble {
 namespace {

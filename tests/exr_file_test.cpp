@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
 #include "io/library.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "guidegen/direct_light.h"
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 #include "tests/exact_rays.h"
 #include "tests/light_path_scenes.h"
 

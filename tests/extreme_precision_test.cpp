@@ -14,7 +14,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/guide_storage.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/look_up_table.h"

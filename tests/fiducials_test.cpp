@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "image/color.h"
-#include "image/hash.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
 #include "style/sphere_kit.h"
 
 namespace scumble {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <string>
 
-#include "image/color.h"
-#include "image/hash.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <map>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

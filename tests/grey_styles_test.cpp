@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "style/style_file.h"
 #include "tests/transfer_fixtures.h"
 

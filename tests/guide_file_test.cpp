@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/atomic_file.h"
 #include "io/guide_header.h"
 #include "tests/guide_files.h"

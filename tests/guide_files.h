@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/hash.h"
+#include "core/image/guides.h"
+#include "core/image/hash.h"
 #include "io/guide_file.h"
 
 namespace scumble {

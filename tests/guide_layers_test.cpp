@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "image/color.h"
-#include "image/direction.h"
+#include "core/image/color.h"
+#include "core/image/direction.h"
 #include "tests/sphere_guides.h"
 
 namespace scumble {

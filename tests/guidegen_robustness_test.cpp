@@ -12,8 +12,8 @@
 
 #include "guidegen/direct_light.h"
 #include "guidegen/guidegen.h"
-#include "image/check.h"
-#include "image/hash.h"
+#include "core/image/check.h"
+#include "core/image/hash.h"
 #include "tests/guidegen_checks.h"
 #include "tests/guidegen_scenes.h"
 

@@ -9,11 +9,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "image/check.h"
-#include "image/color.h"
-#include "image/guides.h"
-#include "image/hash.h"
-#include "image/layers.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
+#include "core/image/guides.h"
+#include "core/image/hash.h"
+#include "core/image/layers.h"
 
 namespace scumble {
 namespace {

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"

@@ -8,7 +8,7 @@
 
 #include "guidegen/light_sampling.h"
 #include "guidegen/sampler.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble::testing {
 namespace {

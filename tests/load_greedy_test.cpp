@@ -10,7 +10,7 @@
 #include "animation_fixtures.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/scene_textures.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/picture_file.h"
 
 namespace scumble {

@@ -11,7 +11,7 @@
 #include "guidegen/load_scene.h"
 #include "guidegen/picture_budget.h"
 #include "guidegen/scene_textures.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/picture_file.h"
 
 namespace scumble {

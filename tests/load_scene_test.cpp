@@ -8,7 +8,7 @@
 #include "gltf_builder.h"
 #include "guidegen/loader_util.h"
 #include "guidegen/mesh_normals.h"
-#include "image/color.h"
+#include "core/image/color.h"
 #include "io/picture_file.h"
 
 namespace scumble {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "io/channel_file.h"
 #include "measure/coherence.h"
 #include "measure/compare.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/atomic_file.h"
 #include "io/picture_file.h"
 #include "io/zip_archive.h"

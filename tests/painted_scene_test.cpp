@@ -11,8 +11,8 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "io/guide_file.h"
 #include "style/style_file.h"
 #include "transfer/transfer.h"

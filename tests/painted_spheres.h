@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "image/direction.h"
-#include "image/hash.h"
-#include "image/style.h"
+#include "core/image/direction.h"
+#include "core/image/hash.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "image/color.h"
-#include "image/hash.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
 #include "io/atomic_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

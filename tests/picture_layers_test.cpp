@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "io/picture_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

@@ -9,9 +9,9 @@
 #include <limits>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/style.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/seeds.h"
 

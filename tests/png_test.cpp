@@ -14,7 +14,7 @@
 #include <tuple>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
 #include "io/parallel.h"

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "io/atomic_file.h"
 #include "io/channel_file.h"
 #include "io/exr_file.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "image/color.h"
-#include "image/hash.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
 #include "style/homography.h"
 #include "style/marker_detection.h"
 #include "style/resample_scan.h"

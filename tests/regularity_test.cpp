@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

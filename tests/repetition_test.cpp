@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 namespace {

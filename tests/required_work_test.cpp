@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "guidegen/scene_textures.h"
-#include "image/plane_count.h"
+#include "core/image/plane_count.h"
 #include "tests/light_path_scenes.h"
 
 namespace scumble {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "image/check.h"
-#include "image/color.h"
-#include "image/hash.h"
+#include "core/image/check.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
 #include "io/picture_file.h"
 #include "style/fiducials.h"
 #include "style/sphere_kit.h"

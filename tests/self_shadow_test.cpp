@@ -16,7 +16,7 @@
 
 #include "guidegen/bsdf.h"
 #include "guidegen/direct_light.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "tests/exact_rays.h"
 #include "tests/light_path_scenes.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble {
 

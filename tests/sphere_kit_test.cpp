@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/atomic_file.h"
 #include "io/guide_file.h"
 #include "io/open_raster.h"

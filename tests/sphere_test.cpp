@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "guidegen/guidegen.h"
-#include "image/direction.h"
+#include "core/image/direction.h"
 #include "tests/guidegen_checks.h"
 
 namespace scumble::testing {

@@ -14,7 +14,7 @@
 
 #include "guidegen/camera_rays.h"
 #include "guidegen/tile_store.h"
-#include "image/plane_allocator.h"
+#include "core/image/plane_allocator.h"
 #include "tests/guidegen_scenes.h"
 
 namespace scumble::testing {

@@ -13,7 +13,7 @@
 
 #include "cli/tradeoff_way.h"
 #include "guidegen/guidegen.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/guide_precision.h"
 #include "tests/refusal.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/illumination.h"
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "transfer/colorize.h"
 #include "transfer/seeds.h"
 #include "transfer_fixtures.h"

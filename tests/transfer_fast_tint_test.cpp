@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "tests/every_instruction_set.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/colorize.h"

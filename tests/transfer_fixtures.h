@@ -6,9 +6,9 @@
 #include <cmath>
 #include <functional>
 
-#include "image/guides.h"
-#include "image/hash.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/hash.h"
+#include "core/image/style.h"
 #include "transfer/transfer.h"
 
 namespace scumble::testing {

@@ -1,7 +1,7 @@
 // The finished picture: alpha, paper, what lies under it, determinism, sizes, refusals.
 #include <limits>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "tests/transfer_fixtures.h"
 
 namespace scumble {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "image/color.h"
+#include "core/image/color.h"
 #include "tests/transfer_fixtures.h"
 
 namespace scumble {

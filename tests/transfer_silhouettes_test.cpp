@@ -2,10 +2,10 @@
 #include <cmath>
 #include <tuple>
 
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "tests/transfer_fixtures.h"
-#include "image/bare_paper.h"
+#include "core/image/bare_paper.h"
 #include "transfer/silhouettes.h"
 
 namespace scumble {

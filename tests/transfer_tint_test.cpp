@@ -4,8 +4,8 @@
 #include <limits>
 #include <set>
 
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/colorize.h"
 

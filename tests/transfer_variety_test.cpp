@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "measure/flat_surfaces.h"
 #include "measure/repetition.h"
 #include "transfer/alternatives.h"

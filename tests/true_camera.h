@@ -8,7 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/solve_camera.h"
 
 namespace scumble {

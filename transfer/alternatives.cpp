@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "image/exact_math.h"
-#include "image/hash.h"
+#include "core/image/exact_math.h"
+#include "core/image/hash.h"
 #include "transfer/prepared_exemplar.h"
 
 namespace scumble {

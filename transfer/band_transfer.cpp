@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "image/stopwatch.h"
+#include "core/image/stopwatch.h"
 
 namespace scumble::internal {
 namespace {

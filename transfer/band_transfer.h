@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 #include "transfer/colorize.h"
 #include "transfer/edges.h"
 #include "transfer/frame_start.h"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "transfer/box_search.h"
 
 namespace scumble::internal {

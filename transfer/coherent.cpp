@@ -14,7 +14,7 @@
 #include <memory>
 #include <optional>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "transfer/seed_offer.h"
 #include "transfer/surface_seeds.h"
 

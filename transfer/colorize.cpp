@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "transfer/multiply_tint.h"
 #include "transfer/oklab_tint.h"
 

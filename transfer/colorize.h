@@ -5,9 +5,9 @@
 #include <glm/glm.hpp>
 #include <span>
 
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/style.h"
 #include "transfer/prepared_exemplar.h"
 
 namespace scumble::internal {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "image/color.h"
+#include "core/image/color.h"
 
 namespace scumble::internal {
 namespace {

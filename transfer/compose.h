@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "image/picture.h"
-#include "image/style.h"
+#include "core/image/picture.h"
+#include "core/image/style.h"
 #include "transfer/parallel.h"
 
 namespace scumble::internal {

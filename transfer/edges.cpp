@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "image/exact_math.h"
+#include "core/image/exact_math.h"
 #include "transfer/parallel.h"
 
 namespace scumble::internal {

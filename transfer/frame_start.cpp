@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble::internal {
 namespace {

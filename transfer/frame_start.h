@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
 #include "transfer/region.h"
 #include "transfer/source_field.h"
 #include "transfer/style_map.h"

@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "image/style.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "transfer/illumination.h"
 #include "transfer/look_up_table.h"
 

@@ -21,9 +21,9 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/status.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
+#include "core/image/style.h"
 #include "transfer/guide_distance.h"
 #include "transfer/guide_tree.h"
 #include "transfer/prepared_exemplar.h"

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <limits>
 
-#include "image/check.h"
-#include "image/hash.h"
+#include "core/image/check.h"
+#include "core/image/hash.h"
 #include "transfer/box_tree.h"
 
 namespace scumble {

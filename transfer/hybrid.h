@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/style.h"
 #include "transfer/guide_space.h"
 #include "transfer/illumination.h"
 #include "transfer/prepared_exemplar.h"

@@ -9,8 +9,8 @@
 #include <bit>
 #include <cmath>
 
-#include "image/color.h"
-#include "image/exact_math.h"
+#include "core/image/color.h"
+#include "core/image/exact_math.h"
 
 namespace scumble {
 

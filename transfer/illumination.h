@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/style.h"
 
 namespace scumble {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble {
 

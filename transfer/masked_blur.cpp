@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble::internal {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble::internal {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "transfer/guide_distance.h"
 #include "transfer/guide_space.h"
 #include "transfer/illumination.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "image/color.h"
+#include "core/image/color.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/multiply_tint.cpp"

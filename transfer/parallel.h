@@ -7,7 +7,7 @@
 #include <atomic>
 #include <mutex>
 
-#include "image/progress.h"
+#include "core/image/progress.h"
 #include "transfer/region.h"
 
 namespace scumble::internal {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "transfer/colorize.h"
 #include "transfer/hybrid.h"
 #include "transfer/resample.h"

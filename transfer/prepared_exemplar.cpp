@@ -6,8 +6,8 @@
 #include <mutex>
 #include <optional>
 
-#include "image/check.h"
-#include "image/hash.h"
+#include "core/image/check.h"
+#include "core/image/hash.h"
 #include "transfer/alternatives.h"
 #include "transfer/guide_tree.h"
 #include "transfer/look_up_table.h"

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/status.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
+#include "core/image/style.h"
 #include "transfer/source.h"
 #include "transfer/table_cache.h"
 

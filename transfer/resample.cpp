@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "image/exact_math.h"
+#include "core/image/exact_math.h"
 
 namespace scumble {
 namespace {

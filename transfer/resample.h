@@ -1,7 +1,7 @@
 // Resizing of exemplars and papers.
 #pragma once
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

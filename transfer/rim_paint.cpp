@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "image/bare_paper.h"
+#include "core/image/bare_paper.h"
 #include "transfer/resample.h"
 
 namespace scumble {

@@ -1,7 +1,7 @@
 // What an exemplar shows round its rim.
 #pragma once
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble::internal {
 namespace {

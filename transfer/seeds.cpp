@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "transfer/region.h"
 
 namespace scumble {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "transfer/style_map.h"
 
 namespace scumble::internal {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "image/guides.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
 #include "transfer/parallel.h"
 #include "transfer/region.h"
 #include "transfer/seeds.h"

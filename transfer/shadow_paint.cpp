@@ -5,10 +5,10 @@
 #include <limits>
 #include <optional>
 
-#include "image/color.h"
-#include "image/exact_math.h"
-#include "image/hash.h"
-#include "image/bare_paper.h"
+#include "core/image/color.h"
+#include "core/image/exact_math.h"
+#include "core/image/hash.h"
+#include "core/image/bare_paper.h"
 
 namespace scumble {
 namespace {

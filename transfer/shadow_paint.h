@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "image/picture.h"
-#include "image/bare_paper.h"
+#include "core/image/picture.h"
+#include "core/image/bare_paper.h"
 #include "transfer/prepared_exemplar.h"
 
 namespace scumble {

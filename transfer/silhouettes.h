@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "transfer/region.h"
 
 namespace scumble::internal {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "transfer/alternatives.h"
 #include "transfer/seed_offer.h"
 #include "transfer/variety.h"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble::internal {
 namespace {

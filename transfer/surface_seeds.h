@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "transfer/seeds.h"
 
 namespace scumble::internal {

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "image/check.h"
-#include "image/exact_math.h"
-#include "image/stopwatch.h"
+#include "core/image/check.h"
+#include "core/image/exact_math.h"
+#include "core/image/stopwatch.h"
 #include "transfer/band_transfer.h"
 #include "transfer/colorize.h"
 #include "transfer/compose.h"

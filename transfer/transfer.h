@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
-#include "image/progress.h"
-#include "image/status.h"
-#include "image/style.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/image/progress.h"
+#include "core/image/status.h"
+#include "core/image/style.h"
 #include "transfer/guide_space.h"
 #include "transfer/illumination.h"
 #include "transfer/look_up_table.h"
@@ -59,7 +59,7 @@ struct PrepareOptions {
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
 // Fails where an exemplar is empty; where a sphere's picture is not square; where guides do not fit their picture, or
-// those of one style's exemplars are not of one scene; where one lacks a layer that has a weight; or where a setting is outside the range that image/style.h
+// those of one style's exemplars are not of one scene; where one lacks a layer that has a weight; or where a setting is outside the range that core/image/style.h
 // states.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 

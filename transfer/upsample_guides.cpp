@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "image/check.h"
+#include "core/image/check.h"
 #include "transfer/edges.h"
 
 namespace scumble {

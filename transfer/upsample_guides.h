@@ -2,7 +2,7 @@
 // not.
 #pragma once
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 namespace scumble {
 

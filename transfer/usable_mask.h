@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
 
 namespace scumble::internal {
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <span>
 
-#include "image/guides.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/picture.h"
 #include "transfer/edges.h"
 #include "transfer/parallel.h"
 #include "transfer/prepared_exemplar.h"

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <vector>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transfer/vote_rows.cpp"

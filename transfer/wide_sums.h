@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/usable_rows.h"
 #include "transfer/wide_tile.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "image/guides.h"
+#include "core/image/guides.h"
 #include "transfer/region.h"
 #include "transfer/wide_tile.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "transfer/wide_marks.h"
 
 namespace scumble::internal {

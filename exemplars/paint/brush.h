@@ -13,7 +13,7 @@ extern "C" {
 #include <vector>
 
 #include "exemplars/paint/canvas.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::paint {
 

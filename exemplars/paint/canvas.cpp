@@ -7,7 +7,7 @@ extern "C" {
 #include <algorithm>
 #include <cmath>
 
-#include "image/check.h"
+#include "core/image/check.h"
 
 namespace scumble::paint {
 namespace {

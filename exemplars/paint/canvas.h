@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 struct MyPaintFixedTiledSurface;
 struct MyPaintSurface;

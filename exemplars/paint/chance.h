@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble::paint {
 

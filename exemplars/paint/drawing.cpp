@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "exemplars/paint/sphere.h"
-#include "image/color.h"
+#include "core/image/color.h"
 
 namespace scumble::paint {
 namespace {

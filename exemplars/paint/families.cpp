@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "exemplars/paint/sphere.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 
 namespace scumble::paint {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "exemplars/paint/styles.h"
-#include "image/hash.h"
+#include "core/image/hash.h"
 #include "io/guide_file.h"
 #include "io/picture_file.h"
 

@@ -1,6 +1,6 @@
 #include "exemplars/paint/neutral.h"
 
-#include "image/color.h"
+#include "core/image/color.h"
 
 namespace scumble::paint {
 

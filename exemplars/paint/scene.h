@@ -8,7 +8,7 @@
 
 #include "exemplars/paint/canvas.h"
 #include "exemplars/paint/strokes.h"
-#include "image/status.h"
+#include "core/image/status.h"
 
 namespace scumble::paint {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "exemplars/paint/studio.h"
-#include "image/picture.h"
-#include "image/status.h"
+#include "core/image/picture.h"
+#include "core/image/status.h"
 
 namespace scumble::paint {
 

@@ -15,9 +15,9 @@
 #include <string_view>
 #include <vector>
 
-#include "image/check.h"
-#include "image/guides.h"
-#include "image/status.h"
+#include "core/image/check.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
 #include "io/library.h"
 
 namespace scumble::fuzz {

@@ -21,9 +21,9 @@
 #include <string>
 #include <vector>
 
-#include "image/layers.h"
-#include "image/plane_allocator.h"
-#include "image/status.h"
+#include "core/image/layers.h"
+#include "core/image/plane_allocator.h"
+#include "core/image/status.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "image/style.h"
+#include "core/image/style.h"
 
 #include <algorithm>
 

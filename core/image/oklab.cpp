@@ -1,4 +1,4 @@
-#include "image/oklab.h"
+#include "core/image/oklab.h"
 
 #include <bit>
 #include <cmath>

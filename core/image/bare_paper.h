@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "image/picture.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

@@ -1,12 +1,12 @@
-#include "image/guides.h"
+#include "core/image/guides.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "image/check.h"
-#include "image/hash.h"
+#include "core/image/check.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "image/color.h"
+#include "core/image/color.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "image/exact_math.h"
+#include "core/image/exact_math.h"
 
 #include <cmath>
 #include <limits>

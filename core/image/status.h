@@ -1,5 +1,5 @@
 // Errors as values. A user's mistake or a failing disk returns Error inside Expected<T>; a broken promise inside the
-// program is a CHECK (image/check.h). There is no third way.
+// program is a CHECK (core/image/check.h). There is no third way.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-#include "image/layers.h"
+#include "core/image/layers.h"
 
 #include <array>
 #include <cctype>

@@ -10,9 +10,9 @@
 #include <variant>
 #include <vector>
 
-#include "image/guides.h"
-#include "image/layers.h"
-#include "image/picture.h"
+#include "core/image/guides.h"
+#include "core/image/layers.h"
+#include "core/image/picture.h"
 
 namespace scumble {
 

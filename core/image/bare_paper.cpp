@@ -1,11 +1,11 @@
-#include "image/bare_paper.h"
+#include "core/image/bare_paper.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "image/color.h"
-#include "image/oklab.h"
+#include "core/image/color.h"
+#include "core/image/oklab.h"
 
 namespace scumble {
 namespace {

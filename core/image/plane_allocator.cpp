@@ -1,4 +1,4 @@
-#include "image/plane_allocator.h"
+#include "core/image/plane_allocator.h"
 
 #include <atomic>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 #endif
 
-#include "image/plane_count.h"
+#include "core/image/plane_count.h"
 
 namespace scumble {
 namespace {
