@@ -11,7 +11,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "measure/flicker.h"
 #include "style/style_file.h"
 #include "transfer/transfer.h"

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 #include "measure/repetition.h"
 #include "style/style_file.h"
 #include "transfer/transfer.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <string_view>
 
-#include "io/atomic_file.h"
+#include "core/io/file/atomic_file.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "guidegen/guidegen.h"
 #include "core/image/direction.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 #include "style/sphere_kit.h"
 
 namespace scumble {

@@ -10,7 +10,7 @@
 #include "cli/tradeoff_reference.h"
 #include "core/image/check.h"
 #include "core/image/stopwatch.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "style/style_keyframes.h"
 #include "transfer/upsample_guides.h"
 

@@ -10,8 +10,8 @@
 #include "cli/compare_verb.h"
 #include "cli/options.h"
 #include "cli/run_files.h"
-#include "io/channel_file.h"
-#include "io/picture_file.h"
+#include "core/io/channel_file.h"
+#include "core/io/picture_file.h"
 #include "measure/heat_map.h"
 
 namespace scumble {

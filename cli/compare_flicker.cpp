@@ -3,8 +3,8 @@
 
 #include "cli/compare_verb.h"
 #include "cli/json_text.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 #include "measure/flicker.h"
 #include "measure/heat_map.h"
 

@@ -6,8 +6,8 @@
 
 #include "cli/compare_verb.h"
 #include "cli/json_text.h"
-#include "io/channel_file.h"
-#include "io/picture_file.h"
+#include "core/io/channel_file.h"
+#include "core/io/picture_file.h"
 #include "measure/heat_map.h"
 #include "measure/json_number.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "io/library.h"
+#include "core/io/library.h"
 
 namespace scumble {
 

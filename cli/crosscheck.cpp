@@ -18,8 +18,8 @@
 #include "cli/shell_word.h"
 #include "guidegen/path_layers.h"
 #include "guidegen/pure_materials.h"
-#include "io/atomic_file.h"
-#include "io/guide_file.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guide_file.h"
 #include "measure/crosscheck_baseline.h"
 #include "measure/crosscheck_html.h"
 

@@ -8,7 +8,7 @@
 #include <future>
 
 #include "cli/blender_process.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 
 namespace scumble {
 namespace {

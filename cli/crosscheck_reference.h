@@ -9,7 +9,7 @@
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
-#include "io/cycles_light.h"
+#include "core/io/blender/cycles_light.h"
 
 namespace scumble {
 

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "io/unfinished_files.h"
+#include "core/io/file/pending_temporaries.h"
 
 namespace scumble {
 namespace {

@@ -18,9 +18,9 @@
 #include "cli/sequence.h"
 #include "cli/style_set.h"
 #include "cli/timing.h"
-#include "io/atomic_file.h"
-#include "io/guide_file.h"
-#include "io/whole_output.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/file/existing_output.h"
 
 namespace scumble {
 namespace {

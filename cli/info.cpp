@@ -13,7 +13,7 @@
 #include "cli/transfer_run.h"
 #include "guidegen/load_scene.h"
 #include "guidegen/scene_textures.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 
 namespace scumble {
 namespace {

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "cli/command.h"
-#include "io/unfinished_files.h"
+#include "core/io/file/pending_temporaries.h"
 
 namespace scumble {
 namespace {

@@ -16,7 +16,7 @@
 #include "cli/last_words.h"
 #include "cli/verbs.h"
 #include "core/image/check.h"
-#include "io/library.h"
+#include "core/io/library.h"
 
 namespace scumble {
 

@@ -12,7 +12,7 @@
 #include "guidegen/scene_textures.h"
 #include "core/image/layers.h"
 #include "core/image/style.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 
 namespace scumble {
 

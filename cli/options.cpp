@@ -12,7 +12,7 @@
 #include "cli/needed_textures.h"
 #include "cli/sequence.h"
 #include "cli/timing.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 #include "style/style_file.h"
 
 namespace scumble {

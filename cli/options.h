@@ -18,7 +18,7 @@
 #include "guidegen/load_scene.h"
 #include "core/image/stopwatch.h"
 #include "core/image/style.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 

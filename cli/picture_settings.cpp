@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/image/hash.h"
-#include "io/whole_output.h"
+#include "core/io/file/existing_output.h"
 
 namespace scumble {
 namespace {

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "io/atomic_file.h"
+#include "core/io/file/atomic_file.h"
 
 namespace scumble {
 namespace {

@@ -18,10 +18,10 @@
 #include "cli/sequence.h"
 #include "cli/timing.h"
 #include "cli/transfer_run.h"
-#include "io/blender_camera.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
-#include "io/whole_output.h"
+#include "core/io/blender/blender_camera.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
+#include "core/io/file/existing_output.h"
 #include "style/style_keyframes.h"
 
 namespace scumble {

@@ -26,8 +26,8 @@
 #include "cli/style_set.h"
 #include "cli/tradeoff_run.h"
 #include "cli/transfer_run.h"
-#include "io/atomic_file.h"
-#include "io/unfinished_files.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/file/pending_temporaries.h"
 #include "measure/tradeoff_report.h"
 
 namespace scumble {

@@ -8,7 +8,7 @@
 
 #include "guidegen/path_layers.h"
 #include "core/image/stopwatch.h"
-#include "io/guide_precision.h"
+#include "core/io/guides/guide_precision.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {

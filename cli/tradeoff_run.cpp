@@ -20,7 +20,7 @@
 #include "cli/tradeoff_peak.h"
 #include "cli/tradeoff_reference.h"
 #include "cli/tradeoff_way.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "style/style_keyframes.h"
 
 namespace scumble {

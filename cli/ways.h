@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/guide_precision.h"
+#include "core/io/guides/guide_precision.h"
 #include "transfer/look_up_table.h"
 
 namespace scumble {

@@ -13,7 +13,7 @@
 
 #include "guidegen/gltf_accessor.h"
 #include "guidegen/gltf_parse.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {

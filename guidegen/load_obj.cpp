@@ -21,7 +21,7 @@
 #include "guidegen/mtl_materials.h"
 #include "core/image/color.h"
 #include "core/image/hash.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {

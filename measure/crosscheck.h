@@ -10,7 +10,7 @@
 #include "core/image/guides.h"
 #include "core/image/picture.h"
 #include "core/image/status.h"
-#include "io/cycles_light.h"
+#include "core/io/blender/cycles_light.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "measure/crosscheck_chart.h"
 #include "measure/crosscheck_parts.h"
 #include "measure/html_page.h"

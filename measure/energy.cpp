@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/image/hash.h"
-#include "io/parallel.h"
+#include "core/io/parallel.h"
 #include "measure/patch_search.h"
 #include "measure/stratified_sample.h"
 

@@ -9,7 +9,7 @@
 
 #include "core/image/check.h"
 #include "core/image/color.h"
-#include "io/parallel.h"
+#include "core/io/parallel.h"
 #include "measure/on_white.h"
 
 namespace scumble {

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "io/atomic_file.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 #include "style/sphere_template.h"
 #include "style/style_keyframes.h"
 #include "style/style_keys.h"

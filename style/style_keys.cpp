@@ -9,7 +9,7 @@
 #include <system_error>
 #include <vector>
 
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "io/atomic_file.h"
-#include "io/blender_camera.h"
-#include "io/blender_passes.h"
-#include "io/cryptomatte.h"
-#include "io/guide_file.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/blender/blender_camera.h"
+#include "core/io/blender/blender_passes.h"
+#include "core/io/guides/cryptomatte.h"
+#include "core/io/guide_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 #include "tests/true_camera.h"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "io/blender_camera.h"
+#include "core/io/blender/blender_camera.h"
 #include "tests/cli_harness.h"
 
 namespace scumble {

@@ -15,7 +15,7 @@ import sys
 # "parent/child".
 LIBRARIES = {
     "image": ("core/image", set(), []),
-    "io": ("io", {"image"}, []),
+    "io": ("core/io", {"image"}, []),
     "guidegen": ("guidegen", {"image", "io"}, []),
     "style": ("style", {"image", "io"}, []),
     "transfer": ("transfer", {"image"}, []),

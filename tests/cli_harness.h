@@ -18,8 +18,8 @@
 
 #include "core/image/guides.h"
 #include "core/image/hash.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {

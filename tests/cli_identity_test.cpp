@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 #include "style/style_file.h"
 #include "tests/cli_harness.h"
 #include "transfer/resample.h"

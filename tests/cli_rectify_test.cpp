@@ -1,6 +1,6 @@
 // `scumble sphere --rectify` as an artist runs it: from a photograph in the kit's folder to a style.
-#include "io/atomic_file.h"
-#include "io/open_raster.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/picture/open_raster.h"
 #include "tests/cli_harness.h"
 #include "tests/scan_fixtures.h"
 

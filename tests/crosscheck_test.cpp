@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/atomic_file.h"
+#include "core/io/file/atomic_file.h"
 #include "measure/crosscheck_html.h"
 #include "tests/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // EXR files by OpenEXR alone: the bytes that OpenImageIO would write, and what it would read from them.
-#include "io/exr_file.h"
+#include "core/io/exr/scanline_exr.h"
 
 #include <Imath/half.h>
 #include <OpenImageIO/filesystem.h>
@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "core/image/color.h"
-#include "io/atomic_file.h"
-#include "io/formats.h"
-#include "io/library.h"
-#include "io/plain_guides.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/library.h"
+#include "core/io/guides/own_guides.h"
 #include "tests/guide_files.h"
 #include "tests/temporary_folder.h"
 

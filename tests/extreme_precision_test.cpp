@@ -15,7 +15,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "core/image/hash.h"
-#include "io/guide_storage.h"
+#include "core/io/guides/guide_storage.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/look_up_table.h"
 

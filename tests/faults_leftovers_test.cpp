@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "io/atomic_file.h"
-#include "io/leftover_files.h"
-#include "io/unfinished_files.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/file/stale_temporaries.h"
+#include "core/io/file/pending_temporaries.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble::internal {

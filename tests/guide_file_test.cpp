@@ -1,5 +1,5 @@
 // Guides through EXR files: nothing lost, and every file that is no guide file refused in words.
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 
 #include <Imath/half.h>
 #include <OpenImageIO/imageio.h>
@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "io/atomic_file.h"
-#include "io/guide_header.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guides/guide_header.h"
 #include "tests/guide_files.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

@@ -13,7 +13,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/hash.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 
 namespace scumble {
 

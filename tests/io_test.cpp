@@ -13,9 +13,9 @@
 
 #include "core/image/guides.h"
 #include "core/image/picture.h"
-#include "io/atomic_file.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {

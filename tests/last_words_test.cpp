@@ -15,7 +15,7 @@
 #include <system_error>
 #include <thread>
 
-#include "io/unfinished_files.h"
+#include "core/io/file/pending_temporaries.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {

@@ -4,7 +4,7 @@
 
 #include "gltf_builder.h"
 #include "guidegen/load_scene.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {

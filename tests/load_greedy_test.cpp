@@ -11,7 +11,7 @@
 #include "guidegen/loader_util.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/hash.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {

@@ -12,7 +12,7 @@
 #include "guidegen/picture_budget.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/hash.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {

@@ -9,7 +9,7 @@
 #include "guidegen/loader_util.h"
 #include "guidegen/mesh_normals.h"
 #include "core/image/color.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "io/channel_file.h"
+#include "core/io/channel_file.h"
 #include "measure/coherence.h"
 #include "measure/compare.h"
 #include "measure/heat_map.h"

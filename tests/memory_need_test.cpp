@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "tests/cli_harness.h"
 #include "tests/gltf_builder.h"
 

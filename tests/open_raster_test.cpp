@@ -1,5 +1,5 @@
 // Files of layers: what is written, and what is read from strangers' files.
-#include "io/open_raster.h"
+#include "core/io/picture/open_raster.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "io/atomic_file.h"
-#include "io/picture_file.h"
-#include "io/zip_archive.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/picture_file.h"
+#include "core/io/file/zip_archive.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

@@ -13,7 +13,7 @@
 #include "guidegen/load_scene.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 #include "style/style_file.h"
 #include "transfer/transfer.h"
 

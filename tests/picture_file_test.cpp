@@ -1,5 +1,5 @@
 // Pictures through files: exact where the format is, and every damaged file an error with its name.
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 #include "core/image/color.h"
 #include "core/image/hash.h"
-#include "io/atomic_file.h"
+#include "core/io/file/atomic_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

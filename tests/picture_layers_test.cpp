@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/image/color.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "io/atomic_file.h"
-#include "io/formats.h"
-#include "io/parallel.h"
-#include "io/png_filter.h"
-#include "io/png_reader.h"
-#include "io/png_writer.h"
-#include "io/whole_png.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/parallel.h"
+#include "core/io/png/png_filter.h"
+#include "core/io/png/png_reader.h"
+#include "core/io/png/png_writer.h"
+#include "core/io/png/png_integrity.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {

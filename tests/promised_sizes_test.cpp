@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "io/atomic_file.h"
-#include "io/channel_file.h"
-#include "io/exr_file.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
-#include "io/plain_guides.h"
-#include "io/whole_exr.h"
-#include "io/whole_png.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/channel_file.h"
+#include "core/io/exr/scanline_exr.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
+#include "core/io/guides/own_guides.h"
+#include "core/io/exr/exr_integrity.h"
+#include "core/io/png/png_integrity.h"
 #include "temporary_folder.h"
 
 namespace scumble {

@@ -7,7 +7,7 @@
 
 #include "guidegen/load_scene.h"
 #include "guidegen/scene_textures.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "tests/gltf_builder.h"
 
 namespace scumble {

@@ -11,7 +11,7 @@
 #include "core/image/check.h"
 #include "core/image/color.h"
 #include "core/image/hash.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "style/fiducials.h"
 #include "style/sphere_kit.h"
 #include "style/template_fit.h"

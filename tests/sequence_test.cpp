@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/whole_output.h"
+#include "core/io/file/existing_output.h"
 #include "tests/cli_harness.h"
 
 namespace scumble {

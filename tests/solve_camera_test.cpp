@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/solve_camera.h"
+#include "core/io/blender/solve_camera.h"
 #include "tests/refusal.h"
 #include "tests/true_camera.h"
 

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "io/atomic_file.h"
-#include "io/guide_file.h"
-#include "io/open_raster.h"
-#include "io/picture_file.h"
-#include "io/zip_archive.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture/open_raster.h"
+#include "core/io/picture_file.h"
+#include "core/io/file/zip_archive.h"
 #include "style/fiducials.h"
 #include "style/style_file.h"
 #include "style/template_pdf.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "io/atomic_file.h"
+#include "core/io/file/atomic_file.h"
 #include "style/style_file.h"
 #include "style/toml_keys.h"
 #include "tests/refusal.h"

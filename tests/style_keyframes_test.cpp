@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "cli/frames.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "style/style_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "io/atomic_file.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 #include "style/style_file.h"
 #include "style/style_keys.h"
 #include "tests/refusal.h"

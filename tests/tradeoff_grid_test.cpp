@@ -14,7 +14,7 @@
 #include "cli/tradeoff_way.h"
 #include "guidegen/guidegen.h"
 #include "core/image/hash.h"
-#include "io/guide_precision.h"
+#include "core/io/guides/guide_precision.h"
 #include "tests/refusal.h"
 
 namespace scumble {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "io/solve_camera.h"
+#include "core/io/blender/solve_camera.h"
 
 namespace scumble {
 

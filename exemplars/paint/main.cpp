@@ -11,8 +11,8 @@
 
 #include "exemplars/paint/styles.h"
 #include "core/image/hash.h"
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "exemplars/paint/chance.h"
 #include "exemplars/paint/media.h"
 #include "exemplars/paint/sphere.h"
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 
 namespace scumble::paint {
 namespace {

@@ -2,9 +2,9 @@
 // formats. What the plain reader makes of a file is the same.
 #include <cstring>
 
-#include "io/channel_file.h"
-#include "io/formats.h"
-#include "io/plain_guides.h"
+#include "core/io/channel_file.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/guides/own_guides.h"
 #include "tests/fuzz/guide_checks.h"
 
 namespace scumble::fuzz {

@@ -18,7 +18,7 @@
 #include "core/image/check.h"
 #include "core/image/guides.h"
 #include "core/image/status.h"
-#include "io/library.h"
+#include "core/io/library.h"
 
 namespace scumble::fuzz {
 

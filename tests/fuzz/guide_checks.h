@@ -1,7 +1,7 @@
 // What the targets of guides share.
 #pragma once
 
-#include "io/guide_file.h"
+#include "core/io/guide_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

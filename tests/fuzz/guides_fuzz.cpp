@@ -1,5 +1,5 @@
 // Guides in plain EXR files, as OpenEXR alone reads them.
-#include "io/plain_guides.h"
+#include "core/io/guides/own_guides.h"
 #include "tests/fuzz/guide_checks.h"
 
 namespace scumble::fuzz {

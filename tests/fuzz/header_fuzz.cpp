@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include "io/blender_camera.h"
-#include "io/cryptomatte.h"
-#include "io/guide_header.h"
+#include "core/io/blender/blender_camera.h"
+#include "core/io/guides/cryptomatte.h"
+#include "core/io/guides/guide_header.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

@@ -10,7 +10,7 @@
 #include "cli/style_set.h"
 #include "cli/transfer_run.h"
 #include "cli/verbs.h"
-#include "io/picture_file.h"
+#include "core/io/picture_file.h"
 #include "style/print_page.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -1,9 +1,9 @@
 // PNG files as they are, and once more with the sums of their chunks put right, so that what is behind those is tested.
 #include <array>
 
-#include "io/picture_file.h"
-#include "io/png_reader.h"
-#include "io/whole_png.h"
+#include "core/io/picture_file.h"
+#include "core/io/png/png_reader.h"
+#include "core/io/png/png_integrity.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

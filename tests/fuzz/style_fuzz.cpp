@@ -2,8 +2,8 @@
 // line.
 #include <glm/glm.hpp>
 
-#include "io/guide_file.h"
-#include "io/picture_file.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
 #include "style/sphere_template.h"
 #include "style/style_file.h"
 #include "style/style_keyframes.h"

@@ -1,0 +1,55 @@
+// The plain EXR files that Scumble itself writes, by OpenEXR alone: one part of scan lines, flat, whose data fills its
+// window. It starts without OpenImageIO's libraries, which take a fifth of a second to load; whatever else there is in
+// EXR is for the module of core/io/format_dispatch.h. Not for other folders.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/status.h"
+
+namespace scumble::internal {
+
+// A channel to be written: width · height values in rows, stored as floats or, if `half`, rounded by ToHalf. The values
+// are the caller's.
+struct ExrChannel {
+  std::string name;
+  bool half = false;
+  std::span<const float> values;
+};
+
+struct ExrImage {
+  int width = 0, height = 0;
+  std::vector<ExrChannel> channels;            // with different names, in any order
+  std::string compression = "zip";             // as IsLossless knows it
+  std::map<std::string, std::string> texts;    // attributes
+  std::map<std::string, glm::dmat4> matrices;  // attributes, rounded to float; for row vectors, as OpenEXR has them
+};
+
+// The bytes of the file; the same for any number of threads. The library's failures become errors that name the file.
+Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrImage& image);
+
+// What a plain file's header holds.
+struct ExrHeader {
+  int width = 0, height = 0;
+  std::map<std::string, bool> channels;      // by name, in the file's order: whether it is stored in half floats
+  std::map<std::string, std::string> texts;  // attributes
+};
+
+// A plane of width · height floats for a channel; empty: it is not read.
+using PlaneFor = std::function<std::span<float>(const std::string& channel)>;
+
+// Reads the header, shows it to `look`, and goes on with the pixels if `look` returns planes to read them into. Nothing
+// where the file is not plain, is damaged or is none, or where `look` returns nothing: the module knows more, and says
+// what is wrong.
+std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
+                                      const std::function<std::optional<PlaneFor>(const ExrHeader&)>& look);
+
+}  // namespace scumble::internal

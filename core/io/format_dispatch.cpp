@@ -1,0 +1,138 @@
+#include "core/io/format_dispatch.h"
+
+#include <dlfcn.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <iterator>
+#include <new>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "core/io/channel_file.h"
+#include "core/io/library.h"
+#include "core/io/guides/own_guides.h"
+#include "core/io/file/readable_file.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<int> io_threads{0};
+std::atomic<bool> is_loaded{false};
+
+constexpr const char* kFile = "libscumble_formats.so";
+
+// Beside the program, as in a build; or where it is installed. Only files of these full names are loaded: a name alone would be
+// looked for where the environment says, or in the folder that the program runs in.
+std::vector<fs::path> Folders() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) return {};
+  const fs::path folder = program.parent_path();
+  return {folder, (folder / "../lib/scumble").lexically_normal()};
+}
+
+Error Unusable(const std::string& module, const std::string& what) {
+  return UnavailableError(module + ", which reads and writes EXR, JPEG and TIFF, " + what +
+                          ": build or install scumble again, with all of its files");
+}
+
+// The loader's own words for what the system refused it.
+bool IsForWantOfMemory(std::string_view reason) {
+  constexpr std::string_view kWords[] = {"failed to map segment", "cannot map zero-fill pages", "annot allocate memory",
+                                         "cannot create", "cannot change memory protections"};
+  return std::any_of(std::begin(kWords), std::end(kWords),
+                     [&](std::string_view words) { return reason.find(words) != std::string_view::npos; });
+}
+
+// More than the module and its libraries take with Debian's OpenImageIO: 655 MB. Of addresses, not of memory.
+constexpr std::size_t kModuleAddresses = std::size_t(768) << 20;
+
+// Whether so many bytes of addresses are to be had, under a limit such as ulimit's.
+bool HasAddresses(std::size_t bytes) {
+  void* const start = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (start == MAP_FAILED) return false;
+  ::munmap(start, bytes);
+  return true;
+}
+
+Expected<const Formats*> LoadFrom(const fs::path& path) {
+  // Its libraries' own beginnings crash or wait for ever where memory ends among them, so it is asked for before.
+  if (!HasAddresses(kModuleAddresses)) throw std::bad_alloc();
+  // What the module's libraries define stays out of everybody else's way.
+  void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (!module) {
+    const char* const reason = ::dlerror();
+    if (reason && IsForWantOfMemory(reason)) throw std::bad_alloc();
+    return Unusable(path.string(), "cannot be loaded (" + std::string(reason ? reason : "no reason is given") + ")");
+  }
+  const auto* const found = static_cast<const Formats*>(::dlsym(module, "scumble_formats_" SCUMBLE_MODULE_VERSION));
+  if (found && found->layout == kFormatsLayout) return found;
+  ::dlclose(module);
+  return Unusable(path.string(), "is of another version than scumble");
+}
+
+Expected<const Formats*> Load() {
+  std::string searched;
+  for (const fs::path& folder : Folders()) {
+    std::error_code failed;
+    if (fs::exists(folder / kFile, failed)) return LoadFrom(folder / kFile);
+    searched += (searched.empty() ? "" : " or ") + folder.string();
+  }
+  return Unusable(kFile, searched.empty() ? "cannot be looked for: /proc/self/exe is not readable" : "is not in " + searched);
+}
+
+}  // namespace
+
+Expected<const Formats*> LoadFormats(const std::string& file) {
+  try {
+    static const Expected<const Formats*> kFormats = [] {
+      const Expected<const Formats*> loaded = Load();
+      if (loaded) (*loaded)->set_threads(io_threads);
+      is_loaded = loaded.ok();
+      return loaded;
+    }();
+    return kFormats;
+  } catch (const std::bad_alloc&) {
+    return MemoryError("out of memory for " + file + ": the library that reads and writes its format takes " +
+                       std::to_string(kModuleAddresses >> 20) +
+                       " MB of addresses, whatever the picture's size; allow so much more (ulimit -v), or use a plain PNG, " +
+                       "or the EXR files that scumble itself writes, wherever a picture or guides are read or written");
+  }
+}
+
+Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path) {
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckReadable(path));
+  return LoadFormats(path.string());
+}
+
+void SetIoThreads(int threads) { io_threads = threads; }
+
+bool IsLibraryLoaded() { return is_loaded; }
+
+int internal::IoThreads() { return io_threads; }
+
+Expected<ChannelImage> ReadChannels(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
+  return formats->read_channels(path);
+}
+
+Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
+  if (auto plain = internal::ReadPlainGuides(path, options)) return *std::move(plain);
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
+  return formats->read_guides(path, options);
+}
+
+Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
+  if (auto plain = internal::InspectPlainGuides(path)) return *std::move(plain);
+  SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
+  return formats->inspect_guides(path);
+}
+
+}  // namespace scumble

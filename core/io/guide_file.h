@@ -1,0 +1,59 @@
+// Guides to and from EXR.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/image/guides.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+struct GuideWriteOptions {
+  bool half = false;                // colour layers as 16-bit half floats; data layers stay 32-bit float
+  std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
+};
+
+// Lossless, and the quickest to write and read here: background is packed, surfaces are hardly touched.
+inline constexpr const char* kFastCompression = "rle";
+
+// Writes all layers of the set, object and material names and their styles, camera matrices (worldToCamera and worldToNDC in
+// OpenEXR's own conventions) and attributes.
+// Refuses a lossy compression. The file appears whole or not at all.
+Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options = {});
+
+// Whether WriteGuides knows the ending and the compression: to be asked before the work.
+Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options = {});
+
+struct GuideReadOptions {
+  LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
+  LayerSet optional;                    // read where present
+  std::string view_layer;               // which one of several in a multilayer file
+  std::string mend;                     // how the caller can do without depth and object, said where nothing else is missing
+  std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
+};
+
+// Reads only the channels that are asked for; matches them by name (ParseChannelName). The result is validated:
+// normals whose length is off by more than a half float's rounding are normalised, and what GuideSet::Validate
+// refuses is an error. What Blender wrote is converted as core/io/blender/blender_passes.h says: its camera comes from
+// `blender_camera`, or from its Position and Depth passes; names from Cryptomatte.
+Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
+
+// What a guide file holds, without reading its pixels.
+struct GuideFileInfo {
+  int width = 0;
+  int height = 0;
+  bool has_half = false;                    // some channel is stored in half floats
+  bool from_blender = false;                // rendered by Blender itself: its passes are to be converted
+  std::map<std::string, LayerSet> layers;   // complete layers by view layer; "" where names have nothing before them; Cryptomatte counts
+  std::string channels;                     // all names as they stand in the file
+  GuideSet header;                          // names, camera and attributes; 0 × 0 pixels
+};
+Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
+
+// Rounds the colour layers to half floats, as `half` does on disk: keeps the path in memory equal to the one by file.
+// Values beyond ±65504 become that.
+void RoundColorLayersToHalf(GuideSet& guides);
+
+}  // namespace scumble

@@ -1,0 +1,84 @@
+#include "core/io/guides/guide_storage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <iterator>
+
+#include "core/io/guide_file.h"
+
+namespace scumble {
+namespace internal {
+namespace {
+
+constexpr const char* kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
+
+}  // namespace
+
+bool IsLossless(const std::string& compression) {
+  return std::find(std::begin(kCompressions), std::end(kCompressions), compression) != std::end(kCompressions);
+}
+
+Imath::half ToHalf(float value) {
+  constexpr float kLargest = 65504.0f;
+  return std::isfinite(value) ? Imath::half(std::clamp(value, -kLargest, kLargest)) : Imath::half(value);
+}
+
+bool LookPacked(const GuideSet& guides) {
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  std::size_t covered = 0, not_unit = 0;
+  for (std::size_t i = 0; i < coverage.size(); ++i) {
+    if (!(coverage[i] > 0.0f)) continue;
+    const glm::vec3 n = guides.Vec3(Layer::kNormal, i);
+    if (n.x < 0.0f || n.y < 0.0f || n.z < 0.0f) return false;
+    ++covered;
+    not_unit += std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1.0f) > 0.02f;
+  }
+  constexpr std::size_t kEnoughPixels = 16;
+  return covered >= kEnoughPixels && 2 * not_unit > covered;
+}
+
+void NormalizeNormals(GuideSet& guides) {
+  // A unit vector in floats has a square of 1 but for 2√3 · 2^-25, and 3 · 2^-24 of the sum: 2.8e-7.
+  constexpr float kOfFloats = 0x1p-20f;
+  const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1),
+             z = guides.Plane(Layer::kNormal, 2);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const float squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+    if (std::fabs(squared - 1.0f) <= kOfFloats || !(squared > 0.01f && squared < 100.0f)) continue;
+    const float length = std::sqrt(squared);
+    x[i] /= length, y[i] /= length, z[i] /= length;
+  }
+}
+
+void LimitDepths(GuideSet& guides) {
+  if (!guides.Has(Layer::kDepth) || !guides.Has(Layer::kCoverage)) return;
+  const auto coverage = guides.Plane(Layer::kCoverage), depth = guides.Plane(Layer::kDepth);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (coverage[i] > 0.0f && depth[i] == std::numeric_limits<float>::infinity()) depth[i] = 1e30f;
+  }
+}
+
+}  // namespace internal
+
+Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options) {
+  if (path.extension() != ".exr" && path.extension() != ".EXR") {
+    return UsageError("cannot write guides to " + path.string() + ": guides are EXR files, name it .exr");
+  }
+  if (!internal::IsLossless(options.compression)) {
+    return UsageError("compression '" + options.compression +
+                      "' is not one of none, rle, zips, zip, piz: guides are data and lossy compression is refused");
+  }
+  return Ok();
+}
+
+void RoundColorLayersToHalf(GuideSet& guides) {
+  for (const LayerInfo& info : AllLayers()) {
+    if (!guides.Has(info.layer) || !info.is_color) continue;
+    for (int c = 0; c < ChannelCount(info.layer); ++c) {
+      for (float& value : guides.Plane(info.layer, c)) value = static_cast<float>(internal::ToHalf(value));
+    }
+  }
+}
+
+}  // namespace scumble

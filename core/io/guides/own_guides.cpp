@@ -1,0 +1,107 @@
+#include "core/io/guides/own_guides.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/io/guides/cryptomatte.h"
+#include "core/io/exr/scanline_exr.h"
+#include "core/io/guides/guide_header.h"
+#include "core/io/guides/guide_storage.h"
+
+namespace scumble::internal {
+namespace {
+
+using Meanings = std::map<std::string, ChannelMeaning>;  // by the channel's name
+
+// Nothing where a channel belongs to a view layer, means nothing to us, or means what another one means.
+std::optional<Meanings> MeaningsOf(const ExrHeader& header) {
+  const auto software = header.texts.find("Software");
+  if (software != header.texts.end() && software->second.starts_with("Blender")) return std::nullopt;
+  Meanings meanings;
+  for (const auto& [name, half] : header.channels) {
+    const std::optional<ChannelMeaning> meaning = ParseChannelName(name);
+    if (!meaning || !meaning->prefix.empty() || ParseMatteChannel(name)) return std::nullopt;
+    const bool is_taken = std::any_of(meanings.begin(), meanings.end(), [&](const auto& other) {
+      return other.second.layer == meaning->layer && other.second.component == meaning->component;
+    });
+    if (is_taken) return std::nullopt;
+    meanings.emplace(name, *meaning);
+  }
+  return meanings;
+}
+
+LayerSet CompleteLayers(const Meanings& meanings) {
+  std::array<int, kLayerCount> counts{};
+  for (const auto& [name, meaning] : meanings) ++counts[static_cast<std::size_t>(meaning.layer)];
+  LayerSet complete;
+  for (const LayerInfo& info : AllLayers()) {
+    if (counts[static_cast<std::size_t>(info.layer)] == ChannelCount(info.layer)) complete.Add(info.layer);
+  }
+  return complete;
+}
+
+// In the order in which OpenImageIO lists them: colours as R, G, B, where the file has them by the alphabet.
+std::string NamesOf(const ExrHeader& header) {
+  std::vector<std::string> names;
+  for (const auto& [name, half] : header.channels) names.push_back(name);
+  const auto key = [](const std::string& name) {
+    const std::size_t dot = name.rfind('.') + 1;  // 0 where there is none
+    const std::size_t color = std::string("RGBA").find(name.substr(dot));
+    return std::pair(name.substr(0, dot), color == std::string::npos ? name.substr(dot) : std::to_string(color));
+  };
+  std::stable_sort(names.begin(), names.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  return ListOfChannels(names);
+}
+
+}  // namespace
+
+std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
+  if (!options.view_layer.empty() || !options.blender_camera.empty()) return std::nullopt;
+  GuideSet guides;
+  Meanings meanings;
+  const auto header = ReadPlainExr(path, [&](const ExrHeader& found) -> std::optional<PlaneFor> {
+    std::optional<Meanings> all = MeaningsOf(found);
+    if (!all) return std::nullopt;
+    meanings = std::move(*all);
+    const LayerSet complete = CompleteLayers(meanings);
+    guides = GuideSet(found.width, found.height);
+    for (const LayerInfo& info : AllLayers()) {
+      const bool is_required = options.required.Has(info.layer);
+      if (is_required && !complete.Has(info.layer)) return std::nullopt;
+      if (complete.Has(info.layer) && (is_required || options.optional.Has(info.layer))) guides.Add(info.layer);
+    }
+    return PlaneFor([&](const std::string& name) {
+      const ChannelMeaning& meaning = meanings.at(name);
+      return guides.Has(meaning.layer) ? guides.Plane(meaning.layer, meaning.component) : std::span<float>();
+    });
+  });
+  if (!header) return std::nullopt;
+  TakeHeader(header->texts, guides);
+  if (guides.Has(Layer::kNormal)) {
+    if (guides.Has(Layer::kCoverage) && LookPacked(guides)) return std::nullopt;
+    NormalizeNormals(guides);
+  }
+  LimitDepths(guides);
+  if (!guides.Validate(path.string())) return std::nullopt;
+  return guides;
+}
+
+std::optional<GuideFileInfo> InspectPlainGuides(const std::filesystem::path& path) {
+  std::optional<Meanings> meanings;
+  const auto header = ReadPlainExr(path, [&](const ExrHeader& found) -> std::optional<PlaneFor> {
+    meanings = MeaningsOf(found);
+    if (!meanings) return std::nullopt;
+    return PlaneFor([](const std::string&) { return std::span<float>(); });
+  });
+  if (!header) return std::nullopt;
+  GuideFileInfo info{header->width, header->height, false, false, {}, NamesOf(*header), {}};
+  for (const auto& [name, half] : header->channels) info.has_half = info.has_half || half;
+  info.layers[""] = CompleteLayers(*meanings);
+  TakeHeader(header->texts, info.header);
+  return info;
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,379 @@
+// Reading guides by OpenImageIO, as any program may have written them. Part of the module of formats.
+#include "core/io/guide_file.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "core/io/blender/blender_camera.h"
+#include "core/io/blender/blender_passes.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/guides/guide_header.h"
+#include "core/io/guides/guide_storage.h"
+#include "core/io/oiio/oiio.h"
+
+namespace scumble::formats {
+namespace {
+
+// A channel of a file that means something to us.
+struct FoundChannel {
+  int subimage;
+  int channel;
+  ChannelMeaning meaning;
+};
+
+// A channel of a Cryptomatte.
+struct FoundMatte {
+  int subimage;
+  int channel;
+  bool is_float;
+  MatteChannel meaning;
+};
+
+struct FileContents {
+  OIIO::ImageSpec spec;  // of the first part
+  std::vector<FoundChannel> channels;
+  std::vector<FoundMatte> mattes;
+  std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
+  std::string all_names;  // for messages
+  bool has_half = false;
+  bool from_blender = false;
+};
+
+// The manifests of a part's header, which stand under cryptomatte/KEY/manifest beside cryptomatte/KEY/name.
+void FindManifests(const OIIO::ImageSpec& spec, FileContents& contents) {
+  constexpr std::string_view kStart = "cryptomatte/", kEnd = "/name";
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    const std::string key(value.name());
+    if (value.type() != OIIO::TypeString || !key.starts_with(kStart) || !key.ends_with(kEnd)) continue;
+    const std::string manifest = key.substr(0, key.size() - kEnd.size()) + "/manifest";
+    contents.manifests[std::string(value.get_string())] = std::string(spec.get_string_attribute(manifest));
+  }
+}
+
+Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) {
+  FileContents contents;
+  contents.spec = input.spec(0);
+  std::vector<std::string> names;
+  for (int subimage = 0; input.seek_subimage(subimage, 0); ++subimage) {
+    const OIIO::ImageSpec spec = input.spec(subimage);
+    SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
+    if (spec.full_width != contents.spec.full_width || spec.full_height != contents.spec.full_height) {
+      return InputError(name + ": its parts differ in size; write all guides at one size");
+    }
+    for (int c = 0; c < spec.nchannels; ++c) {
+      const std::string& channel = spec.channelnames[c];
+      names.push_back(channel);
+      contents.has_half = contents.has_half || spec.channelformat(c) == OIIO::TypeDesc::HALF;
+      if (channel.find("Combined.R") != std::string::npos) contents.from_blender = true;
+      if (auto matte = ParseMatteChannel(channel)) {
+        contents.mattes.push_back({subimage, c, spec.channelformat(c) == OIIO::TypeDesc::FLOAT, *matte});
+      } else if (auto meaning = ParseChannelName(channel)) {
+        contents.channels.push_back({subimage, c, *meaning});
+      }
+    }
+    FindManifests(spec, contents);
+  }
+  contents.all_names = internal::ListOfChannels(names);
+  if (contents.spec.get_string_attribute("Software").substr(0, 7) == "Blender") contents.from_blender = true;
+  if (!contents.spec.get_string_attribute("scumble:generator").empty()) contents.from_blender = false;
+  OIIO::ImageSpec window = contents.spec;
+  window.width = window.full_width, window.height = window.full_height;
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(window, name));
+  return contents;
+}
+
+// The view layers of a file: what stands before the names of normals; in a Blender render without any, of Combined.
+std::set<std::string> ViewLayers(const FileContents& contents) {
+  std::set<std::string> prefixes;
+  const auto take = [&](Layer layer) {
+    for (const FoundChannel& found : contents.channels) {
+      if (found.meaning.layer == layer && found.meaning.component == 0) prefixes.insert(found.meaning.prefix);
+    }
+  };
+  take(Layer::kNormal);
+  if (prefixes.empty() && contents.from_blender) take(Layer::kCoverage);
+  return prefixes;
+}
+
+// Which view layer's channels to read: the one that is asked for, or the only one that has normals.
+Expected<std::string> ChoosePrefix(const FileContents& contents, const std::string& wanted, const std::string& name) {
+  const std::set<std::string> prefixes = ViewLayers(contents);
+  std::string list;
+  for (const std::string& prefix : prefixes) {
+    if (!prefix.empty()) list += (list.empty() ? "'" : ", '") + prefix + "'";
+  }
+  if (!wanted.empty()) {
+    if (prefixes.count(wanted)) return wanted;
+    return InputError(name + " has no view layer '" + wanted + "' with normals; " +
+                      (list.empty() ? "it has no view layers, leave --view-layer out" : "there are " + list));
+  }
+  if (prefixes.size() > 1) {
+    return InputError(name + " holds several view layers, " + list + ": choose with --view-layer");
+  }
+  return prefixes.empty() ? std::string() : *prefixes.begin();
+}
+
+// The channels that fill the wanted layers: of the chosen view layer, else of none.
+std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
+                                         const LayerSet& wanted) {
+  std::vector<FoundChannel> selected;
+  LayerSet open = wanted;
+  const auto take = [&](const std::string& from) {
+    for (const FoundChannel& found : contents.channels) {
+      if (!open.Has(found.meaning.layer) || found.meaning.prefix != from) continue;
+      const bool taken = std::any_of(selected.begin(), selected.end(), [&](const FoundChannel& other) {
+        return other.meaning.layer == found.meaning.layer && other.meaning.component == found.meaning.component;
+      });
+      if (!taken) selected.push_back(found);
+    }
+  };
+  take(prefix);
+  for (const FoundChannel& found : selected) open.Remove(found.meaning.layer);  // no layer is mixed from two
+  if (!prefix.empty()) take("");
+  return selected;
+}
+
+LayerSet CompleteLayers(const std::vector<FoundChannel>& channels) {
+  std::array<int, kLayerCount> counts{};
+  for (const FoundChannel& found : channels) ++counts[static_cast<int>(found.meaning.layer)];
+  LayerSet complete;
+  for (const LayerInfo& info : AllLayers()) {
+    if (counts[static_cast<int>(info.layer)] == ChannelCount(info.layer)) complete.Add(info.layer);
+  }
+  return complete;
+}
+
+// "; of normal it holds normal.X, normal.Y only" for layers of which some channels are there.
+std::string PartsOf(const LayerSet& missing, const std::vector<FoundChannel>& channels) {
+  std::string parts;
+  for (const LayerInfo& info : AllLayers()) {
+    std::string names;
+    for (const FoundChannel& found : channels) {
+      if (found.meaning.layer != info.layer || !missing.Has(info.layer)) continue;
+      names += (names.empty() ? "" : ", ") + std::string(info.channels[std::size_t(found.meaning.component)]);
+    }
+    if (!names.empty()) parts += "; of " + std::string(info.name) + " it holds " + names + " only";
+  }
+  return parts;
+}
+
+// A channel and the plane of the picture's size that it fills.
+struct PlaneRead {
+  int subimage;
+  int channel;
+  std::span<float> plane;
+};
+
+// A run of channels that one call reads.
+struct ChannelRun {
+  int first;
+  int end;
+};
+
+// The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which nobody
+// asked for are cheaper to read along than to leave out.
+std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage) {
+  constexpr int kCheapGap = 16;
+  std::set<int> indices;
+  for (const PlaneRead& read : reads) {
+    if (read.subimage == subimage) indices.insert(read.channel);
+  }
+  std::vector<ChannelRun> runs;
+  for (const int index : indices) {
+    if (!runs.empty() && index <= runs.back().end + kCheapGap) runs.back().end = index + 1;
+    else runs.push_back({index, index + 1});
+  }
+  return runs;
+}
+
+// Copies one channel out of interleaved rows into its plane; what the data window does not cover stays background.
+void Deinterleave(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const ChannelRun& run,
+                  const PlaneRead& read) {
+  const std::size_t stride = static_cast<std::size_t>(run.end - run.first);
+  const int offset_x = spec.x - spec.full_x, offset_y = spec.y - spec.full_y;
+  const int begin_x = std::max(0, -offset_x), end_x = std::min(spec.width, spec.full_width - offset_x);
+  for (int y = 0; y < spec.height; ++y) {
+    if (y + offset_y < 0 || y + offset_y >= spec.full_height) continue;
+    const float* row = pixels.data() + std::size_t(y) * spec.width * stride + (read.channel - run.first);
+    float* out = read.plane.data() + std::size_t(y + offset_y) * spec.full_width;
+    for (int x = begin_x; x < end_x; ++x) out[x + offset_x] = row[x * stride];
+  }
+}
+
+// Fills the planes from all parts of the file.
+Status ReadPlanes(OIIO::ImageInput& input, const std::vector<PlaneRead>& reads, const std::string& name) {
+  std::set<int> parts;
+  for (const PlaneRead& read : reads) parts.insert(read.subimage);
+  for (const int part : parts) {
+    const OIIO::ImageSpec spec = input.spec(part);
+    for (const ChannelRun& run : RunsOf(reads, part)) {
+      std::vector<float> pixels(std::size_t(run.end - run.first) * spec.width * spec.height);
+      if (!input.read_image(part, 0, run.first, run.end, OIIO::TypeDesc::FLOAT, pixels.data()) || input.has_error()) {
+        Error failure = internal::ReadFailure(input, name);
+        failure.message += "; render it again, or make its frame again with scumble guidegen --resume";
+        return failure;
+      }
+      for (const PlaneRead& read : reads) {
+        const bool in_run = read.subimage == part && read.channel >= run.first && read.channel < run.end;
+        if (in_run) Deinterleave(spec, pixels, run, read);
+      }
+    }
+  }
+  return Ok();
+}
+
+void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
+  std::map<std::string, std::string> texts;
+  for (const OIIO::ParamValue& value : spec.extra_attribs) {
+    if (value.type() == OIIO::TypeString) texts[std::string(value.name())] = std::string(value.get_string());
+  }
+  internal::TakeHeader(texts, guides);
+}
+
+// The Cryptomattes of a view layer, their planes still to be read.
+Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const std::string& name) {
+  BlenderMattes mattes;
+  for (const FoundMatte& found : contents.mattes) {
+    if (found.meaning.prefix != prefix) continue;
+    if (!found.is_float) {
+      return InputError(name + ": its Cryptomatte " + found.meaning.matte +
+                        " is stored in half floats, which no id survives; write it in 32-bit float");
+    }
+    Matte& matte = mattes[found.meaning.layer];
+    if (matte.ranks.empty()) {
+      const auto manifest = contents.manifests.find(found.meaning.matte);
+      if (manifest != contents.manifests.end()) {
+        SCUMBLE_ASSIGN(matte.manifest, ReadManifest(manifest->second, name));
+      }
+    }
+    const std::size_t index = static_cast<std::size_t>(found.meaning.index);
+    if (matte.ranks.size() <= index) matte.ranks.resize((index / 4 + 1) * 4);
+    matte.ranks[index].resize(std::size_t(contents.spec.full_width) * contents.spec.full_height);
+  }
+  return mattes;
+}
+
+void ReadMattesToo(const FileContents& contents, const std::string& prefix, BlenderMattes& mattes,
+                   std::vector<PlaneRead>& reads) {
+  for (const FoundMatte& found : contents.mattes) {
+    if (found.meaning.prefix != prefix || !mattes.count(found.meaning.layer)) continue;
+    auto& plane = mattes.at(found.meaning.layer).ranks[static_cast<std::size_t>(found.meaning.index)];
+    reads.push_back({found.subimage, found.channel, plane});
+  }
+}
+
+// What guidegen writes unasked needs no option.
+std::string MendFor(const LayerSet& missing) {
+  std::string asked;
+  for (const LayerInfo& info : AllLayers()) {
+    if (missing.Has(info.layer) && !AlwaysWritten().Has(info.layer)) asked += (asked.empty() ? "" : ",") + std::string(info.name);
+  }
+  if (asked.empty()) return ". Make guides with `scumble guidegen`, or render that pass too";
+  return ". Make the guides again with --layers " + asked +
+         ", or with the same --style, --assign and --set as here; where a renderer made them, render that pass too";
+}
+
+}  // namespace
+
+Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options) {
+  const std::string name = path.string();
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
+  if (!contents.from_blender && !options.blender_camera.empty()) {
+    return InputError(name + " is no Blender render: its normals are taken to be in view space, and it needs no " +
+                      options.blender_camera.string());
+  }
+  SCUMBLE_ASSIGN(const std::string prefix, ChoosePrefix(contents, options.view_layer, name));
+  LayerSet wanted = options.required;
+  wanted.Add(options.optional);
+  std::optional<GuideCamera> camera;
+  BlenderMattes mattes;
+  LayerSet read_along = wanted;
+  if (contents.from_blender) {
+    if (!options.blender_camera.empty()) {
+      SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
+    }
+    SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, name));
+    // One Cryptomatte is wanted in any case: it knows the coverage that an opaque film's alpha does not.
+    if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
+    read_along.Add({Layer::kDepth, Layer::kPosition});
+  }
+  const std::vector<FoundChannel> channels = SelectChannels(contents, prefix, read_along);
+  LayerSet complete = CompleteLayers(channels);
+  LayerSet missing = options.required;
+  for (const LayerInfo& info : AllLayers()) {
+    if (complete.Has(info.layer) || mattes.count(info.layer)) missing.Remove(info.layer);
+  }
+  const bool solves_camera = contents.from_blender && !camera;
+  if (solves_camera && !missing.empty()) {  // say at once what the next run would lack
+    for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
+      if (!complete.Has(layer)) missing.Add(layer);
+    }
+  }
+  if (!missing.empty()) {
+    std::string remedy = MendFor(missing);
+    if (contents.from_blender) remedy = BlenderPassesFor(missing);
+    if (solves_camera && missing.Has(Layer::kPosition)) {
+      remedy += ", or give the camera with --camera FILE, which does without Position";
+    }
+    LayerSet others = missing;
+    others.Remove(Layer::kObject);
+    if (!solves_camera) others.Remove(Layer::kDepth);
+    if (others.empty()) remedy += options.mend;
+    LayerSet every;
+    for (const LayerInfo& info : AllLayers()) every.Add(info.layer);
+    const LayerSet there = CompleteLayers(SelectChannels(contents, prefix, every));
+    return InputError(name + " has no layer " + missing.ToString() + remedy + ". It has " +
+                      (there.empty() ? "none" : there.ToString()) + PartsOf(missing, channels));
+  }
+  GuideSet guides(contents.spec.full_width, contents.spec.full_height);
+  for (const LayerInfo& info : AllLayers()) {
+    const bool from_matte = wanted.Has(info.layer) && mattes.count(info.layer);
+    if (complete.Has(info.layer) || from_matte) guides.Add(info.layer);
+  }
+  std::vector<PlaneRead> reads;
+  for (const FoundChannel& found : channels) {
+    if (!complete.Has(found.meaning.layer) || mattes.count(found.meaning.layer)) continue;
+    reads.push_back({found.subimage, found.channel, guides.Plane(found.meaning.layer, found.meaning.component)});
+  }
+  ReadMattesToo(contents, prefix, mattes, reads);
+  SCUMBLE_RETURN_IF_ERROR(ReadPlanes(*input, reads, name));
+  ReadHeader(contents.spec, guides);
+  if (contents.from_blender) {
+    SCUMBLE_RETURN_IF_ERROR(ConvertBlenderPasses(camera, mattes, name, guides));
+    for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
+      if (!wanted.Has(layer)) guides.Remove(layer);
+    }
+  }
+  if (guides.Has(Layer::kNormal)) {
+    if (guides.Has(Layer::kCoverage) && internal::LookPacked(guides)) {
+      return InputError(name + ": its normals look packed into 0 to 1; write them as they are, in -1 to 1");
+    }
+    internal::NormalizeNormals(guides);
+  }
+  internal::LimitDepths(guides);
+  SCUMBLE_RETURN_IF_ERROR(guides.Validate(name));
+  return guides;
+}
+
+Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
+  LayerSet all;
+  for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
+  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.has_half, contents.from_blender, {}, contents.all_names, {}};
+  std::set<std::string> prefixes = ViewLayers(contents);
+  if (prefixes.empty()) prefixes.insert("");
+  for (const std::string& prefix : prefixes) {
+    info.layers[prefix] = CompleteLayers(SelectChannels(contents, prefix, all));
+    for (const FoundMatte& found : contents.mattes) {
+      if (info.from_blender && found.meaning.prefix == prefix) info.layers[prefix].Add(found.meaning.layer);
+    }
+  }
+  ReadHeader(contents.spec, info.header);
+  return info;
+}
+
+}  // namespace scumble::formats

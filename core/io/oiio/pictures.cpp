@@ -1,0 +1,319 @@
+// Pictures by OpenImageIO: every format, PNG included where it is no plain one. Part of the module of formats.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+#include <utility>
+
+#include "core/image/color.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/guides/guide_header.h"
+#include "core/io/oiio/oiio.h"
+#include "core/io/picture_file.h"
+#include "core/io/picture_rules.h"
+
+namespace scumble::formats {
+using internal::Upper;
+namespace {
+
+using Bytes = Expected<std::vector<std::byte>>;
+
+// Which channel of a file is which colour; -1 where there is none.
+struct ColorChannels {
+  int r = -1, g = -1, b = -1, a = -1;
+};
+
+// The whole picture of the only view layer of a render, "NAME.Combined."; empty where there is none, or several.
+std::string CombinedLayer(const OIIO::ImageSpec& spec) {
+  constexpr std::string_view kFirst = ".COMBINED.R";
+  std::string found;
+  for (const std::string& channel : spec.channelnames) {
+    const std::string name = Upper(channel);
+    if (!name.ends_with(kFirst)) continue;
+    if (!found.empty()) return {};
+    found = name.substr(0, name.size() - 1);
+  }
+  return found;
+}
+
+// By name first (OpenImageIO sorts EXR channels), by position where the names say nothing. Names with a dot say of
+// which layer a channel is: guides are no colours, whatever their order.
+Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std::string& file) {
+  const std::string combined = CombinedLayer(spec);
+  const auto find = [&](std::initializer_list<std::string> names) {
+    for (const std::string& name : names) {
+      for (int c = 0; c < spec.nchannels; ++c) {
+        if (Upper(spec.channelnames[c]) == name) return c;
+      }
+    }
+    return -1;
+  };
+  ColorChannels found{find({"R", "RED", "COMPOSITE.COMBINED.R", "VIEWLAYER.COMBINED.R", combined + "R"}),
+                      find({"G", "GREEN", "COMPOSITE.COMBINED.G", "VIEWLAYER.COMBINED.G", combined + "G"}),
+                      find({"B", "BLUE", "COMPOSITE.COMBINED.B", "VIEWLAYER.COMBINED.B", combined + "B"}),
+                      find({"A", "ALPHA", "COMPOSITE.COMBINED.A", "VIEWLAYER.COMBINED.A", combined + "A"})};
+  if (found.r >= 0 && found.g >= 0 && found.b >= 0) return found;
+  if (const int grey = find({"Y", "I", "L"}); grey >= 0) return ColorChannels{grey, grey, grey, found.a};
+  const auto& names = spec.channelnames;
+  if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return name.find('.') != name.npos; })) {
+    return InputError(file + " holds layers and no picture: its channels are " + internal::ListOfChannels(names) +
+                      ", expected R, G and B, or Y; name a picture");
+  }
+  if (spec.nchannels >= 3) return ColorChannels{0, 1, 2, spec.nchannels >= 4 ? 3 : -1};
+  return ColorChannels{0, 0, 0, spec.nchannels == 2 ? 1 : -1};
+}
+
+bool IsLinear(const OIIO::ImageSpec& spec) {
+  const std::string space = Upper(std::string(spec.get_string_attribute("oiio:ColorSpace")));
+  if (space == "LINEAR" || space == "SCENE_LINEAR") return true;
+  return spec.format.is_floating_point() && space != "SRGB";
+}
+
+std::uint16_t RoundDivide(std::uint32_t value, std::uint32_t divisor) {
+  return static_cast<std::uint16_t>(std::min<std::uint32_t>(65535, (value + divisor / 2) / divisor));
+}
+
+// Alpha as a file may hold it, NaN and all, as one that means something.
+float ClampAlpha(float alpha) { return alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f; }
+
+// What a pixel of a file becomes.
+struct Decoder {
+  ColorChannels channels;
+  bool straight = true;
+
+  void Linear(const float* pixel, std::uint16_t* out) const {
+    const float alpha = channels.a < 0 ? 1.0f : ClampAlpha(pixel[channels.a]);
+    const float scale = straight || !(alpha > 0.0f) ? 1.0f : 1.0f / alpha;
+    out[0] = Srgb16FromLinear(pixel[channels.r] * scale);
+    out[1] = Srgb16FromLinear(pixel[channels.g] * scale);
+    out[2] = Srgb16FromLinear(pixel[channels.b] * scale);
+    out[3] = static_cast<std::uint16_t>(alpha * 65535.0f + 0.5f);
+  }
+  void Encoded(const std::uint16_t* pixel, std::uint16_t* out) const {
+    const std::uint32_t alpha = channels.a < 0 ? 65535u : pixel[channels.a];
+    const std::array<std::uint32_t, 3> color = {pixel[channels.r], pixel[channels.g], pixel[channels.b]};
+    for (int c = 0; c < 3; ++c) {
+      out[c] = straight || alpha == 0 || alpha == 65535u ? static_cast<std::uint16_t>(color[c])
+                                                         : RoundDivide(color[c] * 65535u, alpha);
+    }
+    out[3] = static_cast<std::uint16_t>(alpha);
+  }
+};
+
+// Channels that stand side by side in a file: [begin, end).
+struct ChannelRange {
+  int begin = 0, end = 0;
+  int count() const { return end - begin; }
+};
+
+ChannelRange RangeOf(const ColorChannels& channels) {
+  const auto [first, last] =
+      std::minmax({channels.r, channels.g, channels.b, channels.a < 0 ? channels.r : channels.a});
+  return {first, last + 1};
+}
+
+ColorChannels Within(ColorChannels channels, const ChannelRange& range) {
+  for (int* channel : {&channels.r, &channels.g, &channels.b, &channels.a}) {
+    if (*channel >= 0) *channel -= range.begin;
+  }
+  return channels;
+}
+
+// Reads channels in the file's own numbers, `T`, and hands each pixel of them and its place in the picture to `decode`.
+// The picture is made when all of the file has been read: what is cut short does not cost the memory for it.
+template <class T, class Decode>
+Expected<Picture> ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type,
+                             const ChannelRange& range, Decode decode) {
+  const OIIO::ImageSpec spec = input.spec();
+  std::vector<T> pixels(std::size_t(range.count()) * std::size_t(spec.width) * std::size_t(spec.height));
+  bool read = false;
+  SCUMBLE_RETURN_IF_ERROR(internal::WithoutExceptions(
+      name, [&] { read = input.read_image(0, 0, range.begin, range.end, type, pixels.data()); }));
+  if (!read || input.has_error()) return internal::ReadFailure(input, name);
+  Picture picture(spec.full_width, spec.full_height);
+  const T* pixel = pixels.data();
+  for (int y = 0; y < spec.height; ++y) {
+    for (int x = 0; x < spec.width; ++x, pixel += range.count()) {
+      const int px = x + spec.x - spec.full_x, py = y + spec.y - spec.full_y;
+      if (px >= 0 && py >= 0 && px < picture.width && py < picture.height) decode(pixel, picture.At(px, py));
+    }
+  }
+  return picture;
+}
+
+// A camera notes how it was held (Exif's Orientation, 1 to 8); the picture is turned so that up is up.
+Picture Upright(Picture stored, int orientation) {
+  if (orientation < 2 || orientation > 8) return stored;
+  const bool transposed = orientation >= 5;
+  Picture upright(transposed ? stored.height : stored.width, transposed ? stored.width : stored.height);
+  const bool mirror_x = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
+  const bool mirror_y = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+  for (int y = 0; y < upright.height; ++y) {
+    for (int x = 0; x < upright.width; ++x) {
+      const int u = transposed ? y : x, v = transposed ? x : y;
+      std::copy_n(stored.At(mirror_x ? stored.width - 1 - u : u, mirror_y ? stored.height - 1 - v : v), 4,
+                  upright.At(x, y));
+    }
+  }
+  return upright;
+}
+
+// What the data window of an EXR leaves out of the display window is transparent; what lies beyond it is cut off.
+Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
+  const OIIO::ImageSpec spec = input.spec();
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
+  OIIO::ImageSpec display = spec;
+  display.width = spec.full_width, display.height = spec.full_height;
+  SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
+  SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name));
+  const ChannelRange range = RangeOf(channels);
+  // Read at once; four of the largest picture are, side by side.
+  if (std::int64_t(range.count()) * spec.width * spec.height > 4 * kMaxPicturePixels) {
+    return InputError(name + " has its colours " + std::to_string(range.count()) +
+                      " channels apart, too many for its size; write R, G, B and A side by side");
+  }
+  const Decoder decoder{Within(channels, range),
+                        spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0 || channels.a < 0};
+  if (IsLinear(spec)) {
+    return ReadPixels<float>(input, name, OIIO::TypeDesc::FLOAT, range,
+                             [&](const float* pixel, std::uint16_t* out) { decoder.Linear(pixel, out); });
+  }
+  return ReadPixels<std::uint16_t>(
+      input, name, OIIO::TypeDesc::UINT16, range,
+      [&](const std::uint16_t* pixel, std::uint16_t* out) { decoder.Encoded(pixel, out); });
+}
+
+OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureWriteOptions& options) {
+  const auto type = options.bits == 8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
+  OIIO::ImageSpec spec(picture.width, picture.height, channels, type);
+  spec.attribute("oiio:ColorSpace", "sRGB");
+  if (channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.attribute("CompressionQuality", options.jpeg_quality);
+  if (options.dpi > 0) {
+    spec.attribute("XResolution", static_cast<float>(options.dpi));
+    spec.attribute("YResolution", static_cast<float>(options.dpi));
+    spec.attribute("ResolutionUnit", "in");
+  }
+  return spec;
+}
+
+Bytes EncodeTiff(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+  OIIO::ImageSpec spec = EncodedSpec(picture, options.grey ? 1 : 4, options);
+  // A TIFF would say sRGB in a second directory, which OpenImageIO 2.4 spoils in memory; integers are sRGB without it.
+  spec.erase_attribute("oiio:ColorSpace");
+  if (options.grey) {
+    std::vector<std::uint16_t> grey(picture.rgba.size() / 4);
+    for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = picture.rgba[4 * i];
+    return internal::Encode(
+        path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT16, grey.data()); });
+  }
+  if (options.bits == 8) {
+    const std::vector<std::uint8_t> bytes = In8Bits(picture);
+    return internal::Encode(
+        path, spec, [&](OIIO::ImageOutput& output) { return output.write_image(OIIO::TypeDesc::UINT8, bytes.data()); });
+  }
+  return internal::Encode(path, spec, [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::UINT16, picture.rgba.data());
+  });
+}
+
+// JPEG has no alpha: what is transparent becomes white paper, blended in linear light.
+Bytes EncodeOnWhite(const std::filesystem::path& path, const Picture& picture, PictureWriteOptions options) {
+  options.bits = 8;
+  std::vector<std::uint8_t> bytes(std::size_t(3) * picture.width * picture.height);
+  for (std::size_t i = 0; i < bytes.size() / 3; ++i) {
+    const std::uint16_t* pixel = picture.rgba.data() + 4 * i;
+    const float alpha = static_cast<float>(pixel[3]) / 65535.0f;
+    for (int c = 0; c < 3; ++c) {
+      const std::uint16_t value =
+          pixel[3] == 65535 ? pixel[c] : Srgb16FromLinear(Srgb16ToLinear(pixel[c]) * alpha + (1.0f - alpha));
+      bytes[3 * i + c] = static_cast<std::uint8_t>((value + 128u) / 257u);
+    }
+  }
+  return internal::Encode(path, EncodedSpec(picture, 3, options), [&](OIIO::ImageOutput& output) {
+    return output.write_image(OIIO::TypeDesc::UINT8, bytes.data());
+  });
+}
+
+// The JPEG reader fills what is missing at the end with grey and says nothing. So the markers are followed here, from
+// segment to segment and through the coded data, until the one that ends the picture (ITU-T T.81, annex B).
+Status CheckJpegIsWhole(std::span<const std::byte> bytes, const std::string& name) {
+  constexpr unsigned kFill = 0xff, kStuffed = 0x00, kFirstAlone = 0xd0, kEndOfImage = 0xd9, kStartOfScan = 0xda;
+  const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
+  std::size_t i = 2;  // after the start marker
+  while (i + 1 < bytes.size()) {
+    const unsigned marker = at(i + 1);
+    const bool in_scan = at(i) != kFill || marker == kStuffed || marker == kFill;
+    if (!in_scan && marker == kEndOfImage) return Ok();
+    if (in_scan) {
+      ++i;
+    } else if (marker >= kFirstAlone && marker < kStartOfScan) {
+      i += 2;  // restart markers have no length
+    } else if (i + 3 < bytes.size()) {
+      i += 2 + at(i + 2) * 256 + at(i + 3);
+    } else {
+      break;
+    }
+  }
+  return InputError("cannot read " + name + ": the JPEG file ends before its picture does; copy or save it again");
+}
+
+PictureHeader HeaderOf(const OIIO::ImageSpec& spec) {
+  const double per_unit = spec.get_float_attribute("XResolution", 0.0f);
+  const std::string unit(spec.get_string_attribute("ResolutionUnit"));
+  PictureHeader header{spec.width, spec.height, static_cast<int>(spec.format.size() * 8), 0};
+  if (unit == "in" || unit == "inch") header.dpi = per_unit;
+  if (unit == "cm") header.dpi = per_unit * 2.54;
+  if (unit == "m") header.dpi = per_unit * 0.0254;
+  constexpr double kLeast = 97, kMost = 20000;
+  if (!(header.dpi >= kLeast && header.dpi <= kMost)) header.dpi = 0;
+  return header;
+}
+
+}  // namespace
+
+Expected<Picture> ReadPicture(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
+  if (input->format_name() == std::string("jpeg")) {
+    SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
+    SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, path.string()));
+  }
+  SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string()));
+  return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
+}
+
+Expected<PictureHeader> InspectPicture(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(const auto input, internal::OpenInput(path));
+  return HeaderOf(input->spec());
+}
+
+Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const std::string& name) {
+  OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
+  SCUMBLE_ASSIGN(const auto input, internal::OpenInput(proxy, name));
+  PictureHeader header = HeaderOf(input->spec());
+  header.width = input->spec().full_width, header.height = input->spec().full_height;  // as the picture will be
+  return header;
+}
+
+Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
+  OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
+  SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
+  if (input->format_name() == std::string("jpeg")) SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, name));
+  return ReadFrom(*input, name);
+}
+
+Expected<StoredPicture> InspectStored(const std::filesystem::path& path) {
+  SCUMBLE_ASSIGN(const auto input, internal::OpenInput(path));
+  const OIIO::ImageSpec& spec = input->spec();
+  return StoredPicture{spec.full_width, spec.full_height, spec.nchannels, static_cast<int>(8 * spec.format.basesize()),
+                       std::string(spec.get_string_attribute(kSettingsKey))};
+}
+
+Bytes EncodePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
+  const std::string ending = Upper(path.extension().string());
+  if (ending == ".JPG" || ending == ".JPEG") return EncodeOnWhite(path, picture, options);
+  return EncodeTiff(path, picture, options);
+}
+
+}  // namespace scumble::formats

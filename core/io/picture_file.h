@@ -1,0 +1,68 @@
+// Pictures from and to files: PNG by libpng, EXR written by OpenEXR, everything else by OpenImageIO; layered OpenRaster files
+// by core/io/picture/open_raster.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/picture.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+// Reads any picture as 16-bit sRGB-encoded RGBA with straight alpha. 8-bit values v become v · 257, 16-bit values are
+// kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
+// Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
+// turned upright by its Exif orientation; colour profiles are not applied. A file that ends early is
+// an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read. Thread-safe.
+Expected<Picture> ReadPicture(const std::filesystem::path& path);
+
+// What a file's header says, without its pixels; of a file of layers, that of their merged picture. Thread-safe.
+struct PictureHeader {
+  int width = 0;  // as stored, before a photograph is turned upright
+  int height = 0;
+  int bits = 8;   // per channel
+  double dpi = 0;  // 0: none, or a camera's or screen's 72 or 96, which say nothing of a picture
+};
+Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
+
+// How many pixels ReadPicture would make, by as little of the file as tells: to be asked before they take memory. An error
+// where reading would be one, as far as the header shows it: no such pixels will ever be there. Thread-safe.
+Expected<std::uint64_t> CountPixels(const std::filesystem::path& path);
+Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name);
+
+// ReadPicture from memory, for pictures inside .glb files, which have no orientation. `name` stands for the picture in
+// messages.
+Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
+
+struct PictureWriteOptions {
+  int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR is half floats, or floats at 32
+  int png_level = 6;  // 0 … 9, zlib's compression level
+  int jpeg_quality = 92;
+  int dpi = 0;        // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted
+  bool grey = false;  // PNG and TIFF: the red channel alone, for pictures that are grey and opaque
+  bool fast = false;  // EXR: kFastCompression of guide_file.h instead of zip, the same pixels
+  std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
+};
+
+// Bits a channel that WritePicture stores under that name: 16 for EXR means half floats.
+int PictureBits(const std::filesystem::path& path, const PictureWriteOptions& options);
+
+// Whether WritePicture knows the ending and can store so many bits: to be asked before hours of work.
+Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteOptions& options = {});
+
+// Format by the file's ending. PNG and TIFF get straight alpha (not associated), JPEG is composited on white, EXR is
+// linear with associated alpha. The file appears whole under its name or not at all.
+Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options = {});
+
+// The bytes of an 8-bit PNG; `dpi` as in PictureWriteOptions.
+Expected<std::vector<std::byte>> EncodePng(const Picture& picture, int dpi = 0);
+
+// The values that 8-bit files hold, 4 · width · height.
+std::vector<std::uint8_t> In8Bits(const Picture& picture);
+
+}  // namespace scumble
