@@ -13,7 +13,7 @@
 #include "guidegen/load_scene.h"
 #include "core/io/picture_file.h"
 #include "measure/flicker.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

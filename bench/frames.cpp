@@ -12,7 +12,7 @@
 #include "bench/or_stop.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 
 namespace scumble::bench {
 namespace {

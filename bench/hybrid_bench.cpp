@@ -10,7 +10,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "measure/repetition.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "transfer/masked_blur.h"
 #include "transfer/transfer.h"
 

@@ -20,7 +20,7 @@
 #include "guidegen/load_scene.h"
 #include "core/image/stopwatch.h"
 #include "measure/pareto.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"
 

@@ -4,7 +4,7 @@
 
 #include "bench/or_stop.h"
 #include "bench/performance.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 
 namespace scumble::bench {
 namespace {

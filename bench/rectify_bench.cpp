@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "style/rectify.h"
+#include "core/style/scan/rectify.h"
 #include "tests/scan_fixtures.h"
 
 namespace scumble {

@@ -11,7 +11,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "core/image/stopwatch.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"
 

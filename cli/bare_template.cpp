@@ -8,7 +8,7 @@
 #include "guidegen/guidegen.h"
 #include "core/image/direction.h"
 #include "core/io/guide_file.h"
-#include "style/sphere_kit.h"
+#include "core/style/kit/sphere_kit.h"
 
 namespace scumble {
 namespace {

@@ -23,7 +23,7 @@
 #include "cli/timing.h"
 #include "cli/tradeoff_guides.h"
 #include "core/image/hash.h"
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 
 namespace scumble {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/image/check.h"
 #include "core/image/stopwatch.h"
 #include "core/io/picture_file.h"
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {

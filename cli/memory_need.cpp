@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "guidegen/path_layers.h"
-#include "style/sphere_template.h"
+#include "core/style/kit/sphere_template.h"
 
 namespace scumble {
 namespace {

@@ -13,7 +13,7 @@
 #include "cli/sequence.h"
 #include "cli/timing.h"
 #include "core/io/guide_file.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 
 namespace scumble {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/image/check.h"
-#include "style/style_keyframes.h"
-#include "style/style_keys.h"
+#include "core/style/style_keyframes.h"
+#include "core/style/style_keys.h"
 
 namespace scumble {
 namespace {

@@ -13,9 +13,9 @@
 #include "cli/run_files.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "style/fiducials.h"
-#include "style/rectify.h"
-#include "style/sphere_kit.h"
+#include "core/style/kit/fiducials.h"
+#include "core/style/scan/rectify.h"
+#include "core/style/kit/sphere_kit.h"
 
 namespace scumble {
 namespace {

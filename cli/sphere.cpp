@@ -15,8 +15,8 @@
 #include "cli/rectify.h"
 #include "guidegen/guidegen.h"
 #include "core/image/direction.h"
-#include "style/fiducials.h"
-#include "style/sphere_kit.h"
+#include "core/style/kit/fiducials.h"
+#include "core/style/kit/sphere_kit.h"
 
 namespace scumble {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "cli/assignments.h"
 #include "cli/command.h"
-#include "style/style_file.h"
-#include "style/style_keyframes.h"
+#include "core/style/style_file.h"
+#include "core/style/style_keyframes.h"
 
 namespace scumble {
 namespace {

@@ -10,8 +10,8 @@
 #include "cli/json_text.h"
 #include "cli/options.h"
 #include "cli/styles_check.h"
-#include "style/style_file.h"
-#include "style/style_keys.h"
+#include "core/style/style_file.h"
+#include "core/style/style_keys.h"
 
 namespace scumble {
 namespace {

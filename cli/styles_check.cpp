@@ -15,7 +15,7 @@
 #include "cli/transfer_run.h"
 #include "measure/paint_faults.h"
 #include "measure/paint_traits.h"
-#include "style/sphere_kit.h"
+#include "core/style/kit/sphere_kit.h"
 #include "transfer/ambiguity.h"
 #include "transfer/transfer.h"
 

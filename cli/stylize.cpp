@@ -22,7 +22,7 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/io/file/existing_output.h"
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 
 namespace scumble {
 namespace {

@@ -21,7 +21,7 @@
 #include "cli/tradeoff_reference.h"
 #include "cli/tradeoff_way.h"
 #include "core/io/picture_file.h"
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 
 namespace scumble {
 namespace {

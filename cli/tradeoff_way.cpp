@@ -12,7 +12,7 @@
 #include "cli/tradeoff_peak.h"
 #include "cli/transfer_run.h"
 #include "core/image/stopwatch.h"
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 
 namespace scumble {
 namespace {

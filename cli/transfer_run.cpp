@@ -21,7 +21,7 @@
 #include "core/io/format_dispatch.h"
 #include "core/io/picture_file.h"
 #include "measure/coherence.h"
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"
 

@@ -10,7 +10,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "core/image/hash.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "transfer/resample.h"
 #include "transfer/transfer.h"
 

@@ -17,7 +17,7 @@ LIBRARIES = {
     "image": ("core/image", set(), []),
     "io": ("core/io", {"image"}, []),
     "guidegen": ("guidegen", {"image", "io"}, []),
-    "style": ("style", {"image", "io"}, []),
+    "style": ("core/style", {"image", "io"}, []),
     "transfer": ("transfer", {"image"}, []),
     "measure": ("measure", {"image", "io"}, []),
     "cli": ("cli", {"image", "io", "guidegen", "style", "transfer", "measure"}, []),

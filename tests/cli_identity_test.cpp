@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/io/guide_file.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "tests/cli_harness.h"
 #include "transfer/resample.h"
 

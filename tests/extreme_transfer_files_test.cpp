@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "tests/cli_harness.h"
 #include "transfer/transfer.h"
 

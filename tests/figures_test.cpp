@@ -7,7 +7,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "core/image/color.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/seeds.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "tests/transfer_fixtures.h"
 
 namespace scumble {

@@ -1,5 +1,5 @@
 // The lines and tones that a painter switches on, against plain geometry.
-#include "style/guide_layers.h"
+#include "core/style/kit/guide_layers.h"
 
 #include <gtest/gtest.h>
 

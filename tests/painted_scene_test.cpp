@@ -14,7 +14,7 @@
 #include "core/image/color.h"
 #include "core/image/oklab.h"
 #include "core/io/guide_file.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

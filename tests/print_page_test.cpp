@@ -1,12 +1,12 @@
 // Where the template lies on paper, against sums in millimetres.
-#include "style/print_page.h"
+#include "core/style/kit/print_page.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "style/sphere_template.h"
+#include "core/style/kit/sphere_template.h"
 #include "tests/refusal.h"
 
 namespace scumble {

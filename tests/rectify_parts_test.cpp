@@ -8,9 +8,9 @@
 
 #include "core/image/color.h"
 #include "core/image/hash.h"
-#include "style/homography.h"
-#include "style/marker_detection.h"
-#include "style/resample_scan.h"
+#include "core/style/scan/homography.h"
+#include "core/style/scan/marker_detection.h"
+#include "core/style/scan/resample_scan.h"
 #include "tests/scan_fixtures.h"
 
 namespace scumble {

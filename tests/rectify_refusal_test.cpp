@@ -1,7 +1,7 @@
 // Pictures that no exemplar can be made of: each is refused, and the reason helps.
 #include <gtest/gtest.h>
 
-#include "style/rectify.h"
+#include "core/style/scan/rectify.h"
 #include "tests/refusal.h"
 #include "tests/scan_fixtures.h"
 

@@ -1,5 +1,5 @@
 // Scans with a known camera and known light: where the template is found, and what comes back of its colours.
-#include "style/rectify.h"
+#include "core/style/scan/rectify.h"
 
 #include <gtest/gtest.h>
 

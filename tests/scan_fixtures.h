@@ -12,9 +12,9 @@
 #include "core/image/color.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
-#include "style/fiducials.h"
-#include "style/sphere_kit.h"
-#include "style/template_fit.h"
+#include "core/style/kit/fiducials.h"
+#include "core/style/kit/sphere_kit.h"
+#include "core/style/scan/template_fit.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {

@@ -1,5 +1,5 @@
 // The artist's kit, from the template to the style that loads.
-#include "style/sphere_kit.h"
+#include "core/style/kit/sphere_kit.h"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@
 #include "core/io/picture/open_raster.h"
 #include "core/io/picture_file.h"
 #include "core/io/file/zip_archive.h"
-#include "style/fiducials.h"
-#include "style/style_file.h"
-#include "style/template_pdf.h"
+#include "core/style/kit/fiducials.h"
+#include "core/style/style_file.h"
+#include "core/style/kit/template_pdf.h"
 #include "tests/refusal.h"
 #include "tests/sphere_guides.h"
 #include "tests/temporary_folder.h"

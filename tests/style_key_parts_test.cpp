@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/io/file/atomic_file.h"
-#include "style/style_file.h"
-#include "style/toml_keys.h"
+#include "core/style/style_file.h"
+#include "core/style/toml_keys.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

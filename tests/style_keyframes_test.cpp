@@ -1,5 +1,5 @@
 // Keys of a style that change over time.
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 #include "cli/frames.h"
 #include "core/io/picture_file.h"
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

@@ -14,8 +14,8 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "style/style_file.h"
-#include "style/style_keys.h"
+#include "core/style/style_file.h"
+#include "core/style/style_keys.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

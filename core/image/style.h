@@ -135,7 +135,7 @@ struct Paper {
   std::optional<Picture> picture;                     // tiled
 };
 
-// A key of style.toml that changes over time; style/style_keyframes.h says what it means. Without tracks a style is the
+// A key of style.toml that changes over time; core/style/style_keyframes.h says what it means. Without tracks a style is the
 // same in every frame.
 struct StyleTrack {
   using Value = std::variant<bool, std::int64_t, double, std::string>;

@@ -11,7 +11,7 @@
 #include "cli/transfer_run.h"
 #include "cli/verbs.h"
 #include "core/io/picture_file.h"
-#include "style/print_page.h"
+#include "core/style/kit/print_page.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

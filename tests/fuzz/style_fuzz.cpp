@@ -4,9 +4,9 @@
 
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "style/sphere_template.h"
-#include "style/style_file.h"
-#include "style/style_keyframes.h"
+#include "core/style/kit/sphere_template.h"
+#include "core/style/style_file.h"
+#include "core/style/style_keyframes.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

@@ -1,4 +1,4 @@
-#include "style/homography.h"
+#include "core/style/scan/homography.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
-#include "style/paper_light.h"
+#include "core/style/scan/paper_light.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/image/color.h"
-#include "style/homography.h"
+#include "core/style/scan/homography.h"
 
 namespace scumble {
 namespace {

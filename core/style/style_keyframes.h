@@ -9,7 +9,7 @@
 #include "core/image/layers.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
-#include "style/style_keys.h"
+#include "core/style/style_keys.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 
 #include "core/image/picture.h"
 #include "core/image/status.h"
-#include "style/template_fit.h"
+#include "core/style/scan/template_fit.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "style/style_file.h"
+#include "core/style/style_file.h"
 
 #include <toml++/toml.h>
 
@@ -10,10 +10,10 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "style/sphere_template.h"
-#include "style/style_keyframes.h"
-#include "style/style_keys.h"
-#include "style/toml_keys.h"
+#include "core/style/kit/sphere_template.h"
+#include "core/style/style_keyframes.h"
+#include "core/style/style_keys.h"
+#include "core/style/toml_keys.h"
 
 namespace scumble {
 namespace {

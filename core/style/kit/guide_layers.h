@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/image/picture.h"
-#include "style/sphere_template.h"
+#include "core/style/kit/sphere_template.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "style/print_page.h"
+#include "core/style/kit/print_page.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <string_view>
 
-#include "style/rectify.h"
-#include "style/sphere_template.h"
+#include "core/style/scan/rectify.h"
+#include "core/style/kit/sphere_template.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "style/resample_scan.h"
+#include "core/style/scan/resample_scan.h"
 
 #include <algorithm>
 #include <array>

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "style/print_page.h"
-#include "style/sphere_template.h"
+#include "core/style/kit/print_page.h"
+#include "core/style/kit/sphere_template.h"
 
 namespace scumble {
 

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 
 #include "core/image/picture.h"
-#include "style/template_fit.h"
+#include "core/style/scan/template_fit.h"
 
 namespace scumble {
 

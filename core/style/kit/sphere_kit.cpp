@@ -1,4 +1,4 @@
-#include "style/sphere_kit.h"
+#include "core/style/kit/sphere_kit.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,9 +13,9 @@
 #include "core/io/guide_file.h"
 #include "core/io/picture/open_raster.h"
 #include "core/io/picture_file.h"
-#include "style/fiducials.h"
-#include "style/guide_layers.h"
-#include "style/template_pdf.h"
+#include "core/style/kit/fiducials.h"
+#include "core/style/kit/guide_layers.h"
+#include "core/style/kit/template_pdf.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "style/style_keys.h"
+#include "core/style/style_keys.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "style/marker_detection.h"
+#include "core/style/scan/marker_detection.h"
 
 #include <apriltag/apriltag.h>
 #include <apriltag/tag16h5.h>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "style/mark_edges.h"
+#include "core/style/scan/mark_edges.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-#include "style/toml_keys.h"
+#include "core/style/toml_keys.h"
 
 #include <algorithm>
 

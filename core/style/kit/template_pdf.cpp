@@ -1,4 +1,4 @@
-#include "style/template_pdf.h"
+#include "core/style/kit/template_pdf.h"
 
 #include <hpdf.h>
 
@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "core/image/direction.h"
-#include "style/fiducials.h"
+#include "core/style/kit/fiducials.h"
 
 namespace scumble {
 namespace {

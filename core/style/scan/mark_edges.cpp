@@ -1,4 +1,4 @@
-#include "style/mark_edges.h"
+#include "core/style/scan/mark_edges.h"
 
 #include <algorithm>
 #include <cmath>

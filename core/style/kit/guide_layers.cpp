@@ -1,4 +1,4 @@
-#include "style/guide_layers.h"
+#include "core/style/kit/guide_layers.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/image/picture.h"
-#include "style/marker_detection.h"
+#include "core/style/scan/marker_detection.h"
 
 namespace scumble {
 

@@ -1,4 +1,4 @@
-#include "style/style_keyframes.h"
+#include "core/style/style_keyframes.h"
 
 #include <algorithm>
 #include <cmath>

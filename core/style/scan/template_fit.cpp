@@ -1,10 +1,10 @@
-#include "style/template_fit.h"
+#include "core/style/scan/template_fit.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "style/homography.h"
+#include "core/style/scan/homography.h"
 
 namespace scumble {
 namespace {

@@ -1,5 +1,5 @@
 // Finds the template's printed marks in a scan or photograph, to a fraction of a pixel: AprilTag's detector at several
-// scales of the picture, then each side of a mark laid anew in the full picture (style/mark_edges.h).
+// scales of the picture, then each side of a mark laid anew in the full picture (core/style/scan/mark_edges.h).
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/image/picture.h"
-#include "style/fiducials.h"
+#include "core/style/kit/fiducials.h"
 
 namespace scumble {
 

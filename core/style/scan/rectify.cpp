@@ -1,4 +1,4 @@
-#include "style/rectify.h"
+#include "core/style/scan/rectify.h"
 
 #include <algorithm>
 #include <array>
@@ -8,12 +8,12 @@
 
 #include "core/image/check.h"
 #include "core/image/color.h"
-#include "style/homography.h"
-#include "style/marker_detection.h"
-#include "style/paper_light.h"
-#include "style/resample_scan.h"
-#include "style/sphere_kit.h"
-#include "style/template_fit.h"
+#include "core/style/scan/homography.h"
+#include "core/style/scan/marker_detection.h"
+#include "core/style/scan/paper_light.h"
+#include "core/style/scan/resample_scan.h"
+#include "core/style/kit/sphere_kit.h"
+#include "core/style/scan/template_fit.h"
 
 namespace scumble {
 namespace {
