@@ -11,7 +11,7 @@
 #include "guidegen/load_scene.h"
 #include "measure/repetition.h"
 #include "core/style/style_file.h"
-#include "transfer/masked_blur.h"
+#include "core/filter/masked_blur.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

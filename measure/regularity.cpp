@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/image/check.h"
-#include "measure/gaussian_blur.h"
+#include "core/filter/gaussian_blur.h"
 
 namespace scumble {
 namespace {

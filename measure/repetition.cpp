@@ -7,7 +7,7 @@
 #include "core/image/check.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "measure/gaussian_blur.h"
+#include "core/filter/gaussian_blur.h"
 
 namespace scumble {
 namespace {

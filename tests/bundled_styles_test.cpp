@@ -11,7 +11,7 @@
 #include "guidegen/load_scene.h"
 #include "core/image/hash.h"
 #include "core/style/style_file.h"
-#include "transfer/resample.h"
+#include "core/filter/resample.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -16,16 +16,17 @@ import sys
 LIBRARIES = {
     "image": ("core/image", set(), []),
     "io": ("core/io", {"image"}, []),
+    "filter": ("core/filter", {"image"}, []),
     "guidegen": ("guidegen", {"image", "io"}, []),
     "style": ("core/style", {"image", "io"}, []),
-    "transfer": ("transfer", {"image"}, []),
-    "measure": ("measure", {"image", "io"}, []),
+    "transfer": ("transfer", {"image", "filter"}, []),
+    "measure": ("measure", {"image", "io", "filter"}, []),
     "cli": ("cli", {"image", "io", "guidegen", "style", "transfer", "measure"}, []),
 }
 
 # Third parties by the start of the included path, and the libraries that may name them.
 THIRD_PARTY = {
-    "glm/": {"image", "io", "guidegen", "style", "transfer", "measure", "cli"},
+    "glm/": {"filter", "image", "io", "guidegen", "style", "transfer", "measure", "cli"},
     "OpenImageIO/": {"io"},
     "OpenEXR/": {"io"},
     "Imath/": {"io"},
@@ -39,7 +40,7 @@ THIRD_PARTY = {
     "tiny_obj_loader": {"guidegen"},
     "stb_image": {"guidegen"},
     "oneapi/tbb": {"guidegen", "transfer"},
-    "tbb/": {"cli", "guidegen", "transfer"},
+    "tbb/": {"cli", "filter", "guidegen", "transfer"},
     "nanoflann": {"transfer"},
     "hwy/": {"guidegen", "transfer"},
     "toml++/": {"style"},

@@ -7,7 +7,7 @@
 #include "core/io/guide_file.h"
 #include "core/style/style_file.h"
 #include "tests/cli_harness.h"
-#include "transfer/resample.h"
+#include "core/filter/resample.h"
 
 namespace scumble {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "measure/gaussian_blur.h"
+#include "core/filter/gaussian_blur.h"
 #include "tests/painted_spheres.h"
 
 namespace scumble {

@@ -7,7 +7,7 @@
 
 #include "tests/transfer_fixtures.h"
 #include "transfer/hybrid.h"
-#include "transfer/masked_blur.h"
+#include "core/filter/masked_blur.h"
 
 namespace scumble {
 namespace {

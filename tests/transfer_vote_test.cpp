@@ -6,7 +6,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load_scene.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/resample.h"
+#include "core/filter/resample.h"
 #include "transfer/vote.h"
 
 namespace scumble {

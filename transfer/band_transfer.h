@@ -15,10 +15,10 @@
 
 #include "core/image/picture.h"
 #include "transfer/colorize.h"
-#include "transfer/edges.h"
+#include "core/filter/edge_test.h"
 #include "transfer/frame_start.h"
 #include "transfer/match.h"
-#include "transfer/parallel.h"
+#include "core/filter/parallel.h"
 #include "transfer/small_vote.h"
 #include "transfer/styleblit_tiles.h"
 

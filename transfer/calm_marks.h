@@ -9,7 +9,7 @@
 #include "transfer/bit_rows.h"
 #include "transfer/chunk_marks.h"
 #include "transfer/edge_row.h"
-#include "transfer/edges.h"
+#include "core/filter/edge_test.h"
 
 namespace scumble::internal {
 

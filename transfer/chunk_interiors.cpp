@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "transfer/parallel.h"
+#include "core/filter/parallel.h"
 
 namespace scumble::internal {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "transfer/region.h"
+#include "core/filter/region.h"
 #include "transfer/source_field.h"
 
 namespace scumble::internal {

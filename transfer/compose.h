@@ -6,7 +6,7 @@
 
 #include "core/image/picture.h"
 #include "core/image/style.h"
-#include "transfer/parallel.h"
+#include "core/filter/parallel.h"
 
 namespace scumble::internal {
 

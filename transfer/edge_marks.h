@@ -5,7 +5,7 @@
 
 #include "transfer/bit_rows.h"
 #include "transfer/chunk_marks.h"
-#include "transfer/edges.h"
+#include "core/filter/edge_test.h"
 
 namespace scumble::internal {
 

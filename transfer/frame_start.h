@@ -6,7 +6,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/picture.h"
-#include "transfer/region.h"
+#include "core/filter/region.h"
 #include "transfer/source_field.h"
 #include "transfer/style_map.h"
 

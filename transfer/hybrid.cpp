@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "transfer/masked_blur.h"
+#include "core/filter/masked_blur.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "transfer/bit_rows.h"
-#include "transfer/edges.h"
+#include "core/filter/edge_test.h"
 
 namespace scumble::internal {
 

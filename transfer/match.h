@@ -9,7 +9,7 @@
 #include "transfer/guide_distance.h"
 #include "transfer/guide_space.h"
 #include "transfer/illumination.h"
-#include "transfer/parallel.h"
+#include "core/filter/parallel.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/seed_map.h"
 #include "transfer/seeds.h"

@@ -6,7 +6,7 @@
 #include "core/image/check.h"
 #include "transfer/colorize.h"
 #include "transfer/hybrid.h"
-#include "transfer/resample.h"
+#include "core/filter/resample.h"
 #include "transfer/transfer.h"
 #include "transfer/usable_mask.h"
 

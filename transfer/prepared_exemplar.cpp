@@ -11,7 +11,7 @@
 #include "transfer/alternatives.h"
 #include "transfer/guide_tree.h"
 #include "transfer/look_up_table.h"
-#include "transfer/resample.h"
+#include "core/filter/resample.h"
 #include "transfer/usable_mask.h"
 
 namespace scumble {

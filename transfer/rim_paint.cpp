@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/image/bare_paper.h"
-#include "transfer/resample.h"
+#include "core/filter/resample.h"
 
 namespace scumble {
 namespace {

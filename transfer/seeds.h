@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "transfer/region.h"
+#include "core/filter/region.h"
 
 namespace scumble {
 

@@ -6,8 +6,8 @@
 
 #include "core/image/guides.h"
 #include "core/image/picture.h"
-#include "transfer/parallel.h"
-#include "transfer/region.h"
+#include "core/filter/parallel.h"
+#include "core/filter/region.h"
 #include "transfer/seeds.h"
 #include "transfer/shadow_paint.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "transfer/nearest_feature.h"
+#include "core/filter/distance_transform.h"
 #include "transfer/style_map.h"
 
 namespace scumble::internal {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "transfer/region.h"
+#include "core/filter/region.h"
 
 namespace scumble::internal {
 

@@ -19,7 +19,7 @@
 #include "transfer/illumination.h"
 #include "transfer/look_up_table.h"
 #include "transfer/prepared_exemplar.h"
-#include "transfer/region.h"
+#include "core/filter/region.h"
 #include "transfer/rim_paint.h"
 #include "transfer/seed_map.h"
 #include "transfer/shadow_paint.h"

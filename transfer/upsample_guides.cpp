@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/image/check.h"
-#include "transfer/edges.h"
+#include "core/filter/edge_test.h"
 
 namespace scumble {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "transfer/nearest_feature.h"
+#include "core/filter/distance_transform.h"
 
 namespace scumble::internal {
 

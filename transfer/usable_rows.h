@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "transfer/prepared_exemplar.h"
-#include "transfer/region.h"
+#include "core/filter/region.h"
 
 namespace scumble::internal {
 

@@ -8,8 +8,8 @@
 
 #include "core/image/guides.h"
 #include "core/image/picture.h"
-#include "transfer/edges.h"
-#include "transfer/parallel.h"
+#include "core/filter/edge_test.h"
+#include "core/filter/parallel.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/source_field.h"
 

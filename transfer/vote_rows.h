@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "transfer/edges.h"
+#include "core/filter/edge_test.h"
 #include "transfer/prepared_exemplar.h"
 #include "transfer/source_field.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "transfer/region.h"
+#include "core/filter/region.h"
 #include "transfer/wide_tile.h"
 
 namespace scumble::internal {

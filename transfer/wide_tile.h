@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "transfer/region.h"
+#include "core/filter/region.h"
 #include "transfer/source_field.h"
 #include "transfer/vote.h"
 

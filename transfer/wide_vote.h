@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/image/picture.h"
-#include "transfer/parallel.h"
+#include "core/filter/parallel.h"
 #include "transfer/vote.h"
 
 namespace scumble::internal {

@@ -1,4 +1,4 @@
-#include "transfer/edges.h"
+#include "core/filter/edge_test.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/image/exact_math.h"
-#include "transfer/parallel.h"
+#include "core/filter/parallel.h"
 
 namespace scumble::internal {
 namespace {

@@ -1,4 +1,4 @@
-// Rows over threads, with progress and cancellation. Not for other folders.
+// Rows over threads, with progress and cancellation.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "core/image/progress.h"
-#include "transfer/region.h"
+#include "core/filter/region.h"
 
 namespace scumble::internal {
 

@@ -1,4 +1,4 @@
-#include "transfer/resample.h"
+#include "core/filter/resample.h"
 
 #include <algorithm>
 #include <cmath>

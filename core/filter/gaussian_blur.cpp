@@ -1,4 +1,4 @@
-#include "measure/gaussian_blur.h"
+#include "core/filter/gaussian_blur.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "transfer/masked_blur.h"
+#include "core/filter/masked_blur.h"
 
 #include <tbb/parallel_for.h>
 
