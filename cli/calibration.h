@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/image/status.h"
-#include "transfer/table_cache.h"
+#include "transfer/nearest/table_cache.h"
 
 namespace scumble {
 

@@ -11,7 +11,7 @@
 #include "guidegen/scene.h"
 #include "core/image/guides.h"
 #include "core/image/style.h"
-#include "transfer/style_map.h"
+#include "transfer/frame/style_map.h"
 
 namespace scumble {
 

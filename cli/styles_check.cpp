@@ -16,7 +16,7 @@
 #include "measure/paint_faults.h"
 #include "measure/paint_traits.h"
 #include "core/style/kit/sphere_kit.h"
-#include "transfer/ambiguity.h"
+#include "transfer/exemplar/ambiguity.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -1,7 +1,7 @@
 #include "cli/tradeoff_memory.h"
 
 #include "cli/memory_need.h"
-#include "transfer/prepared_exemplar.h"
+#include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/io/guides/guide_precision.h"
-#include "transfer/look_up_table.h"
+#include "transfer/nearest/lookup_table.h"
 
 namespace scumble {
 

@@ -17,7 +17,7 @@
 #include "core/image/hash.h"
 #include "core/io/guides/guide_storage.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/look_up_table.h"
+#include "transfer/nearest/lookup_table.h"
 
 namespace scumble::testing {
 namespace {

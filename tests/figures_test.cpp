@@ -9,7 +9,7 @@
 #include "core/image/color.h"
 #include "core/style/style_file.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/seeds.h"
+#include "transfer/seeds/seeds.h"
 
 namespace scumble {
 namespace {

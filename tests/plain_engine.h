@@ -12,8 +12,8 @@
 #include "core/image/guides.h"
 #include "core/image/picture.h"
 #include "core/image/style.h"
-#include "transfer/prepared_exemplar.h"
-#include "transfer/seeds.h"
+#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/seeds/seeds.h"
 
 namespace scumble::testing {
 

@@ -9,8 +9,8 @@
 #include "guidegen/load_scene.h"
 #include "measure/coherence.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/guide_distance.h"
-#include "transfer/seeds.h"
+#include "transfer/nearest/guide_distance.h"
+#include "transfer/seeds/seeds.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,4 @@
-// Coherent mode: seeds on the surface against a plain version of the rules in transfer/surface_seeds.h, and what they are
+// Coherent mode: seeds on the surface against a plain version of the rules in transfer/seeds/surface_seeds.h, and what they are
 // for: paint that stays where it is while the object or the camera moves.
 #include <algorithm>
 #include <bit>
@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/guide_distance.h"
-#include "transfer/surface_seeds.h"
+#include "transfer/nearest/guide_distance.h"
+#include "transfer/seeds/surface_seeds.h"
 
 namespace scumble {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/calm_marks.h"
-#include "transfer/edge_marks.h"
+#include "transfer/vote/edge/small_window_bounds.h"
+#include "transfer/vote/edge/edge_masks.h"
 
 namespace scumble {
 namespace {

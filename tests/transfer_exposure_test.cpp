@@ -8,7 +8,7 @@
 
 #include "core/image/color.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/illumination.h"
+#include "transfer/exemplar/illumination.h"
 
 namespace scumble {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "transfer/colorize.h"
-#include "transfer/seeds.h"
+#include "transfer/tint/colorize.h"
+#include "transfer/seeds/seeds.h"
 #include "transfer_fixtures.h"
 
 namespace scumble {

@@ -9,9 +9,9 @@
 #include "core/image/color.h"
 #include "tests/every_instruction_set.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/colorize.h"
-#include "transfer/multiply_tint.h"
-#include "transfer/oklab_tint.h"
+#include "transfer/tint/colorize.h"
+#include "transfer/tint/multiply.h"
+#include "transfer/tint/oklab.h"
 
 namespace scumble {
 namespace {

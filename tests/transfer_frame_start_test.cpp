@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/frame_start.h"
+#include "transfer/frame/frame_setup.h"
 
 namespace scumble {
 namespace {

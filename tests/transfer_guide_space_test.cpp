@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "tests/scene_exemplar_fixtures.h"
-#include "transfer/look_up_table.h"
-#include "transfer/seeds.h"
+#include "transfer/nearest/lookup_table.h"
+#include "transfer/seeds/seeds.h"
 
 namespace scumble {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/hybrid.h"
+#include "transfer/vote/tone_texture_split.h"
 #include "core/filter/masked_blur.h"
 
 namespace scumble {

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/chunk_interiors.h"
-#include "transfer/vote.h"
+#include "transfer/vote/chunk_interiors.h"
+#include "transfer/vote/vote.h"
 
 namespace scumble {
 namespace {

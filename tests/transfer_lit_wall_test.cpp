@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tests/scene_exemplar_fixtures.h"
-#include "transfer/ambiguity.h"
+#include "transfer/exemplar/ambiguity.h"
 
 namespace scumble {
 namespace {

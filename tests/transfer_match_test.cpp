@@ -2,8 +2,8 @@
 #include <limits>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/guide_distance.h"
-#include "transfer/seeds.h"
+#include "transfer/nearest/guide_distance.h"
+#include "transfer/seeds/seeds.h"
 
 namespace scumble {
 namespace {

@@ -3,7 +3,7 @@
 #include <map>
 
 #include "tests/scene_exemplar_fixtures.h"
-#include "transfer/look_up_table.h"
+#include "transfer/nearest/lookup_table.h"
 
 namespace scumble {
 namespace {

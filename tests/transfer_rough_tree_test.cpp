@@ -5,7 +5,7 @@
 
 #include "tests/every_instruction_set.h"
 #include "tests/scene_exemplar_fixtures.h"
-#include "transfer/guide_tree.h"
+#include "transfer/nearest/guide_tree.h"
 
 namespace scumble {
 namespace {

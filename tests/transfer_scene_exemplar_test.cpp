@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "tests/scene_exemplar_fixtures.h"
-#include "transfer/ambiguity.h"
-#include "transfer/usable_mask.h"
+#include "transfer/exemplar/ambiguity.h"
+#include "transfer/exemplar/usable_mask.h"
 
 namespace scumble {
 namespace {

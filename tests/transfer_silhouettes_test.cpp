@@ -6,7 +6,7 @@
 #include "core/image/oklab.h"
 #include "tests/transfer_fixtures.h"
 #include "core/image/bare_paper.h"
-#include "transfer/silhouettes.h"
+#include "transfer/outline/silhouettes.h"
 
 namespace scumble {
 namespace {

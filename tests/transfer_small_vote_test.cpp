@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/small_vote.h"
+#include "transfer/vote/small_vote.h"
 
 namespace scumble {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "tests/every_instruction_set.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/match.h"
+#include "transfer/match/match.h"
 
 namespace scumble {
 namespace {

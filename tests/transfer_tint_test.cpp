@@ -1,4 +1,4 @@
-// Base colours on the paint: the formulas of transfer/colorize.h, written down once more in double.
+// Base colours on the paint: the formulas of transfer/tint/colorize.h, written down once more in double.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 #include "core/image/color.h"
 #include "core/image/oklab.h"
 #include "tests/transfer_fixtures.h"
-#include "transfer/colorize.h"
+#include "transfer/tint/colorize.h"
 
 namespace scumble {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "tests/every_instruction_set.h"
 #include "tests/scene_exemplar_fixtures.h"
-#include "transfer/guide_tree.h"
-#include "transfer/usable_mask.h"
+#include "transfer/nearest/guide_tree.h"
+#include "transfer/exemplar/usable_mask.h"
 
 namespace scumble {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/guide_distance.h"
+#include "transfer/nearest/guide_distance.h"
 
 namespace scumble {
 namespace {

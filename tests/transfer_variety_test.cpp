@@ -10,9 +10,9 @@
 #include "core/image/hash.h"
 #include "measure/flat_surfaces.h"
 #include "measure/repetition.h"
-#include "transfer/alternatives.h"
-#include "transfer/seeds.h"
-#include "transfer/variety.h"
+#include "transfer/exemplar/paint_by_normal.h"
+#include "transfer/seeds/seeds.h"
+#include "transfer/match/variety.h"
 #include "transfer_fixtures.h"
 
 namespace scumble {

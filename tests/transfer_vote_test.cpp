@@ -7,7 +7,7 @@
 #include "guidegen/load_scene.h"
 #include "tests/transfer_fixtures.h"
 #include "core/filter/resample.h"
-#include "transfer/vote.h"
+#include "transfer/vote/vote.h"
 
 namespace scumble {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "tests/transfer_fixtures.h"
-#include "transfer/hybrid.h"
-#include "transfer/usable_rows.h"
-#include "transfer/wide_vote.h"
+#include "transfer/vote/tone_texture_split.h"
+#include "transfer/exemplar/usable_rows.h"
+#include "transfer/vote/wide/wide_vote.h"
 
 namespace scumble {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "core/image/check.h"
-#include "transfer/colorize.h"
-#include "transfer/hybrid.h"
+#include "transfer/tint/colorize.h"
+#include "transfer/vote/tone_texture_split.h"
 #include "core/filter/resample.h"
 #include "transfer/transfer.h"
-#include "transfer/usable_mask.h"
+#include "transfer/exemplar/usable_mask.h"
 
 namespace scumble {
 namespace {

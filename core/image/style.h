@@ -58,7 +58,7 @@ enum class ColorizeMode {
 };
 
 // What each guide layer counts in the distance by which paint is found and chunks end: values are multiplied by the weight
-// (0 or more, finite; not all 0) before distances are taken. transfer/guide_space.h says what the values are.
+// (0 or more, finite; not all 0) before distances are taken. transfer/exemplar/guide_space.h says what the values are.
 class GuideWeights {
  public:
   // Normals alone, counting 1: the plain engine.

@@ -1,0 +1,129 @@
+// Ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that are
+// wanted, and leave the others as they are. False: the progress callback asked to stop.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/image/guides.h"
+#include "transfer/nearest/guide_distance.h"
+#include "transfer/exemplar/guide_space.h"
+#include "transfer/exemplar/illumination.h"
+#include "core/filter/parallel.h"
+#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/seeds/nearest_seed_cache.h"
+#include "transfer/seeds/seeds.h"
+#include "transfer/field/source_field.h"
+
+namespace scumble::internal {
+
+// What is compared of one pixel of the scene.
+struct PixelGuide {
+  glm::vec3 normal;
+  float light;                      // exposed luminance, for the choice of exemplars
+  float rest[GuideSpace::kMaxRest];  // only where a GuideSpace is matched in
+};
+
+// What a match looks at. `field` has the picture's size already.
+struct MatchInput {
+  const GuideSet& guides;
+  // 1: a pixel that this style paints. Empty where there is no such plane: then `covered` says it, and Paints alone must be
+  // asked.
+  std::span<const std::uint8_t> active;
+  const PreparedExemplar& exemplar;
+  const Illumination& illumination;
+  std::span<const float> luminance;  // exposed; empty where the illumination is not active
+  GuideTest test;
+  SeedRules seeds;
+  int levels = 1;  // effective, at the output's size
+  double variety_degrees = 0.0;
+  int flat_reach = 16;  // pixels around a seed that must be flat for `variety`
+  Region region;
+  std::span<const std::uint8_t> wanted = {};  // 1: active pixels that are to be matched; empty: all of them are
+  int least_level = 1;  // finer grids of seeds are left out
+  const GuideSpace* space = nullptr;  // null: normals alone are matched by, each counting 1
+  float brightness = 1.0f;            // of the scene's radiance in that space
+  SeedMap* seed_map = nullptr;        // of these seeds and the picture's size; null: nothing is kept
+  // Pixels of coverage above 0 that this style paints; without painters it paints all.
+  struct Covered {
+    std::span<const float> coverage;
+    std::span<const std::uint16_t> painters;  // by pixel, as a StyleMap has them
+    int style = 0;
+  } covered = {};
+
+  bool Paints(std::size_t i) const {
+    if (!active.empty()) return active[i] != 0;
+    return covered.coverage[i] > 0.0f && (covered.painters.empty() || covered.painters[i] == covered.style);
+  }
+  bool Wants(std::size_t i) const { return wanted.empty() ? active[i] != 0 : wanted[i] != 0; }
+  float LuminanceAt(std::size_t i) const { return luminance.empty() ? 0.0f : luminance[i]; }
+
+  void ReadGuide(std::size_t i, PixelGuide& guide) const {
+    guide.normal = guides.Vec3(Layer::kNormal, i);
+    guide.light = LuminanceAt(i);
+    if (space) space->Read(guides, i, brightness, guide.rest);
+  }
+
+  // The source in exemplar k that is nearest to a guide.
+  Source NearestTo(const PixelGuide& guide, int k) const {
+    return space ? space->Nearest(k, guide.normal, guide.rest) : exemplar.NearestNeighbour(guide.normal);
+  }
+
+  // Whether a pixel may show `at` of exemplar k, its light included. Its normal is compared as if it were `moved`.
+  bool Alike(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
+    const float extra = illumination.Error(guide.light, k);
+    if (space) return space->Alike(test, k, guide.normal + moved, guide.rest, at, extra);
+    return test.Alike(guide.normal + moved, exemplar.Normal(at.x, at.y), extra);
+  }
+  // Whether nothing in the exemplar is like a seed within the threshold, `best` being the nearest: a shadow on what faces
+  // the lamp, where the exemplar shows all that faces it lit. Its pieces would end where they begin; instead the pixels
+  // around it are compared as if their guides were off by as much as the seed's (MoveAs). Normals alone are always
+  // compared as they are.
+  bool IsOff(const PixelGuide& seed, Source best, int k) const {
+    return space && space->rest() > 0 && !space->Alike(test, k, seed.normal, seed.rest, best, 0.0f);
+  }
+  void MoveAs(const PixelGuide& seed, Source best, int k, PixelGuide& guide) const {
+    guide.normal += exemplar.Normal(best.x, best.y) - seed.normal;
+    const float* there = space->RestAt(k, best);
+    for (int d = 0; d < space->rest(); ++d) guide.rest[d] += there[d] - seed.rest[d];
+  }
+
+  // What is compared with the threshold there.
+  float Distance(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
+    const float extra = illumination.Error(guide.light, k);
+    if (space) return space->Distance(test, k, guide.normal + moved, guide.rest, at) + extra;
+    return test.Distance(guide.normal + moved, exemplar.Normal(at.x, at.y)) + extra;
+  }
+};
+
+// A piece of an exemplar: its nearest neighbour to a pixel's guide, and the exemplar that suits the pixel's light.
+struct Offer {
+  Source source;
+  int exemplar = 0;
+  glm::vec3 moved{0.0f};  // by what the seed moved the source's guide: a pixel's own counts as if moved by the same
+};
+Offer OwnOffer(const MatchInput& input, std::size_t pixel);
+Offer OwnOffer(const MatchInput& input, const PixelGuide& guide);  // the same for what was read of the pixel
+
+// Every pixel takes its own nearest neighbour.
+bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress);
+
+// Parallel StyleBlit: from coarse to fine, the nearest seed q offers its u*; pixel p takes u* + (p - q) where that is
+// usable and its guide is like p's, light included. A seed outside the picture or on a pixel that is not active fails
+// its level. If no level accepts, p takes its own u*. The plain form is written for reading and does everything; the other
+// looks at sixteen pixels at once, cannot match in a GuideSpace, and gives the same bytes.
+bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgress& progress);
+bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgress& progress);
+inline bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress) {
+  return input.space ? MatchStyleBlitPlain(input, field, progress) : MatchStyleBlitTiles(input, field, progress);
+}
+
+// The same with seeds that live on the surface (transfer/seeds/surface_seeds.h): guides need pref, depth and object ids. Seeds
+// depend on all active pixels of the picture, whatever the region.
+bool MatchCoherent(const MatchInput& input, SourceField& field, RowProgress& progress);
+
+// Sýkora's algorithm 1: the first free pixel in row order is the next anchor; its u* is offered to every free pixel of
+// the picture by the same rule. One thread, O(chunks × pixels).
+bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& progress);
+
+}  // namespace scumble::internal

@@ -1,0 +1,133 @@
+// Seeds for the fast form of StyleBlit (styleblit_tiles.cpp): those that the pixels of one column of tiles can be near to, on one
+// level. Rows of cells are made when a pixel first asks for them and are forgotten when others need the room; a seed's
+// offer is made when a pixel first asks for it. Most seeds of fine levels are never asked.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "transfer/exemplar/paint_by_normal.h"
+#include "transfer/match/match.h"
+#include "transfer/seeds/nearest_seed_cache.h"
+#include "transfer/match/seed_offer.h"
+
+namespace scumble::internal {
+
+// What a seed at q offers: a pixel p may take `offset` + p of an exemplar.
+struct TileOffer {
+  enum State : std::uint8_t { kUnknown, kNone, kOffers };
+  std::int32_t offset_x = 0, offset_y = 0;  // u* - q
+  State state = kUnknown;
+  std::uint8_t exemplar = 0;
+  bool is_free = false;  // `variety` gave it freedom: the rest is in Freedom
+};
+
+// What belongs to a seed on a flat surface.
+struct SeedFreedom {
+  glm::vec3 moved{0.0f};    // by what the source's guide was moved
+  Alternatives::Tone tone;  // what is wanted here
+};
+
+// One level's seeds of one tile. A seed has an index, below kSlots · columns, that holds as long as its row of cells.
+// For one thread; rows must be asked for from the top down. On levels up to kMaxSpreadLevel their places are also laid out
+// pixel by pixel, for vector code.
+class TileSeeds {
+ public:
+  // Rows of cells that are kept at once: the three around a pixel, to a power of two.
+  static constexpr int kSlots = 4;
+  // For the pixels [x0, x0 + kTileWidth) of the rows of a tile. Keeps `input`.
+  void Reset(const MatchInput& input, int level, int x0);
+
+  int level() const { return level_; }
+  int columns() const { return columns_; }
+  int left() const { return left_; }  // x of the first column's cells
+
+  // Makes the cells in the row `cell_row` and those above and below, as far as pixels [x, x + width) can be near to them:
+  // so that they can be asked for offers, and with Need for their places too.
+  void NeedOffers(int cell_row, int x, int width) { NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeOffers); }
+  void Need(int cell_row, int x, int width) {
+    NeedOffers(cell_row, x, width);
+    NeedIn(placed_, cell_row, x, width, &TileSeeds::MakePlaces);
+  }
+  static int Slot(int cell_row) { return cell_row & (kSlots - 1); }
+  int FirstOf(int cell_row) const { return Slot(cell_row) * columns_; }
+
+  // By pixel from left(), of a row that was needed: the seed of the pixel's cell, x from left(), and y from the top of the
+  // cell. Only for levels up to kMaxSpreadLevel.
+  const std::uint16_t* SpreadX(int cell_row) const { return spread_x_.data() + std::size_t(Slot(cell_row)) * spread_; }
+  const std::uint16_t* SpreadY(int cell_row) const { return spread_y_.data() + std::size_t(Slot(cell_row)) * spread_; }
+
+  // Where a seed stands in the picture.
+  PixelPosition Position(int index) const {
+    const int slot = index / columns_, column = index - slot * columns_, row = offered_.row[slot];
+    const PixelPosition in_cell = SeedInCell(input_->seeds, level_, column_hashes_[std::size_t(column)], row);
+    return {left_ + (column << level_) + in_cell.x, (row << level_) + in_cell.y};
+  }
+
+  // What a seed offers; made now if nobody asked before.
+  const TileOffer& Offer(int index) {
+    TileOffer& offer = offers_[static_cast<std::size_t>(index)];
+    if (offer.state == TileOffer::kUnknown) Fill(index, offer);
+    return offer;
+  }
+  const SeedFreedom& Freedom(int index) const { return freedoms_[static_cast<std::size_t>(index)]; }
+
+  // The seed nearest to pixel (x, y) among the 3 × 3 cells around its own, and the second nearest, as SeedGrid has them.
+  struct Two {
+    int nearest, second;
+    std::int64_t excess;
+  };
+  Two NearestTwo(int x, int y) const;
+
+  // From x on, the nearest seed along row y, and the first x beyond where it is another: at most the cell's end. The
+  // nearest seeds of a row are the lower envelope of parabolas, all of one curvature, so each has one interval.
+  struct Run {
+    int seed, end;
+  };
+  Run RunFrom(int x, int y) const;
+
+ private:
+  // Which parts of which rows of cells are there, by slot. A part is 2^part_ columns: some 64 pixels.
+  struct Made {
+    int row[kSlots];
+    std::uint64_t parts[kSlots];
+    // What was asked for last is there, for a row and those beside it: nearly always the next question too.
+    int last_row;
+    std::uint64_t last_parts;
+  };
+  using Maker = void (TileSeeds::*)(int cell_row, std::uint64_t parts);
+  void NeedIn(Made& made, int cell_row, int x, int width, Maker make) {
+    const int first = ((x - left_) >> level_) - 1, last = ((x + width - 1 - left_) >> level_) + 1;
+    const std::uint64_t parts = (~0ull << (first >> part_)) & (~0ull >> (63 - (last >> part_)));
+    if (made.last_row == cell_row && (parts & ~made.last_parts) == 0) return;
+    made.last_parts = made.last_row == cell_row ? made.last_parts | parts : parts;
+    made.last_row = cell_row;
+    for (int row = cell_row - 1; row <= cell_row + 1; ++row) {
+      const int slot = Slot(row);
+      if (made.row[slot] != row) made.row[slot] = row, made.parts[slot] = 0;
+      const std::uint64_t missing = parts & ~made.parts[slot];
+      if (missing == 0) continue;
+      (this->*make)(row, missing);
+      made.parts[slot] |= missing;
+    }
+  }
+  template <class Visit>
+  void ForEachColumn(std::uint64_t parts, const Visit& visit) const;
+  void MakeOffers(int cell_row, std::uint64_t parts);
+  void MakePlaces(int cell_row, std::uint64_t parts);
+  void Fill(int index, TileOffer& offer);
+
+  const MatchInput* input_ = nullptr;
+  const float* normal_[3] = {};
+  int level_ = 0, left_ = 0, columns_ = 0, first_column_ = 0;
+  int part_ = 0;
+  std::size_t spread_ = 0;
+  Made offered_, placed_;
+  std::vector<std::uint64_t> column_hashes_;
+  std::vector<PixelPosition> in_cell_;
+  std::vector<TileOffer> offers_;
+  std::vector<SeedFreedom> freedoms_;  // empty without variety
+  std::vector<std::uint16_t> spread_x_, spread_y_;
+};
+
+}  // namespace scumble::internal

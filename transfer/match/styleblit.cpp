@@ -1,0 +1,157 @@
+// StyleBlit: Fast Example-Based Stylization with Local Guidance. Daniel Sýkora, Ondřej Jamriška, Ondřej Texler, Jakub
+// Fišer, Michal Lukáč, Jingwan Lu, Eli Shechtman. Computer Graphics Forum 38 (2019). Section 3.2, the parallel form.
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "core/image/hash.h"
+#include "transfer/exemplar/paint_by_normal.h"
+#include "transfer/match/seed_offer.h"
+#include "transfer/match/variety.h"
+
+namespace scumble::internal {
+
+namespace {
+
+// Variety is freedom of direction: paint that is lit otherwise does not do.
+Source ChooseInSpace(const MatchInput& input, const Offer& own, int level, std::uint64_t hash) {
+  if (!input.space) return ChooseAlike(input, own, level, hash);
+  constexpr int kTries = 16;
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const Source other = ChooseAlike(input, own, level, attempt == 0 ? hash : Hash(hash, attempt));
+    if (input.space->AlikeRest(input.test, own.exemplar, own.source, other)) return other;
+  }
+  return own.source;
+}
+
+}  // namespace
+
+bool Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made) {
+  if (!HasFreedom(input, level, q)) return false;
+  const Source own = made.offer.source;
+  made.offer.source = ChooseInSpace(input, made.offer, level, hash);
+  made.moved += input.exemplar.Normal(made.offer.source.x, made.offer.source.y) - input.exemplar.Normal(own.x, own.y);
+  return true;
+}
+
+SeedOffer SeedOf(const MatchInput& input, const PixelGuide& guide, const Offer& offer) {
+  SeedOffer made{offer};
+  made.best = offer.source;
+  made.off = input.IsOff(guide, offer.source, offer.exemplar);
+  return made;
+}
+
+std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, PixelPosition q, PixelPosition p,
+                               const PixelGuide& guide) {
+  const Source candidate{seed.offer.source.x + (p.x - q.x), seed.offer.source.y + (p.y - q.y)};
+  if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
+  if (!seed.off) {
+    if (!input.Alike(guide, seed.moved, candidate, seed.offer.exemplar)) return std::nullopt;
+  } else {
+    PixelGuide of_seed, moved = guide;
+    input.ReadGuide(input.guides.Index(q.x, q.y), of_seed);
+    input.MoveAs(of_seed, seed.best, seed.offer.exemplar, moved);
+    if (!input.Alike(moved, seed.moved, candidate, seed.offer.exemplar)) return std::nullopt;
+  }
+  return Offer{candidate, seed.offer.exemplar, seed.moved};
+}
+
+namespace {
+
+// What a seed on the screen offers.
+struct GridOffer : SeedOffer {
+  int flat = -1;  // which of the level's tones is wanted here; -1: the surface is not flat, or variety is 0
+};
+
+// The seeds of one level with what they offer; thousands of pixels share each.
+struct Level {
+  SeedGrid grid;
+  std::vector<std::optional<GridOffer>> offers;  // empty: outside the picture, or not to be painted
+  std::vector<Alternatives::Tone> tones;         // of the seeds on flat surfaces: that of the paint which fits them best
+  // Searches in many dimensions are slow, and most seeds of fine levels are never asked: theirs are made when they are.
+  std::unique_ptr<std::once_flag[]> asked;
+
+  Level(const MatchInput& input, int level)
+      : grid(input.seeds, level, input.region), offers(grid.size()) {
+    if (input.space && !(input.variety_degrees > 0.0)) {
+      asked = std::make_unique<std::once_flag[]>(grid.size());
+      return;
+    }
+    for (std::size_t s = 0; s < grid.size(); ++s) Fill(input, s);
+  }
+
+  const std::optional<GridOffer>& OfferOf(const MatchInput& input, std::size_t s) {
+    if (asked) std::call_once(asked[s], [&] { Fill(input, s); });
+    return offers[s];
+  }
+
+  void Fill(const MatchInput& input, std::size_t s) {
+    const PixelPosition q = grid.Position(s);
+    if (q.x < 0 || q.y < 0 || q.x >= input.guides.width() || q.y >= input.guides.height()) return;
+    const std::size_t i = input.guides.Index(q.x, q.y);
+    if (!input.active[i]) return;
+    PixelGuide guide;
+    input.ReadGuide(i, guide);
+    const Offer own = OwnOffer(input, guide);
+    GridOffer& made = offers[s].emplace(GridOffer{SeedOf(input, guide, own)});
+    const int level = grid.level();
+    const PixelPosition cell = grid.Cell(s);
+    const std::uint64_t hash =
+        Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset, cell.x, cell.y, 0x7a);
+    if (!Vary(input, level, q, hash, made)) return;
+    made.flat = static_cast<int>(tones.size());
+    tones.push_back(WantedTone(input, own, level));
+  }
+};
+
+// What p may take from seed s of this level, if anything.
+std::optional<Offer> AcceptFrom(const MatchInput& input, Level& level, std::size_t s, int x, int y,
+                                const PixelGuide& guide) {
+  const std::optional<GridOffer>& offer = level.OfferOf(input, s);
+  if (!offer) return std::nullopt;
+  return TakeOffer(input, *offer, level.grid.Position(s), {x, y}, guide);
+}
+
+// What p may take from its nearest seed; near the border of two seeds of a flat surface, from the one that suits it better.
+std::optional<Offer> Accept(const MatchInput& input, Level& level, int x, int y, const PixelGuide& guide) {
+  if (level.tones.empty()) return AcceptFrom(input, level, level.grid.Nearest(x, y), x, y, guide);
+  const auto [s, t, excess] = level.grid.NearestTwo(x, y);
+  const std::optional<Offer> nearest = AcceptFrom(input, level, s, x, y, guide);
+  if (!InBorderBand(level.grid.level(), excess)) return nearest;
+  if (!nearest || level.offers[s]->flat < 0 || !level.offers[t] || level.offers[t]->flat < 0) return nearest;
+  const std::optional<Offer> other = AcceptFrom(input, level, t, x, y, guide);
+  if (!other) return nearest;
+  const int nearest_off = ToneError(input, *nearest, level.tones[std::size_t(level.offers[s]->flat)]);
+  const int other_off = ToneError(input, *other, level.tones[std::size_t(level.offers[t]->flat)]);
+  return SecondWins(level.grid.level(), excess, nearest_off - other_off) ? other : nearest;
+}
+
+}  // namespace
+
+bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgress& progress) {
+  // Level 0 has a seed on every pixel, so its offer is the pixel's own nearest neighbour, accepted or not.
+  std::vector<Level> levels;
+  for (int level = input.levels - 1; level >= input.least_level; --level) levels.emplace_back(input, level);
+  return ForEachRow(input.region, progress, [&](int y) {
+    for (int x = input.region.x0; x < input.region.x1; ++x) {
+      const std::size_t i = field.Index(x, y);
+      if (!input.Wants(i)) continue;
+      PixelGuide guide;
+      input.ReadGuide(i, guide);
+      std::optional<Offer> offer;
+      int settled = 0;
+      for (Level& level : levels) {
+        if ((offer = Accept(input, level, x, y, guide))) {
+          settled = level.grid.level();
+          break;
+        }
+      }
+      if (!offer) offer = OwnOffer(input, guide);
+      field.Set(i, offer->source.x, offer->source.y, offer->exemplar, settled);
+      if (!field.moved.empty()) field.moved[i] = offer->moved;
+    }
+  });
+}
+
+}  // namespace scumble::internal

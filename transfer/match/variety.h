@@ -1,0 +1,32 @@
+// Freedom of choice on flat surfaces: a wall has one normal, so each of its seeds would offer the same piece of paint.
+#pragma once
+
+#include "transfer/exemplar/paint_by_normal.h"
+#include "transfer/match/match.h"
+
+namespace scumble::internal {
+
+// Whether the surface around an active pixel is flat: four active pixels `reach` away show the same object and normals
+// that are equal to within half a degree. A neighbour outside the picture does not count against it; one that is not
+// active does.
+bool IsFlat(const MatchInput& input, PixelPosition at, int reach);
+
+// Whether a seed may take other paint than its own: variety is not 0, the level is coarse enough to matter, and the
+// surface is flat as far as the seed's chunk reaches.
+bool HasFreedom(const MatchInput& input, int level, PixelPosition seed);
+
+// Another source for such a seed, within input.variety_degrees of its own one and of like tone (see Alternatives).
+Source ChooseAlike(const MatchInput& input, const Offer& own, int level, std::uint64_t hash);
+
+// The tone of the paint that fits a seed best, which all paint around it should have.
+Alternatives::Tone WantedTone(const MatchInput& input, const Offer& own, int level);
+
+// Chunk borders that follow the paint. Between two seeds of a flat surface a straight border would cut strokes where it
+// happens to lie. Near it each pixel weighs distance against tone: it takes the seed whose paint, there, is nearer to the
+// wanted tone. So the border runs where both agree, and what stands out from either is cut off. Each pixel decides by
+// itself; the order of work cannot matter. `excess`: of the second nearest seed's squared distance.
+bool InBorderBand(int level, std::int64_t excess);
+int ToneError(const MatchInput& input, const Offer& offer, const Alternatives::Tone& wanted);
+bool SecondWins(int level, std::int64_t excess, int gain_of_tone);
+
+}  // namespace scumble::internal

@@ -1,0 +1,86 @@
+// Nearest neighbours of directions by a table: what one lookup costs does not depend on the exemplar.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "transfer/nearest/guide_tree.h"
+#include "transfer/field/source.h"
+
+namespace scumble {
+
+// The direction that a normal is looked up by, always of length 1 and facing the viewer: one that faces away looks at
+// the rim along its (x, y), (0, 0, -1) at the rim at +Y; NaN, infinity and the zero vector look straight at the viewer.
+inline glm::vec3 FacingDirection(glm::vec3 normal) {
+  float length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+  if (!(length > 0.0f && length <= 3.0e38f)) return {0.0f, 0.0f, 1.0f};
+  if (normal.z < 0.0f) {
+    length = std::sqrt(normal.x * normal.x + normal.y * normal.y);
+    if (!(length > 0.0f)) return {0.0f, 1.0f, 0.0f};
+    return {normal.x / length, normal.y / length, 0.0f};
+  }
+  return {normal.x / length, normal.y / length, normal.z / length};
+}
+
+// Lambert's azimuthal equal-area projection of the hemisphere that faces the viewer onto the unit disc,
+// (x, y) / √(1 + z).
+inline glm::vec2 ProjectDirection(glm::vec3 facing) {
+  const float scale = 1.0f / std::sqrt(1.0f + facing.z);
+  return {scale * facing.x, scale * facing.y};
+}
+// Its inverse; a point outside the disc is taken to its edge.
+glm::vec3 DirectionAt(double px, double py);
+
+// The hemisphere of directions that face the viewer, laid out on [-1, 1]² by ProjectDirection and cut into R × R cells;
+// each holds the source nearest to the direction at its centre. Equal areas, because a table over plain (x, y) is ten
+// times as coarse at the rim as in the middle. Immutable; any thread may ask.
+class LookUpTable {
+ public:
+  static constexpr int kResolution = 512;
+
+  // `sources` are the tree's points, of unit normals, in the order given to it. Runs on all threads of the caller's
+  // oneTBB arena; the result does not depend on them.
+  LookUpTable(const PointTree& normals, std::span<const Source> sources, int resolution);
+
+  int resolution() const { return resolution_; }
+
+  // The source for a FacingDirection: at most Quantisation() further from it, in Euclidean distance, than the nearest.
+  Source Find(glm::vec3 direction) const { return cells_[CellOf(direction)]; }
+
+  // 4√2 / R. Two directions whose projections are d apart are at most 2d apart, a cell's corner is √2 / R from its
+  // centre, and the nearest source of the centre can be off by that distance going and coming.
+  static double Quantisation(int resolution);
+
+  // For keeping: 4 bytes a cell, x before y, little endian. What was kept is taken only if it has the size that
+  // belongs to the resolution; whether its sources are usable is for the caller to see.
+  std::vector<std::byte> ToBytes() const;
+  static std::optional<LookUpTable> FromBytes(std::span<const std::byte> bytes, int resolution);
+
+  // Half a Source, so that a table of the usual size stays in a core's cache.
+  struct Cell {
+    std::uint16_t x = 0, y = 0;
+    operator Source() const { return {x, y}; }
+  };
+  std::span<const Cell> cells() const { return cells_; }
+
+ private:
+  explicit LookUpTable(int resolution) : resolution_(resolution), cells_(std::size_t(resolution) * resolution) {}
+  std::size_t CellOf(glm::vec3 direction) const {
+    const glm::vec2 p = ProjectDirection(direction);
+    const float half = 0.5f * static_cast<float>(resolution_);
+    const int i = std::clamp(static_cast<int>(half + half * p.x), 0, resolution_ - 1);
+    const int j = std::clamp(static_cast<int>(half - half * p.y), 0, resolution_ - 1);
+    return std::size_t(j) * static_cast<std::size_t>(resolution_) + static_cast<std::size_t>(i);
+  }
+
+  int resolution_;
+  std::vector<Cell> cells_;  // rows from +Y down
+};
+
+}  // namespace scumble

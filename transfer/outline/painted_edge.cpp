@@ -1,0 +1,151 @@
+#include "transfer/outline/painted_edge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "transfer/frame/compose.h"
+#include "transfer/outline/rim_segments.h"
+#include "transfer/outline/silhouettes.h"
+
+namespace scumble::internal {
+namespace {
+
+// Inside, shares of the band: how deep rim paint lies over an object's own, and how deep gaps in it may cut.
+constexpr float kInkDepth = 0.5f, kCutDepth = 0.2f;
+constexpr float kFadeFrom = 0.6f;  // of the depth, on either side
+constexpr float kFirm = 0.2f;     // of the full width: narrower edges grow faint
+
+using Texel = std::array<std::uint16_t, 4>;
+
+float SmoothStep(float from, float to, float value) {
+  const float t = std::clamp((value - from) / (to - from), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// Everything that an edge needs to know of the picture, for the pixels of the region.
+class EdgePainter {
+ public:
+  explicit EdgePainter(const PaintedEdgeInput& input)
+      : input_(input),
+        coverage_(input.guides.Plane(Layer::kCoverage)),
+        bands_(Bands(input)),
+        silhouettes_({input.guides, input.style, bands_, input.region, Margin(input)}),
+        pieces_(Pieces()) {}
+
+  void Paint(int x, int y, float& coverage, std::uint16_t* pixel) const {
+    const std::int32_t nearest = silhouettes_.Nearest(x, y);
+    if (nearest == Silhouettes::kNone) return;
+    const OutlinePixel& outline = silhouettes_.outline()[std::size_t(nearest)];
+    const std::size_t p = input_.guides.Index(x, y);
+    const bool inside = silhouettes_.Inside(outline, p);
+    const std::size_t owner = inside ? p : input_.guides.Index(outline.x, outline.y);
+    const EdgePaint& paint = input_.paints[silhouettes_.StyleOf(outline)];
+    const std::size_t exemplar = std::min<std::size_t>(input_.field.exemplar[owner], paint.rims.size() - 1);
+    const RimPaint& rim = paint.rims[exemplar];
+
+    const float distance = Distance(outline, x, y, inside) / outline.width;  // where it would be at the full width
+    const float depth = distance / static_cast<float>(rim.band()), share = depth > 0.0f ? depth / kInkDepth : -depth;
+    if (share >= 1.0f) return;
+    const float firm = SmoothStep(Silhouettes::kNarrowest, kFirm, outline.width);
+    Texel texel = RimAt(rim, pieces_[std::size_t(nearest)], {x + 0.5f, y + 0.5f}, distance, outline.width);
+    if (paint.tint.active() && texel[3] > 0) {
+      paint.tint.Apply(input_.guides.Vec3(Layer::kAlbedo, owner), texel.data());
+    }
+    const float opacity = static_cast<float>(texel[3]) / 65535.0f * (1.0f - SmoothStep(kFadeFrom, 1.0f, share)) * firm;
+    // What the silhouette itself leaves of the pixel, and rim paint over it.
+    float below = coverage_[p] > 0.0f ? static_cast<float>(pixel[3]) / 65535.0f * std::min(coverage_[p], 1.0f) : 0.0f;
+    if (depth > 0.0f && outline.open) {
+      const float cut = std::max(0.0f, 1.0f - depth / kCutDepth) * firm;
+      below *= 1.0f - cut * (1.0f - opacity);
+    }
+    texel[3] = static_cast<std::uint16_t>(opacity * 65535.0f + 0.5f);
+    pixel[3] = static_cast<std::uint16_t>(below * 65535.0f + 0.5f);
+    BlendOver(texel.data(), pixel);
+    std::copy(texel.begin(), texel.end(), pixel);
+    coverage = texel[3] > 0 ? 1.0f : 0.0f;
+  }
+
+ private:
+  static std::vector<int> Bands(const PaintedEdgeInput& input) {
+    std::vector<int> bands;
+    for (const EdgePaint& paint : input.paints) bands.push_back(paint.rims.empty() ? 0 : paint.rims.front().band());
+    return bands;
+  }
+
+  static int Margin(const PaintedEdgeInput& input) {
+    int margin = 0;
+    for (const EdgePaint& paint : input.paints) {
+      if (paint.rims.empty()) continue;
+      margin = std::max(margin, RimPieceMargin(paint.seeds.level_offset, paint.rims.front().band()));
+    }
+    return margin;
+  }
+
+  std::vector<RimPieces> Pieces() const {
+    std::vector<float> radii;
+    std::vector<SeedRules> seeds;
+    int widest = 0;
+    for (const EdgePaint& paint : input_.paints) {
+      radii.push_back(paint.rims.empty() ? 1.0f : paint.rims.front().radius());
+      seeds.push_back(paint.seeds);
+      if (!paint.rims.empty()) widest = std::max(widest, paint.rims.front().band());
+    }
+    const Region near = input_.region.GrownBy(EdgeReach(widest), input_.guides.width(), input_.guides.height());
+    return ChooseRimPieces({silhouettes_, radii, seeds, near});
+  }
+
+  // Of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is that from the line through it, which
+  // has no steps as the pixels have.
+  static float Distance(const OutlinePixel& outline, int x, int y, bool inside) {
+    const glm::vec2 to = outline.point - glm::vec2(x + 0.5f, y + 0.5f);
+    const float across = to.x * outline.outward.x + to.y * outline.outward.y;
+    const float along = std::fabs(to.x * outline.outward.y - to.y * outline.outward.x) - 1.0f;
+    if (along <= 0.0f) return across;
+    const float length = std::sqrt(across * across + along * along);
+    return inside ? length : -length;
+  }
+
+  // The rim as the pieces show it at a point of the picture, so far inside its edge. A line that is drawn narrower is the
+  // mean of what it is drawn together from. Sums are of integers, like a vote's.
+  static Texel RimAt(const RimPaint& rim, const RimPieces& pieces, glm::vec2 at, float distance, float width) {
+    const int samples = std::clamp(static_cast<int>(std::ceil(1.0f / width - 0.01f)), 1, 8);
+    std::uint64_t sum[4] = {0, 0, 0, 0}, total = 0;
+    for (std::size_t n = 0; n < pieces.piece.size() && pieces.weight[n] > 0.0f; ++n) {
+      const glm::vec2 way = pieces.piece[n].DirectionAt(at, rim.radius());
+      const auto weight = static_cast<std::uint64_t>(pieces.weight[n] * 256.0f + 0.5f);
+      for (int s = 0; s < samples; ++s) {
+        const float off = (static_cast<float>(2 * s + 1 - samples) / static_cast<float>(2 * samples)) / width;
+        const float radius = rim.radius() - distance + (samples > 1 ? off : 0.0f);
+        const std::uint16_t* texel = rim.At(way.x * radius, way.y * radius);
+        for (int c = 0; c < 3; ++c) sum[c] += weight * texel[3] * texel[c];
+        sum[3] += weight * texel[3], total += weight;
+      }
+    }
+    Texel texel{};
+    if (sum[3] == 0) return texel;
+    for (int c = 0; c < 3; ++c) texel[c] = static_cast<std::uint16_t>((sum[c] + sum[3] / 2) / sum[3]);
+    texel[3] = static_cast<std::uint16_t>((sum[3] + total / 2) / total);
+    return texel;
+  }
+
+  const PaintedEdgeInput& input_;
+  std::span<const float> coverage_;
+  std::vector<int> bands_;
+  Silhouettes silhouettes_;
+  std::vector<RimPieces> pieces_;  // by outline pixel
+};
+
+}  // namespace
+
+bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress) {
+  if (input.region.empty()) return true;
+  const EdgePainter painter(input);
+  return ForEachRow(input.region, progress, [&](int y) {
+    for (int x = input.region.x0; x < input.region.x1; ++x) {
+      painter.Paint(x, y, coverage[input.guides.Index(x, y)], picture.At(x, y));
+    }
+  });
+}
+
+}  // namespace scumble::internal

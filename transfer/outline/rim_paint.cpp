@@ -1,0 +1,82 @@
+#include "transfer/outline/rim_paint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/image/bare_paper.h"
+#include "core/filter/resample.h"
+
+namespace scumble {
+namespace {
+
+// The band around the rim, as a share of the radius.
+constexpr double kBand = 0.035;
+// Where the sphere touches the picture's sides, the paint outside it is that of 30 degrees on: cosine and sine. It melts into
+// what the picture shows over a share of the band.
+constexpr double kOnCosine = 0.8660254037844386, kOnSine = 0.5, kMelt = 0.25;
+// The ring inside the rim that must be painted, and how much.
+constexpr double kRingFrom = 0.93, kLeastPaintOnRing = 0.05;
+
+using Texel = std::array<std::uint16_t, 4>;
+
+double Length(double x, double y) { return std::sqrt(x * x + y * y); }
+
+// a + (b - a) · share, colours weighted by alpha.
+Texel Mixed(const std::uint16_t* a, const std::uint16_t* b, double share) {
+  const double alpha_a = a[3] * (1.0 - share), alpha_b = b[3] * share, alpha = alpha_a + alpha_b;
+  Texel mixed{};
+  if (!(alpha > 0.0)) return mixed;
+  for (int c = 0; c < 3; ++c) mixed[c] = static_cast<std::uint16_t>((a[c] * alpha_a + b[c] * alpha_b) / alpha + 0.5);
+  mixed[3] = static_cast<std::uint16_t>(alpha + 0.5);
+  return mixed;
+}
+
+}  // namespace
+
+RimPaint::RimPaint(const Picture& picture, int size)
+    : size_(size), band_(std::max(1, static_cast<int>(std::ceil(kBand * 0.5 * size)))), margin_(band_ + 2) {
+  const BarePaper paper = FindBarePaper(picture);
+  Picture lifted = Resample(picture, size, size);
+  const int side = size + 2 * margin_;
+  const double half = 0.5 * size;
+  const auto inside = [&](double x, double y) {
+    const int u = std::clamp(static_cast<int>(std::floor(x + half)), 0, size - 1);
+    const int v = std::clamp(static_cast<int>(std::floor(y + half)), 0, size - 1);
+    return lifted.At(u, v);
+  };
+  // Nothing deeper inside is ever looked at.
+  const double from = half - 2.0 * band_ - 2.0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      if (Length(x + 0.5 - half, y + 0.5 - half) >= from) LiftPaint(paper, lifted.At(x, y));
+    }
+  }
+  paint_ = Picture(side, side);
+  double paint = 0.0, count = 0.0;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const double dx = x + 0.5 - 0.5 * side, dy = y + 0.5 - 0.5 * side, r = Length(dx, dy);
+      if (r < from + 1.0 || r > half + band_ + 1.0) continue;
+      Texel texel{};
+      const double to_side = half - std::max(std::fabs(dx), std::fabs(dy));
+      const double shown = r <= half ? 1.0 : std::clamp(to_side / std::max(1.0, kMelt * band_), 0.0, 1.0);
+      if (shown >= 1.0) std::copy_n(inside(dx, dy), 4, texel.begin());
+      else texel = Mixed(inside(dx * kOnCosine - dy * kOnSine, dx * kOnSine + dy * kOnCosine), inside(dx, dy), shown);
+      std::copy_n(texel.begin(), 4, paint_.At(x, y));
+      if (r >= kRingFrom * half && r <= half) paint += texel[3] / 65535.0, count += 1.0;
+    }
+  }
+  has_edge_ = paper.kind != BarePaper::Kind::kCovered && count > 0.0 && paint / count > kLeastPaintOnRing;
+}
+
+const std::uint16_t* RimPaint::At(float x, float y) const {
+  static constexpr std::uint16_t kNothing[4] = {0, 0, 0, 0};
+  const float half = 0.5f * static_cast<float>(paint_.width);
+  const int u = static_cast<int>(std::floor(x + half)), v = static_cast<int>(std::floor(y + half));
+  if (static_cast<unsigned>(u) >= static_cast<unsigned>(paint_.width)) return kNothing;
+  if (static_cast<unsigned>(v) >= static_cast<unsigned>(paint_.height)) return kNothing;
+  return paint_.At(u, v);
+}
+
+}  // namespace scumble

@@ -1,0 +1,187 @@
+#include "transfer/outline/rim_segments.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/image/hash.h"
+
+namespace scumble::internal {
+namespace {
+
+constexpr int kCoarsest = 6, kFinest = 3;  // levels at the reference height
+constexpr float kLeastAlike = 0.955336f;   // cos of 0.3 rad
+constexpr float kFreedom = 0.5f;           // radians
+// Of the turn that the rim itself makes over half a cell: from there on a seed's direction is the outline's.
+constexpr float kTurnOfNoFreedom = 0.75f;
+
+int Level(int level, int level_offset) { return std::clamp(level - level_offset, 0, 14); }
+
+// Rotates by 2 atan(half_tangent), with nothing but what is the same on every machine.
+glm::vec2 Turned(glm::vec2 v, float half_tangent) {
+  const float square = half_tangent * half_tangent;
+  const float cosine = (1.0f - square) / (1.0f + square), sine = 2.0f * half_tangent / (1.0f + square);
+  return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y};
+}
+
+// The seeds of one level, sorted by (row, column, object).
+class OutlineSeeds {
+ public:
+  OutlineSeeds(const RimPieceInput& input, int level, const std::vector<std::size_t>& styles)
+      : input_(input), styles_(styles), level_(level) {
+    const auto outline = input.silhouettes.outline();
+    for (std::size_t k = 0; k < outline.size(); ++k) {
+      const int h = LevelAt(k);
+      seeds_.push_back({outline[k].y >> h, outline[k].x >> h, input.silhouettes.ObjectOf(outline[k]),
+                        static_cast<std::int32_t>(k), DistanceToCellSeed(k, h)});
+    }
+    std::sort(seeds_.begin(), seeds_.end(), [](const Seed& a, const Seed& b) {
+      return std::tie(a.row, a.column, a.object, a.distance, a.outline) < std::tie(b.row, b.column, b.object, b.distance, b.outline);
+    });
+    const auto same = [](const Seed& a, const Seed& b) {
+      return a.row == b.row && a.column == b.column && a.object == b.object;
+    };
+    seeds_.erase(std::unique(seeds_.begin(), seeds_.end(), same), seeds_.end());
+    tbb::parallel_for(std::size_t(0), seeds_.size(), [&](std::size_t s) { seeds_[s].piece = PieceOf(seeds_[s].outline); });
+  }
+
+  // The piece of the seed nearest to outline pixel k, among those of its object in the 3 × 3 cells around; null: none.
+  const RimPiece* Nearest(std::size_t k) const {
+    const OutlinePixel& own = input_.silhouettes.outline()[k];
+    const int h = LevelAt(k), row = own.y >> h, column = own.x >> h;
+    const std::uint32_t object = input_.silhouettes.ObjectOf(own);
+    const RimPiece* best = nullptr;
+    std::int64_t least = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const RimPiece* piece = Find(row + dy, column + dx, object);
+        if (!piece) continue;
+        const OutlinePixel& at = input_.silhouettes.outline()[std::size_t(piece->seed)];
+        const std::int64_t ex = at.x - own.x, ey = at.y - own.y, distance = ex * ex + ey * ey;
+        if (!best || distance < least) best = piece, least = distance;
+      }
+    }
+    return best;
+  }
+
+ private:
+  struct Seed {
+    int row, column;
+    std::uint32_t object;
+    std::int32_t outline;
+    std::int64_t distance;  // squared, to the cell's own seed
+    RimPiece piece = {};
+  };
+
+  int LevelAt(std::size_t k) const { return Level(level_, input_.seeds[styles_[k]].level_offset); }
+
+  std::int64_t DistanceToCellSeed(std::size_t k, int h) const {
+    const OutlinePixel& at = input_.silhouettes.outline()[k];
+    const PixelPosition seed = SeedOfCell(input_.seeds[styles_[k]], h, at.x >> h, at.y >> h);
+    const std::int64_t ex = seed.x - at.x, ey = seed.y - at.y;
+    return ex * ex + ey * ey;
+  }
+
+  RimPiece PieceOf(std::int32_t seed) const {
+    const OutlinePixel& at = input_.silhouettes.outline()[std::size_t(seed)];
+    const std::size_t style = styles_[std::size_t(seed)];
+    const SeedRules& rules = input_.seeds[style];
+    const int h = LevelAt(std::size_t(seed));
+    const std::uint64_t hash = Hash(rules.seed, rules.time_step, h + rules.level_offset, at.x >> h, at.y >> h,
+                                    input_.silhouettes.ObjectOf(at), 0xed9e);
+    const float turn = (2.0f * UnitFloat(hash) - 1.0f) * kFreedom * FreedomAt(std::size_t(seed), h);
+    return {at.point, Turned(at.outward, 0.5f * turn), seed};
+  }
+
+  const RimPiece* Find(int row, int column, std::uint32_t object) const {
+    const auto found = std::lower_bound(seeds_.begin(), seeds_.end(), std::tuple(row, column, object),
+                                        [](const Seed& a, const auto& b) { return std::tie(a.row, a.column, a.object) < b; });
+    if (found == seeds_.end() || found->row != row || found->column != column || found->object != object) return nullptr;
+    return &found->piece;
+  }
+
+  // 1 where the outline is straight over half a cell to either side, 0 where it turns as the rim does.
+  float FreedomAt(std::size_t k, int h) const {
+    const auto outline = input_.silhouettes.outline();
+    const OutlinePixel& own = outline[k];
+    const std::uint32_t object = input_.silhouettes.ObjectOf(own);
+    const int reach = (1 << h) / 2;
+    float most = 0.0f;  // |sine| of the largest turn
+    input_.silhouettes.ForNear(own.x, own.y, reach, [&](std::size_t other) {
+      if (input_.silhouettes.ObjectOf(outline[other]) != object) return;
+      const glm::vec2 a = own.outward, b = outline[other].outward;
+      if (glm::dot(a, b) > 0.0f) most = std::max(most, std::fabs(a.x * b.y - a.y * b.x));
+    });
+    const float rims_own = static_cast<float>(reach) / input_.radii[styles_[k]];
+    return std::clamp(1.0f - most / (kTurnOfNoFreedom * rims_own), 0.0f, 1.0f);
+  }
+
+  const RimPieceInput& input_;
+  const std::vector<std::size_t>& styles_;
+  int level_;
+  std::vector<Seed> seeds_;
+};
+
+}  // namespace
+
+int RimPieceMargin(int level_offset, int band) { return (3 << Level(kCoarsest, level_offset)) + 2 * band + 8; }
+
+std::vector<RimPieces> ChooseRimPieces(const RimPieceInput& input) {
+  const Silhouettes& silhouettes = input.silhouettes;
+  const auto outline = silhouettes.outline();
+  std::vector<std::size_t> styles(outline.size());
+  for (std::size_t k = 0; k < outline.size(); ++k) styles[k] = silhouettes.StyleOf(outline[k]);
+  std::vector<OutlineSeeds> levels;
+  for (int level = kCoarsest; level >= kFinest; --level) levels.emplace_back(input, level, styles);
+
+  const auto melt = [&](std::size_t k) { return std::max(1, silhouettes.BandOf(outline[k]) / 4); };
+  int widest = 0;
+  for (std::size_t k = 0; k < outline.size(); ++k) widest = std::max(widest, melt(k));
+  const Region& region = input.region;
+  const auto within = [&](const OutlinePixel& pixel, int grown) {
+    return pixel.x >= region.x0 - grown && pixel.y >= region.y0 - grown && pixel.x < region.x1 + grown &&
+           pixel.y < region.y1 + grown;
+  };
+  // Each outline pixel's own piece …
+  std::vector<RimPiece> own(outline.size());
+  tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
+    const OutlinePixel& pixel = outline[k];
+    if (!within(pixel, widest)) return;
+    own[k] = {pixel.point, pixel.outward, static_cast<std::int32_t>(k)};
+    for (const OutlineSeeds& seeds : levels) {
+      const RimPiece* piece = seeds.Nearest(k);
+      if (!piece) continue;
+      const OutlinePixel& at = outline[std::size_t(piece->seed)];
+      const RimPiece straight{at.point, at.outward, piece->seed};
+      if (glm::dot(straight.DirectionAt(pixel.point, input.radii[styles[k]]), pixel.outward) < kLeastAlike) continue;
+      own[k] = *piece;
+      return;
+    }
+  });
+  // … and those of the pixels beside it, by how many have them.
+  std::vector<RimPieces> chosen(outline.size());
+  tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
+    const OutlinePixel& pixel = outline[k];
+    if (!within(pixel, 0)) return;
+    const std::uint32_t object = silhouettes.ObjectOf(pixel);
+    std::vector<std::pair<RimPiece, float>> votes;
+    silhouettes.ForNear(pixel.x, pixel.y, melt(k), [&](std::size_t other) {
+      if (silhouettes.ObjectOf(outline[other]) != object || glm::dot(outline[other].outward, pixel.outward) < 0.5f) return;
+      for (auto& [piece, count] : votes) {
+        if (piece.seed == own[other].seed && piece.outward == own[other].outward) return void(count += 1.0f);
+      }
+      votes.emplace_back(own[other], 1.0f);
+    });
+    std::stable_sort(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    RimPieces& pieces = chosen[k];
+    const std::size_t kept = std::min(votes.size(), pieces.piece.size());
+    float sum = 0.0f;
+    for (std::size_t n = 0; n < kept; ++n) sum += votes[n].second;
+    for (std::size_t n = 0; n < kept; ++n) pieces.piece[n] = votes[n].first, pieces.weight[n] = votes[n].second / sum;
+  });
+  return chosen;
+}
+
+}  // namespace scumble::internal

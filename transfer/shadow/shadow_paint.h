@@ -1,0 +1,73 @@
+// What of an exemplar shadows are painted with.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/image/picture.h"
+#include "core/image/bare_paper.h"
+#include "transfer/exemplar/prepared_exemplar.h"
+
+namespace scumble {
+
+// The darkest piece of an exemplar.
+struct DarkPlace {
+  Source center;
+  int exemplar = 0;
+  int reach = 0;  // pixels around the centre that count as dark
+};
+
+// The square of usable paint, an eighth of the exemplar's shorter side wide, whose mean luminance is lowest, in any
+// lighting condition; ties to the first in (exemplar, y, x). A painting too broken up for that gives its darkest pixel.
+DarkPlace DarkestPlace(const PreparedExemplar& exemplar);
+
+// Paint for shadows of every strength, 0 none … 1 full. Full shadow is the darkest place's paint.
+//
+// Where the exemplars are spheres painted on bare paper (bare_paper.h), a strength between is painted as the artist painted
+// that tone: with paint, lifted off its paper, from places of the sphere whose mean luminance over the paper is that share
+// of the way from bare paper to the darkest place, in linear light. Where paint covers everything there is no such scale:
+// then the darkest place's paint is laid on as thinly as the shadow is weak, and thinner yet where the texels around are
+// darker, so that its strokes show; the mean opacity is the strength. Immutable.
+class ShadowPaint {
+ public:
+  // `originals` are the pictures that the exemplar was prepared from, in its order.
+  ShadowPaint(std::shared_ptr<const PreparedExemplar> exemplar, std::span<const Picture* const> originals);
+
+  const DarkPlace& dark() const { return dark_; }
+  bool has_tones() const { return !tones_.empty(); }
+  int level() const { return level_; }  // pieces come from a grid of 2^level pixels
+
+  struct Place {
+    Source center;
+    int exemplar = 0;
+  };
+  static constexpr int kSteps = 16;
+  // One of the places that suit a strength of step / kSteps; the hash chooses.
+  Place PlaceFor(int step, std::uint64_t hash) const;
+  // The paint (dx, dy) from a place, opacity as its alpha, for that strength.
+  void Sample(const Place& place, int dx, int dy, int step, std::uint16_t* texel) const;
+
+ private:
+  struct Tone {
+    float strength;
+    Source center;
+    int exemplar;
+  };
+  float ToneAt(int exemplar, int x, int y, int reach, float paper) const;
+  void FindTones(std::span<const BarePaper> papers);
+  void FindPlaces();
+  void RankDarkPaint();
+
+  std::shared_ptr<const PreparedExemplar> exemplar_;
+  DarkPlace dark_;
+  int level_ = 0;
+  std::vector<Picture> pictures_;  // lifted, by exemplar; empty: the exemplar's own with ranks_
+  std::vector<Tone> tones_;        // by rising strength
+  std::vector<Place> places_;      // by step and square
+  std::vector<float> ranks_;       // 0 … 1 by pixel around the dark place
+  int ranks_width_ = 0;
+};
+
+}  // namespace scumble

@@ -1,0 +1,32 @@
+// Which neighbours are of one chunk, 64 pixels at a time.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "transfer/field/bit_mask_rows.h"
+#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/field/source_field.h"
+
+namespace scumble::internal {
+
+// The rows and words that marks are wanted of; both may reach beyond the picture.
+struct MarkedTile {
+  int first_row = 0, rows = 0;
+  int first_word = 0, words = 0;
+};
+
+// Two active pixels are of one chunk where they have one exemplar and sources that differ as they do. Beyond the
+// picture nothing is active, and all links stand, so that a window which reaches out is judged by what is inside.
+struct ChunkMarks {
+  BitRows active;
+  BitRows right;  // with the pixel to the right, both active
+  BitRows below;  // with the pixel below, both active
+  BitRows deep;  // active, and every texel within `radius` (in x and y) of its source is usable; in scenes none is told
+};
+
+// Fills the marks of a tile. False: nothing is active there, and no marks are made. O(pixels of the tile). Touches the field only where pixels are active.
+bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
+                int radius, const MarkedTile& tile, ChunkMarks& marks);
+
+}  // namespace scumble::internal

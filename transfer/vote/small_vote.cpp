@@ -1,0 +1,222 @@
+#include "transfer/vote/small_vote.h"
+
+#include <array>
+#include <bit>
+
+#include "transfer/vote/vote_sum.h"
+#include "transfer/vote/chunk_masks.h"
+#include "transfer/vote/edge/edge_masks.h"
+#include "transfer/vote/edge/window_paths.h"
+#include "transfer/vote/vote_kernels.h"
+
+namespace scumble::internal {
+namespace {
+
+constexpr int kTileRows = 32;    // so that what a tile's neighbours make once more is little
+constexpr int kStripWords = 16;  // of a tile are voted on together, so that their texels stay in the nearer caches
+constexpr int kTileWords = 32;   // so that all marks of a tile stay in the caches
+
+// One part of the picture: marks of its chunks, then of its edges, then its votes row by row.
+class VoteTile {
+ public:
+  VoteTile(const VoteInput& input, const TexelPlanes& texels, const JoinedWays& ways, const Region& region)
+      : input_(input),
+        texels_(texels),
+        ways_(ways),
+        region_(region),
+        first_word_(region.x0 / 64),
+        words_((region.x1 + 63) / 64 - first_word_) {
+    const int r = input.radius;
+    tile_ = {region.y0 - r, region.y1 - region.y0 + 2 * r, first_word_ - 1, words_ + 2};
+  }
+
+  void Run(Picture& out) {
+    if (!MarkChunks(input_.field, input_.active, input_.exemplar, input_.radius, tile_, marks_) || !Split()) return;
+    const bool edges = input_.edges && mixed_any_;
+    if (edges) MarkEdges(*input_.edges, input_.radius, tile_, mixed_, marked_edges_);
+    for (int word = first_word_; word < first_word_ + words_; word += kStripWords) {
+      VoteStrip(word, std::min(kStripWords, first_word_ + words_ - word), edges, out);
+    }
+  }
+
+ private:
+  void VoteStrip(int first_word, int words, bool edges, Picture& out) {
+    std::array<std::uint64_t, kStripWords> copied{}, linked{}, whole{}, parts{};
+    joined_.assign(std::size_t(ways_.count()) * words, BitRows::kAll);
+    votes_.assign(joined_.size(), 0);
+    const int radius = input_.radius, first = std::max(0, 64 * first_word - radius);
+    const int end = std::min(input_.field.width, 64 * (first_word + words) + radius);
+    SourceRows sources(radius, first, end);
+    for (int y = region_.y0 - radius; y < region_.y0 + radius; ++y) sources.Add(input_.field, texels_, y);
+    for (int y = region_.y0; y < region_.y1; ++y) {
+      sources.Add(input_.field, texels_, y + radius);
+      const VoteRow row{texels_, input_.field, y, out.At(0, y), first_word, words};
+      std::uint64_t any_whole = 0, any_parts = 0, any_mixed = 0;
+      for (int w = 0; w < words; ++w) {
+        const int word = first_word + w;
+        const std::uint64_t mixed = mixed_.At(y, word);
+        copied[w] = marks_.active.At(y, word) & Inside(word) & ~mixed;
+        linked[w] = marks_.right.At(y, word);
+        whole[w] = mixed ? mixed & WholeWindows(y, word) : 0;
+        if (edges && mixed) {
+          const std::span<std::uint64_t> joined = JoinedAt(w);
+          if (mixed & ~SureWindows(y, word)) {
+            ways_.Join(marked_edges_.same, y, word, joined);
+            for (const std::uint64_t bits : joined) whole[w] &= bits;
+          } else {
+            std::fill(joined.begin(), joined.end(), BitRows::kAll);
+          }
+        }
+        parts[w] = mixed & ~whole[w];
+        if (parts[w]) parts[w] = SureParts(y, word, parts[w], w);
+        any_mixed |= mixed, any_whole |= whole[w], any_parts |= parts[w];
+      }
+      CopyMarked(row, copied, linked);
+      if (any_mixed) {
+        for (int w = 0; w < words; ++w) {
+          copied[w] = mixed_.At(y, first_word + w) & ~whole[w] & ~parts[w];  // one by one
+        }
+        if (any_whole) MeanOfMarked(row, sources, whole);
+        if (any_parts) MeanOfParts(row, sources, ways_.ways, votes_, parts);
+        for (int w = 0; w < words; ++w) {
+          VoteOneByOne(y, first_word + w, JoinedAt(w), copied[w] | whole[w] | parts[w], out);
+        }
+      }
+      if (input_.finished) {
+        input_.finished(y, std::max(region_.x0, 64 * first_word), std::min(region_.x1, 64 * (first_word + words)));
+      }
+    }
+  }
+
+  std::uint64_t Inside(int word) const { return BitRange(region_.x0 - 64 * word, region_.x1 - 64 * word); }
+  std::span<std::uint64_t> JoinedAt(int w) {
+    return {joined_.data() + std::size_t(w) * ways_.count(), std::size_t(ways_.count())};
+  }
+
+  // Marks the pixels of the region whose windows are not of one chunk. False: nothing is active.
+  bool Split() {
+    mixed_.Reset(tile_.first_row, tile_.rows, tile_.first_word, tile_.words, 0);
+    bool any = false;
+    for (int y = region_.y0; y < region_.y1; ++y) {
+      for (int w = first_word_; w < first_word_ + words_; ++w) {
+        const std::uint64_t active = marks_.active.At(y, w) & Inside(w);
+        if (!active) continue;
+        any = true;
+        const std::uint64_t mixed = active & ~OneChunk(y, w);
+        mixed_.At(y, w) = mixed;
+        if (mixed) mixed_any_ = true;
+      }
+    }
+    return any;
+  }
+
+  std::uint64_t OneChunk(int y, int word) const {
+    const int r = input_.radius;
+    std::uint64_t one = BitRows::kAll;
+    for (int v = y - r; v <= y + r; ++v) {
+      for (int dx = -r; dx < r; ++dx) one &= marks_.right.Shifted(v, word, dx);
+      if (v < y + r) one &= marks_.below.At(v, word);
+    }
+    return one;
+  }
+
+  // Whether all of the window is active, and all texels that it votes for are usable.
+  std::uint64_t WholeWindows(int y, int word) const {
+    const int r = input_.radius;
+    std::uint64_t whole = BitRows::kAll;
+    for (int v = y - r; v <= y + r; ++v) {
+      for (int dx = -r; dx <= r; ++dx) whole &= marks_.deep.Shifted(v, word, dx);
+    }
+    return whole;
+  }
+
+  // Pixels that are joined to all of their windows, as far as is known without looking at every way. Ways end in the
+  // last row of the window, and have no step within it.
+  std::uint64_t SureWindows(int y, int word) const {
+    const int r = input_.radius;
+    std::uint64_t sure = BitRows::kAll;
+    for (int v = y - r; v < y + r; ++v) {
+      for (int dx = -r; dx <= r; ++dx) sure &= marked_edges_.sure.Shifted(v, word, dx);
+    }
+    return sure;
+  }
+
+  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the
+  // votes.
+  std::uint64_t SureParts(int y, int word, std::uint64_t pixels, int w) {
+    const std::span<const std::uint64_t> joined = JoinedAt(w);
+    std::uint64_t* votes = votes_.data() + std::size_t(w) * joined.size();
+    pixels &= marks_.deep.At(y, word);
+    for (std::size_t k = 0; k < joined.size(); ++k) {
+      const PixelStep way = ways_.ways[k];
+      const std::uint64_t deep = marks_.deep.Shifted(y + way.dy, word, way.dx);
+      pixels &= ~(joined[k] & marks_.active.Shifted(y + way.dy, word, way.dx) & ~deep);
+      votes[k] = joined[k] & deep;
+    }
+    return pixels;
+  }
+
+  void VoteOneByOne(int y, int word, std::span<const std::uint64_t> joined, std::uint64_t pixels, Picture& out) {
+    const SourceField& field = input_.field;
+    for (; pixels; pixels &= pixels - 1) {
+      const int i = std::countr_zero(pixels), x = 64 * word + i;
+      Ballot ballot;
+      const auto add = [&](int u, int v) {
+        const std::size_t q = field.Index(u, v);
+        const Source at{field.x[q] - (u - x), field.y[q] - (v - y)};
+        if (!input_.exemplar.Usable(at.x, at.y)) return;
+        ballot.Add(texels_.picture[field.exemplar[q]] + 4 * (std::size_t(at.y) * texels_.width + at.x));
+      };
+      add(x, y);
+      for (std::size_t k = 0; k < joined.size(); ++k) {
+        if (!(joined[k] >> i & 1)) continue;
+        const int u = x + ways_.ways[k].dx, v = y + ways_.ways[k].dy;
+        if (u < 0 || v < 0 || u >= field.width || v >= field.height || !input_.active[field.Index(u, v)]) continue;
+        add(u, v);
+      }
+      ballot.Count(out.At(x, y));
+    }
+  }
+
+  const VoteInput& input_;
+  const TexelPlanes& texels_;
+  const JoinedWays& ways_;
+  Region region_;
+  int first_word_, words_;
+  MarkedTile tile_;
+  ChunkMarks marks_;
+  BitRows mixed_;
+  bool mixed_any_ = false;
+  EdgeMarks marked_edges_;
+  std::vector<std::uint64_t> joined_, votes_;  // by word and way
+};
+
+}  // namespace
+
+void SmallVotes::Vote(const VoteInput& input, Picture& out) const {
+  const Region& region = input.region;
+  for (int x0 = region.x0, x1; x0 < region.x1; x0 = x1) {
+    x1 = std::min(region.x1, 64 * (x0 / 64 + kTileWords));
+    VoteTile(input, texels_, ways_, {x0, region.y0, x1, region.y1}).Run(out);
+  }
+}
+
+bool VoteSmall(const VoteInput& input, Picture& out, RowProgress& progress) {
+  const Region& region = input.region;
+  if (region.empty()) return !progress.cancelled();
+  const SmallVotes votes(input.exemplar, input.radius);
+  tbb::parallel_for(tbb::blocked_range<int>(0, (region.y1 - region.y0 + kTileRows - 1) / kTileRows),
+                    [&](const auto& bands) {
+                      for (int band = bands.begin(); band != bands.end(); ++band) {
+                        if (progress.cancelled()) return;
+                        VoteInput rows = input;
+                        rows.region.y0 = region.y0 + band * kTileRows;
+                        rows.region.y1 = std::min(region.y1, rows.region.y0 + kTileRows);
+                        votes.Vote(rows, out);
+                        progress.Finished(rows.region.y1 - rows.region.y0);
+                      }
+                    });
+  return !progress.cancelled();
+}
+
+}  // namespace scumble::internal

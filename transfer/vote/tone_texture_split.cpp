@@ -1,0 +1,108 @@
+#include "transfer/vote/tone_texture_split.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/filter/masked_blur.h"
+
+namespace scumble {
+
+std::vector<Picture> MakeTones(const PreparedExemplar& exemplar, double sigma) {
+  std::vector<std::uint8_t> usable(std::size_t(exemplar.width()) * exemplar.height());
+  for (const Source& at : exemplar.UsablePixels()) usable[std::size_t(at.y) * exemplar.width() + at.x] = 1;
+  std::vector<Picture> tones;
+  for (int k = 0; k < exemplar.count(); ++k) {
+    tones.push_back(internal::MaskedBlur(exemplar.picture(k), usable, sigma));
+  }
+  return tones;
+}
+
+}  // namespace scumble
+
+namespace scumble::internal {
+namespace {
+
+using Color = std::array<std::int64_t, 4>;  // premultiplied, of 65535
+
+std::int64_t FloorDivide(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+
+Color TexelAt(const Picture& tone, Source at) {
+  const std::uint16_t* texel = tone.At(at.x, at.y);
+  return {texel[0], texel[1], texel[2], texel[3]};
+}
+
+// The tone for a normal. Neighbours across a texel's border would otherwise differ by a whole step, which a small
+// exemplar on a large round form shows as bands.
+Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 normal) {
+  if (!exemplar.is_sphere()) return TexelAt(tone, exemplar.NearestNeighbour(normal));
+  constexpr int kOne = 256;
+  const glm::vec2 place = exemplar.OnDisc(normal);
+  const float half = 0.5f * static_cast<float>(exemplar.size());
+  const int u = static_cast<int>(std::floor((place.x * half + half - 0.5f) * kOne + 0.5f));
+  const int v = static_cast<int>(std::floor((half - place.y * half - 0.5f) * kOne + 0.5f));
+  const int x = u >> 8, y = v >> 8, right = u & (kOne - 1), below = v & (kOne - 1);
+  Color sum{};
+  std::int64_t total = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int dx = corner & 1, dy = corner >> 1;
+    const std::int64_t weight = std::int64_t(dx ? right : kOne - right) * (dy ? below : kOne - below);
+    if (weight == 0 || !exemplar.Usable(x + dx, y + dy)) continue;
+    const Color texel = TexelAt(tone, {x + dx, y + dy});
+    for (int c = 0; c < 4; ++c) sum[c] += weight * texel[c];
+    total += weight;
+  }
+  if (total == 0) return TexelAt(tone, exemplar.NearestNeighbour(normal));
+  for (std::int64_t& value : sum) value = (value + total / 2) / total;
+  return sum;
+}
+
+// The tone at a pixel's own nearest neighbour in exemplar k.
+Color ToneAt(const HybridInput& input, std::size_t pixel, int k) {
+  const glm::vec3 normal = input.guides.Vec3(Layer::kNormal, pixel);
+  const Picture& tone = input.tones[std::size_t(k)];
+  if (!input.space) return ToneFor(input.votes.exemplar, tone, normal);
+  float rest[GuideSpace::kMaxRest];
+  input.space->Read(input.guides, pixel, input.brightness, rest);
+  return TexelAt(tone, input.space->Nearest(k, normal, rest));
+}
+
+void Store(const Color& color, std::uint16_t* out) {
+  const std::int64_t alpha = std::clamp<std::int64_t>(color[3], 0, 65535);
+  for (int c = 0; c < 3; ++c) {
+    const std::int64_t value = std::clamp<std::int64_t>(color[c], 0, alpha);
+    out[c] = alpha > 0 ? static_cast<std::uint16_t>((value * 65535 + alpha / 2) / alpha) : 0;
+  }
+  out[3] = static_cast<std::uint16_t>(alpha);
+}
+
+}  // namespace
+
+bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
+  const VoteInput& votes = input.votes;
+  const PreparedExemplar& exemplar = votes.exemplar;
+  std::optional<EdgeWindows> edges;
+  if (votes.edges) edges.emplace(*votes.edges, votes.radius, votes.region);
+  const JoinedWindow* joined = edges ? &edges->joined : nullptr;
+  return ForEachRow(votes.region, progress, [&](int y) {
+    for (int x = votes.region.x0; x < votes.region.x1; ++x) {
+      const std::size_t p = votes.field.Index(x, y);
+      if (!votes.active[p]) continue;
+      Color texture{};
+      std::int64_t count = 0;
+      ForEachVote(votes, joined, x, y, [&](int from, Source at) {
+        const std::uint16_t* paint = exemplar.picture(from).At(at.x, at.y);
+        const std::uint16_t* tone = input.tones[std::size_t(from)].At(at.x, at.y);
+        for (int c = 0; c < 4; ++c) texture[c] += std::int64_t(Premultiplied(paint, c)) - tone[c];
+        ++count;
+      });
+      const int own = input.illumination.Choose(input.luminance.empty() ? 0.0f : input.luminance[p]);
+      Color color = ToneAt(input, p, own);
+      for (int c = 0; c < 4; ++c) color[c] += FloorDivide(texture[c] + count / 2, count);
+      Store(color, out.At(x, y));
+    }
+    if (votes.finished) votes.finished(y, votes.region.x0, votes.region.x1);
+  });
+}
+
+}  // namespace scumble::internal

@@ -1,0 +1,60 @@
+// From sources to colours: neighbouring chunks vote (Sýkora et al. 2019, section 3.3).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "core/image/guides.h"
+#include "core/image/picture.h"
+#include "core/filter/edge_test.h"
+#include "core/filter/parallel.h"
+#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/field/source_field.h"
+
+namespace scumble::internal {
+
+struct VoteInput {
+  const SourceField& field;
+  std::span<const std::uint8_t> active;  // 1: a pixel that this style paints; others neither vote nor are painted
+  const PreparedExemplar& exemplar;
+  int radius = 0;
+  const EdgeRules* edges = nullptr;  // null: plain voting
+  Region region;
+  // Called from any thread for pieces x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once for
+  // each active pixel of the region, and maybe for others. It may change those pixels of the picture.
+  std::function<void(int y, int x0, int x1)> finished = {};
+};
+
+// Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every pixel q of the (2·radius + 1)²
+// window the texel S(q) + (p - q), where it is usable and, with `joined`, which is of that radius and region, where q is joined to p.
+// The pixel's own vote is always among them.
+template <class Visit>
+void ForEachVote(const VoteInput& input, const JoinedWindow* joined, int x, int y, const Visit& visit) {
+  const SourceField& field = input.field;
+  const auto offer = [&](std::size_t q, int dx, int dy) {
+    if (!input.active[q]) return;
+    const Source source{field.x[q] - dx, field.y[q] - dy};
+    if (input.exemplar.Usable(source.x, source.y)) visit(int(field.exemplar[q]), source);
+  };
+  if (joined) {
+    joined->ForEach(x, y, offer);
+    return;
+  }
+  const int x0 = std::max(0, x - input.radius), x1 = std::min(field.width - 1, x + input.radius);
+  const int y0 = std::max(0, y - input.radius), y1 = std::min(field.height - 1, y + input.radius);
+  for (int v = y0; v <= y1; ++v) {
+    for (int u = x0; u <= x1; ++u) offer(field.Index(u, v), u - x, v - y);
+  }
+}
+
+// Every active pixel of the region becomes the mean of its votes: of what the chunks around it would put there. Inside a
+// chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha. Writes straight alpha
+// into `out` (the picture's size); other pixels are left alone. False: asked to stop.
+bool Vote(const VoteInput& input, Picture& out, RowProgress& progress);
+
+// The same, pixel by pixel: what all faster ways are held against.
+bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress);
+
+}  // namespace scumble::internal

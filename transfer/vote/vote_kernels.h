@@ -1,0 +1,71 @@
+// The two ways in which most pixels get their colour: copies of whole runs, and means of whole windows.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/filter/edge_test.h"
+#include "transfer/exemplar/prepared_exemplar.h"
+#include "transfer/field/source_field.h"
+
+namespace scumble::internal {
+
+// The pictures of an exemplar, which are of one size.
+struct TexelPlanes {
+  static constexpr int kMax = 256;
+  const std::uint16_t* picture[kMax];
+  int count = 0, width = 0, height = 0;
+
+  explicit TexelPlanes(const PreparedExemplar& exemplar);
+};
+
+// Where a row's votes come from and go to.
+struct VoteRow {
+  const TexelPlanes& texels;
+  const SourceField& field;
+  int y = 0;
+  std::uint16_t* out = nullptr;  // the row of the picture
+  int first_word = 0, words = 0;
+};
+
+// Where in its picture each pixel's source stands, y·width + x, for the rows of the windows that are voted on. Rows
+// come in order; each takes the place of the one that no window needs any more.
+class SourceRows {
+ public:
+  // For windows of `radius`, and columns [begin, end) of the picture.
+  SourceRows(int radius, int begin, int end)
+      : radius_(radius), begin_(begin), end_(end), places_(std::size_t(2 * radius + 1) * (end - begin)) {}
+  // Rows outside the picture are nothing.
+  void Add(const SourceField& field, const TexelPlanes& texels, int y);
+  int radius() const { return radius_; }
+  // At column `begin`.
+  const std::int32_t* Row(int y) const { return places_.data() + Offset(y); }
+  int begin() const { return begin_; }
+
+ private:
+  std::size_t Offset(int y) const { return std::size_t((y + radius_) % (2 * radius_ + 1)) * (end_ - begin_); }
+  int radius_, begin_, end_;
+  std::vector<std::int32_t> places_;
+};
+
+// Copies to each marked pixel its own texel, transparent ones without colour. Bit i of linked[w] tells that pixel
+// 64·(first_word + w) + i and the one to its right are of one chunk.
+void CopyMarked(const VoteRow& row, std::span<const std::uint64_t> marked, std::span<const std::uint64_t> linked);
+
+// Every marked pixel becomes the mean of the votes of its whole window: the window is in the picture and active, and
+// all texels that it votes for are usable. Only where all of these are opaque; the marks of other pixels are left,
+// those of pixels that are done are cleared. `sources` has the rows of the windows, of radius 1 … 3.
+//
+// With opaque paint the mean weighted by alpha is the plain one, rounded alike. Ballot has floor((aS + floor(an/2)) /
+// (an)), a = 65535, for n votes of sum S. Without the inner floor that is floor((2S + n) / (2n)). Where an is odd, aS +
+// an/2 lies half-way between two integers, so no multiple of an lies between it and the lower one, and both quotients
+// have one floor.
+void MeanOfMarked(const VoteRow& row, const SourceRows& sources, std::span<std::uint64_t> marked);
+
+// The same for windows of which a part votes: the pixel itself, and the one `ways[k]` from it where its bit of votes[w ·
+// ways + k] is set; such pixels are in the picture, and the texels that they vote for are usable. At most 48 ways.
+void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const PixelStep> ways,
+                 std::span<const std::uint64_t> votes, std::span<std::uint64_t> marked);
+
+}  // namespace scumble::internal
