@@ -12,7 +12,7 @@
 #include <limits>
 #include <vector>
 
-#include "guidegen/scene.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble::testing {
 

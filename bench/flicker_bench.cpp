@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/io/picture_file.h"
 #include "measure/flicker.h"
 #include "core/style/style_file.h"

@@ -11,7 +11,7 @@
 
 #include "bench/or_stop.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/style/style_file.h"
 
 namespace scumble::bench {

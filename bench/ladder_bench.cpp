@@ -17,7 +17,7 @@
 #include "bench/repeats.h"
 #include "cli/tradeoff_reference.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/image/stopwatch.h"
 #include "measure/pareto.h"
 #include "core/style/style_file.h"

@@ -9,7 +9,7 @@
 
 #include "bench/or_stop.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_file.h"
 #include "transfer/transfer.h"

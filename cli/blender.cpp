@@ -17,7 +17,7 @@
 #include "cli/blender_process.h"
 #include "cli/frames.h"
 #include "cli/options.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 
 namespace scumble {
 

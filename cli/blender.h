@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cli/command.h"
-#include "guidegen/scene.h"
+#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
 
 namespace scumble {

@@ -11,7 +11,7 @@
 #include "cli/options.h"
 #include "cli/style_set.h"
 #include "cli/transfer_run.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "core/io/guide_file.h"
 

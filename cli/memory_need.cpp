@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "guidegen/path_layers.h"
+#include "guidegen/light/path_layers.h"
 #include "core/style/kit/sphere_template.h"
 
 namespace scumble {

@@ -8,7 +8,7 @@
 #include "cli/memory_limit.h"
 #include "cli/options.h"
 #include "cli/transfer_run.h"
-#include "guidegen/scene.h"
+#include "guidegen/scene/scene.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/layers.h"
 #include "core/image/style.h"

@@ -15,7 +15,7 @@
 #include "cli/command.h"
 #include "cli/memory_limit.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/image/stopwatch.h"
 #include "core/image/style.h"
 #include "core/io/picture_file.h"

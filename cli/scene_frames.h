@@ -14,7 +14,7 @@
 #include "cli/options.h"
 #include "cli/sequence.h"
 #include "cli/style_set.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 
 namespace scumble {
 

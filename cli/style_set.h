@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/options.h"
-#include "guidegen/scene.h"
+#include "guidegen/scene/scene.h"
 #include "core/image/guides.h"
 #include "core/image/style.h"
 #include "transfer/frame/style_map.h"

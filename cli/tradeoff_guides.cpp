@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "guidegen/path_layers.h"
+#include "guidegen/light/path_layers.h"
 #include "core/image/stopwatch.h"
 #include "core/io/guides/guide_precision.h"
 #include "transfer/upsample_guides.h"

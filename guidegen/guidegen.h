@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/scene.h"
+#include "guidegen/scene/scene.h"
 #include "core/image/direction.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"

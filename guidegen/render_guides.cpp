@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/cast_guides.h"
+#include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/path_layers.h"
+#include "guidegen/light/path_layers.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/check.h"
 

@@ -5,11 +5,11 @@
 #include <optional>
 #include <utility>
 
-#include "guidegen/bsdf.h"
-#include "guidegen/loader_util.h"
-#include "guidegen/path_layers.h"
-#include "guidegen/picture_budget.h"
-#include "guidegen/surface.h"
+#include "guidegen/surface/bsdf.h"
+#include "guidegen/load/loader_util.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/load/texture_budget.h"
+#include "guidegen/surface/surface.h"
 
 namespace scumble {
 namespace {

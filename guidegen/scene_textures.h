@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/scene.h"
+#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
 
 namespace scumble {

@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "gltf_builder.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 
 namespace scumble {
 

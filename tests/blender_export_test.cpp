@@ -10,9 +10,9 @@
 #include <set>
 #include <vector>
 
-#include "guidegen/camera_rays.h"
+#include "guidegen/rays/camera_rays.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "tests/cli_harness.h"
 #include "tests/cycles_passes.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/image/hash.h"
 #include "core/style/style_file.h"
 #include "core/filter/resample.h"

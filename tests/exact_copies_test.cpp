@@ -1,5 +1,5 @@
 // Objects that stand exactly where another one stands: which of them are left out.
-#include "guidegen/exact_copies.h"
+#include "guidegen/rays/coincident_objects.h"
 
 #include <gtest/gtest.h>
 

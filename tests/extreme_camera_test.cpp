@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/camera_rays.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/rays/camera_rays.h"
+#include "guidegen/load/load_scene.h"
 #include "tests/exact_rays.h"
 #include "tests/guidegen_checks.h"
 #include "tests/guidegen_scenes.h"

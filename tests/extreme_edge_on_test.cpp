@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "guidegen/surface.h"
+#include "guidegen/surface/surface.h"
 #include "tests/exact_rays.h"
 
 namespace scumble::testing {

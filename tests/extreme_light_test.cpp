@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/direct_light.h"
+#include "guidegen/light/direct_light.h"
 #include "core/image/stopwatch.h"
 #include "tests/exact_rays.h"
 #include "tests/light_path_scenes.h"

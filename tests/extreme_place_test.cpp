@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "tests/animation_fixtures.h"
 #include "tests/exact_rays.h"
 #include "tests/gltf_builder.h"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/image/hash.h"
 #include "core/io/guides/guide_storage.h"
 #include "tests/transfer_fixtures.h"

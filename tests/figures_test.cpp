@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/image/color.h"
 #include "core/style/style_file.h"
 #include "tests/transfer_fixtures.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 
 namespace scumble {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/direct_light.h"
+#include "guidegen/light/direct_light.h"
 #include "guidegen/guidegen.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "tests/exact_rays.h"
 #include "tests/guidegen_checks.h"
 #include "tests/guidegen_scenes.h"

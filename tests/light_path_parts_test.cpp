@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/bsdf.h"
-#include "guidegen/light_sampling.h"
-#include "guidegen/path_expression.h"
-#include "guidegen/path_layers.h"
-#include "guidegen/sampler.h"
+#include "guidegen/surface/bsdf.h"
+#include "guidegen/light/light_sampling.h"
+#include "guidegen/light/path_expression.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/light/sampler.h"
 #include "tests/guidegen_scenes.h"
 
 namespace scumble::testing {

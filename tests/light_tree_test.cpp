@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
-#include "guidegen/light_sampling.h"
-#include "guidegen/sampler.h"
+#include "guidegen/light/light_sampling.h"
+#include "guidegen/light/sampler.h"
 #include "core/image/hash.h"
 
 namespace scumble::testing {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "gltf_builder.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/io/picture_file.h"
 
 namespace scumble {

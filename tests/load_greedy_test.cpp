@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "animation_fixtures.h"
-#include "guidegen/loader_util.h"
+#include "guidegen/load/loader_util.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"

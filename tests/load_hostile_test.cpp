@@ -8,8 +8,8 @@
 #include <set>
 
 #include "gltf_builder.h"
-#include "guidegen/load_scene.h"
-#include "guidegen/picture_budget.h"
+#include "guidegen/load/load_scene.h"
+#include "guidegen/load/texture_budget.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"

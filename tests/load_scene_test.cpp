@@ -1,13 +1,13 @@
 // What all scene loaders share, and the formats that are quickly told: normals, polygons, OBJ, PLY, framing.
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "gltf_builder.h"
-#include "guidegen/loader_util.h"
-#include "guidegen/mesh_normals.h"
+#include "guidegen/load/loader_util.h"
+#include "guidegen/load/mesh_normals.h"
 #include "core/image/color.h"
 #include "core/io/picture_file.h"
 

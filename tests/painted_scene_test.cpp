@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
 #include "core/io/guide_file.h"

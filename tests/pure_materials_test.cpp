@@ -1,5 +1,5 @@
 // Which pure material stands in for which glTF material.
-#include "guidegen/pure_materials.h"
+#include "guidegen/scene/pure_materials.h"
 
 #include <gtest/gtest.h>
 

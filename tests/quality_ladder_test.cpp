@@ -12,7 +12,7 @@
 #include "cli/budget_trial.h"
 #include "cli/picture_settings.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 
 namespace scumble {
 namespace {

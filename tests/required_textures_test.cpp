@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "core/io/picture_file.h"
 #include "tests/gltf_builder.h"

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "guidegen/bsdf.h"
-#include "guidegen/direct_light.h"
+#include "guidegen/surface/bsdf.h"
+#include "guidegen/light/direct_light.h"
 #include "core/image/hash.h"
 #include "tests/exact_rays.h"
 #include "tests/light_path_scenes.h"

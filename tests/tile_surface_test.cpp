@@ -1,5 +1,5 @@
 // A tile's guides in vectors against the plain code, FindSurfacePoint, pixel by pixel and bit by bit.
-#include "guidegen/tile_surface.h"
+#include "guidegen/cast/tile_surface.h"
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/camera_rays.h"
-#include "guidegen/tile_store.h"
+#include "guidegen/rays/camera_rays.h"
+#include "guidegen/cast/tile_store.h"
 #include "core/image/plane_allocator.h"
 #include "tests/guidegen_scenes.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "measure/coherence.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/nearest/guide_distance.h"

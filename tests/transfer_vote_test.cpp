@@ -4,7 +4,7 @@
 #include <set>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "tests/transfer_fixtures.h"
 #include "core/filter/resample.h"
 #include "transfer/vote/vote.h"

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "guidegen/guidegen.h"
-#include "guidegen/load_scene.h"
+#include "guidegen/load/load_scene.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {
 
-// What guidegen/scene.h promises to those who read a scene.
+// What guidegen/scene/scene.h promises to those who read a scene.
 inline void CheckScene(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.positions.size());

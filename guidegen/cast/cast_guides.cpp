@@ -1,0 +1,191 @@
+#include "guidegen/cast/cast_guides.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "guidegen/rays/embree_scene.h"
+#include "guidegen/light/light_passes.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/light/progress_gate.h"
+#include "guidegen/cast/tile_caster.h"
+#include "guidegen/cast/tile_store.h"
+#include "guidegen/surface/work_counters.h"
+#include "core/image/stopwatch.h"
+
+namespace scumble {
+namespace {
+
+bool Continue(const Progress& progress, double share) { return !progress || progress(share); }
+
+// The progress that casting takes where light paths follow, which nearly always take longer.
+constexpr double kCastShare = 0.05;
+
+// False where the caller asked to stop. Covered pixels are listed by tile where `pixels` is given.
+bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double end, GuidegenResult& result,
+               std::vector<std::vector<PathPixel>>* pixels) {
+  const std::size_t columns = std::size_t(options.width + kTileSide - 1) / kTileSide;
+  const std::size_t rows = std::size_t(options.height + kTileSide - 1) / kTileSide;
+  const std::size_t strips = (columns + kStripTiles - 1) / kStripTiles;  // in a row
+  ProgressGate gate(options.progress, strips * rows, 0.0, end);
+  if (pixels) pixels->resize(columns * rows);
+  std::mutex summing;
+  tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, strips * rows), [&](const auto& range) {
+    TileCaster::Scratch& own = scratch.local();
+    RayCounts cast;
+    const WorkMeter meter;
+    for (std::size_t i = range.begin(); i != range.end() && !gate.cancelled(); ++i) {
+      const std::size_t row = i / strips;
+      const std::size_t first = i % strips * kStripTiles;
+      const std::size_t count = std::min<std::size_t>(kStripTiles, columns - first);
+      std::array<Tile, kStripTiles> tiles;
+      for (std::size_t k = 0; k < count; ++k) {
+        Tile& tile = tiles[k];
+        tile.x0 = int(first + k) * kTileSide;
+        tile.y0 = int(row) * kTileSide;
+        tile.width = std::min(kTileSide, options.width - tile.x0);
+        tile.height = std::min(kTileSide, options.height - tile.y0);
+      }
+      const auto lists =
+          pixels ? std::span(*pixels).subspan(row * columns + first, count) : std::span<std::vector<PathPixel>>();
+      caster.Cast(std::span(tiles).first(count), own, cast, lists);
+      gate.TileDone();
+    }
+    PublishTiles();
+    const std::lock_guard lock(summing);
+    result.rays.primary += cast.primary;
+    result.rays.coverage += cast.coverage;
+    result.rays.shadow += cast.shadow;
+    AddWork(meter.Since(), result.work);
+  });
+  return !gate.cancelled();
+}
+
+// Tiles fill them, background included.
+GuideSet UnsetGuides(const GuidegenOptions& options) {
+  GuideSet guides(options.width, options.height);
+  for (const LayerInfo& info : AllLayers()) {
+    if (AlwaysWritten().Has(info.layer) || options.layers.Has(info.layer)) guides.AddUnset(info.layer);
+  }
+  return guides;
+}
+
+Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) {
+  if (!Continue(options.progress, 0.0)) return CancelledError();
+  GuidegenResult result;
+  Stopwatch watch;
+  const PathFollower follower(options.layers, view.supply, options.max_bounces);
+  EmbreeScene::Needs needs;
+  // Only the light of meshes without blockers needs the emitters by themselves.
+  needs.emitters = options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
+  needs.light_rays = needs.emitters || !follower.empty();
+  needs.robust = options.robust;
+  SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa, needs));
+  result.build_ms = watch.Lap();
+
+  result.guides = UnsetGuides(options);
+  for (const LayerInfo& info : AllLayers()) {
+    if (!result.guides.Has(info.layer)) continue;
+    for (int i = 0; i < ChannelCount(info.layer); ++i) {
+      result.work.plane_bytes += result.guides.Plane(info.layer, i).size_bytes();
+    }
+  }
+  const TileCaster caster(scene, view, options, result.guides);
+  std::vector<std::vector<PathPixel>> pixels;
+  const bool paths = !follower.empty();
+  if (!CastTiles(caster, options, paths ? kCastShare : 1.0, result, paths ? &pixels : nullptr)) {
+    return CancelledError();
+  }
+  if (paths) {
+    const LightPathTracer tracer(scene, view, follower, options.max_bounces);
+    const LightPassResult traced = TraceLightPaths(tracer, follower, pixels, options, kCastShare, result.guides);
+    if (traced.cancelled) return CancelledError();
+    result.rays.shadow += traced.rays.shadow;
+    result.rays.bounce += traced.rays.bounce;
+    AddWork(traced.work, result.work);
+    result.samples = traced.samples;
+    result.noise = traced.noise;
+  }
+  result.render_ms = watch.Lap();
+  if (!Continue(options.progress, 1.0)) return CancelledError();
+
+  result.guides.camera = view.camera.ToGuideCamera();
+  result.guides.attributes["scumble:generator"] = "guidegen " SCUMBLE_VERSION;
+  result.guides.attributes["scumble:isa"] = scene.isa();
+  if (!options.robust) result.guides.attributes["scumble:robust"] = "false";
+  if (result.samples > 0) result.guides.attributes["scumble:samples"] = std::to_string(result.samples);
+  if (options.seed != 0) result.guides.attributes["scumble:seed"] = std::to_string(options.seed);
+  result.guides.attributes["scumble:normal_frame"] = options.normal_frame == NormalFrame::kEye ? "eye" : "camera";
+  return result;
+}
+
+Status CheckSampling(const GuidegenOptions& options) {
+  const auto refuse = [](const std::string& what, const std::string& expected) -> Status {
+    return UsageError(what + " is out of range: expected " + expected);
+  };
+  if (options.samples < 1 || options.samples > kMaxSamples) {
+    return refuse("samples " + std::to_string(options.samples), "1 to " + std::to_string(kMaxSamples));
+  }
+  if (options.max_samples < 1 || options.max_samples > kMaxSamples) {
+    return refuse("max_samples " + std::to_string(options.max_samples), "1 to " + std::to_string(kMaxSamples));
+  }
+  if (options.max_bounces < 0 || options.max_bounces > kMaxBounces) {
+    return refuse("max_bounces " + std::to_string(options.max_bounces), "0 to " + std::to_string(kMaxBounces));
+  }
+  if (!(options.noise >= 0.0) || std::isinf(options.noise)) {
+    return refuse("noise " + std::to_string(options.noise), "0 (a fixed number of samples) or an error like 0.01");
+  }
+  if (!(options.time_budget_seconds >= 0.0) || std::isinf(options.time_budget_seconds)) {
+    return refuse("a time budget of " + std::to_string(options.time_budget_seconds) + " s",
+                  "0 (no budget) or a number of seconds");
+  }
+  return Ok();
+}
+
+}  // namespace
+
+Status CheckOptions(const GuidegenOptions& options, bool has_next_frame) {
+  const auto in_range = [](int side) { return side >= 1 && side <= kMaxImageSide; };
+  if (!in_range(options.width) || !in_range(options.height)) {
+    return UsageError("a picture of " + std::to_string(options.width) + "x" + std::to_string(options.height) +
+                      " pixels cannot be made: each side must be 1 to " + std::to_string(kMaxImageSide));
+  }
+  if (options.aa < 1 || options.aa > kMaxAa) {
+    return UsageError("aa " + std::to_string(options.aa) + " is out of range: expected 1 to " + std::to_string(kMaxAa) +
+                      " subsamples along each side of a pixel");
+  }
+  if (options.threads < 0) {
+    return UsageError("threads " + std::to_string(options.threads) + " is out of range: expected 0 (all) or more");
+  }
+  if (options.layers.Has(Layer::kMotion) && !has_next_frame) {
+    return UnavailableError(
+        "layer " + std::string(Info(Layer::kMotion).name) +
+        " is not built from one frame alone, it needs the next one: leave it out, or take it from " + "Blender");
+  }
+  return CheckSampling(options);
+}
+
+Expected<GuidegenResult> CastGuides(View view, const GuidegenOptions& options) {
+  // oneTBB has no workers beyond the machine's cores unless it is told that more are welcome.
+  std::optional<tbb::global_control> more_workers;
+  if (options.threads > tbb::this_task_arena::max_concurrency()) {
+    more_workers.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
+  }
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  std::optional<Expected<GuidegenResult>> result;
+  arena.execute([&] { result.emplace(CastInArena(std::move(view), options)); });
+  return *std::move(result);
+}
+
+}  // namespace scumble

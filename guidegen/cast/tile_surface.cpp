@@ -1,0 +1,404 @@
+// The sums of surface.cpp's FindTrianglePoint in its order, a lane a pixel. Where lanes meet different triangles, each
+// triangle is blended into its lanes: there are one to three in 4 × 2 pixels, and their records are in the cache.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "guidegen/cast/tile_surface.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target.h must come first.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "guidegen/cast/tile_surface.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scumble {
+namespace HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Eight at the most: half a square.
+using Doubles = hn::CappedTag<double, 8>;
+using Floats = hn::Rebind<float, Doubles>;
+using Keys = hn::Rebind<std::uint64_t, Doubles>;
+using Words = hn::Rebind<std::uint32_t, Doubles>;
+using D = hn::Vec<Doubles>;
+using F = hn::Vec<Floats>;
+
+struct D3 {
+  D x, y, z;
+};
+
+HWY_INLINE D Dot(const D3& a, const D3& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+
+HWY_INLINE D3 SetAll(const double* v) {
+  const Doubles d;
+  return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
+}
+
+template <class M>
+HWY_INLINE void Blend(M lanes, const double* v, D3& into) {
+  const Doubles d;
+  into.x = hn::IfThenElse(lanes, hn::Set(d, v[0]), into.x);
+  into.y = hn::IfThenElse(lanes, hn::Set(d, v[1]), into.y);
+  into.z = hn::IfThenElse(lanes, hn::Set(d, v[2]), into.z);
+}
+
+// The triangles of the lanes.
+struct LaneTriangles {
+  D3 corner, first_edge, second_edge, area, facing;
+  D edge_on, largest;
+  F normal[9];
+
+  template <bool kPoints>
+  HWY_INLINE void SetAllTo(const TriangleRecord& record) {
+    const Floats f;
+    corner = SetAll(record.corner), first_edge = SetAll(record.first_edge);
+    second_edge = SetAll(record.second_edge), area = SetAll(record.area);
+    edge_on = hn::Set(Doubles(), record.edge_on);
+    for (int i = 0; i < 9; ++i) normal[i] = hn::Set(f, record.normal[i]);
+    if constexpr (kPoints) {
+      facing = SetAll(record.facing);
+      largest = hn::Set(Doubles(), record.largest_coordinate);
+    }
+  }
+
+  template <bool kPoints, class M, class N>
+  HWY_INLINE void SetSome(M lanes, N float_lanes, const TriangleRecord& record) {
+    const Floats f;
+    Blend(lanes, record.corner, corner), Blend(lanes, record.first_edge, first_edge);
+    Blend(lanes, record.second_edge, second_edge), Blend(lanes, record.area, area);
+    edge_on = hn::IfThenElse(lanes, hn::Set(Doubles(), record.edge_on), edge_on);
+    for (int i = 0; i < 9; ++i) normal[i] = hn::IfThenElse(float_lanes, hn::Set(f, record.normal[i]), normal[i]);
+    if constexpr (kPoints) {
+      Blend(lanes, record.facing, facing);
+      largest = hn::IfThenElse(lanes, hn::Set(Doubles(), record.largest_coordinate), largest);
+    }
+  }
+};
+
+// The objects of the lanes.
+struct LaneObjects {
+  D3 column[3];
+  D winding;
+  F object_id, material_id;
+
+  HWY_INLINE void SetAllTo(const ObjectRecord& record) {
+    for (int i = 0; i < 3; ++i) column[i] = SetAll(record.view_from_normal + 3 * i);
+    winding = hn::Set(Doubles(), record.winding);
+    object_id = hn::Set(Floats(), record.object_id), material_id = hn::Set(Floats(), record.material_id);
+  }
+
+  template <class M, class N>
+  HWY_INLINE void SetSome(M lanes, N float_lanes, const ObjectRecord& record) {
+    for (int i = 0; i < 3; ++i) Blend(lanes, record.view_from_normal + 3 * i, column[i]);
+    winding = hn::IfThenElse(lanes, hn::Set(Doubles(), record.winding), winding);
+    object_id = hn::IfThenElse(float_lanes, hn::Set(Floats(), record.object_id), object_id);
+    material_id = hn::IfThenElse(float_lanes, hn::Set(Floats(), record.material_id), material_id);
+  }
+};
+
+HWY_INLINE D ZeroAtLeast(D v) {
+  const D zero = hn::Zero(Doubles());
+  return hn::IfThenElse(hn::Lt(v, zero), zero, v);
+}
+
+HWY_INLINE D Magnitude(const D3& v) {
+  const auto larger = [&](D a, D b) { return hn::IfThenElse(hn::Lt(a, b), b, a); };
+  return larger(larger(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
+}
+
+// The rays of the lanes, expanded from the tile's.
+struct LaneRays {
+  explicit LaneRays(const TileRays& rays) : orthographic(rays.orthographic) {
+    for (int lane = 0; lane < 8; ++lane) {
+      for (int square = 0; square < kTileSquares; ++square) {
+        across[square][lane] = rays.across[std::size_t(square * kSquareSide + lane % kSquareSide)];
+      }
+      for (int pair = 0; pair < kTileSide / 2; ++pair) {
+        up[pair][lane] = rays.up[std::size_t(2 * pair + lane / kSquareSide)];
+      }
+    }
+  }
+  alignas(64) double across[kTileSquares][8];
+  alignas(64) double up[kTileSide / 2][8];
+  bool orthographic;
+};
+
+// Of the tile's directions, in m; none of them is shorter than 1.
+double LongestRay(const TileRays& rays) {
+  if (rays.orthographic) return 1.0;
+  const auto largest_square = [](const auto& steps) {
+    return std::max(steps.front() * steps.front(), steps.back() * steps.back());
+  };
+  return std::sqrt(1.0 + largest_square(rays.across) + largest_square(rays.up));
+}
+
+class TileWork {
+ public:
+  TileWork(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides, TilePoints* points)
+      : hits_(hits),
+        rays_(rays),
+        longest_ray_(LongestRay(rays)),
+        triangles_(triangles),
+        guides_(guides),
+        points_(points) {
+    guides_.left_over_count = 0;
+    triangles_.Begin();
+    for (std::size_t i = 0; i < kTilePixels; ++i) keys_[i] = std::uint64_t(hits.object[i]) << 32 | hits.primitive[i];
+  }
+
+  template <bool kPoints>
+  HWY_INLINE void Run() {
+    const std::size_t step = hn::Lanes(Doubles());
+    for (std::size_t pixel = 0; pixel < kTilePixels; pixel += step) Lanes<kPoints>(pixel);
+    for (std::size_t i = 0; i < work_count_; ++i) MakeUnits<kPoints>(work_[i]);
+  }
+
+ private:
+  using Mask = hn::Mask<Doubles>;
+  using FloatMask = hn::Mask<Floats>;
+
+  HWY_INLINE FloatMask SameObject(std::size_t pixel, std::uint32_t object) const {
+    const Words w;
+    return hn::RebindMask(Floats(), hn::Eq(hn::Load(w, hits_.object.data() + pixel), hn::Set(w, object)));
+  }
+
+  HWY_INLINE FloatMask SameTriangle(std::size_t pixel, std::uint32_t object, std::uint32_t primitive) const {
+    const Words w;
+    const auto same = hn::Eq(hn::Load(w, hits_.primitive.data() + pixel), hn::Set(w, primitive));
+    return hn::And(SameObject(pixel, object), hn::RebindMask(Floats(), same));
+  }
+
+  HWY_INLINE void LeaveOver(std::size_t pixel, Mask lanes) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(Doubles(), lanes, bytes);
+    for (unsigned bits = bytes[0]; bits != 0; bits &= bits - 1) {
+      guides_.left_over[std::size_t(guides_.left_over_count++)] =
+          static_cast<std::uint8_t>(pixel + unsigned(std::countr_zero(bits)));
+    }
+  }
+
+  HWY_INLINE void StoreBackground(std::size_t pixel) {
+    const Floats f;
+    hn::Store(hn::Set(f, std::numeric_limits<float>::infinity()), f, guides_.depth.data() + pixel);
+    hn::Store(hn::Zero(f), f, guides_.object.data() + pixel);
+    hn::Store(hn::Zero(f), f, guides_.material.data() + pixel);
+    for (auto& plane : guides_.normal) hn::Store(hn::Zero(f), f, plane.data() + pixel);
+  }
+
+  template <bool kPoints>
+  HWY_INLINE void Lanes(std::size_t pixel) {
+    const Doubles d;
+    const Floats f;
+    const Keys k;
+    // Embree's id of nothing makes the upper half of the key all ones, which is no object's.
+    const auto keys = hn::Load(k, keys_ + pixel);
+    const auto met = hn::Lt(keys, hn::Set(k, std::uint64_t(TileHits::kNothing) << 32));
+    if (hn::AllFalse(k, met)) return StoreBackground(pixel);
+
+    LaneTriangles triangles;
+    auto irregular = hn::FirstN(d, 0);
+    std::size_t lane = std::size_t(hn::FindFirstTrue(k, met));
+    const std::uint32_t first_object = hits_.object[pixel + lane];
+    {
+      const TriangleRecord& record = triangles_.Find(first_object, hits_.primitive[pixel + lane]);
+      triangles.SetAllTo<kPoints>(record);
+      if (!record.regular) irregular = hn::RebindMask(d, hn::Eq(keys, hn::Set(k, keys_[pixel + lane])));
+    }
+    auto left = hn::AndNot(hn::Eq(keys, hn::Set(k, keys_[pixel + lane])), met);
+    bool one_object = true;
+    while (!hn::AllFalse(k, left)) {
+      lane = std::size_t(hn::FindFirstTrue(k, left));
+      const std::uint32_t object = hits_.object[pixel + lane];
+      const std::uint32_t primitive = hits_.primitive[pixel + lane];
+      one_object = one_object && object == first_object;
+      const auto same = hn::Eq(keys, hn::Set(k, keys_[pixel + lane]));
+      left = hn::AndNot(same, left);
+      const TriangleRecord& record = triangles_.Find(object, primitive);
+      triangles.SetSome<kPoints>(hn::RebindMask(d, same), SameTriangle(pixel, object, primitive), record);
+      if (!record.regular) irregular = hn::Or(irregular, hn::RebindMask(d, same));
+    }
+    LaneObjects objects;
+    objects.SetAllTo(triangles_.objects()[first_object]);
+    if (!one_object) BlendObjects(pixel, keys, met, objects);
+
+    const D zero = hn::Zero(d);
+    const D across = hn::Load(d, rays_.across[pixel / kSquarePixels % kTileSquares] + pixel % 8);
+    const D up = hn::Load(d, rays_.up[pixel / 64 * 2 + pixel % kSquarePixels / 8] + pixel % 8);
+    const D3 origin = rays_.orthographic ? D3{across, up, zero} : D3{zero, zero, zero};
+    const D3 way = rays_.orthographic ? D3{zero, zero, hn::Set(d, -1.0)} : D3{across, up, hn::Set(d, -1.0)};
+
+    // MeetTriangle. A product with −1 changes the sign and no more.
+    const D3 from = {hn::Sub(origin.x, triangles.corner.x), hn::Sub(origin.y, triangles.corner.y),
+                     hn::Sub(origin.z, triangles.corner.z)};
+    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(way.y, from.z)), hn::Add(hn::Mul(from.z, way.x), from.x),
+                       hn::Sub(hn::Mul(from.x, way.y), hn::Mul(way.x, from.y))};
+    const D along =
+        hn::Sub(hn::Add(hn::Mul(triangles.area.x, way.x), hn::Mul(triangles.area.y, way.y)), triangles.area.z);
+    const D scale = hn::Div(hn::Set(d, -1.0), along);
+    const D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
+    const D w = hn::Mul(Dot(triangles.first_edge, moment), scale);
+    const auto inside = hn::And(hn::And(hn::Ge(v, zero), hn::Ge(w, zero)), hn::Le(hn::Add(v, w), hn::Set(d, 1.0)));
+    const auto steady = hn::Gt(hn::Abs(along), hn::Mul(triangles.edge_on, hn::Set(d, longest_ray_)));
+    const auto missed = hn::Not(hn::And(inside, steady));
+    const auto mix = [&](D corner, D first, D second) {
+      return hn::Add(hn::Sub(corner, hn::Mul(first, v)), hn::Mul(second, w));
+    };
+    const D z = mix(triangles.corner.z, triangles.first_edge.z, triangles.second_edge.z);
+    // Products with 1 or −1 are signs, for less.
+    const D minus = hn::Set(d, -0.0);
+    const auto back = hn::Gt(hn::Xor(along, hn::And(objects.winding, minus)), zero);
+    const D side = hn::IfThenElseZero(back, minus);
+
+    // ObjectNormal and its way into view space.
+    const F fv = hn::DemoteTo(f, v);
+    const F fw = hn::DemoteTo(f, w);
+    const F fu = hn::Sub(hn::Sub(hn::Set(f, 1.0f), fv), fw);
+    const auto interpolate = [&](int axis) {
+      const F sum_of_two = hn::Add(hn::Mul(triangles.normal[axis], fu), hn::Mul(triangles.normal[3 + axis], fv));
+      return hn::PromoteTo(d, hn::Add(sum_of_two, hn::Mul(triangles.normal[6 + axis], fw)));
+    };
+    const D3 normal = {interpolate(0), interpolate(1), interpolate(2)};
+    const auto usable = hn::Gt(Dot(normal, normal), hn::Set(d, kShortestNormal * kShortestNormal));
+    const auto turn = [&](D a, D b, D c) {
+      const D turned = hn::Add(hn::Add(hn::Mul(a, normal.x), hn::Mul(b, normal.y)), hn::Mul(c, normal.z));
+      return hn::Xor(turned, side);
+    };
+    const D3 shading = {turn(objects.column[0].x, objects.column[1].x, objects.column[2].x),
+                        turn(objects.column[0].y, objects.column[1].y, objects.column[2].y),
+                        turn(objects.column[0].z, objects.column[1].z, objects.column[2].z)};
+    const D squared = Dot(shading, shading);
+    const auto ordinary =
+        hn::And(hn::Gt(squared, hn::Set(d, kLeastPlainSquare)), hn::Lt(squared, hn::Set(d, kLargestPlainSquare)));
+
+    const auto met_double = hn::RebindMask(d, met);
+    const auto left_over = hn::And(hn::Or(hn::Or(irregular, missed), hn::Not(hn::And(usable, ordinary))), met_double);
+    if (HWY_UNLIKELY(!hn::AllFalse(d, left_over))) LeaveOver(pixel, left_over);
+
+    const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
+    const D depth = hn::IfThenElse(met_double, ZeroAtLeast(hn::Neg(z)), infinity);
+    hn::Store(hn::DemoteTo(f, depth), f, guides_.depth.data() + pixel);
+    // The square root and its division wait for each other; by themselves they need not wait for anything else.
+    hn::Store(hn::IfThenElseZero(met_double, shading.x), d, shading_[0] + pixel);
+    hn::Store(hn::IfThenElseZero(met_double, shading.y), d, shading_[1] + pixel);
+    hn::Store(hn::IfThenElseZero(met_double, shading.z), d, shading_[2] + pixel);
+    hn::Store(hn::IfThenElse(met_double, squared, hn::Set(d, 1.0)), d, squared_ + pixel);
+    work_[work_count_++] = std::uint8_t(pixel);
+    const auto empty = SameObject(pixel, TileHits::kNothing);
+    hn::Store(hn::IfThenZeroElse(empty, objects.object_id), f, guides_.object.data() + pixel);
+    hn::Store(hn::IfThenZeroElse(empty, objects.material_id), f, guides_.material.data() + pixel);
+
+    if constexpr (kPoints) {
+      hn::Store(v, d, points_->barycentric[0].data() + pixel);
+      hn::Store(w, d, points_->barycentric[1].data() + pixel);
+      const D3 position = {mix(triangles.corner.x, triangles.first_edge.x, triangles.second_edge.x),
+                           mix(triangles.corner.y, triangles.first_edge.y, triangles.second_edge.y), z};
+      StorePoint(position, points_->position, pixel);
+      const D sign = hn::Xor(objects.winding, side);
+      StorePoint(
+          {hn::Mul(triangles.facing.x, sign), hn::Mul(triangles.facing.y, sign), hn::Mul(triangles.facing.z, sign)},
+          points_->facing, pixel);
+      const D own = Magnitude(position);
+      const D largest = hn::IfThenElse(hn::Lt(own, triangles.largest), triangles.largest, own);
+      hn::Store(largest, d, points_->largest_coordinate.data() + pixel);
+    }
+  }
+
+  // MakeUnit where a square is ordinary.
+  template <bool kPoints>
+  HWY_INLINE void MakeUnits(std::size_t pixel) {
+    const Doubles d;
+    const Floats f;
+    const D inverse = hn::Div(hn::Set(d, 1.0), hn::Sqrt(hn::Load(d, squared_ + pixel)));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const D unit = hn::Mul(hn::Load(d, shading_[axis] + pixel), inverse);
+      hn::Store(hn::DemoteTo(f, unit), f, guides_.normal[axis].data() + pixel);
+      if constexpr (kPoints) hn::Store(unit, d, points_->normal[axis].data() + pixel);
+    }
+  }
+
+  template <class V, class M>
+  HWY_INLINE void BlendObjects(std::size_t pixel, V keys, M met, LaneObjects& objects) {
+    const Keys k;
+    const auto numbers = hn::ShiftRight<32>(keys);
+    for (auto left = met; !hn::AllFalse(k, left);) {
+      const std::uint32_t object = hits_.object[pixel + std::size_t(hn::FindFirstTrue(k, left))];
+      const auto same = hn::Eq(numbers, hn::Set(k, object));
+      left = hn::AndNot(same, left);
+      objects.SetSome(hn::RebindMask(Doubles(), same), SameObject(pixel, object), triangles_.objects()[object]);
+    }
+  }
+
+  HWY_INLINE void StorePoint(const D3& v, std::array<std::array<double, kTilePixels>, 3>& to, std::size_t pixel) {
+    hn::Store(v.x, Doubles(), to[0].data() + pixel);
+    hn::Store(v.y, Doubles(), to[1].data() + pixel);
+    hn::Store(v.z, Doubles(), to[2].data() + pixel);
+  }
+
+  const TileHits& hits_;
+  const LaneRays rays_;
+  const double longest_ray_;
+  TriangleCache& triangles_;
+  TileGuides& guides_;
+  TilePoints* points_;
+  alignas(64) std::uint64_t keys_[kTilePixels];
+  alignas(64) double shading_[3][kTilePixels];  // before it has unit length
+  alignas(64) double squared_[kTilePixels];     // its length
+  std::uint8_t work_[kTilePixels];              // first pixels of the lanes that met something
+  std::size_t work_count_ = 0;
+};
+
+void Surface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides,
+             TilePoints* points) {
+  TileWork work(hits, rays, triangles, guides, points);
+  if (points) {
+    work.Run<true>();
+  } else {
+    work.Run<false>();
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace scumble
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scumble {
+
+HWY_EXPORT(Surface);
+
+void FindTileSurface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides,
+                     TilePoints* points) {
+  HWY_DYNAMIC_DISPATCH(Surface)(hits, rays, triangles, guides, points);
+}
+
+SurfacePoint TilePoints::At(int pixel) const {
+  const auto i = std::size_t(pixel);
+  SurfacePoint point;
+  point.position = {position[0][i], position[1][i], position[2][i]};
+  point.facing = {facing[0][i], facing[1][i], facing[2][i]};
+  point.normal = {normal[0][i], normal[1][i], normal[2][i]};
+  point.barycentric = {barycentric[0][i], barycentric[1][i]};
+  point.largest_coordinate = largest_coordinate[i];
+  return point;
+}
+
+void TilePoints::Set(int pixel, const SurfacePoint& point) {
+  const auto i = std::size_t(pixel);
+  for (int axis = 0; axis < 3; ++axis) {
+    position[axis][i] = point.position[axis];
+    facing[axis][i] = point.facing[axis];
+    normal[axis][i] = point.normal[axis];
+  }
+  for (int k = 0; k < 2; ++k) barycentric[k][i] = point.barycentric[k];
+  largest_coordinate[i] = point.largest_coordinate;
+}
+
+}  // namespace scumble
+#endif

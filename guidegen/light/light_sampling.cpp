@@ -1,0 +1,303 @@
+#include "guidegen/light/light_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "guidegen/surface/bsdf.h"
+#include "guidegen/surface/work_counters.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kPi = glm::pi<double>();
+
+// Squared distances below this are lights inside the surface.
+constexpr double kLeastSquare = 1e-30;
+
+// The distance from a plane, over the largest coordinate, that doubles cannot be trusted to tell.
+constexpr double kFlat = 0x1.0p-40;
+
+// Irradiance beyond this does not fit a float once it is reflected, and could become infinite on its way.
+constexpr double kMostIrradiance = std::numeric_limits<float>::max();
+
+double AreaOf(const PlacedLight& lamp) {
+  const double sides = glm::length(lamp.half_x) * glm::length(lamp.half_y);
+  return lamp.ellipse ? kPi * sides : 4.0 * sides;
+}
+
+// A sun is a disc at a distance of 1, sampled by area; `cosine` is that of the angle to its middle.
+double SunDensity(const PlacedLight& sun, double cosine) {
+  const double radius = std::tan(sun.half_angle);
+  return 1.0 / (kPi * radius * radius * cosine * cosine * cosine);
+}
+
+// From a density per area to one per solid angle.
+double PerSolidAngle(double area, double square, double cosine) {
+  return area > 0.0 && cosine > 0.0 ? square / (area * cosine) : 0.0;
+}
+
+LightDraw DrawDelta(const PlacedLight& lamp, const glm::dvec3& point) {
+  LightDraw draw;
+  draw.is_delta = true;
+  if (lamp.type == LightType::kSun) {
+    draw.direction = -lamp.axis;
+    draw.endless = true;
+    draw.radiance = lamp.color;
+    return draw;
+  }
+  const glm::dvec3 way = lamp.position - point;
+  const double length = glm::length(way);
+  if (!(length > 0.0)) return draw;
+  draw.direction = way / length;
+  draw.target = lamp.position;
+  const double share = SpotAttenuation(lamp, -draw.direction) / std::max(length * length, kLeastSquare);
+  for (int i = 0; i < 3; ++i) draw.radiance[i] = std::min(lamp.color[i] * share, kMostIrradiance);
+  return draw;
+}
+
+// The radiance is the irradiance times the density, as in Cycles: what the directions bring is the same for all.
+LightDraw DrawSun(const PlacedLight& sun, double u, double v) {
+  LightDraw draw;
+  draw.endless = true;
+  const glm::dvec2 disc = SquareToDisc(u, v) * std::tan(sun.half_angle);
+  glm::dvec3 x, y;
+  MakeFrame(-sun.axis, x, y);
+  draw.direction = glm::normalize(x * disc.x + y * disc.y - sun.axis);
+  draw.density = SunDensity(sun, -glm::dot(draw.direction, sun.axis));
+  draw.radiance = sun.color * draw.density;
+  return draw;
+}
+
+LightDraw DrawBall(const PlacedLight& lamp, const glm::dvec3& point, double u, double v) {
+  LightDraw draw;
+  const glm::dvec3 way = lamp.position - point;
+  const double distance = glm::length(way);
+  if (!(distance > 0.0)) return draw;
+  const glm::dvec3 axis = way / distance;
+  glm::dvec3 x, y;
+  MakeFrame(axis, x, y);
+  const glm::dvec2 disc = SquareToDisc(u, v) * lamp.radius;
+  draw.target = lamp.position + x * disc.x + y * disc.y;
+  const glm::dvec3 to_target = draw.target - point;
+  const double square = glm::dot(to_target, to_target);
+  draw.direction = to_target / std::sqrt(square);
+  const double area = kPi * lamp.radius * lamp.radius;
+  draw.density = PerSolidAngle(area, square, glm::dot(axis, draw.direction));
+  draw.radiance = lamp.color * (SpotAttenuation(lamp, -draw.direction) / area);
+  return draw;
+}
+
+LightDraw DrawArea(const PlacedLight& lamp, const glm::dvec3& point, double u, double v) {
+  LightDraw draw;
+  const glm::dvec2 at = lamp.ellipse ? SquareToDisc(u, v) : glm::dvec2(2.0 * u - 1.0, 2.0 * v - 1.0);
+  draw.target = lamp.position + lamp.half_x * at.x + lamp.half_y * at.y;
+  const glm::dvec3 way = draw.target - point;
+  const double square = glm::dot(way, way);
+  if (!(square > kLeastSquare)) return draw;
+  draw.direction = way / std::sqrt(square);
+  draw.density = PerSolidAngle(AreaOf(lamp), square, -glm::dot(lamp.axis, draw.direction));
+  if (draw.density > 0.0) draw.radiance = lamp.color;
+  return draw;
+}
+
+LightDraw MeetSun(const PlacedLight& sun, const glm::dvec3& direction) {
+  LightDraw met;
+  // By the sine, which tells small angles apart; beyond a right angle the sine falls again.
+  const double sine = glm::length(glm::cross(direction, sun.axis));
+  const double cosine = -glm::dot(direction, sun.axis);
+  if (!(cosine > 0.0) || sine > std::sin(sun.half_angle)) return met;
+  met.density = SunDensity(sun, cosine);
+  met.radiance = sun.color * met.density;
+  return met;
+}
+
+LightDraw MeetBall(const PlacedLight& lamp, const glm::dvec3& point, const glm::dvec3& direction, double length) {
+  LightDraw met;
+  const glm::dvec3 way = lamp.position - point;
+  const double distance = glm::length(way);
+  const double along = glm::dot(way, direction);
+  if (!(along > 0.0) || !(distance > 0.0)) return met;
+  const double t = distance * (distance / along);
+  if (!(t - LightGap(point, point + direction * t) < length)) return met;
+  const glm::dvec3 off = direction * t - way;
+  if (glm::dot(off, off) > lamp.radius * lamp.radius) return met;
+  const double area = kPi * lamp.radius * lamp.radius;
+  met.density = PerSolidAngle(area, t * t, along / distance);
+  met.radiance = lamp.color * (SpotAttenuation(lamp, -direction) / area);
+  return met;
+}
+
+LightDraw MeetArea(const PlacedLight& lamp, const glm::dvec3& point, const glm::dvec3& direction, double length) {
+  LightDraw met;
+  const double cosine = -glm::dot(lamp.axis, direction);
+  if (!(cosine > 0.0)) return met;
+  const glm::dvec3 way = lamp.position - point;
+  const double t = -glm::dot(way, lamp.axis) / cosine;
+  if (!(t > 0.0) || !(t - LightGap(point, point + direction * t) < length)) return met;
+  const glm::dvec3 off = direction * t - way;
+  const double x = glm::dot(off, lamp.half_x) / glm::dot(lamp.half_x, lamp.half_x);
+  const double y = glm::dot(off, lamp.half_y) / glm::dot(lamp.half_y, lamp.half_y);
+  const bool inside = lamp.ellipse ? x * x + y * y <= 1.0 : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
+  if (!inside) return met;
+  met.density = PerSolidAngle(AreaOf(lamp), t * t, cosine);
+  met.radiance = lamp.color;
+  return met;
+}
+
+// The most of a spot's intensity that reaches a place from any point of its disc: from the one that is nearest the
+// axis. The attenuation depends on the part along the axis alone.
+double MostAttenuation(const PlacedLight& spot, const glm::dvec3& from_centre) {
+  const double distance = glm::length(from_centre);
+  if (!(distance > spot.radius)) return 1.0;
+  const double cosine = glm::dot(spot.axis, from_centre) / distance;
+  const double turn = spot.radius / distance;
+  const double straight = std::sqrt(1.0 - turn * turn);
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  return SpotAttenuation(spot, spot.axis * (cosine < straight ? cosine * straight + sine * turn : 1.0));
+}
+
+TreeLight ShapeOf(const PlacedLight& lamp) {
+  TreeLight shape{lamp.position, lamp.radius, std::min(Brightness(lamp.color), kMostIrradiance), false, lamp.IsDelta()};
+  shape.is_sun = lamp.type == LightType::kSun;
+  if (shape.is_sun) shape.radius = lamp.half_angle;
+  if (lamp.type == LightType::kArea) {
+    shape.radius = glm::length(lamp.half_x) + glm::length(lamp.half_y);
+    shape.power *= AreaOf(lamp);
+  }
+  return shape;
+}
+
+}  // namespace
+
+LightSet::LightSet(std::span<const PlacedLight> lamps, std::span<const PlacedObject> objects, const glm::dvec3& world)
+    : objects_(objects), emitter_of_(objects.size(), -1), world_(world) {
+  for (const PlacedLight& lamp : lamps) {
+    if (lamp.color == glm::dvec3(0.0) || (lamp.type == LightType::kArea && !(AreaOf(lamp) > 0.0))) continue;
+    lamps_.push_back(lamp);
+    shapes_.push_back(ShapeOf(lamp));
+    if (lamp.IsDelta()) ++delta_count_;
+  }
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (objects[i].mesh && MayEmit(*objects[i].material)) AddEmitter(std::uint32_t(i));
+  }
+  tree_ = LightTree(shapes_);
+}
+
+void LightSet::AddEmitter(std::uint32_t object) {
+  Emitter emitter;
+  emitter.object = object;
+  const PlacedObject& placed = objects_[object];
+  double area = 0.0;
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high = -low;
+  for (std::size_t i = 0; i < placed.mesh->triangles.size(); ++i) {
+    const Triangle triangle = ViewTriangle(placed, std::uint32_t(i));
+    const glm::dvec3& a = triangle.corner[0];
+    const double size = 0.5 * glm::length(glm::cross(triangle.corner[1] - a, triangle.corner[2] - a));
+    if (!(size > 0.0) || !std::isfinite(size)) continue;
+    area += size;
+    emitter.triangles.push_back(std::uint32_t(i));
+    emitter.areas_up_to.push_back(area);
+    for (const glm::dvec3& corner : triangle.corner) {
+      low = glm::min(low, corner);
+      high = glm::max(high, corner);
+    }
+  }
+  if (!(area > 0.0) || !std::isfinite(area)) return;
+  const double power = std::min(Brightness(glm::dvec3(placed.material->emission)), kMostIrradiance) * area;
+  shapes_.push_back({0.5 * (low + high), 0.5 * glm::length(high - low), power, false, false});
+  emitter_of_[object] = count();
+  emitters_.push_back(std::move(emitter));
+}
+
+double LightSet::Weight(int light, const SurfacePoint& point, bool with_delta) const {
+  const TreeLight& shape = shapes_[std::size_t(light)];
+  if (shape.is_delta && !with_delta) return 0.0;
+  if (IsEmitter(light)) return BallWeight(shape.centre, shape.radius, shape.power, point);
+  const PlacedLight& lamp = lamps_[std::size_t(light)];
+  if (shape.is_sun) return SunWeight(-lamp.axis, lamp.half_angle, shape.power, point);
+  const glm::dvec3 way = point.position - lamp.position;
+  if (lamp.type == LightType::kArea && !(glm::dot(way, lamp.axis) > 0.0)) return 0.0;
+  const double weight = BallWeight(shape.centre, shape.radius, shape.power, point);
+  return lamp.type == LightType::kSpot && weight > 0.0 ? weight * MostAttenuation(lamp, way) : weight;
+}
+
+bool LightSet::AnyWideFrom(const glm::dvec3& point) const {
+  return std::any_of(shapes_.begin(), shapes_.end(), [&](const TreeLight& light) { return IsWide(light, point); });
+}
+
+LightChoice LightSet::Choose(const SurfacePoint& point, double u, bool with_delta) const {
+  return tree_.Choose(point, u, with_delta, [&](int light) { return Weight(light, point, with_delta); });
+}
+
+double LightSet::Probability(const SurfacePoint& point, int light, bool with_delta) const {
+  if (!with_delta && IsDelta(light)) return 0.0;
+  return tree_.Probability(point, light, with_delta, [&](int other) { return Weight(other, point, with_delta); });
+}
+
+LightDraw LightSet::Draw(int light, const glm::dvec3& point, double u, double v) const {
+  ++work_tally.light_samples;
+  if (IsEmitter(light)) return DrawEmitter(emitters_[std::size_t(light) - lamps_.size()], point, u, v);
+  const PlacedLight& lamp = lamps_[std::size_t(light)];
+  if (lamp.IsDelta()) return DrawDelta(lamp, point);
+  if (lamp.type == LightType::kSun) return DrawSun(lamp, u, v);
+  if (lamp.type == LightType::kArea) return DrawArea(lamp, point, u, v);
+  return DrawBall(lamp, point, u, v);
+}
+
+LightDraw LightSet::Meet(int light, const glm::dvec3& point, const glm::dvec3& direction, double length) const {
+  const PlacedLight& lamp = lamps_[std::size_t(light)];
+  if (lamp.IsDelta()) return {};
+  if (lamp.type == LightType::kSun) return std::isinf(length) ? MeetSun(lamp, direction) : LightDraw{};
+  if (lamp.type == LightType::kArea) return MeetArea(lamp, point, direction, length);
+  return MeetBall(lamp, point, direction, length);
+}
+
+LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point, double u, double v) const {
+  LightDraw draw;
+  const double area = emitter.areas_up_to.back();
+  const double wanted = u * area;
+  const auto found = std::upper_bound(emitter.areas_up_to.begin(), emitter.areas_up_to.end(), wanted);
+  const std::size_t at = std::min(std::size_t(found - emitter.areas_up_to.begin()), emitter.triangles.size() - 1);
+  const double before = at > 0 ? emitter.areas_up_to[at - 1] : 0.0;
+  const double rest = std::clamp((wanted - before) / (emitter.areas_up_to[at] - before), 0.0, 1.0);
+  const PlacedObject& object = objects_[emitter.object];
+  const std::uint32_t primitive = emitter.triangles[at];
+  const Triangle triangle = ViewTriangle(object, primitive);
+  const double root = std::sqrt(rest);
+  const glm::dvec2 barycentric(root * (1.0 - v), root * v);
+  const glm::dvec3 first = triangle.corner[1] - triangle.corner[0];
+  const glm::dvec3 second = triangle.corner[2] - triangle.corner[0];
+  draw.target = triangle.corner[0] + first * barycentric.x + second * barycentric.y;
+  const glm::dvec3 way = draw.target - point;
+  const double square = glm::dot(way, way);
+  if (!(square > kLeastSquare)) return draw;
+  draw.direction = way / std::sqrt(square);
+  const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
+  double largest = LargestCoordinate(point);
+  for (const glm::dvec3& corner : triangle.corner) largest = std::max(largest, LargestCoordinate(corner));
+  // A flat emitter does not light itself: so near its plane, the side is rounding alone.
+  const double off_plane = std::abs(glm::dot(normal, way));
+  if (!(off_plane > largest * kFlat)) return draw;
+  const double cosine = off_plane / std::sqrt(square);
+  draw.density = PerSolidAngle(area, square, cosine);
+  if (draw.density > 0.0 && !IsHole(object, primitive, barycentric)) {
+    draw.radiance = SurfaceEmission(object, primitive, barycentric);
+  }
+  draw.object = emitter.object;
+  draw.primitive = primitive;
+  draw.rounding = largest * kRoundingPerCoordinate / cosine;
+  return draw;
+}
+
+double LightSet::EmitterDensity(int light, const glm::dvec3& point, const SurfacePoint& on_emitter) const {
+  const Emitter& emitter = emitters_[std::size_t(light) - lamps_.size()];
+  const glm::dvec3 way = on_emitter.position - point;
+  const double square = glm::dot(way, way);
+  if (!(square > kLeastSquare)) return 0.0;
+  const double cosine = std::abs(glm::dot(on_emitter.facing, way)) / std::sqrt(square);
+  return PerSolidAngle(emitter.areas_up_to.back(), square, cosine);
+}
+
+}  // namespace scumble

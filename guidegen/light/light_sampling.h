@@ -1,0 +1,116 @@
+// Every light of a scene as a path tracer wants it: chosen, sampled, and met by chance. Lamps without and with extent,
+// meshes that emit, and the world. A lamp has no body: it neither casts a shadow nor hides what is behind it.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "guidegen/light/direct_light.h"
+#include "guidegen/light/light_tree.h"
+#include "guidegen/surface/surface.h"
+
+namespace scumble {
+
+// One sample of one light, seen from a point.
+struct LightDraw {
+  glm::dvec3 direction{0.0};  // unit, towards the light
+  glm::dvec3 target{0.0};     // where the light is, unless endless
+  bool endless = false;       // the way has no end
+  bool is_delta = false;
+  glm::dvec3 radiance{0.0};  // of delta lights: the irradiance of a surface that faces them
+  double density = 0.0;      // per solid angle, without the choice of the light; of no meaning for delta lights
+  // Of meshes that emit: the triangle that the target is on, and how far from it, in metres along the way, Embree's
+  // floats may find the mesh.
+  static constexpr std::uint32_t kNoObject = ~0u;
+  std::uint32_t object = kNoObject;
+  std::uint32_t primitive = 0;
+  double rounding = 0.0;
+};
+
+// The lights of a scene. Borrows the objects, which must outlive it. Immutable; free to use from any thread.
+class LightSet {
+ public:
+  LightSet(std::span<const PlacedLight> lamps, std::span<const PlacedObject> objects, const glm::dvec3& world);
+
+  // Lights are numbered: the lamps that shine, then the objects that emit. The world is none of them: directions
+  // sampled from a surface's lobes meet it by themselves.
+  int count() const { return int(lamps_.size() + emitters_.size()); }
+  int delta_count() const { return delta_count_; }
+  // Whether those that are no delta lights are so few that a surface which matters can look at each of them.
+  bool FewHaveExtent() const { return count() - delta_count_ <= 8; }
+  bool has_emitters() const { return !emitters_.empty(); }
+  bool has_extended_lamps() const { return delta_count_ < int(lamps_.size()); }
+  bool has_world() const { return world_ != glm::dvec3(0.0); }
+  // Whether a ray may meet light: whether anything but delta lights shines.
+  bool CanBeMet() const { return has_emitters() || has_extended_lamps() || has_world(); }
+  bool empty() const { return count() == 0 && !has_world(); }
+  bool IsDelta(int light) const { return light < int(lamps_.size()) && lamps_[std::size_t(light)].IsDelta(); }
+  bool IsEmitter(int light) const { return light >= int(lamps_.size()); }
+  const glm::dvec3& world() const { return world_; }
+
+  // Chooses a light about in proportion to what it may do to a point when nothing is in the way; `with_delta` says
+  // whether delta lights take part.
+  LightChoice Choose(const SurfacePoint& point, double u, bool with_delta) const;
+  // The probability with which Choose takes this light.
+  double Probability(const SurfacePoint& point, int light, bool with_delta) const;
+
+  // Whether a lamp or an emitter is wide from there, and whether any is; see IsWide in light_tree.h.
+  bool IsWideFrom(const glm::dvec3& point, int light) const { return IsWide(shapes_[std::size_t(light)], point); }
+  bool AnyWideFrom(const glm::dvec3& point) const;
+
+  // u picks among triangles too and is stretched for it. A draw that cannot reach the point has no radiance.
+  LightDraw Draw(int light, const glm::dvec3& point, double u, double v) const;
+
+  // Calls visit(light, radiance, density) for each lamp with extent that the ray meets before `length` (infinite: it
+  // meets nothing else); `density` is Draw's. The world is left to the caller.
+  template <class Visit>
+  void VisitLamps(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
+    if (!has_extended_lamps()) return;
+    tree_.VisitAlong(point, direction, [&](int light) {
+      if (IsEmitter(light)) return;
+      const LightDraw met = Meet(light, point, direction, length);
+      if (met.density > 0.0) visit(light, met.radiance, met.density);
+    });
+  }
+
+  // Calls visit(emitter) for each mesh that emits and that the ray may meet; for others near its way, too.
+  template <class Visit>
+  void VisitEmitters(const glm::dvec3& point, const glm::dvec3& direction, const Visit& visit) const {
+    if (!has_emitters()) return;
+    tree_.VisitAlong(point, direction, [&](int light) {
+      if (IsEmitter(light)) visit(light);
+    });
+  }
+
+  // The light that an object is, or −1.
+  int EmitterOf(std::uint32_t object) const { return emitter_of_[object]; }
+  // With which density Draw takes the direction to this point of an emitter.
+  double EmitterDensity(int light, const glm::dvec3& point, const SurfacePoint& on_emitter) const;
+
+ private:
+  // A mesh that emits: triangles are chosen by area.
+  struct Emitter {
+    std::uint32_t object = 0;
+    std::vector<std::uint32_t> triangles;
+    std::vector<double> areas_up_to;  // cumulative; the last is the whole area
+  };
+
+  LightDraw Meet(int light, const glm::dvec3& point, const glm::dvec3& direction, double length) const;
+  LightDraw DrawEmitter(const Emitter& emitter, const glm::dvec3& point, double u, double v) const;
+  double Weight(int light, const SurfacePoint& point, bool with_delta) const;
+  void AddEmitter(std::uint32_t object);
+
+  std::span<const PlacedObject> objects_;
+  std::vector<PlacedLight> lamps_;
+  std::vector<Emitter> emitters_;
+  std::vector<int> emitter_of_;    // by object
+  std::vector<TreeLight> shapes_;  // by light
+  LightTree tree_;
+  glm::dvec3 world_{0.0};
+  int delta_count_ = 0;
+};
+
+}  // namespace scumble

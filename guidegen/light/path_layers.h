@@ -1,0 +1,66 @@
+// The light-path layers as expressions, followed side by side while a path grows from the eye.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "guidegen/light/path_expression.h"
+#include "guidegen/scene/scene.h"
+#include "core/image/layers.h"
+
+namespace scumble {
+
+inline constexpr int kMaxPathLayers = 5;
+
+// What a scene holds that paths are made of.
+struct PathSupply {
+  bool light = false;            // anything that shines
+  std::size_t delta_lights = 0;  // lamps without extent
+  bool may_be_met = false;       // anything that shines and has an extent: lamps, meshes, the world
+  bool diffuse = false;          // materials that reflect so
+  bool specular = false;
+};
+PathSupply SupplyOf(const Scene& scene);
+
+// The expression of a light-path layer, or null for other layers.
+const char* PathLayerExpression(Layer layer);
+LayerSet PathLayers();
+
+// How far a path has come in each layer's expression.
+using PathState = std::array<PathExpression::State, kMaxPathLayers>;
+
+// The layers asked for whose paths can exist with what there is; the others stay 0 and cost nothing. Immutable.
+class PathFollower {
+ public:
+  PathFollower(const LayerSet& asked, const PathSupply& supply, int max_bounces);
+
+  std::span<const Layer> layers() const { return layers_; }
+  bool empty() const { return layers_.empty(); }
+  // Whether chance is needed: a light that has an extent may be met, or a path has more than one reflection.
+  bool NeedsSamples() const { return needs_samples_; }
+  // Whether any path has more than one reflection.
+  bool Bounces() const { return bounces_; }
+
+  PathState AtEye() const;
+  PathState Step(const PathState& state, PathEvent event) const;
+  // Whether light that is found now belongs to a layer, and to which.
+  bool WantsLight(const PathState& state) const;
+  bool WantsLight(const PathState& state, int layer) const {
+    return expressions_[std::size_t(layer)].EndsWithLight(state[std::size_t(layer)]);
+  }
+  // Whether another reflection can lead to light.
+  bool WantsMore(const PathState& state) const;
+
+ private:
+  bool IsAlive(const PathState& state) const;
+  int LongestPath(const PathExpression& expression, int most) const;
+
+  PathSupply supply_;
+  std::vector<Layer> layers_;
+  std::vector<PathExpression> expressions_;
+  bool needs_samples_ = false;
+  bool bounces_ = false;
+};
+
+}  // namespace scumble

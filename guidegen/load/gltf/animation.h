@@ -1,0 +1,79 @@
+// glTF animation: what the samplers of the chosen animation say of a node at a time. glTF 2.0, section 3.11 and
+// appendix C: linear (rotations by slerp), step, cubic spline; before the first key and after the last one the value
+// stands still.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "guidegen/load/loader_util.h"
+#include "core/image/status.h"
+
+namespace tinygltf {
+class Model;
+}
+
+namespace scumble {
+
+class KeyBudget;
+
+// A node's own placing, as glTF splits it: scaled, then rotated, then moved.
+struct NodePose {
+  glm::dvec3 translation{0.0};
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  // unit
+  glm::dvec3 scale{1.0};
+};
+glm::dmat4 LocalMatrix(const NodePose& pose);
+
+enum class KeyInterpolation { kLinear, kStep, kCubicSpline };
+
+// The keys of one property of one node. A key holds `width` numbers; with a cubic spline three times as many: the
+// in-tangent, the value, the out-tangent.
+struct KeyTrack {
+  KeyInterpolation interpolation = KeyInterpolation::kLinear;
+  int width = 0;
+  std::vector<double> times;  // seconds, increasing, never empty
+  std::vector<double> values;
+
+  // `width` numbers. A rotation (four numbers: x, y, z, w) comes back with length 1.
+  std::vector<double> At(double seconds, bool is_rotation = false) const;
+};
+
+// Immutable once read; free to use from any thread.
+class GltfAnimation {
+ public:
+  // Chooses by name: "" is the file's first, "*" all of them at once (Blender may write one for each object). A name
+  // that the file lacks is a kUsage error that lists those there are. Keys that are not finite or do not increase,
+  // accessors whose counts do not fit, and more keys in all than any film has, are kInput errors that name animation,
+  // channel and place.
+  static Expected<GltfAnimation> Read(const tinygltf::Model& model, const std::string& file, const std::string& name,
+                                      WarningCounter& warnings);
+
+  bool empty() const { return nodes_.empty(); }
+  double duration_seconds() const { return duration_; }  // of the last key; 0 without any
+
+  bool Moves(int node) const;
+  bool Morphs(int node) const;
+  // Overwrites what the animation says; the rest of `pose` stays.
+  void Pose(int node, double seconds, NodePose& pose) const;
+  std::vector<double> MorphWeights(int node, double seconds) const;  // of a node that Morphs
+
+ private:
+  struct NodeTracks {
+    KeyTrack translation, rotation, scale, weights;  // without keys: not animated
+  };
+
+  Status ReadAnimation(const tinygltf::Model& model, const std::string& file, int index, KeyBudget& budget,
+                       WarningCounter& warnings);
+
+  std::map<int, NodeTracks> nodes_;
+  double duration_ = 0.0;
+};
+
+// The names of a file's animations, in its order; "animation_0" for those without.
+std::vector<std::string> AnimationNames(const tinygltf::Model& model);
+
+}  // namespace scumble

@@ -1,0 +1,241 @@
+#include "guidegen/load/gltf/gltf_extras.h"
+
+#include <tiny_gltf.h>
+
+#include <cmath>
+
+#include "guidegen/load/loader_util.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDegreesPerRadian = 180.0 / kPi;
+constexpr std::size_t kMaxWarnings = 100;
+constexpr std::size_t kLongestWarning = 400;  // bytes; export_scene.py writes less
+constexpr double kLargestPassIndex = 32767.0;  // Blender's limit
+
+// The object of that name inside extras.scumble, or null.
+const tinygltf::Value* Find(const tinygltf::Value& extras, const std::string& key) {
+  if (!extras.IsObject() || !extras.Has("scumble")) return nullptr;
+  const tinygltf::Value& ours = extras.Get("scumble");
+  return ours.IsObject() && ours.Has(key) ? &ours.Get(key) : nullptr;
+}
+
+// Takes values out of one object and keeps the first complaint, so that a reader states what it wants line by line.
+class Fields {
+ public:
+  Fields(const tinygltf::Value& object, std::string where) : object_(object), where_(std::move(where)) {
+    if (!object_.IsObject()) Complain("", "is no object");
+  }
+
+  bool Has(const std::string& key) const {
+    return object_.IsObject() && object_.Has(key) && object_.Get(key).Type() != tinygltf::NULL_TYPE;
+  }
+  bool IsTrue(const std::string& key) const {
+    return Has(key) && object_.Get(key).IsBool() && object_.Get(key).Get<bool>();
+  }
+  std::string Text(const std::string& key) {
+    if (Has(key) && object_.Get(key).IsString()) return object_.Get(key).Get<std::string>();
+    Complain(key, "is no text");
+    return {};
+  }
+  double Number(const std::string& key, double least, double most) {
+    if (!Has(key) || !object_.Get(key).IsNumber()) return Complain(key, "is no number"), least;
+    const double value = object_.Get(key).GetNumberAsDouble();
+    if (!(value >= least && value <= most) || !std::isfinite(value)) {
+      return Complain(key, "is " + std::to_string(value)), least;
+    }
+    return value;
+  }
+  // Three numbers, none negative.
+  glm::vec3 Color(const std::string& key) {
+    if (!Has(key)) return Complain(key, "is missing"), glm::vec3(0.0f);
+    const tinygltf::Value& list = object_.Get(key);
+    if (!list.IsArray() || list.ArrayLen() != 3) return Complain(key, "is no list of 3 numbers"), glm::vec3(0.0f);
+    glm::vec3 color(0.0f);
+    for (int i = 0; i < 3; ++i) {
+      const tinygltf::Value& value = list.Get(i);
+      color[i] = value.IsNumber() ? static_cast<float>(value.GetNumberAsDouble()) : -1.0f;
+      if (!(color[i] >= 0.0f) || !std::isfinite(color[i])) return Complain(key, "is no colour"), glm::vec3(0.0f);
+    }
+    return color;
+  }
+  void Complain(const std::string& key, const std::string& what) {
+    if (complaint_.empty()) complaint_ = (key.empty() ? "" : " '" + key + "'") + " " + what;
+  }
+  Status Verdict() const {
+    if (complaint_.empty()) return Ok();
+    return InputError(where_ + ": in the extras of scumble," + complaint_ +
+                      ": export it again with this version's export_scene.py");
+  }
+
+ private:
+  const tinygltf::Value& object_;
+  std::string where_;
+  std::string complaint_;
+};
+
+constexpr double kLargest = 1e30;  // finite as a float after every formula here
+
+void ReadSpot(Fields& fields, Light& light) {
+  light.cycles_spot = true;
+  light.spot_blend = fields.Number("spot_blend", 0.0, 1.0);
+  light.outer_cone_degrees = fields.Number("spot_size", 0.0, kPi + 1e-6) / 2.0 * kDegreesPerRadian;
+  light.inner_cone_degrees = light.outer_cone_degrees * (1.0 - light.spot_blend);
+}
+
+// False where the lamp has no area, and so gives no light.
+bool ReadArea(Fields& fields, Light& light, double energy) {
+  const std::string shape = fields.Text("shape");
+  light.ellipse = shape == "DISK" || shape == "ELLIPSE";
+  if (!light.ellipse && shape != "SQUARE" && shape != "RECTANGLE") fields.Complain("shape", "is unknown");
+  light.size_x = fields.Number("size", 0.0, kLargest);
+  light.size_y = fields.Number("size_y", 0.0, kLargest);
+  const double area = light.size_x * light.size_y * (light.ellipse ? kPi / 4.0 : 1.0);
+  light.intensity = energy / (4.0 * area);
+  return area > 0.0 && std::isfinite(light.intensity);
+}
+
+void ReadPrincipled(Fields& fields, Material& material) {
+  if (fields.Has("roughness")) material.roughness = static_cast<float>(fields.Number("roughness", 0.0, 1.0));
+  if (fields.Has("metallic")) material.metallic = static_cast<float>(fields.Number("metallic", 0.0, 1.0));
+  if (fields.Has("emission")) material.emission = fields.Color("emission");
+}
+
+Status ReadBsdf(const tinygltf::Value& value, const std::string& where, Material& material) {
+  Fields fields(value, where);
+  const std::string type = fields.Text("type");
+  const glm::vec3 color = fields.Color("color");
+  material.base_color = glm::vec4(color, material.base_color.a);
+  if (type == "PRINCIPLED") {
+    ReadPrincipled(fields, material);
+    return fields.Verdict();
+  }
+  material.metallic_roughness_texture = {};
+  material.emission = glm::vec3(0.0f);
+  material.emission_texture = {};
+  material.metallic = 0.0f;
+  if (type == "DIFFUSE") {
+    material.bsdf = Bsdf::kDiffuse;
+    material.roughness = 1.0f;
+  } else if (type == "GLOSSY") {
+    material.bsdf = Bsdf::kGlossy;
+    material.roughness = static_cast<float>(fields.Number("roughness", 0.0, 1.0));
+  } else if (type == "EMISSION") {
+    material.bsdf = Bsdf::kEmission;
+    material.emission = color * static_cast<float>(fields.Number("strength", 0.0, kLargest));
+    if (fields.IsTrue("texture")) material.emission_texture = material.base_color_texture;
+  } else {
+    fields.Complain("type", "is unknown");
+  }
+  return fields.Verdict();
+}
+
+constexpr const char* kStyleProperty = "scumble_style";
+
+// A style as our exporter writes it, or the custom property itself, which Blender's own exporter and others keep.
+Expected<std::string> ReadStyle(const tinygltf::Value& extras, const std::string& where) {
+  if (Find(extras, "style")) {
+    Fields fields(extras.Get("scumble"), where);
+    std::string style = fields.Text("style");
+    SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
+    return style;
+  }
+  if (!extras.IsObject() || !extras.Has(kStyleProperty)) return std::string();
+  const tinygltf::Value& value = extras.Get(kStyleProperty);
+  if (value.IsString()) return value.Get<std::string>();
+  return InputError(where + ": the property scumble_style is no text: give it the name of a style");
+}
+
+}  // namespace
+
+Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file, Scene& scene) {
+  for (std::size_t i = 0; i < model.materials.size() && i < scene.materials.size(); ++i) {
+    const tinygltf::Value* bsdf = Find(model.materials[i].extras, "bsdf");
+    const std::string where =
+        file + ": material " + std::to_string(i) + " '" + Excerpt(model.materials[i].name, 80) + "'";
+    SCUMBLE_ASSIGN(scene.materials[i].style, ReadStyle(model.materials[i].extras, where));
+    if (!bsdf) continue;
+    SCUMBLE_RETURN_IF_ERROR(ReadBsdf(*bsdf, where, scene.materials[i]));
+  }
+  return Ok();
+}
+
+Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std::string& file, Scene& scene) {
+  if (scene_index < 0 || std::size_t(scene_index) >= model.scenes.size()) return Ok();
+  const tinygltf::Value& extras = model.scenes[std::size_t(scene_index)].extras;
+  if (Find(extras, "world")) {
+    Fields fields(extras.Get("scumble"), file + ": scene " + std::to_string(scene_index));
+    scene.world_radiance = fields.Color("world");
+    SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
+  }
+  const tinygltf::Value* unsupported = Find(extras, "unsupported");
+  if (!unsupported || !unsupported->IsArray()) return Ok();
+  for (std::size_t i = 0; i < unsupported->ArrayLen(); ++i) {
+    if (i == kMaxWarnings) {
+      scene.warnings.push_back("… and " + std::to_string(unsupported->ArrayLen() - i) + " things more");
+      break;
+    }
+    const tinygltf::Value& line = unsupported->Get(static_cast<int>(i));
+    if (line.IsString()) scene.warnings.push_back(Excerpt(line.Get<std::string>(), kLongestWarning));
+  }
+  return Ok();
+}
+
+Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const std::string& where) {
+  const tinygltf::Value* lamp = Find(node.extras, "lamp");
+  if (!lamp) return std::optional<Light>();
+  Fields fields(*lamp, where);
+  Light light;
+  const std::string type = fields.Text("type");
+  const double energy = fields.Number("energy", 0.0, kLargest);
+  light.color = fields.Color("color");
+  light.intensity = energy / (4.0 * kPi);
+  bool shines = true;
+  if (type == "POINT" || type == "SPOT") {
+    light.radius = fields.Number("radius", 0.0, kLargest);
+    if (type == "SPOT") light.type = LightType::kSpot, ReadSpot(fields, light);
+  } else if (type == "SUN") {
+    light.type = LightType::kSun;
+    light.intensity = energy;
+    light.angle_degrees = fields.Number("angle", 0.0, kPi + 1e-6) * kDegreesPerRadian;
+  } else if (type == "AREA") {
+    light.type = LightType::kArea;
+    shines = ReadArea(fields, light, energy);
+  } else {
+    fields.Complain("type", "is unknown");
+  }
+  SCUMBLE_RETURN_IF_ERROR(fields.Verdict());
+  if (!shines) light.intensity = 0.0, light.size_x = light.size_y = 1.0;
+  return std::optional(light);
+}
+
+Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance) {
+  SCUMBLE_ASSIGN(instance.style, ReadStyle(node.extras, where));
+  if (!Find(node.extras, "pass_index")) return Ok();
+  Fields fields(node.extras.Get("scumble"), where);
+  instance.pass_index = static_cast<int>(fields.Number("pass_index", 0.0, kLargestPassIndex));
+  return fields.Verdict();
+}
+
+Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Camera& camera) {
+  const tinygltf::Value* extras = Find(node.extras, "camera");
+  if (!extras) return Ok();
+  Fields fields(*extras, where);
+  const std::string fit = fields.Text("sensor_fit");
+  camera.fit = fit == "HORIZONTAL" ? CameraFit::kHorizontal
+               : fit == "VERTICAL" ? CameraFit::kVertical
+                                   : CameraFit::kLonger;
+  camera.aspect.reset();
+  camera.shift_x = fields.Number("shift_x", -1e6, 1e6);
+  camera.shift_y = fields.Number("shift_y", -1e6, 1e6);
+  if (camera.orthographic) {
+    camera.ymag = fields.Number("ortho_scale", 1e-12, kLargest) / 2.0;
+  } else {
+    camera.yfov_degrees = fields.Number("angle", 1e-9, kPi - 1e-9) * kDegreesPerRadian;
+  }
+  return fields.Verdict();
+}
+
+}  // namespace scumble

@@ -1,0 +1,39 @@
+// What blender_scripts/export_scene.py writes into the `extras` of a glTF file, key "scumble", because glTF has no
+// words for it: Cycles' lamps, shifted cameras, Blender's pure shaders, the world's colour, objects' styles. Where
+// extras and glTF both speak, the extras win. Files without them are not touched. Values of a wrong type or range are a
+// kInput error that names the place.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "guidegen/scene/scene.h"
+#include "core/image/status.h"
+
+namespace tinygltf {
+class Model;
+class Node;
+}  // namespace tinygltf
+
+namespace scumble {
+
+// Styles are also read from the custom property `scumble_style` itself, as other exporters write it.
+
+// Completes scene.materials, which holds the model's materials in their order.
+Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file, Scene& scene);
+
+// The world's radiance of the model's scene of that index, and what its export could not express, as warnings. An index
+// that does not exist is no error.
+Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std::string& file, Scene& scene);
+
+// The lamp that a node's extras describe, in watts as Cycles 3.4 means them: point and spot I = P/(4π), sun W/m², area
+// L = P/(4A). Name and place are the caller's. Nothing where the node is no such lamp. `where` is for the messages.
+Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const std::string& where);
+
+// Completes an instance by the style and pass index that its node's extras name.
+Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance);
+
+// Completes a camera by what its node's extras say of sensor fit, angle and shift.
+Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Camera& camera);
+
+}  // namespace scumble

@@ -1,0 +1,37 @@
+// glTF 2.0 scenes, binary (.glb) and text (.gltf), by tinygltf. Use LoadScene (guidegen/load/load_scene.h), which also sees
+// to what all formats have in common.
+//
+// Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
+// strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
+// KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations;
+// KHR_materials_pbrSpecularGlossiness in part, with a warning. Ignored with
+// a warning: points, lines, the range of lights (Blender's lamps have none). A file that *requires* another extension
+// is refused by the extension's name.
+//
+// An object is named after its node. Where several nodes have one name, the first in the file's list keeps it and the
+// others take their path, "Parent/Name", then "Parent/Name#2", …: what is added behind them renames nobody. Names that
+// would come to more than 512 MiB, counted wherever one is kept, are refused.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "guidegen/load/gltf/rig.h"
+#include "guidegen/scene/scene.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+// At rest: nodes as they stand, skins and morph weights applied.
+Expected<Scene> LoadGltfScene(const std::filesystem::path& path);
+
+struct MovingScene {
+  Scene scene;  // at rest
+  GltfRig rig;
+  std::vector<std::string> animations;  // their names
+};
+// `animation` as in GltfAnimation::Read.
+Expected<MovingScene> LoadMovingGltfScene(const std::filesystem::path& path, const std::string& animation);
+
+}  // namespace scumble

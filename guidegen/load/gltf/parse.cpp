@@ -1,0 +1,389 @@
+#include "guidegen/load/gltf/parse.h"
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <new>
+#include <set>
+#include <span>
+#include <string_view>
+
+#include "guidegen/load/loader_util.h"
+
+namespace scumble {
+namespace {
+
+// tinygltf walks and frees extras by recursion; real files nest a dozen levels.
+constexpr int kMaxJsonDepth = 200;
+// Of files that several buffers name. Exporters write one for each: as tinygltf wants a buffer to be as long as its file,
+// others would only hold the same bytes again.
+constexpr std::uintmax_t kMaxBytesAgain = std::uintmax_t(1) << 26;
+constexpr std::size_t kGlbHeaderBytes = 12;
+constexpr std::size_t kChunkHeaderBytes = 8;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+
+std::uint32_t ReadU32(std::span<const unsigned char> bytes, std::size_t at) {
+  return std::uint32_t(bytes[at]) | std::uint32_t(bytes[at + 1]) << 8 | std::uint32_t(bytes[at + 2]) << 16 |
+         std::uint32_t(bytes[at + 3]) << 24;
+}
+
+bool IsGlb(std::span<const unsigned char> bytes) {
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
+
+// Where the JSON of a .glb is. Every chunk must lie inside the file: tinygltf reads up to eight bytes beyond one that
+// does not.
+Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::span<const unsigned char> bytes) {
+  const auto bad = [&](const std::string& reason) {
+    return InputError(file + " is not a whole .glb file: " + reason + "; copy or export it again");
+  };
+  if (bytes.size() < kGlbHeaderBytes + kChunkHeaderBytes) {
+    return bad("it has only " + std::to_string(bytes.size()) + " bytes");
+  }
+  if (ReadU32(bytes, 4) != 2) {
+    return InputError(file + " is glTF version " + std::to_string(ReadU32(bytes, 4)) +
+                      "; expected version 2, export it as glTF 2.0");
+  }
+  const std::size_t length = ReadU32(bytes, 8);
+  if (length > bytes.size()) {
+    return bad("its header speaks of " + std::to_string(length) + " bytes, there are " + std::to_string(bytes.size()));
+  }
+  std::span<const unsigned char> json;
+  for (std::size_t at = kGlbHeaderBytes; at < length;) {
+    if (length - at < kChunkHeaderBytes) return bad("its last chunk is cut off");
+    const std::size_t chunk = ReadU32(bytes, at);
+    const std::uint32_t type = ReadU32(bytes, at + 4);
+    at += kChunkHeaderBytes;
+    if (chunk > length - at) return bad("a chunk of " + std::to_string(chunk) + " bytes does not fit in it");
+    if (json.empty() && type == kJsonChunk) json = bytes.subspan(at, chunk);
+    at += chunk;
+  }
+  if (json.empty()) return bad("it has no JSON chunk");
+  return json;
+}
+
+// Lists of the top level whose elements tinygltf makes far larger than they may be spelled, as `{}` or little more: 2 KB for a
+// material, half a KB for a node. Of what a file may show, a million instances, none needs so many. Accessors and buffer
+// views cannot be spelled so shortly, and there are several for each mesh.
+struct ListLimit {
+  std::string_view list;
+  std::size_t most;
+};
+constexpr std::size_t kMostElements = 100'000;
+constexpr ListLimit kListLimits[] = {{"nodes", 2'000'000},         {"meshes", 2'000'000},      {"materials", kMostElements},
+                                     {"textures", kMostElements},  {"images", kMostElements},  {"samplers", kMostElements},
+                                     {"scenes", kMostElements},    {"cameras", kMostElements}, {"skins", kMostElements},
+                                     {"animations", kMostElements}};
+// Each value inside extras and extensions takes tinygltf 150 bytes: 2 are enough to spell it. A million nodes with ten of
+// Blender's custom properties each have 10 million.
+constexpr std::uint64_t kMaxFreeValues = 16'000'000;
+
+// What a cheap look ahead of the parser proper finds in the JSON.
+struct JsonOutline {
+  int depth = 0;                  // of the deepest brackets
+  int buffers_without_uri = 0;    // or with one that is empty or no text, which tinygltf takes for none
+  std::string_view long_list;     // one of the top level that has more elements than it may; empty: none
+  std::size_t elements = 0;       // which it has,
+  std::size_t most = 0;           // and may have
+  std::uint64_t free_values = 0;  // inside extras and extensions, as often as tinygltf copies them
+};
+
+// Keys are compared as they are spelled. One with an escape may be any, so it counts for the worst: no exporter writes
+// such.
+class Outliner {
+ public:
+  JsonOutline Read(std::string_view json) {
+    for (std::size_t i = 0; i < json.size(); ++i) {
+      const char c = json[i];
+      if (c == '"') {
+        const std::size_t begin = i + 1;
+        for (++i; i < json.size() && json[i] != '"'; ++i) i += json[i] == '\\';
+        text_ = json.substr(begin, i - begin);
+        escaped_ = text_.find('\\') != text_.npos;
+        if (depth_ == 3 && at_uri_) has_uri_ = !text_.empty();
+      } else if (c == ':') {
+        TakeKey();
+      } else if (c == ',') {
+        TakeComma();
+      } else if (c == '{' || c == '[') {
+        Open();
+      } else if (c == '}' || c == ']') {
+        Close();
+      }
+    }
+    return outline_;
+  }
+
+ private:
+  bool MayBe(std::string_view key) const { return escaped_ || text_ == key; }
+
+  void TakeKey() {
+    if (free_depth_ == 0) at_free_ = MayBe("extras") || MayBe("extensions");
+    if (depth_ == 1) {
+      list_ = text_;
+      list_escaped_ = escaped_;
+      in_buffers_ = MayBe("buffers");
+      in_animations_ = MayBe("animations");
+    } else if (depth_ == 3 && in_buffers_) {
+      at_uri_ = text_ == "uri";
+      if (MayBe("uri")) has_uri_ = false;
+    } else if (depth_ == 3 && in_animations_) {
+      at_samplers_ = MayBe("samplers");
+      at_copied_ = MayBe("extensions");
+    }
+  }
+
+  void TakeComma() {
+    elements_ += depth_ == 2;
+    samplers_ += depth_ == 4 && at_samplers_;
+    CountFreeValue();
+    if (depth_ == 3) at_uri_ = false;
+    at_free_ = false;
+  }
+
+  void Open() {
+    outline_.depth = std::max(outline_.depth, ++depth_);
+    if (depth_ == 2) elements_ = 1;
+    if (depth_ == 3) {
+      at_uri_ = has_uri_ = at_samplers_ = at_copied_ = false;
+      samplers_ = copied_values_ = 0;
+    }
+    if (at_free_) free_depth_ = depth_;
+    at_free_ = false;
+    CountFreeValue();
+  }
+
+  void Close() {
+    if (depth_ == 2) CheckElements();
+    if (depth_ == 3) {
+      outline_.buffers_without_uri += in_buffers_ && !has_uri_;
+      // tinygltf gives each of an animation's samplers a copy of the animation's extensions.
+      outline_.free_values += samplers_ * copied_values_;
+    }
+    if (depth_ == free_depth_) free_depth_ = 0;
+    at_free_ = false;
+    --depth_;
+  }
+
+  void CountFreeValue() {
+    if (free_depth_ == 0) return;
+    ++outline_.free_values;
+    copied_values_ += at_copied_;
+  }
+
+  void CheckElements() {
+    for (const ListLimit& limit : kListLimits) {
+      const std::size_t most = list_escaped_ ? kMostElements : limit.most;
+      if ((!list_escaped_ && list_ != limit.list) || elements_ <= most) continue;
+      outline_.long_list = list_;
+      outline_.elements = elements_;
+      outline_.most = most;
+    }
+  }
+
+  JsonOutline outline_;
+  int depth_ = 0;
+  std::string_view text_;  // the last string
+  bool escaped_ = false;   // has it an escape?
+  std::string_view list_;  // key of the top level
+  bool list_escaped_ = false;
+  std::size_t elements_ = 0;
+  bool in_buffers_ = false, at_uri_ = false, has_uri_ = false;
+  bool at_free_ = false;  // what comes next is the value of extras or extensions,
+  int free_depth_ = 0;    // of whose brackets this is the depth; 0 outside
+  bool in_animations_ = false, at_samplers_ = false, at_copied_ = false;
+  std::uint64_t samplers_ = 0;       // of one animation, less one
+  std::uint64_t copied_values_ = 0;  // inside its extensions
+};
+
+bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, int, int, const unsigned char* bytes,
+                 int size, void*) {
+  image->as_is = true;
+  // Embedded pictures come with a pointer that nobody has checked; they are read later, from their buffer view.
+  if (image->bufferView >= 0) return true;
+  if (size < 0) {
+    if (error) *error += "a picture has more than two gigabytes";
+    return false;
+  }
+  image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+// Where tinygltf finds files.
+struct Surroundings {
+  std::string folder;            // the scene's
+  bool keep_pictures = false;    // pictures are there, too
+  bool hidden_pictures = false;  // some were asked for, and were not
+  std::set<std::filesystem::path> read = {};
+  std::uintmax_t bytes_again = 0;  // read of files that had been read before
+};
+
+bool HasPictureEnding(const std::string& name) {
+  std::string ending = std::filesystem::path(name).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".png" || ending == ".jpg" || ending == ".jpeg" || ending == ".webp";
+}
+
+// tinygltf also looks in the current folder; only files beside the scene (or below or above it) belong to it. It takes
+// a picture that is not there for one that nobody needs.
+bool BesideScene(const std::string& name, void* base) {
+  Surroundings& surroundings = *static_cast<Surroundings*>(base);
+  if (name.rfind(surroundings.folder, 0) != 0) return false;
+  if (!surroundings.keep_pictures && HasPictureEnding(name)) {
+    surroundings.hidden_pictures = true;
+    return false;
+  }
+  std::error_code error;
+  return std::filesystem::is_regular_file(name, error) && !error;
+}
+
+// Any number of buffers may name one file, and tinygltf keeps its bytes for each.
+bool MayBeRead(const std::string& name, Surroundings& surroundings) {
+  std::error_code failed;
+  const std::filesystem::path file = std::filesystem::canonical(name, failed);
+  if (failed || surroundings.read.insert(file).second) return true;
+  const std::uintmax_t size = std::filesystem::file_size(file, failed);
+  if (failed || size > kMaxBytesAgain - surroundings.bytes_again) return false;
+  surroundings.bytes_again += size;
+  return true;
+}
+
+bool ReadForTinygltf(std::vector<unsigned char>* out, std::string* error, const std::string& name, void* base) {
+  if (!MayBeRead(name, *static_cast<Surroundings*>(base))) {
+    if (error) {
+      *error += "several buffers name this file, and reading files again comes to more than " +
+                std::to_string(kMaxBytesAgain) + " bytes; expected one buffer for each file";
+    }
+    return false;
+  }
+  const Expected<std::vector<std::byte>> bytes = ReadRegularFile(name);
+  if (!bytes) {
+    if (error) *error += bytes.error().message;
+    return false;
+  }
+  const std::span<const unsigned char> chars = AsChars(bytes.value());
+  out->assign(chars.begin(), chars.end());
+  return true;
+}
+
+bool NeverWrite(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+
+// What tinygltf says about a file that it accepts is worth a warning, save where it is stricter than glTF.
+void WarnOfComplaints(std::string complaints, WarningCounter& warnings) {
+  for (const std::string harmless : {"JSON Chunk end does not aligned to a 4-byte boundary.",
+                                     "'inverseBindMatrices' property is missing in Skin.\n"}) {
+    for (std::size_t at; (at = complaints.find(harmless)) != std::string::npos;) complaints.erase(at, harmless.size());
+  }
+  if (!complaints.empty()) warnings.Add("some of the file is not valid glTF and is left out", Excerpt(complaints));
+}
+
+std::string FolderOf(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+Status RunTinygltf(const std::string& file, Surroundings& surroundings, std::span<const unsigned char> bytes,
+                   tinygltf::Model& model, WarningCounter& counter) {
+  const std::string& folder = surroundings.folder;
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(&KeepEncoded, nullptr);
+  loader.SetFsCallbacks(
+      {&BesideScene, [](const std::string& name, void*) { return name; }, &ReadForTinygltf, &NeverWrite, &surroundings});
+  std::string errors, warnings;
+  bool ok = false;
+  const unsigned size = static_cast<unsigned>(bytes.size());
+  try {
+    if (IsGlb(bytes)) {
+      ok = loader.LoadBinaryFromMemory(&model, &errors, &warnings, bytes.data(), size, folder);
+    } else {
+      ok = loader.LoadASCIIFromString(&model, &errors, &warnings, reinterpret_cast<const char*>(bytes.data()), size,
+                                      folder);
+    }
+  } catch (const std::bad_alloc&) {
+    return MemoryError(file + " asks for more memory than there is: simplify the scene");
+  } catch (const std::exception& e) {
+    ok = false;
+    errors = e.what();
+  }
+  if (ok) {
+    WarnOfComplaints(errors, counter);
+    return Ok();
+  }
+  if (errors.empty()) errors = warnings.empty() ? "no reason given" : warnings;
+  return InputError(file + " cannot be read as glTF 2.0: " + Excerpt(errors, 300) +
+                    "; export it again, or check it with a glTF validator");
+}
+
+}  // namespace
+
+Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings) {
+  const std::string file = path.string();
+  SCUMBLE_ASSIGN(const std::vector<std::byte> whole, ReadRegularFile(path));
+  std::span<const unsigned char> bytes = AsChars(whole);
+  if (bytes.size() > std::numeric_limits<unsigned>::max()) {
+    return InputError(file +
+                      " has more than four gigabytes, glTF's limit for one file: move its buffers to .bin files");
+  }
+  if (bytes.size() >= 3 && bytes[0] == 0xEF && bytes[1] == 0xBB && bytes[2] == 0xBF) bytes = bytes.subspan(3);
+  if (bytes.empty()) return InputError(file + " is empty; expected a glTF 2.0 scene");
+  std::span<const unsigned char> json = bytes;
+  if (IsGlb(bytes)) {
+    SCUMBLE_ASSIGN(json, GlbJson(file, bytes));
+  }
+  const JsonOutline outline = Outliner().Read({reinterpret_cast<const char*>(json.data()), json.size()});
+  if (outline.depth > kMaxJsonDepth) {
+    return InputError(file + " nests its JSON more than " + std::to_string(kMaxJsonDepth) +
+                      " levels deep; no scene needs that");
+  }
+  if (!outline.long_list.empty()) {
+    return InputError(file + " has " + std::to_string(outline.elements) + " elements in '" +
+                      Excerpt(std::string(outline.long_list), 80) + "'; expected at most " +
+                      std::to_string(outline.most) + ": export it in parts, or without those that nothing uses");
+  }
+  if (outline.free_values > kMaxFreeValues) {
+    return InputError(file + " has at least " + std::to_string(outline.free_values) +
+                      " values in extras and extensions; expected at most " + std::to_string(kMaxFreeValues) +
+                      ": export it without custom properties");
+  }
+  // Each of them would be a copy of the binary chunk. glTF allows it to the first alone; where meshopt packs the meshes,
+  // others stand for what they become.
+  if (IsGlb(bytes) && outline.buffers_without_uri > 1) {
+    return InputError(file + " has " + std::to_string(outline.buffers_without_uri) +
+                      " buffers without a uri; expected one, the file's own binary chunk: export it again, with " +
+                      "compression of meshes (meshopt) switched off");
+  }
+  Surroundings surroundings{FolderOf(path)};
+  const Status parsed = RunTinygltf(file, surroundings, bytes, model, warnings);
+  if (parsed || !surroundings.hidden_pictures) return parsed;
+  // A buffer may have a picture's name.
+  surroundings = {surroundings.folder, true};
+  model = tinygltf::Model();
+  return RunTinygltf(file, surroundings, bytes, model, warnings);
+}
+
+// The escapes %20 to %FF stand for bytes; a name that has a % of its own keeps it.
+std::filesystem::path PictureFile(const std::filesystem::path& scene, const std::string& uri) {
+  const auto digit = [&](std::size_t at) -> int {
+    if (at >= uri.size()) return -1;
+    const char c = uri[at];
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+  };
+  std::string name;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && digit(i + 1) >= 0 && digit(i + 2) >= 0) {
+      name += static_cast<char>(digit(i + 1) * 16 + digit(i + 2));
+      i += 2;
+    } else {
+      name += uri[i];
+    }
+  }
+  return FolderOf(scene) + "/" + name;  // also where the name begins with a slash: nothing outside is meant
+}
+
+}  // namespace scumble

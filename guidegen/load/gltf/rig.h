@@ -1,0 +1,63 @@
+// What moves in a loaded glTF scene, and how it stands at a time. Knows nothing of the file any more.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "guidegen/load/gltf/animation.h"
+#include "guidegen/load/gltf/skin.h"
+#include "guidegen/scene/scene.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+// A node of the hierarchy as reached from the scene's roots; parents stand before their children.
+struct RigNode {
+  int node = 0;     // in the file
+  int parent = -1;  // in the rig
+  int depth = 0;
+  bool moves = false;  // itself or one above it is animated
+  NodePose pose{};     // at rest; looked at only where it is animated
+  glm::dmat4 local{1.0};
+  glm::dmat4 world{1.0};  // at rest
+};
+
+// A mesh that is deformed: one for each node that shows it.
+struct RigMesh {
+  int mesh = 0;  // in Scene::meshes
+  int node = 0;  // in the rig
+  int skin = -1;
+  MeshDeformation deformation;
+  std::vector<double> weights;  // of the targets, at rest
+};
+
+struct RigInstance {
+  Instance instance;  // as at rest
+  int node = 0;       // in the rig
+  int rig_mesh = -1;  // where the mesh is deformed
+};
+
+struct GltfRig {
+  std::string file;
+  GltfAnimation animation;
+  std::vector<RigNode> nodes;
+  std::vector<GltfSkin> skins;  // joints are indices into `nodes`
+  std::vector<RigMesh> meshes;
+  std::vector<RigInstance> instances;
+  std::vector<int> camera_nodes;  // of each of Scene::cameras, in its order
+  std::vector<int> light_nodes;
+
+  // Rewrites of `scene`, which was loaded with this rig, what may differ from its rest pose, as it stands at the time,
+  // or at rest without one. What was appended to its lists stays. Objects that their transform flattens at that time
+  // are not among its instances. Errors name the file, the time and the node or mesh.
+  Status Pose(std::optional<double> seconds, Scene& scene) const;
+};
+
+// Whether a matrix leaves an object no volume.
+bool Flattens(const glm::dmat4& world);
+
+// Rotation and translation only; nothing where scale and shear leave no direction.
+std::optional<glm::dmat4> WithoutScale(const glm::dmat4& world);
+
+}  // namespace scumble

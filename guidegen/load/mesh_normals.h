@@ -1,0 +1,36 @@
+// Normals and tangents for meshes whose files give none.
+//
+// Normals are smooth: the sum of the adjoining triangles' normals, each weighted by its angle at the vertex (Thürmer &
+// Wüthrich, "Computing vertex normals from polygonal facets", 1998), so they do not depend on how a surface is cut into
+// triangles. Tangents follow Lengyel, "Computing tangent space basis vectors for an arbitrary mesh", 2001, with the
+// triangles weighted likewise. Sums are in double and in the order of the triangles: the same bits every time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "guidegen/scene/scene.h"
+
+namespace scumble {
+
+// One id per vertex; vertices at exactly the same place share one. Positions must not be NaN.
+std::vector<std::uint32_t> WeldByPosition(std::span<const glm::vec3> positions);
+
+// One unit normal per vertex; vertices with equal `weld` ids share theirs. Where the joint normal vanishes (a sheet
+// with both sides modelled) a vertex takes that of its own triangles; without any triangle of positive area, +Z.
+// Indices must be valid; `weld` ids must be below the number of positions.
+std::vector<glm::vec3> SmoothNormals(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+                                     std::span<const std::uint32_t> weld);
+
+// Makes mesh.normals one unit normal per vertex: those given are normalised, missing ones and ones that have no
+// direction (zero, NaN, infinite) become smooth, welded by position. Returns how many given normals were replaced.
+std::size_t FillNormals(Mesh& mesh);
+
+// Computes mesh.tangents from the normals and one of the UV sets, as transformed by `uv_transform`, in glTF's sense:
+// the bitangent cross(normal, tangent) · w points up in the picture, against v. Needs normals and that UV set.
+void FillTangents(Mesh& mesh, int uv_set, const glm::mat3& uv_transform);
+
+}  // namespace scumble

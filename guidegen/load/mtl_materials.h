@@ -1,0 +1,25 @@
+// Materials of Wavefront's MTL, as guidegen/load/obj.h describes them.
+#pragma once
+
+#include <tiny_obj_loader.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "guidegen/scene/scene.h"
+
+namespace scumble {
+
+struct MtlLibrary {
+  std::vector<tinyobj::material_t> materials;
+  std::map<std::string, int> textures;  // the scene's, by the name that the library has for them
+};
+
+// The textures that a material uses, by name; for MakeMaterial they must be among the library's.
+std::vector<std::string> TexturesOf(const tinyobj::material_t& material);
+
+// A material of the library, without a name. What is left out of the scene's textures is as if it had never been named.
+Material MakeMaterial(const MtlLibrary& library, std::size_t index, const Scene& scene);
+
+}  // namespace scumble

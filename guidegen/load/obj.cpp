@@ -1,0 +1,558 @@
+#include "guidegen/load/obj.h"
+
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <glm/gtc/matrix_transform.hpp>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <set>
+#include <span>
+#include <sstream>
+#include <system_error>
+#include <unordered_map>
+
+#include "guidegen/load/loader_util.h"
+#include "guidegen/load/mesh_normals.h"
+#include "guidegen/load/mtl_materials.h"
+#include "core/image/color.h"
+#include "core/image/hash.h"
+#include "core/io/picture_file.h"
+
+namespace scumble {
+namespace {
+
+std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return scene.parent_path() / name;
+}
+
+bool IsBlank(char c) { return c == ' ' || c == '\t'; }
+
+// Makes comments of what tinyobjloader would hold and nobody looks at; the numbers of lines stay. Of a subdivision tag's 20
+// bytes it makes 360 KB, and again in each shape. The lines and points of an object it copies at each change of material:
+// the first index of each kind says that they are there.
+void BlankUnused(std::string& text) {
+  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  bool has_lines = false, has_points = false;  // in this object or group
+  for (auto begin = text.begin(); begin != text.end();) {
+    const auto end = std::find_if(begin, text.end(), ends_line);
+    const auto what = std::find_if_not(begin, end, IsBlank);
+    begin = end == text.end() ? end : end + 1;
+    if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
+    if (*what == 'o' || *what == 'g') has_lines = has_points = false;
+    if (*what == 't') *what = '#';
+    if (*what != 'l' && *what != 'p') continue;
+    bool& is_told = *what == 'l' ? has_lines : has_points;
+    const auto index = std::find_if_not(what + 1, end, IsBlank);
+    if (is_told || index == end) {
+      *what = '#';
+    } else {
+      std::fill(std::find_if(index, end, IsBlank), end, ' ');
+      is_told = true;
+    }
+  }
+}
+
+// Reads material libraries from regular files only, each once under whatever name, and says which one is missing.
+class LibraryReader : public tinyobj::MaterialReader {
+ public:
+  LibraryReader(const std::filesystem::path& scene, WarningCounter& warnings) : scene_(scene), warnings_(warnings) {}
+
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                  std::map<std::string, int>* indices, std::string* warning, std::string* error) override {
+    const std::filesystem::path path = BesideScene(scene_, name);
+    std::error_code missing;
+    const std::filesystem::path library = std::filesystem::canonical(path, missing);
+    if (!missing && read_.count(library) > 0) return true;
+    const auto bytes = ReadRegularFile(path);
+    if (!bytes) {
+      warnings_.Add("a material library is missing, its objects are matt and light grey", Excerpt(name));
+      return false;
+    }
+    if (!missing) read_.insert(library);
+    std::istringstream stream(AsText(bytes.value()));
+    tinyobj::LoadMtl(indices, materials, &stream, warning, error);
+    return true;
+  }
+
+ private:
+  const std::filesystem::path& scene_;
+  WarningCounter& warnings_;
+  std::set<std::filesystem::path> read_;
+};
+
+// Where an object's middle lies within this distance of 0 or of a neighbour's origin, that is good enough: floats step
+// by 1/256 there at most. So scenes in millimetres, 60 m of them, keep the one origin of the file.
+constexpr double kOneOrigin = 65536.0;
+
+bool IsFar(const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 away = glm::abs(a - b);
+  return std::max({away.x, away.y, away.z}) > kOneOrigin;
+}
+
+// Origins of which each is far from all others, found by cells of that size.
+struct NearOrigins {
+  std::vector<glm::dvec3> origins;
+  std::map<std::array<double, 3>, std::vector<std::size_t>> cells;
+
+  // The place of the first that is not far; otherwise this becomes one.
+  std::size_t Find(const glm::dvec3& place) {
+    const glm::dvec3 cell = glm::floor(place / kOneOrigin);
+    std::size_t first = origins.size();
+    for (int i = 0; i < 27; ++i) {
+      const auto found = cells.find({cell.x + i % 3 - 1, cell.y + i / 3 % 3 - 1, cell.z + i / 9 - 1});
+      if (found == cells.end()) continue;
+      for (const std::size_t origin : found->second) {
+        if (!IsFar(place, origins[origin])) first = std::min(first, origin);
+      }
+    }
+    if (first == origins.size()) {
+      origins.push_back(place);
+      cells[{cell.x, cell.y, cell.z}].push_back(first);
+    }
+    return first;
+  }
+};
+
+// `normal` is an index into the file's normals, or -1 - an index into the smooth ones.
+struct Corner {
+  int position = 0;
+  int uv = -1;
+  std::int64_t normal = 0;
+  bool operator==(const Corner&) const = default;
+};
+struct CornerHash {
+  std::size_t operator()(const Corner& c) const { return Hash(c.position, c.uv, c.normal); }
+};
+
+// Corners with equal keys share a smooth normal.
+struct SmoothKey {
+  std::uint32_t place = 0;  // the same for positions that are equal
+  unsigned group = 0;
+  std::size_t flat_face = 0;  // 1 + the face where it is flat
+  bool operator==(const SmoothKey&) const = default;
+};
+struct SmoothKeyHash {
+  std::size_t operator()(const SmoothKey& k) const { return Hash(k.place, k.group, k.flat_face); }
+};
+
+struct Triangle {
+  Corner corners[3];
+  std::size_t face = 0;  // counted through the whole file
+  unsigned smoothing_group = 0;
+  int shape = 0;
+  int material = -1;
+};
+
+class ObjLoader {
+ public:
+  explicit ObjLoader(const std::filesystem::path& path) : path_(path), file_(path.string()) {}
+
+  Expected<Scene> Load() {
+    SCUMBLE_RETURN_IF_ERROR(Parse());
+    SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
+    for (const tinyobj::shape_t& shape : shapes_) SCUMBLE_RETURN_IF_ERROR(CheckShape(shape));
+    ChooseOrigins();
+    PlacePositions();
+    for (std::size_t s = 0; s < shapes_.size(); ++s) AddShape(s);
+    if (lacks_normals_) ComputeNormals();
+    LoadMaterials();
+    BuildMeshes();
+    warnings_.MoveTo(scene_.warnings);
+    return std::move(scene_);
+  }
+
+ private:
+  Status Parse() {
+    SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path_));
+    if (bytes.empty()) return InputError(file_ + " is empty; expected a Wavefront OBJ scene");
+    std::string text = AsText(bytes);
+    BlankUnused(text);
+    std::istringstream stream(std::move(text));
+    LibraryReader library(path_, warnings_);
+    std::string warning, error;
+    bool ok = false;
+    try {
+      // Polygons are cut here and not by tinyobjloader, which reads the corners' positions before checking their
+      // indices.
+      ok = tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning, &error, &stream, &library,
+                            /*triangulate=*/false, /*default_vcols_fallback=*/false);
+    } catch (const std::bad_alloc&) {
+      return MemoryError(file_ + " asks for more memory than there is: simplify the scene");
+    } catch (const std::exception& e) {
+      error = e.what();
+    }
+    if (ok) return Ok();
+    return InputError(file_ + " is not a valid OBJ file: " + Excerpt(error.empty() ? "no reason given" : error, 300));
+  }
+
+  Status CheckAttributes() const {
+    for (std::size_t i = 0; i < attributes_.vertices.size(); ++i) {
+      if (!std::isfinite(static_cast<float>(attributes_.vertices[i]))) {
+        return InputError(file_ + ": vertex " + std::to_string(i / 3 + 1) +
+                          " is NaN or infinite; expected finite numbers");
+      }
+    }
+    return Ok();
+  }
+
+  glm::dvec3 PlaceOf(std::size_t vertex) const {
+    const double* v = attributes_.vertices.data() + 3 * vertex;
+    return {v[0], v[1], v[2]};
+  }
+
+  // Text holds any number of digits: surveyors' files stand millions of metres from 0. One origin does for most files,
+  // and then they have one, as objects that touch must round their corners alike. In the others a thing at 0 may stand
+  // beside a surveyor's, and what is far has origins of its own.
+  void ChooseOrigins() {
+    PlaceBox whole;
+    for (const tinyobj::shape_t& shape : shapes_) {
+      PlaceBox box;
+      for (const tinyobj::index_t& index : shape.mesh.indices) box.Add(PlaceOf(std::size_t(index.vertex_index)));
+      origins_.push_back(OriginOf(box));
+      if (shape.mesh.indices.empty()) continue;
+      whole.Add(box.low);
+      whole.Add(box.high);
+    }
+    const glm::dvec3 common = OriginOf(whole);
+    frames_.push_back({0, common});
+    // In the order of their places, so that it does not matter where they stand in the file.
+    std::map<std::array<double, 3>, std::vector<std::size_t>> far_shapes;
+    for (std::size_t s = 0; s < shapes_.size(); ++s) {
+      const glm::dvec3 own = origins_[s];
+      if (common == glm::dvec3(0.0) && IsFar(own, common)) {
+        far_shapes[{own.x, own.y, own.z}].push_back(s);
+      } else {
+        origins_[s] = common;
+      }
+    }
+    NearOrigins near;
+    std::vector<std::vector<std::size_t>> of_origin;
+    for (const auto& [place, shapes] : far_shapes) {
+      const std::size_t origin = near.Find(glm::dvec3(place[0], place[1], place[2]));
+      of_origin.resize(near.origins.size());
+      of_origin[origin].insert(of_origin[origin].end(), shapes.begin(), shapes.end());
+    }
+    for (std::size_t i = 0; i < of_origin.size(); ++i) {
+      frames_.push_back({attributes_.vertices.size() / 3, near.origins[i]});
+      for (const std::size_t s : of_origin[i]) {
+        origins_[s] = near.origins[i];
+        CopyVertices(shapes_[s].mesh);
+      }
+    }
+  }
+
+  // Gives a shape vertices of its own, behind all others.
+  void CopyVertices(tinyobj::mesh_t& mesh) {
+    const bool has_colors = HasColors();
+    const auto copy = [](std::vector<double>& values, std::size_t vertex) {
+      for (std::size_t axis = 0; axis < 3; ++axis) values.push_back(double(values[3 * vertex + axis]));
+    };
+    std::vector<int> used;
+    for (const tinyobj::index_t& index : mesh.indices) used.push_back(index.vertex_index);
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    const std::size_t first = attributes_.vertices.size() / 3;
+    for (const int vertex : used) {
+      copy(attributes_.vertices, std::size_t(vertex));
+      if (has_colors) copy(attributes_.colors, std::size_t(vertex));
+    }
+    for (tinyobj::index_t& index : mesh.indices) {
+      const auto at = std::lower_bound(used.begin(), used.end(), index.vertex_index) - used.begin();
+      index.vertex_index = static_cast<int>(first + std::size_t(at));
+    }
+  }
+
+  std::size_t EndOf(std::size_t frame) const {
+    return frame + 1 < frames_.size() ? frames_[frame + 1].first : attributes_.vertices.size() / 3;
+  }
+
+  void PlacePositions() {
+    positions_.reserve(attributes_.vertices.size() / 3);
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      for (std::size_t v = frames_[f].first; v < EndOf(f); ++v) positions_.emplace_back(PlaceOf(v) - frames_[f].origin);
+    }
+  }
+
+  // One of the file's lists that faces point into.
+  struct IndexedList {
+    const char* what;
+    std::size_t count;
+    bool optional;
+  };
+
+  // An index of the file, counted from 0 and resolved; -1 stands for none where the list is optional.
+  Status CheckIndex(int index, const IndexedList& list, const std::string& shape) const {
+    if (index >= 0 ? std::size_t(index) < list.count : list.optional && index == -1) return Ok();
+    return InputError(file_ + ": a face of '" + Excerpt(shape, 80) + "' uses " + list.what + " " +
+                      std::to_string(std::int64_t(index) + 1) + ", but there are " + std::to_string(list.count) +
+                      "; the file is corrupt or was cut short");
+  }
+
+  Status CheckShape(const tinyobj::shape_t& shape) {
+    const tinyobj::mesh_t& mesh = shape.mesh;
+    const std::size_t corners =
+        std::accumulate(mesh.num_face_vertices.begin(), mesh.num_face_vertices.end(), std::size_t(0));
+    if (corners != mesh.indices.size()) {
+      return InputError(file_ + ": '" + Excerpt(shape.name, 80) +
+                        "' has a face of more than 255 corners: " + "triangulate it before exporting");
+    }
+    if (!shape.lines.indices.empty() || !shape.points.indices.empty()) {
+      warnings_.Add("points and lines are left out, only faces are seen", "'" + Excerpt(shape.name, 80) + "'");
+    }
+    const IndexedList positions{"vertex", attributes_.vertices.size() / 3, false};
+    const IndexedList uvs{"texture coordinate", attributes_.texcoords.size() / 2, true};
+    const IndexedList normals{"normal", attributes_.normals.size() / 3, true};
+    for (const tinyobj::index_t& index : mesh.indices) {
+      SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.vertex_index, positions, shape.name));
+      SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.texcoord_index, uvs, shape.name));
+      SCUMBLE_RETURN_IF_ERROR(CheckIndex(index.normal_index, normals, shape.name));
+      lacks_normals_ |= index.normal_index < 0;
+    }
+    for (const std::size_t count : mesh.num_face_vertices) {
+      if (count >= 3) SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, count, count - 2));
+    }
+    return Ok();
+  }
+
+  void AddShape(std::size_t shape_index) {
+    const tinyobj::mesh_t& mesh = shapes_[shape_index].mesh;
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < mesh.num_face_vertices.size(); ++f) {
+      AddFace(shape_index, f, first, mesh.num_face_vertices[f]);
+      first += mesh.num_face_vertices[f];
+    }
+  }
+
+  void AddFace(std::size_t shape_index, std::size_t face, std::size_t first, std::size_t count) {
+    const tinyobj::mesh_t& mesh = shapes_[shape_index].mesh;
+    std::vector<glm::vec3> polygon;
+    for (std::size_t i = 0; i < count; ++i) {
+      polygon.push_back(positions_[std::size_t(mesh.indices[first + i].vertex_index)]);
+    }
+    std::vector<glm::uvec3> cuts;
+    TriangulatePolygon(polygon, cuts);
+    for (const glm::uvec3& cut : cuts) {
+      Triangle triangle;
+      for (int i = 0; i < 3; ++i) {
+        const tinyobj::index_t& index = mesh.indices[first + cut[i]];
+        triangle.corners[i] = {index.vertex_index, index.texcoord_index, index.normal_index};
+      }
+      triangle.face = faces_;
+      triangle.smoothing_group = mesh.smoothing_group_ids[face];
+      triangle.shape = static_cast<int>(shape_index);
+      triangle.material = mesh.material_ids[face];
+      has_smoothing_groups_ |= triangle.smoothing_group != 0;
+      triangles_.push_back(triangle);
+    }
+    ++faces_;
+  }
+
+  // Each frame by itself: positions that are equal are one place only where they have one origin.
+  std::vector<std::uint32_t> WeldFrames() const {
+    std::vector<std::uint32_t> weld = WeldByPosition(std::span(positions_).first(EndOf(0)));
+    for (std::size_t f = 1; f < frames_.size(); ++f) {
+      const std::size_t first = frames_[f].first;
+      for (const std::uint32_t id : WeldByPosition(std::span(positions_).subspan(first, EndOf(f) - first))) {
+        weld.push_back(static_cast<std::uint32_t>(first) + id);
+      }
+    }
+    return weld;
+  }
+
+  // Smooth over all that has one origin, so that no seam shows between shapes or materials. In a file with smoothing
+  // groups a normal is shared inside a group only, and group 0 means flat faces; a file without any is smooth
+  // everywhere.
+  void ComputeNormals() {
+    const std::vector<std::uint32_t> weld = WeldFrames();
+    std::unordered_map<SmoothKey, std::uint32_t, SmoothKeyHash> ids;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (Triangle& triangle : triangles_) {
+      const bool flat = has_smoothing_groups_ && triangle.smoothing_group == 0;
+      glm::uvec3 indices(0);
+      for (int i = 0; i < 3; ++i) {
+        Corner& corner = triangle.corners[i];
+        const std::uint32_t place = weld[std::size_t(corner.position)];
+        const SmoothKey key{place, triangle.smoothing_group, flat ? triangle.face + 1 : 0};
+        const auto [it, is_new] = ids.try_emplace(key, static_cast<std::uint32_t>(positions.size()));
+        if (is_new) positions.push_back(positions_[place]);
+        indices[i] = it->second;
+        if (corner.normal < 0) corner.normal = -1 - std::int64_t(it->second);
+      }
+      triangles.push_back(indices);
+    }
+    std::vector<std::uint32_t> own(positions.size());
+    std::iota(own.begin(), own.end(), 0u);
+    smooth_normals_ = SmoothNormals(positions, triangles, own);
+  }
+
+  void LoadMaterials() {
+    mtl_ = std::make_shared<MtlLibrary>();
+    mtl_->materials = std::move(materials_);
+    for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
+      for (const std::string& name : TexturesOf(mtl_->materials[i])) KeepTexture(name, i);
+    }
+    for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
+      const std::string& name = mtl_->materials[i].name;
+      scene_.materials.push_back(MakeMaterial(*mtl_, i, scene_));
+      scene_.materials.back().name = material_names_.Take(name.empty() ? "material_" + std::to_string(i) : name);
+    }
+  }
+
+  // To be decoded later. Where it is left out, the materials that use it are made anew, and no others: a library may have
+  // as many missing textures as materials.
+  void KeepTexture(const std::string& name, std::size_t material) {
+    const auto [known, is_new] = mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size()));
+    if (!is_new) {
+      users_[std::size_t(known->second)]->push_back(material);
+      return;
+    }
+    const auto users = std::make_shared<std::vector<std::size_t>>(1, material);
+    users_.push_back(users);
+    auto texture = std::make_shared<EncodedTexture>();
+    texture->decode = [file = BesideScene(path_, name)] { return ReadPicture(file); };
+    texture->count_pixels = [file = BesideScene(path_, name)] { return CountPixels(file); };
+    texture->leave_out = [mtl = mtl_, users](Scene& scene) {
+      for (std::size_t i : *users) {
+        Material made = MakeMaterial(*mtl, i, scene);
+        made.name = scene.materials[i].name;
+        scene.materials[i] = std::move(made);
+      }
+    };
+    scene_.textures.emplace_back();
+    scene_.encoded_textures.push_back(std::move(texture));
+  }
+
+  // What faces without a material have: Blender's own, so that nobody meets a highlight that nobody asked for. Where
+  // the vertices have colours, those are the surface's.
+  int PlainMaterial() {
+    if (plain_material_ < 0) {
+      Material material;
+      material.name = material_names_.Take("default");
+      material.bsdf = Bsdf::kDiffuse;
+      if (!HasColors()) material.base_color = kPlainColor;
+      plain_material_ = static_cast<int>(scene_.materials.size());
+      scene_.materials.push_back(std::move(material));
+    }
+    return plain_material_;
+  }
+
+  bool HasColors() const {
+    return !attributes_.colors.empty() && attributes_.colors.size() == attributes_.vertices.size();
+  }
+
+  void BuildMeshes() {
+    UniqueNames names;
+    std::vector<std::string> shape_names;
+    for (std::size_t s = 0; s < shapes_.size(); ++s) {
+      if (shapes_[s].mesh.indices.empty()) {
+        shape_names.emplace_back();
+      } else {
+        shape_names.push_back(names.Take(shapes_[s].name.empty() ? "shape_" + std::to_string(s) : shapes_[s].name));
+      }
+    }
+    // Triangles come shape by shape, but a shape may come back to a material.
+    for (std::size_t begin = 0; begin < triangles_.size();) {
+      std::size_t end = begin;
+      std::map<int, std::vector<std::size_t>> by_material;
+      for (; end < triangles_.size() && triangles_[end].shape == triangles_[begin].shape; ++end) {
+        by_material[triangles_[end].material].push_back(end);
+      }
+      for (const auto& [material, members] : by_material) {
+        AddMesh(shape_names[std::size_t(triangles_[begin].shape)], material, members);
+      }
+      begin = end;
+    }
+  }
+
+  void AddMesh(const std::string& object, int material, const std::vector<std::size_t>& members) {
+    Mesh mesh;
+    mesh.material = material >= 0 && std::size_t(material) < mtl_->materials.size() ? material : PlainMaterial();
+    const bool has_colors = HasColors();
+    bool has_uvs = false;
+    for (std::size_t t : members) {
+      for (const Corner& corner : triangles_[t].corners) has_uvs |= corner.uv >= 0;
+    }
+    std::unordered_map<Corner, std::uint32_t, CornerHash> vertices;
+    for (std::size_t t : members) {
+      glm::uvec3 indices(0);
+      for (int i = 0; i < 3; ++i) {
+        const Corner& corner = triangles_[t].corners[i];
+        const auto [it, is_new] = vertices.try_emplace(corner, static_cast<std::uint32_t>(mesh.positions.size()));
+        indices[i] = it->second;
+        if (!is_new) continue;
+        mesh.positions.push_back(positions_[std::size_t(corner.position)]);
+        mesh.normals.push_back(NormalAt(corner));
+        if (has_uvs) mesh.uvs[0].push_back(UvAt(corner));
+        if (has_colors) mesh.colors.push_back(ColorAt(corner));
+      }
+      mesh.triangles.push_back(indices);
+    }
+    if (FillNormals(mesh) > 0) warnings_.Add("normals without a direction were computed anew", "'" + object + "'");
+    const TextureUse& normal_map = scene_.materials[std::size_t(mesh.material)].normal_texture;
+    if (normal_map.texture >= 0 && has_uvs) FillTangents(mesh, 0, normal_map.uv_transform);
+    scene_.meshes.push_back(std::move(mesh));
+    const glm::dvec3& origin = origins_[std::size_t(triangles_[members[0]].shape)];
+    scene_.instances.push_back(
+        {object, static_cast<int>(scene_.meshes.size()) - 1, glm::translate(glm::dmat4(1.0), origin)});
+  }
+
+  glm::vec3 NormalAt(const Corner& corner) const {
+    if (corner.normal < 0) return smooth_normals_[std::size_t(-1 - corner.normal)];
+    const double* n = attributes_.normals.data() + 3 * std::size_t(corner.normal);
+    return {n[0], n[1], n[2]};
+  }
+
+  glm::vec2 UvAt(const Corner& corner) const {
+    if (corner.uv < 0) return glm::vec2(0.0f);
+    const double* uv = attributes_.texcoords.data() + 2 * std::size_t(corner.uv);
+    const glm::vec2 turned(static_cast<float>(uv[0]), 1.0f - static_cast<float>(uv[1]));
+    return IsFinite(turned) ? turned : glm::vec2(0.0f);
+  }
+
+  glm::vec4 ColorAt(const Corner& corner) const {
+    const double* c = attributes_.colors.data() + 3 * std::size_t(corner.position);
+    const glm::vec4 color(SrgbToLinear(float(c[0])), SrgbToLinear(float(c[1])), SrgbToLinear(float(c[2])), 1.0f);
+    return IsFinite(color) ? glm::max(color, glm::vec4(0.0f)) : glm::vec4(1.0f);
+  }
+
+  // The file's vertices, or what far shapes have of their own: from the first one to the next frame's, relative to one
+  // origin.
+  struct Frame {
+    std::size_t first = 0;
+    glm::dvec3 origin{0.0};
+  };
+
+  const std::filesystem::path& path_;
+  const std::string file_;
+  tinyobj::attrib_t attributes_;
+  std::vector<tinyobj::shape_t> shapes_;
+  std::vector<tinyobj::material_t> materials_;
+  Scene scene_;
+  GeometryBudget budget_;
+  WarningCounter warnings_;
+  UniqueNames material_names_;
+  int plain_material_ = -1;
+  std::vector<glm::dvec3> origins_;  // of the shapes
+  std::vector<Frame> frames_;
+  std::vector<glm::vec3> positions_;  // of all vertices, each relative to its frame's origin
+  std::shared_ptr<MtlLibrary> mtl_;  // once it is loaded
+  std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
+  std::vector<Triangle> triangles_;
+  std::vector<glm::vec3> smooth_normals_;
+  std::size_t faces_ = 0;
+  bool lacks_normals_ = false;
+  bool has_smoothing_groups_ = false;
+};
+
+}  // namespace
+
+Expected<Scene> LoadObjScene(const std::filesystem::path& path) { return ObjLoader(path).Load(); }
+
+}  // namespace scumble

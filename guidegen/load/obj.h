@@ -1,0 +1,34 @@
+// Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load/load_scene.h), which also sees to what all formats
+// have in common.
+//
+// Each shape (o or g) becomes an object, one instance for each of its materials. Read: polygons, normals, texture
+// coordinates (v turned over), vertex colours (sRGB-encoded), smoothing groups where there are no normals. A material
+// library or texture that is missing is a warning, not an error: OBJ files are often passed on without them.
+//
+// Vertices far from 0, as surveyors' are, keep their digits: the objects stand at the middle of what faces use in the
+// file instead of at 0. Where the file spans too much for that, those more than 65,536 m and 16 of their sizes from 0 each
+// stand at the middle of their own shape, or of a neighbour's within 65,536 m. Rest positions are relative to that place,
+// and normals that the file lacks are smooth across objects that share one.
+//
+// From the MTL, as Blender 3.4 understands it:
+//   Kd, map_Kd    base colour, linear; the map stands in place of Kd; -s, -o and -clamp are heeded
+//   Ks            0 or absent: no highlight, Lambert. Else glTF's coat, however strong Ks is; with a black Kd, GGX in
+//                 the colour Ks
+//   Ns            roughness 1 − √(Ns/1000)
+//   illum 3, Ka   a metal, to the share that Ka says
+//   Pr, Pm        roughness and metalness, where above 0, instead of those
+//   Ke, map_Ke    emission; the map stands in place of Ke
+//   d, norm       opacity; normal map
+// Faces without a material are Lambert in Blender's grey of 0.8, or in their vertex colours.
+#pragma once
+
+#include <filesystem>
+
+#include "guidegen/scene/scene.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+Expected<Scene> LoadObjScene(const std::filesystem::path& path);
+
+}  // namespace scumble

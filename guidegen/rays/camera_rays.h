@@ -1,0 +1,70 @@
+// From pixels to rays, in view space and in double: +X right, +Y up, +Z towards the viewer, the eye at the origin.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "guidegen/scene/scene.h"
+#include "core/image/guides.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+// Embree takes no ray with a larger component, of its origin in metres or of its direction: built with assertions, as
+// Debian's is, it ends the process. Its own limit is 1.844e18.
+inline constexpr double kLargestInRay = 0x1.9p60;
+
+// `direction.z` is exactly −1, so that the ray's parameter is the planar depth.
+struct ViewRay {
+  glm::dvec3 origin{0.0};
+  glm::dvec3 direction{0.0, 0.0, -1.0};
+};
+
+// A camera in front of a picture of a certain size. Immutable; free to use from any thread.
+class CameraRays {
+ public:
+  // Only the direction of the camera matrix's axes counts: scale is dropped and shear is straightened, keeping the
+  // viewing direction. Fails with kInput, naming the camera, on a matrix that has no direction, an angle outside
+  // (0, 180), a height that is not positive, a shift that is not finite, a far plane before the near one, or rays that
+  // leave kLargestInRay.
+  static Expected<CameraRays> Make(const Camera& camera, int width, int height);
+
+  // The ray through a point of the picture, in pixels from the top left corner.
+  ViewRay Through(double x, double y) const;
+
+  // Whether rays differ in their origin; otherwise in their direction.
+  bool orthographic() const { return orthographic_; }
+
+  // Where in the picture a point of view space is seen, the inverse of Through; nothing behind the eye.
+  std::optional<glm::dvec2> PixelOf(const glm::dvec3& point) const;
+
+  // Planar depth between which surfaces are seen; the far one may be infinite.
+  double near_depth() const { return near_depth_; }
+  double far_depth() const { return far_depth_; }
+
+  // The camera's position is subtracted before anything is rotated: two places 1e7 m from the origin and one metre
+  // apart keep their distance.
+  glm::dmat4 ViewFromObject(const glm::dmat4& world_from_object) const;
+  glm::dvec3 ViewFromWorld(const glm::dvec3& point) const { return glm::transpose(axes_) * (point - eye_); }
+  glm::dvec3 WorldFromView(const glm::dvec3& point) const { return eye_ + axes_ * point; }
+  glm::dvec3 DirectionToView(const glm::dvec3& direction) const { return glm::transpose(axes_) * direction; }
+
+  // For the file's header. OpenGL has no matrix for a near plane at the eye or a far plane at infinity in an
+  // orthographic picture; there, 1 cm and 1 km behind the near plane stand in. x and y do not depend on them.
+  GuideCamera ToGuideCamera() const;
+
+ private:
+  std::string name_;
+  glm::dmat3 axes_{1.0};  // world from view
+  glm::dvec3 eye_{0.0};
+  bool orthographic_ = false;
+  int width_ = 1;
+  int height_ = 1;
+  glm::dvec2 half_extent_{1.0};  // at depth 1 in perspective, in metres otherwise
+  glm::dvec2 step_{1.0};         // half a pixel, in the same unit
+  glm::dvec2 shift_{0.0};        // of the picture's centre, in the same unit
+  double near_depth_ = 0.0;
+  double far_depth_ = 0.0;
+};
+
+}  // namespace scumble

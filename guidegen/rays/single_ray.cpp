@@ -1,0 +1,63 @@
+#include "guidegen/rays/single_ray.h"
+
+#include <algorithm>
+
+namespace scumble {
+namespace {
+
+RTCRay MakeRay(const LightRay& from) {
+  RTCRay ray = {};
+  ray.org_x = float(from.origin.x);
+  ray.org_y = float(from.origin.y);
+  ray.org_z = float(from.origin.z);
+  ray.dir_x = float(from.direction.x);
+  ray.dir_y = float(from.direction.y);
+  ray.dir_z = float(from.direction.z);
+  ray.tfar = float(from.reach);
+  ray.mask = ~0u;
+  return ray;
+}
+
+CastContext SingleRays() {
+  CastContext context(false);
+  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+
+bool Occluded(RTCScene scene, const LightRay& light_ray, const ShadowTarget& target) {
+  CastContext context = SingleRays();
+  context.target = target;
+  RTCRay ray = MakeRay(light_ray);
+  rtcOccluded1(scene, &context.embree, &ray);
+  return ray.tfar < 0.0f;
+}
+
+RTCRayHit Cast(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direction) {
+  CastContext context = SingleRays();
+  RTCRayHit hit = {MakeRay(EndlessLightRay(origin, direction)), {}};
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  if (scene) rtcIntersect1(scene, &context.embree, &hit);
+  return hit;
+}
+
+}  // namespace
+
+bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw, Blockers blockers) {
+  const RTCScene among = blockers == Blockers::kAll ? scene.handle() : scene.emitters();
+  if (!among) return false;
+  if (draw.endless) return Occluded(among, EndlessLightRay(origin, draw.direction), {});
+  const LightRay ray = LightRayTo(origin, draw.target);
+  if (draw.object == LightDraw::kNoObject) return Occluded(among, ray, {});
+  const double near_end = std::max(0.0, ray.end - draw.rounding / glm::length(ray.direction));
+  return Occluded(among, ray, {&scene.objects()[draw.object], draw.primitive, float(near_end)});
+}
+
+RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {
+  return Cast(scene.handle(), origin, direction);
+}
+
+RTCRayHit CastAmongEmitters(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {
+  return Cast(scene.emitters(), origin, direction);
+}
+
+}  // namespace scumble

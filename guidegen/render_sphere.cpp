@@ -1,0 +1,63 @@
+#include <glm/gtc/constants.hpp>
+#include <string>
+#include <vector>
+
+#include "guidegen/cast/cast_guides.h"
+#include "guidegen/guidegen.h"
+#include "core/image/direction.h"
+
+namespace scumble {
+namespace {
+
+// From the viewer to the sphere's centre: the nearest point of the sphere is 1 m away.
+constexpr double kDistance = 2.0;
+
+Camera SphereCamera() {
+  Camera camera;
+  camera.name = "sphere";
+  camera.orthographic = true;
+  camera.ymag = 1.0;
+  camera.world_from_camera[3] = glm::dvec4(0.0, 0.0, kDistance, 1.0);
+  return camera;
+}
+
+// Shines down its −Z, so its +Z points to where the light comes from.
+Light SphereSun(const SphereOptions& options) {
+  Light sun;
+  sun.name = "key";
+  sun.type = LightType::kSun;
+  sun.intensity = glm::pi<double>();
+  sun.world_from_light[2] = glm::dvec4(DirectionFromAngles(options.light_azimuth, options.light_elevation), 0.0);
+  return sun;
+}
+
+}  // namespace
+
+Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
+  GuidegenOptions cast;
+  cast.width = cast.height = options.size;
+  cast.layers = options.layers;
+  cast.aa = options.aa;
+  cast.threads = options.threads;
+  cast.isa = options.isa;
+  SCUMBLE_RETURN_IF_ERROR(CheckOptions(cast));
+
+  View view;
+  SCUMBLE_ASSIGN(view.camera, CameraRays::Make(SphereCamera(), options.size, options.size));
+  SCUMBLE_ASSIGN(view.lights, PlaceLights({SphereSun(options)}, view.camera));
+  Material material;
+  material.bsdf = Bsdf::kDiffuse;
+  view.supply.light = view.supply.diffuse = true;
+  PlacedObject sphere = Place(nullptr, &material, {}, view.camera.ViewFromObject(glm::dmat4(1.0)));
+  const std::vector<std::string> names = {"sphere"};
+  const std::uint32_t id = IdsForNames(names)[0];
+  sphere.object_id = id;
+  sphere.material_id = id;
+  view.objects.push_back(sphere);
+  SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(std::move(view), cast));
+  result.guides.object_names = {{id, names[0]}};
+  result.guides.material_names = {{id, names[0]}};
+  return result;
+}
+
+}  // namespace scumble

@@ -1,0 +1,270 @@
+#include "guidegen/surface/surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "guidegen/surface/work_counters.h"
+
+namespace scumble {
+namespace {
+
+glm::dvec3 DirectionToEye(const ViewRay& ray) { return glm::normalize(-ray.direction); }
+
+template <class T>
+auto Interpolate(const std::vector<T>& values, const glm::uvec3& triangle, const glm::dvec2& barycentric) {
+  const T a = values[triangle.x];
+  const T b = values[triangle.y];
+  const T c = values[triangle.z];
+  const float v = float(barycentric.x);
+  const float w = float(barycentric.y);
+  return a * (1.0f - v - w) + b * v + c * w;
+}
+
+// The place on a triangle's edge that the ray's line passes at the least distance.
+struct EdgePlace {
+  glm::dvec2 barycentric;
+  double miss;   // squared distance
+  double along;  // from the ray's origin, in lengths of its direction
+  bool behind;   // the origin, by more than rounding: an eye on an edge sees that edge
+};
+
+EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray, double summands) {
+  constexpr glm::dvec2 kCorners[] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+  const int next = (i + 1) % 3;
+  const double squared = glm::dot(ray.direction, ray.direction);
+  const auto along = [&](const glm::dvec3& v) { return glm::dot(v, ray.direction) / squared; };
+  const glm::dvec3 corner = triangle.corner[i] - ray.origin;
+  const glm::dvec3 edge = triangle.corner[next] - triangle.corner[i];
+  const glm::dvec3 from = corner - ray.direction * along(corner);
+  const glm::dvec3 across = edge - ray.direction * along(edge);
+  const double length = glm::dot(across, across);
+  const double share = length > 0.0 ? glm::clamp(-glm::dot(from, across) / length, 0.0, 1.0) : 0.0;
+  const glm::dvec3 miss = from + across * share;
+  const double way = along(corner + edge * share);
+  constexpr double kRounding = 0x1p-48;  // some steps of a double, of what was added up
+  const bool behind =
+      way < 0.0 && way * way * squared >
+                       kRounding * kRounding * (glm::dot(corner, corner) + glm::dot(edge, edge) + summands * summands);
+  return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), way, behind};
+}
+
+// The barycentrics of the place on a triangle's edges that the ray passes at the least distance. A triangle seen edge
+// on shows two of its edges there: of places before the ray's origin that lie on the ray, to a step of float of their
+// distance, it is the first.
+glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray, double summands) {
+  EdgePlace places[3];
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    places[i] = NearestOnEdge(triangle, i, ray, summands);
+    if (places[i].behind) places[i].miss += kLargestPlainSquare;  // for want of anything before
+    least = std::min(least, places[i].miss);
+  }
+  const double step_squared = kEdgeOn * kEdgeOn * glm::dot(ray.direction, ray.direction);
+  glm::dvec2 first(0.0);
+  double first_along = std::numeric_limits<double>::infinity();
+  for (const EdgePlace& place : places) {
+    const bool on_ray = place.miss <= std::max(least, step_squared * place.along * place.along);
+    if (!on_ray || !(place.along < first_along)) continue;
+    first_along = place.along;
+    first = place.barycentric;
+  }
+  return first;
+}
+
+// Möller & Trumbore 1997, in double; `area` is the cross product of the triangle's edges. Rays that just miss the
+// triangle, because Embree sees it with its corners rounded to float, meet the nearest place of its edges, in space: in
+// barycentrics a triangle's height is 1 however low it is seen, and a micrometre may seem to be a thousand triangles.
+// `summands` is the largest of what was added up to the corners and the origin, whose roundings are theirs.
+glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray, double summands) {
+  const glm::dvec3 moment = glm::cross(ray.origin - triangle.corner[0], ray.direction);
+  const double seen = glm::dot(area, ray.direction);
+  const double scale = -1.0 / seen;
+  const glm::dvec2 result(glm::dot(triangle.corner[2] - triangle.corner[0], moment) * scale,
+                          glm::dot(triangle.corner[0] - triangle.corner[1], moment) * scale);
+  const bool inside = result.x >= 0.0 && result.y >= 0.0 && result.x + result.y <= 1.0;  // false for NaN
+  const bool steady = std::abs(seen) > kEdgeOn * LongestEdgeSquared(triangle) * glm::length(ray.direction);
+  return inside && steady ? result : NearestOnEdges(triangle, ray, summands);
+}
+
+glm::dvec3 Mix(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec2& barycentric) {
+  return a + (b - a) * barycentric.x + (c - a) * barycentric.y;
+}
+
+const Picture* FindTexture(const PlacedObject& object, const TextureUse& use) {
+  if (use.texture < 0 || std::size_t(use.texture) >= object.textures.size() || !object.mesh) return nullptr;
+  if (object.mesh->uvs[use.uv_set].empty()) return nullptr;
+  return &object.textures[use.texture];
+}
+
+// Object space, not normalised. Normal maps are applied here, before any scale bends them, as Cycles does.
+glm::dvec3 ObjectNormal(const PlacedObject& object, const glm::uvec3& triangle, const glm::dvec2& barycentric) {
+  const Mesh& mesh = *object.mesh;
+  if (mesh.normals.empty()) return glm::dvec3(0.0);
+  const glm::dvec3 normal = Interpolate(mesh.normals, triangle, barycentric);
+  if (!HasNormalMap(object) || !(glm::dot(normal, normal) > kShortestNormal * kShortestNormal)) return normal;
+
+  const TextureUse& use = object.material->normal_texture;
+  const glm::vec4 texel =
+      SampleRaw(*FindTexture(object, use), use, Interpolate(mesh.uvs[use.uv_set], triangle, barycentric));
+  const glm::dvec3 bend = glm::dvec3(texel) * 2.0 - 1.0;
+  const glm::dvec4 tangent4 = Interpolate(mesh.tangents, triangle, barycentric);
+  const glm::dvec3 unit = glm::normalize(normal);
+  glm::dvec3 tangent = glm::dvec3(tangent4) - unit * glm::dot(unit, glm::dvec3(tangent4));
+  if (!MakeUnit(tangent)) return normal;
+  const glm::dvec3 bitangent = glm::cross(unit, tangent) * (tangent4.w < 0.0 ? -1.0 : 1.0);
+  const double strength = object.material->normal_scale;
+  return tangent * (bend.x * strength) + bitangent * (bend.y * strength) + unit * bend.z;
+}
+
+SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray) {
+  const glm::uvec3& corners = object.mesh->triangles[primitive];
+  const Triangle triangle = ViewTriangle(object, primitive);
+  const glm::dvec3 area = glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
+  SurfacePoint point;
+  const double summands = LargestCoordinate(glm::dvec3(object.view_from_object[3])) + LargestCoordinate(ray.origin);
+  point.barycentric = MeetTriangle(triangle, area, ray, summands);
+  point.position = Mix(triangle.corner[0], triangle.corner[1], triangle.corner[2], point.barycentric);
+  point.rest_position = RestPosition(object, primitive, point.barycentric);
+  point.largest_coordinate = LargestCoordinate(point.position);
+  for (const glm::dvec3& corner : triangle.corner) {
+    point.largest_coordinate = std::max(point.largest_coordinate, LargestCoordinate(corner));
+  }
+
+  const double side = glm::dot(area, ray.direction) * object.winding > 0.0 ? -1.0 : 1.0;
+  point.facing = area * (object.winding * side);
+  if (!MakeUnit(point.facing)) point.facing = DirectionToEye(ray);
+  const glm::dvec3 normal = ObjectNormal(object, corners, point.barycentric);
+  const bool usable = glm::dot(normal, normal) > kShortestNormal * kShortestNormal;  // false for NaN
+  point.normal = object.view_from_normal * normal * side;
+  if (!usable || !MakeUnit(point.normal)) point.normal = point.facing;
+  return point;
+}
+
+// The object's matrix must be rigid. Where the exact ray passes the sphere that Embree's rounded one has met, the point
+// is the silhouette's nearest.
+SurfacePoint FindSpherePoint(const PlacedObject& object, const ViewRay& ray) {
+  const glm::dvec3 centre(object.view_from_object[3]);
+  const double length = glm::length(ray.direction);
+  const glm::dvec3 direction = ray.direction / length;
+  const glm::dvec3 to_origin = ray.origin - centre;
+  const double middle = -glm::dot(to_origin, direction);
+  const glm::dvec3 off_axis = to_origin + direction * middle;
+  const double half_chord = std::sqrt(std::max(0.0, 1.0 - glm::dot(off_axis, off_axis)));
+  const bool inside = middle < half_chord;
+  const glm::dvec3 outward = glm::normalize(off_axis + direction * (inside ? half_chord : -half_chord));
+  SurfacePoint point;
+  point.position = centre + outward;
+  point.rest_position = glm::transpose(glm::dmat3(object.view_from_object)) * outward;
+  point.facing = point.normal = inside ? -outward : outward;
+  point.largest_coordinate = LargestCoordinate(centre) + 1.0;
+  return point;
+}
+
+}  // namespace
+
+double LargestCoordinate(const glm::dvec3& v) {
+  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
+}
+
+// Vectors whose square would leave a double's range are scaled first.
+bool MakeUnit(glm::dvec3& v) {
+  const double squared = glm::dot(v, v);
+  if (squared > kLeastPlainSquare && squared < kLargestPlainSquare) {
+    v *= 1.0 / std::sqrt(squared);
+    return true;
+  }
+  const double largest = LargestCoordinate(v);
+  if (!std::isfinite(v.x + v.y + v.z) || !(largest > 0.0)) return false;
+  v = glm::normalize(v / largest);
+  return true;
+}
+
+bool HasNormalMap(const PlacedObject& object) {
+  return FindTexture(object, object.material->normal_texture) && !object.mesh->tangents.empty();
+}
+
+glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric) {
+  const glm::uvec3& corners = object.mesh->triangles[primitive];
+  const auto& positions = object.mesh->rest_positions.empty() ? object.mesh->positions : object.mesh->rest_positions;
+  return Mix(positions[corners.x], positions[corners.y], positions[corners.z], barycentric);
+}
+
+PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,
+                   const glm::dmat4& view_from_object) {
+  PlacedObject object;
+  object.mesh = mesh;
+  object.material = material;
+  object.textures = textures;
+  object.view_from_object = view_from_object;
+  const glm::dmat3 linear(view_from_object);
+  object.winding = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
+  // The matrix of cofactors is the inverse transpose times the determinant, and needs no division.
+  object.view_from_normal =
+      object.winding *
+      glm::dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
+  return object;
+}
+
+double LongestEdgeSquared(const Triangle& triangle) {
+  double longest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec3 edge = triangle.corner[(i + 1) % 3] - triangle.corner[i];
+    longest = std::max(longest, glm::dot(edge, edge));
+  }
+  return longest;
+}
+
+glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point) {
+  const glm::dvec3 way = ray.origin + ray.direction * clear_from - point;
+  return glm::dot(way, ray.direction) < 0.0 ? way : glm::dvec3(0.0);
+}
+
+bool AllDoubleSided(std::span<const PlacedObject> objects) {
+  return std::all_of(objects.begin(), objects.end(),
+                     [](const PlacedObject& object) { return object.material->double_sided; });
+}
+
+SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray) {
+  return object.mesh ? FindTrianglePoint(object, primitive, ray) : FindSpherePoint(object, ray);
+}
+
+glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
+  ++work_tally.materials;
+  glm::vec4 color = object.material->base_color;
+  if (!object.mesh) return color;
+  const Mesh& mesh = *object.mesh;
+  const glm::uvec3& corners = mesh.triangles[primitive];
+  if (!mesh.colors.empty()) color *= Interpolate(mesh.colors, corners, barycentric);
+  const TextureUse& use = object.material->base_color_texture;
+  if (const Picture* picture = FindTexture(object, use)) {
+    color *= SampleColor(*picture, use, Interpolate(mesh.uvs[use.uv_set], corners, barycentric));
+  }
+  return color;
+}
+
+std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                       glm::dvec2 barycentric) {
+  const Picture* picture = FindTexture(object, use);
+  if (!picture) return std::nullopt;
+  const Mesh& mesh = *object.mesh;
+  return SampleRaw(*picture, use, Interpolate(mesh.uvs[use.uv_set], mesh.triangles[primitive], barycentric));
+}
+
+std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                            glm::dvec2 barycentric) {
+  const Picture* picture = FindTexture(object, use);
+  if (!picture) return std::nullopt;
+  const Mesh& mesh = *object.mesh;
+  return SampleColor(*picture, use, Interpolate(mesh.uvs[use.uv_set], mesh.triangles[primitive], barycentric));
+}
+
+bool MayHaveHoles(const Material& material) { return material.alpha_mode != AlphaMode::kOpaque; }
+
+bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
+  if (!MayHaveHoles(*object.material)) return false;
+  const float cutoff = object.material->alpha_mode == AlphaMode::kMask ? object.material->alpha_cutoff : 0.5f;
+  return SurfaceColor(object, primitive, barycentric).a < cutoff;
+}
+
+}  // namespace scumble

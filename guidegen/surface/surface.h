@@ -1,0 +1,116 @@
+// From a hit to what the eye sees there: the exact point, normals, base colour.
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+
+#include "guidegen/rays/camera_rays.h"
+#include "guidegen/scene/scene.h"
+#include "core/image/picture.h"
+
+namespace scumble {
+
+// An instance as it stands before the camera. Borrows the scene's data, which must outlive it.
+struct PlacedObject {
+  const Mesh* mesh = nullptr;  // null: the unit sphere about the object's origin
+  const Material* material = nullptr;
+  std::span<const Picture> textures;
+  glm::dmat4 view_from_object{1.0};
+  std::uint32_t object_id = 0;
+  std::uint32_t material_id = 0;
+
+  // Follow from view_from_object; see Place.
+  glm::dmat3 view_from_normal{1.0};  // the inverse transpose up to a positive factor, defined for flat objects too
+  double winding = 1.0;              // −1 where the matrix mirrors and triangles turn their back
+
+  bool reaches_far = false;  // EmbreeScene finds out, where rays of light will ask
+};
+
+PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,
+                   const glm::dmat4& view_from_object);
+
+// View-space corners of a triangle, in double.
+struct Triangle {
+  glm::dvec3 corner[3];
+};
+inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive) {
+  const glm::uvec3& corners = object.mesh->triangles[primitive];
+  const glm::dmat3 linear(object.view_from_object);
+  const glm::dvec3 origin(object.view_from_object[3]);
+  Triangle triangle;
+  for (int i = 0; i < 3; ++i) triangle.corner[i] = linear * glm::dvec3(object.mesh->positions[corners[i]]) + origin;
+  return triangle;
+}
+
+// A triangle that a ray sees as lower than this share of its length, because it is a sliver or lies edge on: there the
+// place where the ray crosses it is lost in double's rounding (2^-47 of the distance over the share), and the nearest
+// place of its edges is no farther from the ray than half a step of float.
+inline constexpr double kEdgeOn = 0x1p-24;
+double LongestEdgeSquared(const Triangle& triangle);
+
+struct SurfacePoint {
+  glm::dvec3 position{0.0};         // view space
+  glm::dvec3 facing{0.0};           // unit geometric normal on the viewer's side
+  glm::dvec3 normal{0.0};           // unit shading normal, view space
+  glm::dvec3 rest_position{0.0};    // object space
+  glm::dvec2 barycentric{0.0};      // weights of the second and third corner
+  double largest_coordinate = 0.0;  // of the point and its triangle: what float rounding errors are relative to
+  // A way from the point that nothing is in: back along the ray that met it, as far as the ray came, or to a place before
+  // the last back of a single-sided surface that a camera ray passed. 0: none is known.
+  // Whoever casts the rays fills it in.
+  glm::dvec3 clear_way{0.0};
+};
+
+// Embree's hit is a float's worth of the truth; this meets the same surface again in double. A triangle that the exact
+// ray misses, or sees edge on, is met where the ray comes nearest to its edges. The point always lies on the surface. A
+// back face has both normals flipped, as Cycles does. A shading normal that is zero or NaN gives way to the geometric
+// one; a triangle without area faces the eye.
+SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray);
+
+// Where a point of a mesh's triangle is before anything deforms it, object space.
+glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);
+
+// Whether the shading normal is more than the corners' normals, interpolated.
+bool HasNormalMap(const PlacedObject& object);
+
+// Interpolated unit normals shorter than this have cancelled out: what is left is rounding.
+inline constexpr double kShortestNormal = 1e-6;
+
+// Squares of lengths between which a vector is made a unit vector without being scaled first.
+inline constexpr double kLeastPlainSquare = 1e-200;
+inline constexpr double kLargestPlainSquare = 1e200;
+
+// False, and nothing changed, where there is no direction.
+bool MakeUnit(glm::dvec3& v);
+
+double LargestCoordinate(const glm::dvec3& v);
+
+// Base colour × texture × vertex colour, linear, and alpha.
+glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
+
+// A texture at a point of the surface: its stored values, or its linear colour. Nothing where the use names no texture
+// or the mesh lacks its UV set.
+std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                       glm::dvec2 barycentric);
+std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
+                                            glm::dvec2 barycentric);
+
+// SurfacePoint::clear_way of a point that a ray met and before which, from `clear_from` lengths of the ray's direction
+// on, it passed nothing. 0 where float has put that place behind the point.
+glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point);
+
+// Whether no object is single-sided: rays of light, which meet backs as well, then pass wherever camera rays pass.
+bool AllDoubleSided(std::span<const PlacedObject> objects);
+
+// Whether rays pass here: alpha masks, and blending taken for a mask at one half.
+bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
+bool MayHaveHoles(const Material& material);
+
+// Linear colour and alpha, bilinear unless `use` says nearest. Coordinates that are not finite read as 0.
+glm::vec4 SampleColor(const Picture& picture, const TextureUse& use, glm::vec2 uv);
+// The stored values in [0, 1], not decoded: for normal maps.
+glm::vec4 SampleRaw(const Picture& picture, const TextureUse& use, glm::vec2 uv);
+
+}  // namespace scumble
