@@ -12,7 +12,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "core/io/picture_file.h"
-#include "measure/flicker.h"
+#include "measure/compare/flicker.h"
 #include "core/style/style_file.h"
 #include "transfer/transfer.h"
 

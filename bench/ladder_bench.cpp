@@ -19,7 +19,7 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "core/image/stopwatch.h"
-#include "measure/pareto.h"
+#include "measure/tradeoff/pareto.h"
 #include "core/style/style_file.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"

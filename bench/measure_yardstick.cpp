@@ -5,7 +5,7 @@
 #include "bench/performance.h"
 #include "bench/yardstick.h"
 #include "core/image/stopwatch.h"
-#include "measure/coherence.h"
+#include "measure/mosaic/coherence.h"
 
 namespace scumble::bench {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "measure/repetition.h"
+#include "measure/mosaic/repetition.h"
 #include "core/style/style_file.h"
 #include "transfer/transfer.h"
 

@@ -23,7 +23,7 @@ std::size_t PixelsOf(const PreparedStyle& style) {
   return std::size_t(exemplar.width()) * std::size_t(exemplar.height()) * std::size_t(exemplar.count());
 }
 
-// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy.h), and the planes
+// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy/energy.h), and the planes
 // that it is made of.
 bool HasMemoryFor(std::size_t places, const Globals& globals) {
   constexpr std::uint64_t kEachPlace = 250 + 100;

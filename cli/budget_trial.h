@@ -30,7 +30,7 @@ class PaintTrial {
   Expected<double> Paint(const Way& way, const GuideSet& guides);
 
   // How far the picture of a way that leaves the guides' size alone is from what the painting shows under these guides, and
-  // what of the painting it misses: `both` of measure/energy.h, at kJudgedPatches patches, the same ones for each way. Without
+  // what of the painting it misses: `both` of measure/energy/energy.h, at kJudgedPatches patches, the same ones for each way. Without
   // paper, what is underneath, and the scene's colours. 0 where nothing is covered; infinity where several styles paint, memory for it is not there
   // or guides are no numbers. Errors as of Paint.
   Expected<double> Judge(const Way& way, const GuideSet& guides);

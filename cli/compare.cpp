@@ -1,5 +1,5 @@
 // scumble compare.
-#include "measure/compare.h"
+#include "measure/compare/compare.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "cli/run_files.h"
 #include "core/io/channel_file.h"
 #include "core/io/picture_file.h"
-#include "measure/heat_map.h"
+#include "measure/compare/heat_map.h"
 
 namespace scumble {
 namespace {

@@ -8,8 +8,8 @@
 #include "cli/json_text.h"
 #include "core/io/channel_file.h"
 #include "core/io/picture_file.h"
-#include "measure/heat_map.h"
-#include "measure/json_number.h"
+#include "measure/compare/heat_map.h"
+#include "measure/report/json_number.h"
 
 namespace scumble {
 namespace {

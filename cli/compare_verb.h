@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/command.h"
-#include "measure/compare.h"
-#include "measure/flip.h"
+#include "measure/compare/compare.h"
+#include "measure/compare/flip.h"
 
 namespace scumble {
 

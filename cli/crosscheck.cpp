@@ -1,5 +1,5 @@
 // scumble crosscheck: our guides against those that Blender's Cycles renders of the same view.
-#include "measure/crosscheck.h"
+#include "measure/crosscheck/crosscheck.h"
 
 #include <fmt/format.h>
 
@@ -20,8 +20,8 @@
 #include "guidegen/scene/pure_materials.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
-#include "measure/crosscheck_baseline.h"
-#include "measure/crosscheck_html.h"
+#include "measure/crosscheck/baseline.h"
+#include "measure/crosscheck/html.h"
 
 namespace scumble {
 namespace {

@@ -2,7 +2,7 @@
 //
 // A rung takes from the style what makes accuracy, never what makes its look: guides may be cast with fewer samples and
 // smaller, and the paint's places be found more simply; colours, thresholds, edges and sizes are the artist's. The order is that of the
-// measured energy (measure/energy.h); bench/ladder_bench measures it, and docs/budget.md has the table.
+// measured energy (measure/energy/energy.h); bench/ladder_bench measures it, and docs/budget.md has the table.
 #pragma once
 
 #include <string>

@@ -6,7 +6,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/picture.h"
-#include "measure/explain.h"
+#include "measure/mosaic/explain.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -28,7 +28,7 @@
 #include "cli/transfer_run.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/file/pending_temporaries.h"
-#include "measure/tradeoff_report.h"
+#include "measure/tradeoff/report.h"
 
 namespace scumble {
 namespace {

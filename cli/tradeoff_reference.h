@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "measure/energy.h"
-#include "measure/tradeoff_report.h"
+#include "measure/energy/energy.h"
+#include "measure/tradeoff/report.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/options.h"
 #include "cli/progress_bar.h"
-#include "measure/tradeoff_report.h"
+#include "measure/tradeoff/report.h"
 
 namespace scumble {
 

@@ -20,7 +20,7 @@
 #include "core/io/file/atomic_file.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/picture_file.h"
-#include "measure/coherence.h"
+#include "measure/mosaic/coherence.h"
 #include "core/style/style_keyframes.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"

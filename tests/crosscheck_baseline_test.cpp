@@ -1,5 +1,5 @@
 // Baselines of the cross-check: written, read, tightening and never loosening.
-#include "measure/crosscheck_baseline.h"
+#include "measure/crosscheck/baseline.h"
 
 #include <gtest/gtest.h>
 

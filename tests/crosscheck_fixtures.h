@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/crosscheck.h"
+#include "measure/crosscheck/crosscheck.h"
 
 namespace scumble {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/image/hash.h"
-#include "measure/crosscheck_html.h"
+#include "measure/crosscheck/html.h"
 #include "tests/crosscheck_fixtures.h"
 
 namespace scumble {

@@ -1,5 +1,5 @@
 // The cross-check's figures and verdict on guides made by hand, and Blender's passes turned into guides.
-#include "measure/crosscheck.h"
+#include "measure/crosscheck/crosscheck.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/io/file/atomic_file.h"
-#include "measure/crosscheck_html.h"
+#include "measure/crosscheck/html.h"
 #include "tests/temporary_folder.h"
 
 namespace scumble {

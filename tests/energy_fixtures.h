@@ -14,7 +14,7 @@
 #include "core/image/guides.h"
 #include "core/image/hash.h"
 #include "core/image/picture.h"
-#include "measure/energy.h"
+#include "measure/energy/energy.h"
 
 namespace scumble::testing {
 

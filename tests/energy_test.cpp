@@ -1,5 +1,5 @@
 // What the energy says, where it follows from the formula; and of pictures that the engine made.
-#include "measure/energy.h"
+#include "measure/energy/energy.h"
 
 #include <gtest/gtest.h>
 

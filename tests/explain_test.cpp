@@ -1,5 +1,5 @@
 // The pictures that explain a result, on planes whose answer is known.
-#include "measure/explain.h"
+#include "measure/mosaic/explain.h"
 
 #include <gtest/gtest.h>
 

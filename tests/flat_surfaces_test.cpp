@@ -1,5 +1,5 @@
 // Where a picture shows flat surfaces, on a scene whose surfaces are known.
-#include "measure/flat_surfaces.h"
+#include "measure/energy/flat_surfaces.h"
 
 #include <gtest/gtest.h>
 

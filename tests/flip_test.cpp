@@ -1,5 +1,5 @@
 // LDR-FLIP against the formulas of its paper, carried out slowly, and against values that follow from them by hand.
-#include "measure/flip.h"
+#include "measure/compare/flip.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Each usual mistake, alone in an otherwise good painting, is found, and nothing else is.
-#include "measure/paint_faults.h"
+#include "measure/painting/paint_faults.h"
 
 #include <gtest/gtest.h>
 

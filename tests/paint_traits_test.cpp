@@ -1,5 +1,5 @@
 // What is measured of paintings, against what they were made with.
-#include "measure/paint_traits.h"
+#include "measure/painting/paint_traits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "measure/pareto.h"
+#include "measure/tradeoff/pareto.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Regular patterns against textures that only look alike everywhere.
-#include "measure/regularity.h"
+#include "measure/painting/regularity.h"
 
 #include <gtest/gtest.h>
 

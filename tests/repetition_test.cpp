@@ -1,5 +1,5 @@
 // Repetition and seams of pictures whose answer is known.
-#include "measure/repetition.h"
+#include "measure/mosaic/repetition.h"
 
 #include <gtest/gtest.h>
 

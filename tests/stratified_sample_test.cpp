@@ -1,5 +1,5 @@
 // Stratified samples: what is drawn, and that mean and standard error are what the formula of the sampling says.
-#include "measure/stratified_sample.h"
+#include "measure/energy/stratified_sample.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "measure/tradeoff_parts.h"
+#include "measure/tradeoff/parts.h"
 #include "tests/trade_report_fixtures.h"
 
 namespace scumble {

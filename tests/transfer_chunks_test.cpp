@@ -7,7 +7,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
-#include "measure/coherence.h"
+#include "measure/mosaic/coherence.h"
 #include "tests/transfer_fixtures.h"
 #include "transfer/nearest/guide_distance.h"
 #include "transfer/seeds/seeds.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "measure/flat_surfaces.h"
-#include "measure/repetition.h"
+#include "measure/energy/flat_surfaces.h"
+#include "measure/mosaic/repetition.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/seeds/seeds.h"
 #include "transfer/match/variety.h"
@@ -208,7 +208,7 @@ TEST(Variety, APreviewShowsTheFinalPicturesPieces) {
   EXPECT_LT(other_seeds, 0.3 * same_seeds);
 }
 
-// What measures call a flat surface (measure/flat_surfaces.h) is where the transfer finds one, there or a reach away.
+// What measures call a flat surface (measure/energy/flat_surfaces.h) is where the transfer finds one, there or a reach away.
 TEST(Variety, MeasuresFindTheSameFlatPlaces) {
   constexpr int kSide = 40, kReach = 3;
   GuideSet guides(kSide, kSide);

@@ -1,5 +1,5 @@
 // Baselines of a cross-check, in JSON. What is read survives being written and read again.
-#include "measure/crosscheck_baseline.h"
+#include "measure/crosscheck/baseline.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

@@ -1,0 +1,239 @@
+// The trade-off as one self-contained HTML page.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+
+#include "measure/report/html_page.h"
+#include "measure/tradeoff/parts.h"
+#include "measure/tradeoff/report.h"
+
+namespace scumble {
+namespace {
+
+using internal::EscapeHtml;
+using internal::ShortEstimate;
+using internal::ShortFigure;
+using internal::ShortTime;
+
+constexpr const char* kTimes[] = {"guides and transfer", "transfer alone", "memory"};
+constexpr const char* kErrors[] = {"both", "energy", "missing"};
+
+std::string LinkTo(const TradeReport& report, std::size_t i) {
+  return fmt::format("<a href=\"#way-{}\">{}</a>", i + 1, EscapeHtml(report.ways[i].name));
+}
+
+std::string Costs(const TradeMeasure& way) {
+  return fmt::format("{} ms, both {}", ShortFigure(way.total_ms.median), ShortEstimate(way.both));
+}
+
+// Where the style as it is stands.
+std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& front) {
+  const auto own = std::find_if(report.ways.begin(), report.ways.end(), [](const auto& way) { return way.chosen; });
+  if (own == report.ways.end() || !internal::Taken(own->total_ms.median) || !internal::Taken(own->both)) return "";
+  const std::size_t place = static_cast<std::size_t>(own - report.ways.begin());
+  std::string text = "The style as it is takes " + Costs(*own);
+  if (std::find(front.begin(), front.end(), place) != front.end()) return text + ", and is on the front.";
+  text += ". Faster, and no farther from the exemplar by “both”:";
+  const char* comma = " ";
+  for (const std::size_t i : front) {
+    const TradeMeasure& way = report.ways[i];
+    if (way.total_ms.median > own->total_ms.median || way.both.mean > own->both.mean) continue;
+    text += comma + LinkTo(report, i) + " (" + Costs(way) + ")";
+    comma = ", ";
+  }
+  return text + ".";
+}
+
+std::string LeftOut(const TradeReport& report) {
+  std::string html;
+  for (const std::string& line : report.left_out) html += "<p class=\"soft\">Left out: " + EscapeHtml(line) + ".</p>\n";
+  return html;
+}
+
+std::string Header(const TradeReport& report) {
+  const std::vector<std::size_t> front = FrontOf(report);
+  std::string html = "<h1>" + EscapeHtml(internal::TradeTitle(report)) +
+                     ": speed against accuracy</h1>\n<p class=\"soft\">" + EscapeHtml(internal::TradeSetup(report)) +
+                     ".</p>\n";
+  if (!report.command.empty()) html += "<p>Repeat with <code>" + EscapeHtml(report.command) + "</code></p>\n";
+  if (report.ways.empty()) return html + "<p>Nothing was measured.</p>\n";
+  html += fmt::format("<p>{} of {} ways are on the front: nothing else is as fast and nearer to the exemplar. ",
+                      front.size(), report.ways.size());
+  return html + OwnPlace(report, front) + " " + internal::kMindBlending +
+         " What ways of the axis <code>seed</code> differ by is chance.</p>\n" + LeftOut(report);
+}
+
+std::string Choice(const char* name, std::size_t i, const char* label) {
+  return fmt::format("<label><input type=\"radio\" name=\"{0}\" id=\"{0}-{1}\"{2}> {3}</label>\n", name, i,
+                     i == 0 ? " checked" : "", label);
+}
+
+std::string Choices(const TradeReport& report) {
+  std::string html = "<form class=\"choose\" autocomplete=\"off\">\n<fieldset><legend>across</legend>\n";
+  for (std::size_t t = 0; t < std::size(kTimes); ++t) html += Choice("time", t, kTimes[t]);
+  html += "</fieldset>\n<fieldset><legend>up</legend>\n";
+  for (std::size_t e = 0; e < std::size(kErrors); ++e) html += Choice("error", e, kErrors[e]);
+  html += "</fieldset>\n<fieldset><legend>shown</legend>\n";
+  const std::vector<std::string> axes = internal::AxesOf(report);
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    html += fmt::format(
+        "<label><input type=\"checkbox\" id=\"axis-{}\" checked> <svg class=\"mark\" viewBox=\"0 0 14 14\" "
+        "aria-hidden=\"true\">{}</svg> {}</label>\n",
+        axis + 1, internal::ChartMark(axis, 7, 7), EscapeHtml(axes[axis]));
+  }
+  return html + "</fieldset>\n</form>\n";
+}
+
+// What is chosen is shown by style sheet alone, so that it works without scripts.
+std::string ChoiceStyle(const TradeReport& report) {
+  std::string css = "@supports selector(:has(*)) {\n.plot, .plot.first { display: none; }\n";
+  for (std::size_t t = 0; t < std::size(kTimes); ++t) {
+    for (std::size_t e = 0; e < std::size(kErrors); ++e) {
+      css += fmt::format(
+          "#chart:has(#time-{0}:checked):has(#error-{1}:checked) .plot.time-{0}.error-{1} {{ display: block; }}\n", t,
+          e);
+    }
+  }
+  for (std::size_t axis = 1; axis <= internal::AxesOf(report).size(); ++axis) {
+    css += fmt::format("#chart:has(#axis-{0}:not(:checked)) .axis-{0} {{ display: none; }}\n", axis);
+  }
+  return css + "}\n";
+}
+
+std::string Charts(const TradeReport& report) {
+  std::string html = "<section id=\"chart\">\n" + Choices(report);
+  for (std::size_t t = 0; t < std::size(kTimes); ++t) {
+    for (std::size_t e = 0; e < std::size(kErrors); ++e) {
+      const internal::ChartLook look{static_cast<internal::ChartTime>(t), static_cast<internal::ChartError>(e), true};
+      html += fmt::format("<div class=\"plot time-{0} error-{1}{2}\">\n", t, e, t + e == 0 ? " first" : "") +
+              internal::DrawTradeChart(report, look) + "</div>\n";
+    }
+  }
+  return html +
+         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways differ "
+         "by less than two runs of one. Bars are quartiles of the time and "
+         "standard "
+         "errors of the sample. Each point leads to its picture.</p>\n</section>\n";
+}
+
+struct Column {
+  const char* head;
+  const char* unit;
+  bool number;
+};
+
+constexpr Column kColumns[] = {{"front", "", false},      {"way", "", false},        {"changes", "", false},
+                               {"time", "ms", true},      {"guides", "ms", true},    {"transfer", "ms", true},
+                               {"prepare", "ms", true},   {"memory", "MB", true},    {"both", "", true},        {"energy", "", true},
+                               {"missing", "", true},     {"off by", "°", true},     {"coherence", "%", true},
+                               {"chunk", "px", true},     {"seam excess", "", true}, {"repetition", "", true},
+                               {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
+
+std::string Cell(const std::optional<double>& value, const std::string& shown) {
+  return fmt::format("<td class=\"number\" data-v=\"{}\">{}</td>", value ? fmt::format("{}", *value) : "", shown);
+}
+
+std::string TimeCell(const Quartiles& time) { return Cell(internal::Taken(time.median), ShortTime(time)); }
+
+std::string EstimateCell(const Estimate& estimate) { return Cell(internal::Taken(estimate), ShortEstimate(estimate)); }
+
+std::string FigureCell(const std::optional<double>& value) { return Cell(value, ShortFigure(value)); }
+
+std::string WayRow(const TradeReport& report, std::size_t i, bool front) {
+  const TradeMeasure& way = report.ways[i];
+  std::string html = fmt::format("<tr{}><td data-v=\"{}\">{}</td>", way.chosen ? " class=\"chosen\"" : "",
+                                 front ? 0 : 1, front ? "<span aria-label=\"on the front\">★</span>" : "");
+  html += fmt::format("<th scope=\"row\" data-v=\"{}\">{}</th><td>{}</td>", EscapeHtml(way.name), LinkTo(report, i),
+                      EscapeHtml(way.axis));
+  html += TimeCell(way.total_ms) + TimeCell(way.guides_ms) + TimeCell(way.transfer_ms);
+  html += FigureCell(internal::Taken(way.prepare_ms));
+  html += Cell(internal::Taken(static_cast<double>(way.memory_bytes)), internal::ShortMegabytes(way.memory_bytes));
+  html += EstimateCell(way.both) + EstimateCell(way.energy) + EstimateCell(way.missing);
+  html += FigureCell(way.guide_degrees) + Cell(way.coherence, internal::ShortPercent(way.coherence));
+  for (const auto& value : {way.chunk_area, way.seam_excess, way.repetition, way.guide_rms, way.guide_flip}) {
+    html += FigureCell(value);
+  }
+  return html + "</tr>\n";
+}
+
+std::string Table(const TradeReport& report) {
+  std::string html = "<section>\n<table id=\"ways\"><thead><tr>";
+  for (const Column& column : kColumns) {
+    html += fmt::format("<th scope=\"col\"{}>{}{}</th>", column.number ? " class=\"number\"" : "", column.head,
+                        *column.unit ? fmt::format(", {}", column.unit) : "");
+  }
+  html += "</tr></thead><tbody>\n";
+  const std::vector<bool> front = internal::OnFront(report);
+  for (const std::size_t i : ByAxis(report)) html += WayRow(report, i, front[i]);
+  return html + "</tbody></table>\n</section>\n";
+}
+
+// Under a picture: its figures, how to make it again.
+std::string Caption(const TradeReport& report, std::size_t i, bool front) {
+  const TradeMeasure& way = report.ways[i];
+  std::string html = "<figcaption><b>" + EscapeHtml(way.name) + "</b>";
+  if (way.chosen) html += ", the style as it is";
+  if (way.exact) html += ", what the others are measured against";
+  if (front) html += ", <span class=\"star\">★ on the front</span>";
+  html += fmt::format("<br>{} ms; both {}, energy {}, missing {}", ShortTime(way.total_ms), ShortEstimate(way.both),
+                      ShortEstimate(way.energy), ShortEstimate(way.missing));
+  if (!way.options.empty()) html += "<br><code>" + EscapeHtml(way.options) + "</code>";
+  if (!way.note.empty()) html += "<br>" + EscapeHtml(way.note);
+  return html + "</figcaption>";
+}
+
+std::string_view BytesOf(const std::vector<std::uint8_t>& data) {
+  return {reinterpret_cast<const char*>(data.data()), data.size()};
+}
+
+std::string Figures(const TradeReport& report) {
+  std::string html;
+  const std::vector<bool> front = internal::OnFront(report);
+  std::map<std::string_view, std::size_t> shown;  // by their bytes
+  for (const std::size_t i : ByAxis(report)) {
+    const TradeMeasure& way = report.ways[i];
+    const auto [first, is_new] = shown.try_emplace(BytesOf(way.picture_png), i);
+    const bool has_picture = !way.picture_png.empty();
+    html += fmt::format("<figure id=\"way-{}\" class=\"way{}\"{}>\n", i + 1, way.chosen ? " chosen" : "",
+                        has_picture && !is_new ? fmt::format(" data-same=\"{}\"", first->second + 1) : "");
+    if (!has_picture) {
+      html += "<p class=\"soft\">No picture was kept.</p>\n";
+    } else if (!is_new) {
+      html += "<p>The same picture as " + LinkTo(report, first->second) + ", byte for byte.</p>\n";
+    } else {
+      html +=
+          fmt::format("<img loading=\"lazy\" decoding=\"async\" width=\"{}\" height=\"{}\" alt=\"{}\" src=\"{}\">\n",
+                      report.width, report.height, EscapeHtml(internal::TradeTitle(report) + ", " + way.name),
+                      internal::PngAddress(std::as_bytes(std::span(way.picture_png))));
+    }
+    html += Caption(report, i, front[i]) + "\n</figure>\n";
+  }
+  return html.empty() ? "" : "<h2>Pictures</h2>\n<div class=\"ways\">\n" + html + "</div>\n";
+}
+
+// Two pictures at full size, opened by the script.
+constexpr const char* kFlip = R"(<dialog id="flip" aria-labelledby="flip-name">
+<div class="bar"><span><b id="flip-name"></b> <span id="flip-words" class="soft"></span></span>
+<span><button type="button" id="flip-side" aria-pressed="true">side by side</button>
+<button type="button" id="flip-before" aria-label="the way before">↑</button>
+<button type="button" id="flip-next" aria-label="the next way">↓</button>
+<button type="button" id="flip-close">close</button></span></div>
+<div class="stage" id="flip-stage"></div>
+<p class="soft">← → or a click flip between this way and the style as it is; ↑ ↓ go to other ways; s shows both side by side;
+Esc closes.</p>
+</dialog>
+)";
+
+}  // namespace
+
+std::string TradeHtml(const TradeReport& report) {
+  std::string html = internal::PageHead(internal::TradeTitle(report) + ": speed against accuracy",
+                                        internal::kTradePageStyle + ChoiceStyle(report));
+  html += Header(report);
+  if (!report.ways.empty()) html += Charts(report) + Table(report) + Figures(report) + kFlip;
+  return html + "<script>" + internal::kTradePageScript + "</script>\n</body></html>\n";
+}
+
+}  // namespace scumble

@@ -1,0 +1,137 @@
+// The trade-off for a terminal.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "measure/tradeoff/parts.h"
+#include "measure/tradeoff/report.h"
+
+namespace scumble {
+namespace {
+
+using internal::ShortFigure;
+
+constexpr std::size_t kColumns = 12, kMostWidth = 120;
+using Row = std::array<std::string, kColumns>;
+
+constexpr std::size_t kName = 1;
+
+// Characters, which is what a terminal gives a column each.
+std::size_t WidthOf(const std::string& utf8) {
+  return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string CutTo(const std::string& utf8, std::size_t width) {
+  if (WidthOf(utf8) <= width) return utf8;
+  std::string cut;
+  std::size_t taken = 0;
+  for (const char c : utf8) {
+    if ((c & 0xC0) != 0x80 && ++taken > width - 1) break;
+    cut += c;
+  }
+  return cut + "…";
+}
+
+// Without the spaces and the 0 before the point, for which there is no room: "0.412±.004".
+std::string Narrow(const Estimate& estimate) {
+  const std::string wide = internal::ShortEstimate(estimate);
+  const std::size_t sign = wide.find(" ± ");
+  if (sign == std::string::npos) return wide;
+  const std::string error = wide.substr(sign + std::string(" ± ").size());
+  return wide.substr(0, sign) + "±" + (error.starts_with("0.") ? error.substr(1) : error);
+}
+
+Row RowOf(const TradeMeasure& way, bool front) {
+  return {front ? "*" : "",
+          way.name,
+          internal::ShortTime(way.total_ms),
+          internal::ShortMegabytes(way.memory_bytes),
+          Narrow(way.both),
+          Narrow(way.energy),
+          Narrow(way.missing),
+          ShortFigure(way.guide_degrees),
+          internal::ShortPercent(way.coherence),
+          ShortFigure(way.chunk_area),
+          ShortFigure(way.seam_excess),
+          ShortFigure(way.repetition)};
+}
+
+const Row kHeadAbove = {"", "", "time, ms", "memory", "", "", "", "off by", "coher.", "chunk", "seam", "repe-"};
+const Row kHeadBelow = {"",        "way", "(quartiles)", "MB", "both",   "energy",
+                        "missing", "°",   "%",           "px", "excess", "tition"};
+
+std::string Line(const Row& row, const std::array<std::size_t, kColumns>& widths) {
+  std::string line;
+  for (std::size_t column = 0; column < kColumns; ++column) {
+    const std::string cell = CutTo(row[column], std::max<std::size_t>(widths[column], 1));
+    const std::string space(widths[column] - std::min(widths[column], WidthOf(cell)), ' ');
+    if (column > 0) line += ' ';
+    line += column <= kName ? cell + space : space + cell;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+std::array<std::size_t, kColumns> WidthsOf(const std::vector<Row>& rows) {
+  std::array<std::size_t, kColumns> widths{};
+  for (const Row& row : rows) {
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      widths[column] = std::max(widths[column], WidthOf(row[column]));
+    }
+  }
+  std::size_t others = kColumns - 1;
+  for (std::size_t column = 0; column < kColumns; ++column) others += column == kName ? 0 : widths[column];
+  constexpr std::size_t kLeastName = 8;
+  widths[kName] = std::min(widths[kName], std::max(kLeastName, kMostWidth - std::min(others, kMostWidth)));
+  return widths;
+}
+
+// The error of the guides as such, of the few ways whose guides are not the exact ones.
+std::string GuideTable(const TradeReport& report) {
+  std::string text;
+  for (const std::size_t i : ByAxis(report)) {
+    const TradeMeasure& way = report.ways[i];
+    if (way.guide_rms.value_or(0.0) == 0.0 && way.guide_flip.value_or(0.0) == 0.0) continue;
+    if (text.empty()) text = "\nGuides against the exact ones: root mean square, and FLIP (0 to 1)\n";
+    text += fmt::format("  {:<30} {:>10} {:>10}\n", CutTo(way.name, 30), ShortFigure(way.guide_rms),
+                        ShortFigure(way.guide_flip));
+  }
+  return text;
+}
+
+std::string Notes(const TradeReport& report) {
+  std::string text;
+  for (const TradeMeasure& way : report.ways) {
+    if (!way.note.empty()) text += "  " + way.name + ": " + way.note + "\n";
+  }
+  for (const std::string& line : report.left_out) text += "  left out: " + line + "\n";
+  return text.empty() ? "" : "\nNotes\n" + text;
+}
+
+}  // namespace
+
+std::string TradeTable(const TradeReport& report) {
+  std::string text = internal::TradeTitle(report) + "\n" + internal::TradeSetup(report) + "\n\n";
+  if (report.ways.empty()) return text + "nothing was measured\n";
+  const std::vector<bool> front = internal::OnFront(report);
+  const std::vector<std::size_t> order = ByAxis(report);
+  std::vector<Row> rows{kHeadAbove, kHeadBelow};
+  for (const std::size_t i : order) rows.push_back(RowOf(report.ways[i], front[i]));
+  const auto widths = WidthsOf(rows);
+  for (std::size_t line = 0; line < rows.size(); ++line) {
+    const bool new_axis = line > 2 && report.ways[order[line - 2]].axis != report.ways[order[line - 3]].axis;
+    if (new_axis || line == 2) text += "\n";
+    text += Line(rows[line], widths);
+  }
+  text +=
+      "\n* nothing else is as fast and nearer to the exemplar by `both`, the error: what of the picture is not the "
+      "exemplar's\n"
+      "  (energy) and what of the exemplar is not in the picture (missing). coher.: neighbours whose paint was side by "
+      "side;\n"
+      "  seam: larger steps across pieces than inside; repetition: how often a shown pixel of the exemplar shows.\n  ";
+  text += internal::kMindBlending + std::string("\n");
+  return text + GuideTable(report) + Notes(report);
+}
+
+}  // namespace scumble
