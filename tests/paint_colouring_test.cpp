@@ -1,5 +1,5 @@
 // The hand that colours, against the formulas in its header.
-#include "exemplars/paint/colouring.h"
+#include "exemplars/paint/engine/colouring.h"
 
 #include <gtest/gtest.h>
 

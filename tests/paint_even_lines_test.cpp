@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "exemplars/paint/even_lines.h"
+#include "exemplars/paint/engine/even_lines.h"
 
 namespace scumble::paint {
 namespace {

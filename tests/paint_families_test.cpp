@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "exemplars/paint/families.h"
-#include "exemplars/paint/media.h"
+#include "exemplars/paint/engine/families.h"
+#include "exemplars/paint/engine/media.h"
 #include "exemplars/paint/sphere.h"
 
 namespace scumble::paint {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "exemplars/paint/hairs.h"
+#include "exemplars/paint/engine/hairs.h"
 
 namespace scumble::paint {
 namespace {

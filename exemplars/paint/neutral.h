@@ -1,7 +1,7 @@
 // Paintings in greys alone, for scenes that bring their own colours.
 #pragma once
 
-#include "exemplars/paint/canvas.h"
+#include "exemplars/paint/engine/canvas.h"
 
 namespace scumble::paint {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "exemplars/paint/chance.h"
-#include "exemplars/paint/media.h"
+#include "exemplars/paint/engine/chance.h"
+#include "exemplars/paint/engine/media.h"
 #include "exemplars/paint/sphere.h"
 #include "core/io/guide_file.h"
 

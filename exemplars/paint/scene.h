@@ -6,8 +6,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "exemplars/paint/canvas.h"
-#include "exemplars/paint/strokes.h"
+#include "exemplars/paint/engine/canvas.h"
+#include "exemplars/paint/engine/strokes.h"
 #include "core/image/status.h"
 
 namespace scumble::paint {

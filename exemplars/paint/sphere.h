@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "exemplars/paint/canvas.h"
+#include "exemplars/paint/engine/canvas.h"
 
 namespace scumble::paint {
 

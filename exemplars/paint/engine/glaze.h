@@ -1,0 +1,43 @@
+// Glazes: each is a scatter of wet strokes over what has dried. As they dry, pigment gathers at their edges and in the
+// paper's hollows, and light passes through every layer to the paper and back.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+
+#include "exemplars/paint/engine/brush.h"
+#include "exemplars/paint/engine/canvas.h"
+#include "exemplars/paint/engine/chance.h"
+#include "exemplars/paint/engine/strokes.h"
+
+namespace scumble::paint {
+
+struct Glaze {
+  glm::vec3 pigment;  // what one full layer lets through
+  glm::vec3 drift;    // the pigment it runs into
+  float below;        // painted where the value is below this
+  float ragged;       // how far chance moves that border
+  float spacing;      // of the strokes: below their width they flow together into a wash
+  float radius;
+  float density;
+  float edge;             // gathering at the edges
+  float wetness;          // share of the edges that bleed away
+  float length = 8.0f;    // of the strokes, in radii
+  float lobes = 70.0f;    // width of what chance moves
+  float shortest = 2.6f;  // radii: what a border cuts shorter is left out
+};
+
+// Where a glaze goes, and which way.
+struct GlazePlan {
+  Touch value;                               // painted where it is below the glaze's border
+  std::function<Flow(Chance& chance)> flow;  // asked anew for each stroke
+};
+// Circles round an axis, each stroke's own leaving it by that deviation.
+std::function<Flow(Chance& chance)> SwayingRound(glm::vec3 axis, float deviation);
+
+// Paints and lets it dry into the picture. `brush` has any opaque colour. Chance is drawn from (seed, pass) alone.
+void LayGlaze(Colors& picture, Brush& brush, const Field& tooth, const Glaze& glaze, const GlazePlan& plan,
+              std::uint64_t seed, std::uint64_t pass);
+
+}  // namespace scumble::paint
