@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "bench/or_stop.h"
-#include "bench/repeats.h"
+#include "bench/performance/repeats.h"
 #include "cli/tradeoff_reference.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"

@@ -15,7 +15,7 @@ STYLE = "exemplars/oil"
 
 
 def figure(item, what, frame, unit, values, target=None, at_least=False, note="", more=None):
-    """As the C++ part writes them (bench/figures.h)."""
+    """As the C++ part writes them (bench/performance/figures.h)."""
     times = Times(values)
     made = {"item": item, "what": what, "frame": frame, "unit": unit, "median": times.median, "low": times.low,
             "high": times.high, "least": min(values), "rounds": len(values)}

@@ -1,5 +1,5 @@
 // How the bench sums up what it timed.
-#include "bench/repeats.h"
+#include "bench/performance/repeats.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What the bench compares with must be the same algorithm: the yardstick's picture is the engine's, bit for bit.
-#include "bench/yardstick.h"
+#include "bench/performance/yardstick.h"
 
 #include "tests/transfer_fixtures.h"
 

@@ -1,4 +1,4 @@
-#include "bench/yardstick.h"
+#include "bench/performance/yardstick.h"
 
 #include <algorithm>
 #include <cmath>

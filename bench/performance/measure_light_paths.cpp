@@ -3,7 +3,7 @@
 #include <nanoflann.hpp>
 
 #include "bench/or_stop.h"
-#include "bench/performance.h"
+#include "bench/performance/performance.h"
 #include "core/style/style_file.h"
 
 namespace scumble::bench {

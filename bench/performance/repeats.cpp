@@ -1,4 +1,4 @@
-#include "bench/repeats.h"
+#include "bench/performance/repeats.h"
 
 #include <time.h>
 

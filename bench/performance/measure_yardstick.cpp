@@ -2,8 +2,8 @@
 #include <cstring>
 #include <limits>
 
-#include "bench/performance.h"
-#include "bench/yardstick.h"
+#include "bench/performance/performance.h"
+#include "bench/performance/yardstick.h"
 #include "core/image/stopwatch.h"
 #include "measure/mosaic/coherence.h"
 

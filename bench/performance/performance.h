@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "bench/figures.h"
-#include "bench/frames.h"
-#include "bench/repeats.h"
+#include "bench/performance/figures.h"
+#include "bench/performance/frames.h"
+#include "bench/performance/repeats.h"
 #include "transfer/transfer.h"
 
 namespace scumble::bench {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/or_stop.h"
-#include "bench/performance.h"
+#include "bench/performance/performance.h"
 
 namespace scumble::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/repeats.h"
+#include "bench/performance/repeats.h"
 
 namespace scumble::bench {
 

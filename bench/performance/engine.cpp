@@ -1,5 +1,5 @@
 #include "bench/or_stop.h"
-#include "bench/performance.h"
+#include "bench/performance/performance.h"
 
 namespace scumble::bench {
 

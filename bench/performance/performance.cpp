@@ -1,7 +1,7 @@
 // Measures the transfer against the targets of docs/performance.md and prints figures as JSON; bench/performance.py
 // makes the table of them. `--help` says what can be chosen. Gates nothing, but stops where the engine's picture is not
 // the yardstick's.
-#include "bench/performance.h"
+#include "bench/performance/performance.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "bench/frames.h"
+#include "bench/performance/frames.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,7 @@
 #include <memory>
 #include <set>
 
-#include "bench/performance.h"
+#include "bench/performance/performance.h"
 #include "transfer/frame/style_map.h"
 
 namespace scumble::bench {

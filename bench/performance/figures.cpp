@@ -1,4 +1,4 @@
-#include "bench/figures.h"
+#include "bench/performance/figures.h"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
