@@ -15,7 +15,7 @@
 
 #include "bench/or_stop.h"
 #include "bench/performance/repeats.h"
-#include "cli/tradeoff_reference.h"
+#include "pipeline/variant/variant_error.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "core/image/stopwatch.h"

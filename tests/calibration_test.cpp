@@ -1,5 +1,5 @@
 // Which way is picked by times that a fake clock tells: nothing here depends on the machine.
-#include "cli/calibration.h"
+#include "pipeline/quality/calibration.h"
 
 #include <gtest/gtest.h>
 

@@ -21,12 +21,13 @@ LIBRARIES = {
     "style": ("core/style", {"image", "io"}, []),
     "transfer": ("transfer", {"image", "filter"}, []),
     "measure": ("measure", {"image", "io", "filter"}, []),
-    "cli": ("cli", {"image", "io", "guidegen", "style", "transfer", "measure"}, []),
+    "pipeline": ("pipeline", {"image", "io", "filter", "guidegen", "style", "transfer", "measure", "cli"}, []),
+    "cli": ("apps/cli", {"image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"}, []),
 }
 
 # Third parties by the start of the included path, and the libraries that may name them.
 THIRD_PARTY = {
-    "glm/": {"filter", "image", "io", "guidegen", "style", "transfer", "measure", "cli"},
+    "glm/": {"filter", "image", "io", "guidegen", "style", "transfer", "measure", "cli", "pipeline"},
     "OpenImageIO/": {"io"},
     "OpenEXR/": {"io"},
     "Imath/": {"io"},
@@ -40,14 +41,14 @@ THIRD_PARTY = {
     "tiny_obj_loader": {"guidegen"},
     "stb_image": {"guidegen"},
     "oneapi/tbb": {"guidegen", "transfer"},
-    "tbb/": {"cli", "filter", "guidegen", "transfer"},
+    "tbb/": {"cli", "filter", "guidegen", "pipeline", "transfer"},
     "nanoflann": {"transfer"},
     "hwy/": {"guidegen", "transfer"},
     "toml++/": {"style"},
     "apriltag/": {"style"},
-    "fmt/": {"measure", "cli"},
-    "nlohmann/": {"measure", "cli"},
-    "CLI/": {"cli"},
+    "fmt/": {"measure", "cli", "pipeline"},
+    "nlohmann/": {"measure", "cli", "pipeline"},
+    "CLI/": {"cli", "pipeline"},
 }
 
 # What C, C++ and POSIX bring along.

@@ -1,5 +1,5 @@
 // Frame ranges and names of frames.
-#include "cli/frames.h"
+#include "pipeline/frame_range.h"
 
 #include <gtest/gtest.h>
 

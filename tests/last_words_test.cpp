@@ -1,5 +1,5 @@
 // What is thrown where nothing catches it: one sentence, exit code 6, and no temporary file of an output left.
-#include "cli/last_words.h"
+#include "apps/cli/app/fatal_error.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // How much memory there is, who says so, and what is refused.
-#include "cli/memory_limit.h"
+#include "pipeline/memory/memory_limit.h"
 
 #include <gtest/gtest.h>
 

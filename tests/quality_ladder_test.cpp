@@ -1,5 +1,5 @@
 // The rungs of --quality and --budget-ms, by style and by what the user has decided.
-#include "cli/quality_ladder.h"
+#include "pipeline/variant/quality_ladder.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/budget_trial.h"
-#include "cli/picture_settings.h"
+#include "pipeline/variant/trial_painter.h"
+#include "pipeline/frame/provenance.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 

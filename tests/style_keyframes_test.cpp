@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/frames.h"
+#include "pipeline/frame_range.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
 #include "tests/refusal.h"

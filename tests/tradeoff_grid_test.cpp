@@ -1,5 +1,5 @@
 // Which ways `scumble tradeoff` measures, and what it does to guides and pictures on the way.
-#include "cli/tradeoff_grid.h"
+#include "pipeline/tradeoff/grid.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "cli/tradeoff_way.h"
+#include "pipeline/tradeoff/stage.h"
 #include "guidegen/guidegen.h"
 #include "core/image/hash.h"
 #include "core/io/guides/guide_precision.h"

@@ -1,5 +1,5 @@
 // What pictures are measured against, where the figures are known.
-#include "cli/tradeoff_reference.h"
+#include "pipeline/variant/variant_error.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "cli/tradeoff_guides.h"
+#include "pipeline/variant/variant_guides.h"
 #include "guidegen/guidegen.h"
 #include "tests/transfer_fixtures.h"
 

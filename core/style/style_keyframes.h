@@ -13,7 +13,7 @@
 
 namespace scumble {
 
-// Frames are numbered from minus this to this, those of tracks as those of pictures (kMaxFrame of cli/frames.h).
+// Frames are numbered from minus this to this, those of tracks as those of pictures (kMaxFrame of pipeline/frame_range.h).
 inline constexpr std::int64_t kMaxTrackFrame = 999'999'999;
 
 // Checks the track's keys and gives it to the style, in place of an earlier one of that name; the style gets the values

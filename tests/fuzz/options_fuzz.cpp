@@ -2,14 +2,14 @@
 // given to all that read text in options, and all of them are the lines of an @FILE of --assign.
 #include <CLI/CLI.hpp>
 
-#include "cli/assignments.h"
-#include "cli/frames.h"
-#include "cli/help_format.h"
-#include "cli/options.h"
-#include "cli/sequence.h"
-#include "cli/style_set.h"
-#include "cli/transfer_run.h"
-#include "cli/verbs.h"
+#include "pipeline/style/assignments.h"
+#include "pipeline/frame_range.h"
+#include "apps/cli/app/help_format.h"
+#include "apps/cli/app/options.h"
+#include "pipeline/run/sequence.h"
+#include "pipeline/style/style_set.h"
+#include "pipeline/frame/paint_frame.h"
+#include "apps/cli/app/verbs.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/print_page.h"
 #include "tests/fuzz/fuzz_target.h"

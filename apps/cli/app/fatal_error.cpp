@@ -1,0 +1,60 @@
+#include "apps/cli/app/fatal_error.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <system_error>
+
+#include "apps/cli/app/command.h"
+#include "core/io/file/pending_temporaries.h"
+
+namespace scumble {
+namespace {
+
+// oneTBB says only in words that the system gave it no thread.
+bool IsForWantOfThreads(const std::exception& error) {
+  const auto* const known = dynamic_cast<const std::system_error*>(&error);
+  if (known) return known->code() == std::errc::resource_unavailable_try_again;
+  return std::strstr(error.what(), "pthread_create") != nullptr;
+}
+
+[[noreturn]] void TellAndEnd() {
+  const int code = TellOf(std::current_exception());
+  RemoveUnfinishedFiles();
+  ::_exit(code);  // other threads still run: nothing that they use may be taken down
+}
+
+}  // namespace
+
+int TellOf(std::exception_ptr thrown) {
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+    // So it is where a thread could not be started while others of the same library ran.
+    std::fputs("scumble: error: a library gave up, as they do where memory or threads run out; allow more of both, or take "
+               "fewer threads, as --threads 1\n",
+               stderr);
+  } catch (const std::bad_alloc&) {
+    std::fputs("scumble: error: out of memory; ask for a smaller picture, or allow more memory\n", stderr);
+  } catch (const std::exception& error) {
+    if (IsForWantOfThreads(error)) {
+      std::fprintf(stderr,
+                   "scumble: error: the system starts no more threads (%s); take fewer, as --threads 1, or allow more "
+                   "memory or processes\n",
+                   std::strerror(EAGAIN));
+    } else {
+      std::fprintf(stderr, "scumble: internal error: %s; please report it with the command that led here\n",
+                   error.what());
+    }
+  } catch (...) {
+    std::fputs("scumble: internal error: of an unknown kind; please report it with the command that led here\n",
+               stderr);
+  }
+  return static_cast<int>(ExitCode::kInternal);
+}
+
+void TellOfWhatNobodyCatches() { std::set_terminate(TellAndEnd); }
+
+}  // namespace scumble

@@ -1,0 +1,86 @@
+// scumble: paint a sphere, stylise a scene. One binary, one verb a task; `scumble help` prints verbs and exit codes.
+#include <fcntl.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <sstream>
+
+#include "apps/cli/app/command.h"
+#include "apps/cli/app/signal_cleanup.h"
+#include "apps/cli/app/help_format.h"
+#include "apps/cli/app/fatal_error.h"
+#include "apps/cli/app/verbs.h"
+#include "core/image/check.h"
+#include "core/io/library.h"
+
+namespace scumble {
+
+namespace {
+
+int Code(ExitCode code) { return static_cast<int>(code); }
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 ok · 1 compared and differs · 2 usage · 3 unreadable or invalid input · 4 cannot write ·\n"
+    "            5 not built in · 6 internal error\n";
+
+int Fail(const Error& error) {
+  std::fprintf(stderr, "scumble: error: %s\n", error.message.c_str());
+  return Code(ExitCodeFor(error.kind));
+}
+
+// A file opened while standard output is closed would take its number, and receive what is printed. These stand-ins
+// refuse every read and write, so a result that nobody gets stays an error.
+void OccupyStandardStreams() {
+  for (const int descriptor : {0, 1, 2}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    if (::open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app("Scumble: paint a sphere, stylise a scene.", "scumble");
+  app.formatter(std::make_shared<HelpFormat>());
+  app.footer(kExitCodes);
+  app.set_help_flag("-h,--help", "print this help");
+  app.set_version_flag("--version", std::string("scumble ") + SCUMBLE_VERSION, "print the version");
+  app.require_subcommand(1);
+  Globals globals;
+  Action chosen;
+  AddVerbs(app, globals, chosen);
+  try {
+    app.parse(ArgumentsLastFirst({argv + 1, argv + std::max(argc, 1)}));
+  } catch (const CLI::Success& asked) {  // --help, --version
+    std::ostringstream text;
+    app.exit(asked, text, text);
+    chosen = [asked = text.str()]() -> Expected<ExitCode> { return Print(asked), ExitCode::kOk; };
+  } catch (const CLI::ParseError& error) {
+    return Fail(UsageError(ExplainUsage(app, error)));
+  }
+  // More threads than cores, where they are asked for: the library would refuse them, and say so itself.
+  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism,
+                                    std::size_t(std::max(globals.threads, tbb::this_task_arena::max_concurrency())));
+  SetIoThreads(globals.threads);
+  const Expected<ExitCode> result = chosen();
+  if (!result) return Fail(result.error());
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) return Fail(OutputError("cannot write to standard output"));
+  return Code(*result);
+}
+
+}  // namespace
+}  // namespace scumble
+
+int main(int argc, char** argv) {
+  try {
+    scumble::OccupyStandardStreams();
+    scumble::CleanUpOnSignals();
+    scumble::TellOfWhatNobodyCatches();
+    return scumble::Run(argc, argv);
+  } catch (...) {
+    return scumble::TellOf(std::current_exception());
+  }
+}

@@ -1,0 +1,183 @@
+// scumble info: what is in a guide file, a scene or a style.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "apps/cli/app/command.h"
+#include "apps/cli/app/json_text.h"
+#include "apps/cli/app/options.h"
+#include "pipeline/style/style_set.h"
+#include "pipeline/frame/paint_frame.h"
+#include "guidegen/load/load_scene.h"
+#include "guidegen/scene_textures.h"
+#include "core/io/guide_file.h"
+
+namespace scumble {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Whether transfer can read a Blender render as it is.
+std::string BlenderNote(const GuideFileInfo& info) {
+  std::string missing;
+  for (const auto& [layer, pass] : {std::pair{Layer::kPosition, "Position"}, {Layer::kDepth, "Z"}}) {
+    const bool everywhere = std::all_of(info.layers.begin(), info.layers.end(),
+                                        [layer = layer](const auto& entry) { return entry.second.Has(layer); });
+    if (!everywhere) missing += (missing.empty() ? "" : " and ") + std::string(pass);
+  }
+  return missing.empty() ? "rendered by Blender: transfer finds its camera from Position and Z, or takes --camera FILE"
+                         : "rendered by Blender, without " + missing + ": transfer needs --camera FILE";
+}
+
+Expected<Json> DescribeGuides(const std::string& path) {
+  SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
+  Json json{{"kind", "guides"}, {"width", info.width}, {"height", info.height}, {"channels", info.channels}};
+  for (const auto& [view_layer, layers] : info.layers) {
+    json[view_layer.empty() ? "layers" : "layers of " + view_layer] = layers.ToString();
+  }
+  if (info.from_blender) json["note"] = BlenderNote(info);
+  for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
+  for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
+  for (const auto& [name, style] : WishesOf(info.header).objects) json["styles"][name] = style;
+  for (const auto& [name, style] : WishesOf(info.header).materials) json["material styles"][name] = style;
+  if (info.header.camera) json["camera"] = info.header.camera->name;
+  for (const auto& [name, value] : info.header.attributes) json[name] = value;
+  return json;
+}
+
+Json DescribeScene(const Scene& scene) {
+  std::size_t triangles = 0;
+  for (const Instance& instance : scene.instances) triangles += scene.meshes[instance.mesh].triangles.size();
+  const auto textures = std::count_if(scene.textures.begin(), scene.textures.end(),
+                                      [](const Picture& picture) { return !picture.empty(); });
+  Json json{{"kind", "scene"}, {"triangles", triangles}, {"textures", textures}};
+  const auto names = [&](const char* key, const auto& items, auto name_of) {
+    json[key] = Json::array();
+    for (const auto& item : items) {
+      if (json[key].empty() || json[key].back() != name_of(item)) json[key].push_back(name_of(item));
+    }
+  };
+  names("objects", scene.instances, [](const Instance& i) { return i.object; });
+  for (const Instance& instance : scene.instances) {
+    if (!instance.style.empty()) json["styles"][instance.object] = instance.style;
+    if (instance.pass_index != 0) json["pass_indices"][instance.object] = instance.pass_index;
+  }
+  names("materials", scene.materials, [](const Material& m) { return m.name; });
+  for (const Material& material : scene.materials) {
+    if (!material.style.empty()) json["material styles"][material.name] = material.style;
+  }
+  names("cameras", scene.cameras, [](const Camera& c) { return c.name; });
+  names("lights", scene.lights, [](const Light& light) {
+    constexpr const char* kTypes[] = {"point", "spot", "sun", "area"};
+    return light.name + " (" + kTypes[static_cast<int>(light.type)] + ")";
+  });
+  return json;
+}
+
+Expected<Json> DescribeSceneFile(const std::string& path) {
+  Expected<AnimatedScene> animated = AnimatedScene::Load(path);
+  // An animation that cannot be played hides nothing of the scene at rest.
+  SCUMBLE_ASSIGN(const Scene scene, animated ? Expected<Scene>(animated->rest()) : LoadScene(path));
+  Json json = DescribeScene(scene);
+  if (animated && !animated->animations().empty()) {
+    json["animations"] = animated->animations();
+    json["seconds"] = animated->duration_seconds();
+  }
+  json["warnings"] = scene.warnings;
+  if (!animated) json["warnings"].push_back(animated.error().message);
+  return json;
+}
+
+Expected<Json> DescribeBlenderScene(const std::string& path, const BlenderOptions& blender, const Globals& globals) {
+  SCUMBLE_ASSIGN(Scene scene, LoadBlenderScene(path, blender, globals));
+  SCUMBLE_RETURN_IF_ERROR(DecodeAllTextures(scene));
+  Json json = DescribeScene(scene);
+  json["warnings"] = scene.warnings;
+  return json;
+}
+
+struct InfoVerb {
+  std::string path;
+  BlenderOptions blender;
+};
+
+Expected<Json> DescribeStyle(const std::string& path) {
+  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
+  constexpr const char* kMethods[] = {"litsphere", "styleblit", "bruteforce"};
+  Json json{{"kind", "style"}, {"name", style.name}, {"licence", style.licence}};
+  json["method"] = kMethods[static_cast<int>(style.transfer.method)];
+  // The shortest number that is this float: as a double 0.09 would be 0.09000000357627869.
+  json["threshold"] = std::strtod(fmt::format("{}", style.transfer.threshold).c_str(), nullptr);
+  json["levels"] = style.transfer.levels;
+  json["blend_radius"] = style.transfer.blend_radius;
+  json["scale"] = style.transfer.scale;
+  for (const Exemplar& exemplar : style.exemplars) {
+    std::string text = fmt::format("{} {}×{}", exemplar.name, exemplar.picture.width, exemplar.picture.height);
+    if (style.exemplars.size() > 1) text += ", " + LightInWords(exemplar, style.transfer.rim);
+    json["exemplars"].push_back(std::move(text));
+  }
+  return json;
+}
+
+std::string ToText(const Json& json) {
+  std::size_t widest = 0;
+  for (const auto& [key, value] : json.items()) widest = std::max(widest, key.size());
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    std::string shown;
+    if (value.is_array()) {
+      // Exemplars say more than their names: one a line.
+      const std::string between = key == "exemplars" ? "\n" + std::string(widest + 2, ' ') : ", ";
+      for (const Json& item : value) shown += (shown.empty() ? "" : between) + item.get<std::string>();
+      if (shown.empty()) shown = "none";
+    } else if (value.is_object()) {
+      for (const auto& [name, item] : value.items()) {
+        shown += (shown.empty() ? "" : ", ") + name + ": " + (item.is_string() ? item.get<std::string>() : item.dump());
+      }
+    } else {
+      shown = value.is_string() ? value.get<std::string>() : value.dump();
+    }
+    text += fmt::format("{:<{}}  {}\n", key, widest, shown);
+  }
+  return text;
+}
+
+Expected<Json> Describe(const InfoVerb& verb, const Globals& globals) {
+  const std::string& path = verb.path;
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".exr") return DescribeGuides(path);
+  if (ending == ".blend") return DescribeBlenderScene(path, verb.blender, globals);
+  if (!verb.blender.program.empty()) return UsageError("--blender is for .blend scenes; leave it out for " + path);
+  if (ending == ".glb" || ending == ".gltf" || ending == ".obj" || ending == ".ply") return DescribeSceneFile(path);
+  return DescribeStyle(path);
+}
+
+}  // namespace
+
+void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
+  CLI::App* sub = app.add_subcommand("info", "what is in a guide file, a scene or a style");
+  auto verb = std::make_shared<InfoVerb>();
+  sub->add_option("file", verb->path,
+                  "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first), style, "
+                  "or picture of a painted sphere")
+      ->type_name("FILE")
+      ->required();
+  sub->add_option("--blender", verb->blender.program,
+                  "the Blender that exports a .blend scene; left out: blender in PATH")
+      ->type_name("PATH")
+      ->check(RefuseEmpty);
+  AddGlobalOptions(*sub, globals);
+  sub->callback([=, &globals, &chosen] {
+    chosen = [=, &globals]() -> Expected<ExitCode> {
+      SCUMBLE_ASSIGN(const Json json, Describe(*verb, globals));
+      Print(globals.json ? JsonText(json) : ToText(json));
+      return ExitCode::kOk;
+    };
+  });
+}
+
+}  // namespace scumble

@@ -1,0 +1,98 @@
+// scumble styles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "apps/cli/app/command.h"
+#include "apps/cli/app/json_text.h"
+#include "apps/cli/app/options.h"
+#include "apps/cli/verbs/styles_check.h"
+#include "core/style/style_file.h"
+#include "core/style/style_keys.h"
+
+namespace scumble {
+namespace {
+
+// A key that [[exemplar]] has.
+struct StyleKeyLine {
+  const char *key, *default_value, *help;
+};
+
+Expected<ExitCode> ListStyles(const Globals& globals) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  std::string text;
+  ExitCode code = ExitCode::kOk;
+  for (const auto& root : StyleRoots()) {
+    for (const auto& folder : FindStyles(root)) {
+      const Expected<Style> style = LoadStyle(folder);
+      if (!style) {  // one broken style does not hide the others
+        Warn("style " + folder.filename().string() + " is left out: " + style.error().message);
+        code = ExitCodeFor(style.error().kind);
+        continue;
+      }
+      const int size = std::max(style->exemplars.front().picture.width, style->exemplars.front().picture.height);
+      json.push_back({{"name", folder.filename().string()},
+                      {"folder", folder.string()},
+                      {"size", size},
+                      {"licence", style->licence}});
+      std::error_code failed;
+      if (const auto thumbnail = folder / "thumbnail.png"; std::filesystem::exists(thumbnail, failed)) {
+        json.back()["thumbnail"] = thumbnail.string();
+      }
+      text +=
+          fmt::format("{:<16} {:>5}²  {:<10} {}\n", folder.filename().string(), size, style->licence, folder.string());
+    }
+  }
+  Print(globals.json ? JsonText(json) : text.empty() ? "no bundled styles found\n" : text);
+  return code;
+}
+
+Expected<ExitCode> ListKeys(const Globals& globals) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  std::string text;
+  for (const StyleKey& key : StyleKeys()) {
+    const std::string help = key.help + (key.built_in ? "" : " (not built in yet: only the default is accepted)");
+    json.push_back({{"key", key.name}, {"default", key.default_value}, {"help", help}});
+    text += fmt::format("{:<26} {:<12} {}\n", key.name, key.default_value, help);
+  }
+  const StyleKeyLine of_exemplars[] = {
+      {"exemplar.image", "", "picture of the painted sphere, required; in style.toml only"},
+      {"exemplar.guides", "\"\"", "guides of what is painted; empty: a sphere fills the square; in style.toml only"},
+      {"exemplar.luminance", "", "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"}};
+  for (const auto& [key, default_value, help] : of_exemplars) {
+    json.push_back({{"key", key}, {"default", default_value}, {"help", help}});
+    text += fmt::format("{:<26} {:<12} {}\n", key, default_value, help);
+  }
+  Print(globals.json ? JsonText(json) : text);
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
+  CLI::App* sub = app.add_subcommand("styles", "list the bundled styles; check one; list the keys of style.toml");
+  auto keys = std::make_shared<bool>(false);
+  auto checked = std::make_shared<StylesCheck>();
+  sub->add_flag("--keys", *keys, "list every key of style.toml with its default");
+  CLI::App* check = sub->add_subcommand(
+      "check", "read styles as a transfer would and say what is wrong with their paint, where, and how to mend it");
+  check
+      ->add_option("style", checked->styles,
+                   "style folders, style.toml files, pictures of painted spheres, or bundled styles' names")
+      ->type_name("STYLE")
+      ->required();
+  check->add_flag("--strict", checked->strict, "exit code 1 where a style has a mistake; remarks do not count");
+  AddGlobalOptions(*sub, globals);
+  AddGlobalOptions(*check, globals);
+  sub->callback([=, &globals, &chosen] {
+    chosen = [=, &globals]() -> Expected<ExitCode> {
+      if (!checked->styles.empty()) return CheckStyles(*checked, globals);
+      return *keys ? ListKeys(globals) : ListStyles(globals);
+    };
+  });
+}
+
+}  // namespace scumble

@@ -1,0 +1,234 @@
+#include "pipeline/memory/memory_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "guidegen/light/path_layers.h"
+#include "core/style/kit/sphere_template.h"
+
+namespace scumble {
+namespace {
+
+using Bytes = std::uint64_t;
+
+constexpr Bytes kMega = 1'000'000;
+constexpr Bytes kFloat = 4;
+constexpr Bytes kPaint = 8;  // of a pixel of a Picture
+
+constexpr Bytes kProgram = 30 * kMega, kThread = 4 * kMega;
+constexpr Bytes kFormatsModule = 125 * kMega;  // OpenImageIO and what it loads
+constexpr Bytes kDecoded = 16;                 // of a pixel of a JPEG or WebP, beside the picture that comes of it
+constexpr Bytes kTriangle = 340;               // ours, Embree's, and what reading a text of it leaves behind
+constexpr Bytes kVertex = 40;                  // what triangles that share no corners have more, while normals are made
+constexpr Bytes kPlacedTriangle = 220;         // Embree's, of each further instance: corners, hierarchy, that of what shines
+constexpr Bytes kInstance = 2300;              // its node in the file, ours, and Embree's geometry
+
+// Of transfer/: what one pixel takes.
+constexpr Bytes kSource = 7;                // SourceField and who is painted
+constexpr Bytes kMoved = 13;                // SourceField::moved and who is matched, where not every pixel is
+constexpr Bytes kMatched = 32;              // of one that is matched then
+constexpr Bytes kSlopes = 8;                // DepthSlopes
+constexpr Bytes kSurfaceSeeds = 48;         // MatchCoherent
+constexpr Bytes kSeedMap = 7;               // 1.13 bytes on each of six levels
+constexpr Bytes kBandTile = 110'000;        // seeds of 512 columns, for one thread
+constexpr int kBandRadius = 3;              // up to it sources are kept for a few rows only
+constexpr Bytes kExplained = 24;            // planes that --show is drawn from, and a second picture
+constexpr Bytes kTones = 8 * kMega;         // Alternatives, of an exemplar of any size
+constexpr Bytes kCoherence = 9;             // MeasureCoherence, for --json
+
+Bytes PixelsOf(const Size& size) { return Bytes(size.width) * Bytes(size.height); }
+
+Bytes ChannelsOf(const LayerSet& layers) {
+  Bytes channels = 0;
+  for (const LayerInfo& info : AllLayers()) channels += layers.Has(info.layer) ? Bytes(ChannelCount(info.layer)) : 0;
+  return channels;
+}
+
+LayerSet Made(LayerSet layers) { return layers.Add(AlwaysWritten()); }
+
+Bytes ThreadsOf(int threads) {
+  return threads > 0 ? Bytes(threads) : std::max<Bytes>(1, std::thread::hardware_concurrency());
+}
+
+// Planes, or a file of them in memory: nothing promises that pixels pack, and halves are made before they are packed.
+Bytes PlanesOf(const Size& size, const LayerSet& layers) { return kFloat * ChannelsOf(layers) * PixelsOf(size); }
+
+bool NeedsModule(const std::string& output) {
+  const std::size_t dot = output.rfind('.');
+  std::string ending = dot == std::string::npos ? "" : output.substr(dot);
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return !ending.empty() && ending != ".png" && ending != ".exr";  // a plan has no output
+}
+
+// Of a pixel of the picture, to encode it; without the file's module.
+Bytes EncodedBytes(const PictureOptions& options) {
+  if (IsExr(options.output)) return 8 * kFloat;  // four floats, and as many in the file; or halves and halves
+  const Bytes samples = options.bits == 16 ? 8 : 4;
+  // PNG is packed by bands, which are joined; others are turned into the file's own bits, and a file that grows is copied.
+  return samples * (NeedsModule(options.output) ? 3 : 2);
+}
+
+// Whether the transfer keeps the sources of the whole picture.
+bool KeepsSources(const Style& style, int radius) {
+  const TransferSettings& settings = style.transfer;
+  return settings.method != Method::kStyleBlit || settings.coherent || settings.match_step > 1 || settings.hybrid > 0.0 ||
+         !settings.guide_weights.ArePlain() || settings.edge == EdgeMode::kExemplar || radius > kBandRadius;
+}
+
+int RadiusOf(const Style& style, int height) {
+  const int reference = style.transfer.reference_height;
+  const double ratio = reference > 0 ? static_cast<double>(height) / reference : 1.0;
+  return static_cast<int>(std::min(1024.0, std::floor(style.transfer.blend_radius * ratio + 0.5)));
+}
+
+// A style's pictures as they were read, and what Prepare makes of them for an output of that height.
+void AddStyle(const Style& style, int height, MemoryNeed& need) {
+  const TransferSettings& settings = style.transfer;
+  const auto scaled = [&](int side) { return Bytes(ScaledSize(side, settings.scale, settings.reference_height, height)); };
+  Bytes read = 0, prepared = 0, largest = 0;
+  for (const Exemplar& exemplar : style.exemplars) {
+    const Bytes file = Bytes(exemplar.picture.width) * Bytes(exemplar.picture.height);
+    const Bytes width = scaled(style.exemplars.front().picture.width);
+    const Bytes texels = width * scaled(style.exemplars.front().picture.height);
+    read += kPaint * file;
+    if (exemplar.guides) read += kFloat * ChannelsOf(exemplar.guides->layers()) * exemplar.guides->pixel_count();
+    Bytes of_texel = kPaint;
+    if (!exemplar.is_sphere) of_texel += 13;                              // normals and what is usable
+    if (!settings.guide_weights.ArePlain()) of_texel += 3 * kFloat * ChannelsOf(settings.guide_weights.Layers());
+    if (settings.hybrid > 0.0) of_texel += kPaint;                        // the tone
+    if (settings.variety > 0.0 && !exemplar.is_sphere) of_texel += 12;    // an index of normals
+    if (settings.variety > 0.0) prepared += kTones;
+    if (settings.shadow == ShadowMode::kPaint) of_texel += 24;
+    if (settings.nearest == NearestSearch::kTree) of_texel += 32;
+    prepared += of_texel * texels;
+    // Copies while one is extended, resized along x, turned and resized along y; or of the points of a search, or of the
+    // planes of a blur.
+    const Bytes between = width * Bytes(exemplar.picture.height);
+    largest = std::max(largest, kPaint * (file + 2 * between + texels) + (exemplar.is_sphere ? 0 : 40 * texels) +
+                                    (settings.hybrid > 0.0 ? 32 * texels : 0));
+  }
+  if (style.paper.picture) {
+    const Picture& paper = *style.paper.picture;
+    read += kPaint * Bytes(paper.width) * Bytes(paper.height);
+    const auto fit = [&](int side) { return Bytes(ScaledSize(side, 1.0, settings.reference_height, height)); };
+    prepared += kPaint * fit(paper.width) * fit(paper.height);
+  }
+  need.Take("styles", read);
+  need.Take("exemplars", prepared);
+  need.Briefly("preparing exemplars", largest);
+}
+
+// The sources of all pixels and what their match and votes look at.
+void AddSources(const PictureWork& work, const PictureOptions& options, const Size& size, MemoryNeed& need) {
+  const Bytes pixels = PixelsOf(size);
+  bool keeps = work.keeps_field, lit = false;
+  Bytes of_pixel = 0, briefly = 0;
+  int step = 1;
+  for (const Style& style : work.styles) {
+    keeps = keeps || KeepsSources(style, RadiusOf(style, size.height));
+    lit = lit || LooksAtLight(style);
+    step = std::max(step, style.transfer.match_step);
+    if (style.transfer.coherent) briefly = std::max(briefly, kSurfaceSeeds);
+  }
+  if (step > 1) of_pixel += kMoved, briefly = std::max(briefly, kMatched / Bytes(step * step) + 1);
+  if (keeps) of_pixel += kSource, briefly += kSlopes;
+  if (lit) briefly += kFloat;  // exposed
+  if (work.has_map) of_pixel += 2;
+  if (work.is_sequence || options.repeat > 1) of_pixel += kSeedMap;
+  if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
+  const Bytes tiles = (Bytes(size.width) + 511) / 512;
+  need.Take("seeds of the threads", ThreadsOf(work.threads) * tiles * kBandTile * work.styles.size());
+  if (briefly > 0) need.Briefly("match and votes", briefly * pixels);
+}
+
+}  // namespace
+
+void AddProgram(int threads, MemoryNeed& need) { need.Take("program", kProgram + kThread * ThreadsOf(threads)); }
+
+void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
+  Bytes bytes = kPaint * more.all;
+  for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size() + kVertex * mesh.positions.size();
+  // Embree is given each instance's triangles where they stand. Those that an exact copy covers it is not, but they are
+  // rare, and only a look at every corner tells.
+  std::vector<bool> placed(scene.meshes.size());
+  for (const Instance& instance : scene.instances) {
+    const auto mesh = std::size_t(instance.mesh);
+    if (placed[mesh]) bytes += kPlacedTriangle * scene.meshes[mesh].triangles.size();
+    placed[mesh] = true;
+    bytes += kInstance;
+  }
+  for (const Picture& texture : scene.textures) bytes += kPaint * Bytes(texture.width) * Bytes(texture.height);
+  for (const auto& texture : scene.encoded_textures) bytes += texture ? Bytes(texture->bytes) : 0;
+  if (more.largest > 0) need.Take("reader", kFormatsModule);
+  need.Take("scene", bytes);
+  need.Briefly("decoding a texture", kDecoded * more.largest);
+}
+
+void AddGuides(const Size& size, const LayerSet& layers, const SceneOptions& options, MemoryNeed& need) {
+  const Bytes pixels = PixelsOf(size);
+  need.Take("guides", PlanesOf(size, Made(layers)));
+  Bytes path_layers = 0;
+  for (const LayerInfo& info : AllLayers()) path_layers += layers.Has(info.layer) && PathLayerExpression(info.layer);
+  if (path_layers == 0) return;
+  // Lists of pixels that grow: twice what they hold, and the copy that they grew from.
+  constexpr Bytes kPathPixel = 40, kSum = 24;
+  const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
+  need.Briefly("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
+}
+
+void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need) {
+  need.Briefly("guide file", PlanesOf(size, Made(layers)));
+}
+
+void AddGuidesBehind(const Size& size, const LayerSet& layers, MemoryNeed& need) {
+  need.Take("frame that is written", 2 * PlanesOf(size, Made(layers)));
+}
+
+void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, MemoryNeed& need) {
+  const Bytes pixels = Bytes(info.width) * Bytes(info.height);
+  LayerSet layers = read.required;
+  layers.Add(read.optional);
+  need.Take("guides", kFloat * ChannelsOf(layers) * pixels);
+  const bool plain = !info.from_blender && info.layers.size() == 1 && info.layers.begin()->first.empty();
+  if (plain) return;
+  // Another reader: all channels side by side, then by layer.
+  Bytes channels = 1;
+  for (const auto& [name, found] : info.layers) channels += ChannelsOf(found);
+  channels = std::max<Bytes>(channels, 1 + Bytes(std::count(info.channels.begin(), info.channels.end(), ',')));
+  need.Take("reader", kFormatsModule);
+  need.Briefly("channels of the file", kFloat * channels * pixels);
+}
+
+void AddPicture(const PictureWork& work, const PictureOptions& options, MemoryNeed& need) {
+  const Size size{work.guides.width * options.upsample, work.guides.height * options.upsample};
+  const Bytes pixels = PixelsOf(size), encoded = EncodedBytes(options);
+  if (work.is_sequence) need.Take("frame that is written", (kPaint + encoded) * pixels);
+  if (options.upsample > 1) need.Take("upsampled guides", kFloat * ChannelsOf(Made(work.layers)) * pixels);
+  if (!options.over.empty()) {
+    need.Take("picture underneath", kPaint * pixels);
+    need.Briefly("reading it", 2 * kPaint * pixels + kFormatsModule);
+  }
+  for (const Style& style : work.styles) AddStyle(style, size.height, need);
+  need.Take("picture", kPaint * pixels);
+  AddSources(work, options, size, need);
+  if (!options.show.empty()) need.Briefly("explaining", kExplained * pixels);
+  else if (work.keeps_field) need.Briefly("figures", kCoherence * pixels);
+  if (NeedsModule(options.output)) need.Take("writer", kFormatsModule);
+  need.Briefly("picture file", encoded * pixels);
+}
+
+void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need) {
+  const Size square{size, size};
+  const Bytes side = Bytes(size) + 2 * Bytes(TemplateMargin(size)), pixels = side * side;
+  // Template files are kept until all are made: one picture, ten in a file of layers, a page.
+  const Bytes files = 4 * (has_layers_file ? 3 : 1);
+  need.Take("guides", lights * PlanesOf(square, Made(layers)));
+  need.Take("templates", lights * files * pixels);
+  need.Briefly("drawing", (3 * kPaint + 8) * pixels);
+  need.Briefly("guide file", PlanesOf(square, Made(layers)));
+}
+
+}  // namespace scumble

@@ -1,0 +1,48 @@
+// What a run reads and what it writes: no output may take the place of an input, and every output must be writable, which
+// is looked at before hours of work.
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/style/style_set.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+class RunFiles {
+ public:
+  // A file that the run reads; `what` is for the message: "the guides". Empty names and files that are not there (reading
+  // them says so) are no matter.
+  void Reads(const std::string& what, const std::string& path);
+  // A scene with the files that it names: buffers and pictures of a .gltf or .glb, the .mtl of an .obj and its pictures.
+  void ReadsScene(const std::string& scene);
+  // Style files, exemplars, their guides, paper: of every style in the set.
+  void ReadsStyles(const StyleSet& styles);
+  // Whether all of them are known; not where the scene has asked for some since.
+  bool KnowsStyles(const StyleSet& styles) const { return styles_ == styles.opened.size(); }
+  // Paths of the files that are there, each file once, in alphabetical order.
+  std::vector<std::string> Inputs() const;
+
+  // kUsage where an output is one of these files, under whatever name or link; kOutput where it cannot be written, its
+  // folder is missing, or it is a folder. The outputs of a range are in one folder. Nothing is left behind.
+  Status CheckOutputs(std::span<const std::string> outputs) const;
+  Status CheckOutput(const std::string& output) const { return CheckOutputs(std::span(&output, 1)); }
+
+ private:
+  // Files that a text names in quotes, from a folder.
+  void ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder);
+  // Those that a .gltf or a .glb names.
+  void ReadsUris(const std::string& what, const std::string& file, const std::string& folder);
+
+  struct Input {
+    std::string what, path;
+  };
+  std::map<std::pair<unsigned long, unsigned long>, Input> inputs_;  // by device and file number
+  std::size_t styles_ = 0;  // opened when they were read
+};
+
+}  // namespace scumble

@@ -1,0 +1,199 @@
+#include "pipeline/scene/blender_scene.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "pipeline/scene/blender_process.h"
+#include "pipeline/frame_range.h"
+#include "apps/cli/app/options.h"
+#include "guidegen/load/load_scene.h"
+
+namespace scumble {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Status CheckReadable(const std::string& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) {
+    return InputError(path + " cannot be read: " + (fs::exists(path, failed) ? "it is no file" : "no such file"));
+  }
+  if (::access(path.c_str(), R_OK) != 0) return InputError(path + " cannot be read: " + std::strerror(errno));
+  return Ok();
+}
+
+// Messages of the loader name the temporary file, which is none of the user's business.
+std::string Renamed(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+std::string NameOfProgram(const BlenderOptions& options) {
+  return options.program.empty() ? "blender" : options.program;
+}
+
+BlenderTask ExportTask(const std::string& path, const BlenderOptions& options) {
+  const std::string program = NameOfProgram(options);
+  return {path, program, "the export by " + program + " failed", true};
+}
+
+// What runs export_scene.py on a scene, with the script's own arguments to follow.
+Expected<std::vector<std::string>> ExportCommand(const std::string& path, const BlenderOptions& options,
+                                                 const fs::path& output) {
+  SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", ExportTask(path, options)));
+  if (!output.has_parent_path())
+    return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
+  return std::vector<std::string>{NameOfProgram(options),
+                                  "-b",
+                                  "-noaudio",
+                                  "--factory-startup",
+                                  "-Y",  // the file's own scripts stay asleep
+                                  fs::absolute(path).string(),
+                                  "-P",
+                                  script.string(),
+                                  "--",
+                                  "--output",
+                                  output.string()};
+}
+
+Expected<Scene> LoadExport(const fs::path& exported, const std::string& path) {
+  Expected<Scene> scene = LoadScene(exported, TextureLoading::kWhenNeeded);
+  if (!scene) return Error{scene.error().kind, Renamed(scene.error().message, exported.string(), path)};
+  scene->name = path;
+  for (std::shared_ptr<const EncodedTexture>& texture : scene->encoded_textures) {
+    auto renamed = std::make_shared<EncodedTexture>(*texture);
+    renamed->decode = [decode = texture->decode, from = exported.string(), path]() -> Expected<Picture> {
+      Expected<Picture> picture = decode();
+      if (!picture) return Error{picture.error().kind, Renamed(picture.error().message, from, path)};
+      return picture;
+    };
+    texture = std::move(renamed);
+  }
+  return scene;
+}
+
+// An empty path where no folder could be made.
+fs::path In(const ScratchFolder& scratch, const char* name) {
+  return scratch.path().empty() ? fs::path() : scratch.path() / name;
+}
+
+constexpr const char *kStartFile = "start.glb", *kRateFile = "fps";
+
+void AskForFilm(const ScratchFolder& scratch, const BlenderOptions& options, std::vector<std::string>& arguments) {
+  arguments.insert(arguments.end(), {"--fps-file", In(scratch, kRateFile).string(), "--start-file",
+                                     In(scratch, kStartFile).string()});
+  if (options.wants_start) arguments.push_back("--start-always");
+}
+
+Status LoadFilm(const ScratchFolder& scratch, const std::string& path, BlenderFilm& film) {
+  std::ifstream(In(scratch, kRateFile)) >> film.fps;
+  std::error_code failed;
+  const fs::path start = In(scratch, kStartFile);
+  if (!fs::is_regular_file(start, failed)) return Ok();
+  SCUMBLE_ASSIGN(film.start, LoadExport(start, path));
+  fs::remove(start, failed);
+  return Ok();
+}
+
+// With more, a slow disk would still not be felt.
+constexpr int kFramesAhead = 3;
+constexpr const char* kRangeOutput = "scene.#.glb";
+
+}  // namespace
+
+bool IsBlenderScene(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".blend";
+}
+
+Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals,
+                                 BlenderFilm* film) {
+  const ScratchFolder scratch;
+  const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
+  SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported));
+  if (film) AskForFilm(scratch, options, arguments);
+  if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
+  Say(globals, path + ": " + arguments.front() + " exports it" +
+                   (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
+  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), ExportTask(path, options), log, exported));
+  if (film) SCUMBLE_RETURN_IF_ERROR(LoadFilm(scratch, path, *film));
+  return LoadExport(exported, path);
+}
+
+BlenderRange::BlenderRange() = default;
+
+BlenderRange::~BlenderRange() {
+  EndAtOnceOnSignals(false);
+  program_.reset();  // before the folder that it writes into
+}
+
+Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& path, const BlenderOptions& options,
+                                                            std::span<const int> frames, const Globals& globals) {
+  std::unique_ptr<BlenderRange> range(new BlenderRange);
+  range->task_ = std::make_unique<BlenderTask>(ExportTask(path, options));
+  range->scratch_ = std::make_unique<ScratchFolder>();
+  SCUMBLE_ASSIGN(std::vector<std::string> arguments,
+                 ExportCommand(path, options, In(*range->scratch_, kRangeOutput)));
+  // With an equals sign: a range that starts at a negative frame would look like an option.
+  arguments.push_back("--frames=" + FramesToText(frames));
+  arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
+  AskForFilm(*range->scratch_, options, arguments);
+  Say(globals, path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
+                   FramesToText(frames));
+  const fs::path log = In(*range->scratch_, "log");
+  auto program = RunningProgram::Start(arguments, log);
+  if (!program) return CheckProgramEnd(program.error(), *range->task_, log, {}).error();
+  range->program_ = std::move(*program);
+  SCUMBLE_RETURN_IF_ERROR(range->LeaveAlone());
+  return range;
+}
+
+// Until the next Load a frame is at work, for minutes perhaps: who ends the program does not want to wait for it.
+Status BlenderRange::LeaveAlone() {
+  EndAtOnceOnSignals(true);
+  return CheckNotSignalled(task_->scene);
+}
+
+Expected<Scene> BlenderRange::Load(int frame) {
+  EndAtOnceOnSignals(false);
+  Expected<Scene> scene = Await(frame);
+  SCUMBLE_RETURN_IF_ERROR(LeaveAlone());
+  return scene;
+}
+
+Expected<Scene> BlenderRange::Await(int frame) {
+  SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(In(*scratch_, kRangeOutput).string()));
+  const fs::path exported = name.At(frame);
+  std::error_code failed;
+  for (;;) {
+    // In this order: a Blender that ends between the two questions has written its last file before.
+    SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(task_->scene));
+    SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, program_->Poll());
+    if (fs::is_regular_file(exported, failed)) break;  // it gets this name when it is whole
+    if (end) SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(*end, *task_, In(*scratch_, "log"), exported));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  if (!has_film_) SCUMBLE_RETURN_IF_ERROR(LoadFilm(*scratch_, task_->scene, film_));
+  has_film_ = true;
+  Expected<Scene> scene = LoadExport(exported, task_->scene);
+  fs::remove(exported, failed);
+  return scene;
+}
+
+}  // namespace scumble

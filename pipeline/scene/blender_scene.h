@@ -1,0 +1,72 @@
+// Scenes of Blender: has Blender export them, then loads what it wrote.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "apps/cli/app/command.h"
+#include "guidegen/scene/scene.h"
+#include "core/image/status.h"
+
+namespace scumble {
+
+struct BlenderTask;
+class RunningProgram;
+class ScratchFolder;
+
+struct BlenderOptions {
+  std::string program;       // a path, or a name looked up in PATH; empty: "blender"
+  std::optional<int> frame;  // empty: the one that the file was saved at
+  bool wants_start = false;  // BlenderFilm::start in any case
+};
+
+// Whether the name ends in .blend.
+bool IsBlenderScene(const std::string& path);
+
+// What is the same in all frames of a .blend.
+struct BlenderFilm {
+  std::string fps;             // frames a second, as ParseFps takes them; empty: not told
+  std::optional<Scene> start;  // the scene at its first frame, where that is needed to decide how all frames are seen: it
+                               // has no camera, perhaps no lamp, or it was asked for
+};
+
+// Runs Blender on blender_scripts/export_scene.py in the background, without the scripts inside the file, and loads the
+// temporary .glb that it makes; says so on stderr. kUnavailable where Blender or the script is missing or the version
+// is not supported, kInput where the export fails, with Blender's reason. What the export cannot express is among the
+// scene's warnings.
+Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals,
+                                 BlenderFilm* film = nullptr);  // film: filled where it is not null
+
+// A range of frames of one .blend, exported by one Blender, which is at work while earlier frames are drawn. It is at most
+// some frames ahead, so that the folder for temporary files holds a few of them, however long the range is.
+class BlenderRange {
+ public:
+  // `frames` as they will be asked for. Otherwise as LoadBlenderScene; options.frame does not count.
+  static Expected<std::unique_ptr<BlenderRange>> Start(const std::string& path, const BlenderOptions& options,
+                                                       std::span<const int> frames, const Globals& globals);
+  ~BlenderRange();  // ends Blender
+  BlenderRange(const BlenderRange&) = delete;
+  BlenderRange& operator=(const BlenderRange&) = delete;
+
+  // Waits for the next frame of the range, loads it and deletes its file. kCancelled where a signal has come meanwhile;
+  // between two calls a signal ends the program at once, without this object's temporary files.
+  Expected<Scene> Load(int frame);
+
+  // Known when the first frame has been loaded.
+  BlenderFilm& film() { return film_; }
+
+ private:
+  BlenderRange();
+  Status LeaveAlone();
+  Expected<Scene> Await(int frame);
+
+  std::unique_ptr<BlenderTask> task_;  // for messages
+  std::unique_ptr<ScratchFolder> scratch_;
+  std::unique_ptr<RunningProgram> program_;
+  BlenderFilm film_;
+  bool has_film_ = false;
+};
+
+}  // namespace scumble

@@ -1,0 +1,109 @@
+#include "pipeline/scene/cycles_reference.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <future>
+
+#include "pipeline/scene/blender_process.h"
+#include "core/io/guide_file.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRenderingMark = "scumble: rendering ";
+constexpr const char* kUnsupportedMark = "scumble: unsupported: ";
+
+bool StartsWith(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+
+// What a render costs, in samples; each one has its own beginning.
+double CostOf(int samples) { return samples + 2.0; }
+
+// "scumble: rendering all, 64 samples" begins a render; Cycles' own "Sample 12/64" tells how far it is.
+double ShareDone(const std::vector<std::string>& log, const std::vector<int>& counts) {
+  double total = CostOf(1), done = 0.0, current = 0.0, within = 0.0;
+  for (const int count : counts) total += 3.0 * CostOf(count);
+  for (const std::string& line : log) {
+    int samples = 0, sample = 0;
+    if (StartsWith(line, kRenderingMark)) {
+      done += current;
+      const std::size_t comma = line.find(", ");
+      if (comma == std::string::npos || std::sscanf(line.c_str() + comma, ", %d", &samples) != 1) samples = 1;
+      current = CostOf(samples), within = 0.0;
+    } else if (const std::size_t at = line.rfind("Sample "); at != std::string::npos) {
+      if (std::sscanf(line.c_str() + at, "Sample %d/%d", &sample, &samples) == 2 && samples > 0) {
+        within = double(sample) / samples;
+      }
+    }
+  }
+  return std::min(1.0, (done + within * current) / total);
+}
+
+// The program runs beside this thread, which watches its log.
+Expected<ProgramEnd> RunWatched(const std::vector<std::string>& arguments, const fs::path& log,
+                                const std::vector<int>& counts, const Progress& progress) {
+  if (!progress) return RunProgram(arguments, log);
+  auto running = std::async(std::launch::async, [&] { return RunProgram(arguments, log); });
+  while (running.wait_for(std::chrono::milliseconds(200)) != std::future_status::ready) {
+    progress(ShareDone(LinesOf(log), counts));
+  }
+  return running.get();
+}
+
+std::vector<std::string> Arguments(const ReferenceOptions& options, const Globals& globals, const fs::path& script,
+                                   const fs::path& picture) {
+  std::vector<std::string> arguments{options.blender, "-b", "-noaudio", "--factory-startup", "-Y"};
+  if (globals.threads > 0) arguments.insert(arguments.end(), {"-t", std::to_string(globals.threads)});
+  arguments.insert(arguments.end(),
+                   {"-P", script.string(), "--", fs::absolute(options.scene).string(), picture.string(), "--size",
+                    fmt::format("{}x{}", options.width, options.height), "--materials", "pure"});
+  if (!options.camera.empty()) arguments.insert(arguments.end(), {"--camera", options.camera});
+  if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
+  if (!options.samples.empty()) {
+    arguments.insert(arguments.end(), {"--samples", fmt::format("{}", fmt::join(options.samples, ",")), "--max-bounces",
+                                       std::to_string(options.max_bounces)});
+  }
+  return arguments;
+}
+
+void ReadLog(const std::vector<std::string>& lines, Reference& reference) {
+  for (const std::string& line : lines) {
+    if (reference.version.empty() && StartsWith(line, "Blender ")) {
+      reference.version = line.substr(8, line.find(' ', 8) - 8);
+    }
+    if (StartsWith(line, kUnsupportedMark))
+      reference.unsupported.push_back(line.substr(std::string(kUnsupportedMark).size()));
+  }
+}
+
+}  // namespace
+
+Expected<Reference> RenderReference(const ReferenceOptions& options, const Globals& globals, const Progress& progress) {
+  const BlenderTask task{options.scene, options.blender, options.blender + " rendered no reference"};
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", task));
+  const ScratchFolder scratch;
+  if (scratch.path().empty())
+    return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
+  const fs::path picture = scratch.path() / "cycles.exr", log = scratch.path() / "log";
+  Say(globals, options.scene + ": " + options.blender + " renders the reference");
+  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(
+      RunWatched(Arguments(options, globals, script, picture), log, options.samples, progress), task, log, picture));
+  Reference reference;
+  ReadLog(LinesOf(log), reference);
+  GuideReadOptions read;
+  read.required = {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo};
+  read.blender_camera = scratch.path() / "cycles.camera";
+  SCUMBLE_ASSIGN(reference.data, ReadGuides(picture, read));
+  SCUMBLE_ASSIGN(reference.only_shines, CompleteAlbedo(picture, reference.data));
+  for (const int count : options.samples) {
+    SCUMBLE_ASSIGN(CyclesLight light, ReadCyclesLight(scratch.path() / "cycles", count));
+    reference.light.push_back(std::move(light));
+  }
+  return reference;
+}
+
+}  // namespace scumble

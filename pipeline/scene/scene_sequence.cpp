@@ -1,0 +1,254 @@
+#include "pipeline/scene/scene_sequence.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/scene/needed_textures.h"
+
+namespace scumble {
+
+namespace {
+
+// How a frame of a .blend is seen: as the scene's first frame says, where the file leaves camera or light to us.
+Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneOptions& options,
+                                   const LayerSet& layers) {
+  if (!film.start) return ViewScene(scene, options, layers);
+  Scene& start = *film.start;
+  const std::size_t lights = start.lights.size();
+  SCUMBLE_ASSIGN(PreparedView view, ViewScene(start, options, layers));
+  if (start.lights.size() > lights) scene.lights.push_back(start.lights.back());
+  start.lights.resize(lights);
+  if (!options.view.empty() || start.cameras.empty()) return view;
+  SceneOptions without_light = options;
+  without_light.key_light = false;
+  SCUMBLE_ASSIGN(const PreparedView now, ViewScene(scene, without_light, layers));
+  view.camera = now.camera;
+  return view;
+}
+
+// Of a file that moves: its camera that is looked through, by its place; none where we look for ourselves.
+std::optional<int> OwnCamera(const Scene& scene, const SceneOptions& options, const Camera& seen_by) {
+  std::optional<int> found;
+  if (!options.view.empty()) return found;
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    if (scene.cameras[i].name == seen_by.name) found = static_cast<int>(i);
+  }
+  return found;
+}
+
+}  // namespace
+
+void TellRate(const SceneOptions& options, const BlenderFilm& film, GuideSet& guides) {
+  const std::string& fps = options.fps.empty() ? film.fps : options.fps;
+  if (!fps.empty()) guides.attributes["scumble:fps"] = fps;
+}
+
+Status SceneFrames::Start(std::span<const int> frames, const Progress& progress) {
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options_));
+  SCUMBLE_ASSIGN(rate_, ParseFps(options_.fps.empty() ? kUsualFps : options_.fps));
+  return IsBlenderScene(options_.scene) ? StartBlender(frames) : StartFile(progress);
+}
+
+Status SceneFrames::StartBlender(std::span<const int> frames) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    place_[frames[i]] = static_cast<int>(i);
+    for (int frame = frames[i]; frame <= frames[i] + motion_; ++frame) {
+      if (!needed_by_.count(frame)) exported_.push_back(frame);
+      needed_by_[frame] = static_cast<int>(i);
+    }
+  }
+  options_.blender.wants_start = !options_.view.empty();
+  SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, exported_, globals_));
+  return Ok();
+}
+
+Status SceneFrames::StartFile(const Progress& progress) {
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(film_, AnimatedScene::Load(options_.scene, {options_.animation, TextureLoading::kWhenNeeded}));
+  SCUMBLE_ASSIGN(now_, film_->SceneAt(0.0));
+  WarnOnce(now_);
+  SCUMBLE_ASSIGN(layers_, layers_for_(WishesOf(film_->objects(), film_->rest())));
+  SCUMBLE_ASSIGN(const PreparedView view, ViewScene(now_, options_, layers_));
+  for (const std::string& note : view.notes) Say(globals_, note);
+  const double load_ms = watch.Lap();
+  camera_ = view.camera;
+  if (film_->moves()) {
+    by_file_ = OwnCamera(now_, options_, view.camera);
+    if (motion_) next_ = now_, next_.textures.clear(), next_.encoded_textures.clear();
+    MemoryNeed need;
+    AddProgram(globals_.threads, need);
+    AddScene(now_, CountNeededPixels(now_, options_, layers_), need);
+    SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals_, "make the scene or its textures smaller"));
+    // Here, so that a picture which is missing ends the sequence, and not each of its frames.
+    SCUMBLE_ASSIGN(decoded_, DecodeNeededTextures(now_, options_, layers_));
+    load_ms_ = load_ms + watch.Lap();
+    return Ok();
+  }
+  const NextFrame next{now_, camera_};
+  SCUMBLE_ASSIGN(*guides_,
+                 CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, globals_, progress, false));
+  guides_->times.insert(guides_->times.begin(), {"load", load_ms});
+  film_.reset();
+  now_ = {};
+  return guides_->guides.Validate(options_.scene);
+}
+
+Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress) {
+  SCUMBLE_ASSIGN(const SceneGuides* const guides, Ahead(frame, progress));
+  used_ = true;
+  return guides;
+}
+
+Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progress) {
+  if (used_) guides_->times.clear(), guides_->plan.clear(), guides_->cost = {};
+  used_ = false;
+  if ((!blender_ && !film_) || frame_ == frame) return guides_.get();
+  frame_.reset();
+  guides_ = std::make_shared<SceneGuides>();  // the last one may be being written
+  SCUMBLE_ASSIGN(*guides_, blender_ ? CastBlender(frame, progress) : CastFile(frame, progress));
+  SCUMBLE_RETURN_IF_ERROR(guides_->guides.Validate(options_.scene));
+  if (spoken_) guides_->plan.clear();
+  spoken_ = true, frame_ = frame;
+  return guides_.get();
+}
+
+Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress) {
+  Stopwatch watch;
+  SCUMBLE_RETURN_IF_ERROR(film_->MoveTo(SecondsAt(frame, rate_), now_));
+  if (motion_) SCUMBLE_RETURN_IF_ERROR(film_->MoveTo(SecondsAt(frame + 1, rate_), next_));
+  const double move_ms = watch.Lap();
+  const auto camera_of = [this](const Scene& scene) -> const Camera& {
+    return by_file_ ? scene.cameras[static_cast<std::size_t>(*by_file_)] : camera_;
+  };
+  // Without motion the next scene is empty: it has no camera either.
+  const auto next = motion_ ? std::optional(NextFrame{next_, camera_of(next_)}) : std::nullopt;
+  SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_,
+                                               globals_, progress, false));
+  guides.times.insert(guides.times.begin(), {"move", move_ms});
+  if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
+  load_ms_.reset();
+  guides.cost.textures_decoded += decoded_.textures_decoded;
+  guides.cost.texture_bytes += decoded_.texture_bytes;
+  decoded_ = {};
+  return guides;
+}
+
+Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progress) {
+  const Globals& globals = spoken_ ? silent_ : globals_;
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(Scene* const loaded, BlenderFrame(frame));
+  const int place = place_.at(frame);
+  Scene scene = needed_by_.at(frame) <= place ? std::move(*loaded) : *loaded;
+  std::erase_if(scenes_,
+                [&](const auto& kept) { return kept.first != frame + 1 && needed_by_.at(kept.first) <= place; });
+  const double load_ms = watch.Lap();
+  WarnOnce(scene);
+  SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(WishesOf(scene.instances, scene)));
+  SCUMBLE_ASSIGN(const PreparedView view, ViewBlender(scene, blender_->film(), options_, layers));
+  for (const std::string& note : view.notes) Say(globals, note);
+  std::optional<Scene> following;
+  PreparedView following_view;
+  if (motion_) {
+    SCUMBLE_ASSIGN(const Scene* const after, BlenderFrame(frame + 1));
+    following = *after, following->textures.clear(), following->encoded_textures.clear();
+    SCUMBLE_ASSIGN(following_view, ViewBlender(*following, blender_->film(), options_, layers));
+  }
+  std::optional<NextFrame> next;
+  if (following) next.emplace(NextFrame{*following, following_view.camera});
+  SCUMBLE_ASSIGN(SceneGuides guides,
+                 CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, globals, progress, false));
+  TellRate(options_, blender_->film(), guides.guides);
+  guides.times.insert(guides.times.begin(), {"load", load_ms});
+  return guides;
+}
+
+Expected<Scene*> SceneFrames::BlenderFrame(int frame) {
+  // In the order of the export: where a frame failed, what it has not asked for stands in the way of the next one.
+  while (!scenes_.count(frame) && loaded_ < exported_.size()) {
+    const int following = exported_[loaded_++];
+    Expected<Scene> scene = blender_->Load(following);
+    if (!scene && following == frame) return scene.error();
+    if (scene) scenes_[following] = std::move(*scene);
+  }
+  const auto found = scenes_.find(frame);
+  if (found != scenes_.end()) return &found->second;
+  SCUMBLE_ASSIGN(Scene scene, blender_->Load(frame));  // says once more why there is none
+  return &(scenes_[frame] = std::move(scene));
+}
+
+void SceneFrames::WarnOnce(const Scene& scene) {
+  for (const std::string& warning : scene.warnings) {
+    if (warned_.insert(warning).second) Warn(options_.scene + ": " + warning);
+  }
+}
+
+Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                   const Globals& globals, const Progress& progress) {
+  if (IsBlenderScene(options.scene) && !motion) {
+    SceneOptions at = options;
+    at.blender.frame = frame;
+    return MakeGuidesAtRest(at, layers_for, motion, globals, progress, false);
+  }
+  SceneFrames scene(options, layers_for, motion, globals);
+  SCUMBLE_RETURN_IF_ERROR(scene.Start(std::span(&frame, 1), progress));
+  SCUMBLE_RETURN_IF_ERROR(scene.At(frame, progress));
+  return scene.Take();
+}
+
+Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                      const Globals& globals, bool plan_only, bool warns) {
+  const std::string mend = ": give --frame N, or --frames for several where the verb has it";
+  if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
+  if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
+  Stopwatch watch;
+  SceneAtRest rest;
+  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, globals, plan_only ? nullptr : &rest.film, warns));
+  SCUMBLE_ASSIGN(rest.layers, layers_for(WishesOf(rest.scene.instances, rest.scene)));
+  rest.load_ms = watch.Lap();
+  SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, rest.layers));
+  for (const std::string& note : rest.view.notes) Say(globals, note);
+  return rest;
+}
+
+Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& options, const LayersFor& layers_for,
+                                  const Globals& globals, bool warns) {
+  if (!frame || IsBlenderScene(options.scene)) {
+    SceneOptions at = options;
+    at.blender.frame = frame;
+    return OpenSceneAtRest(at, layers_for, false, globals, false, warns);
+  }
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
+  SCUMBLE_ASSIGN(const FrameRate rate, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(const AnimatedScene film,
+                 AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
+  SceneAtRest result;
+  SCUMBLE_ASSIGN(result.scene, film.SceneAt(0.0));
+  if (warns) {
+    for (const std::string& warning : result.scene.warnings) Warn(options.scene + ": " + warning);
+  }
+  SCUMBLE_ASSIGN(result.layers, layers_for(WishesOf(film.objects(), film.rest())));
+  SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
+  for (const std::string& note : result.view.notes) Say(globals, note);
+  if (film.moves()) {
+    const std::optional<int> own = OwnCamera(result.scene, options, result.view.camera);
+    SCUMBLE_RETURN_IF_ERROR(film.MoveTo(SecondsAt(*frame, rate), result.scene));
+    if (own) result.view.camera = result.scene.cameras[static_cast<std::size_t>(*own)];
+  }
+  result.load_ms = watch.Lap();
+  return result;
+}
+
+Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
+                                       const Globals& globals, const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(SceneAtRest rest, OpenSceneAtRest(options, layers_for, motion, globals, plan_only));
+  SCUMBLE_ASSIGN(SceneGuides result,
+                 CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, globals, progress, plan_only));
+  TellRate(options, rest.film, result.guides);
+  result.times.insert(result.times.begin(), {"load", rest.load_ms});
+  return result;
+}
+
+}  // namespace scumble

@@ -1,0 +1,266 @@
+#include "pipeline/style/style_set.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "pipeline/style/assignments.h"
+#include "apps/cli/app/command.h"
+#include "core/style/style_file.h"
+#include "core/style/style_keyframes.h"
+
+namespace scumble {
+namespace {
+
+constexpr const char *kRendered = "rendered", *kCatcher = "catcher";
+
+std::string PathOf(const std::filesystem::path& found) {
+  std::error_code failed;
+  return std::filesystem::weakly_canonical(found, failed).string();
+}
+
+// Whether the style paints shadows in some frame.
+bool PaintsShadows(const Style& style) {
+  const Expected<LayerSet> layers = LayersOverTime(style);
+  return layers && layers->Has(Layer::kShadow);
+}
+
+// The place of a style in the set, which is opened if it is new.
+Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
+  SCUMBLE_ASSIGN(const std::filesystem::path found, FindStyle(name, base));
+  const std::string path = PathOf(found);
+  if (const auto known = set.opened.find(path); known != set.opened.end()) return known->second;
+  if (set.styles.size() >= std::size_t(StyleMap::kMaxStyles)) return UsageError("too many styles in one picture");
+  std::vector<std::string> overrides;
+  for (const StyleSet::Override& one : set.overrides) {
+    if (one.style.empty() || one.path == path) overrides.push_back(one.text);
+  }
+  SCUMBLE_ASSIGN(Style style, LoadStyle(found, overrides, set.options.room));
+  set.styles.push_back(std::move(style));
+  set.given.push_back(name);
+  return set.opened[path] = static_cast<std::uint16_t>(set.styles.size() - 1);
+}
+
+// The same, or what the reserved words mean.
+Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
+  if (name == kRendered) return StyleMap::kLeave;
+  if (name == kCatcher) return StyleMap::kCatch;
+  return PlaceOf(set, name, base);
+}
+
+bool IsAssigned(const StyleSet& set, const std::string& name) {
+  return std::any_of(set.assigned.begin(), set.assigned.end(),
+                     [&](const StyleSet::Assigned& one) { return FitsPattern(name, one.pattern); });
+}
+
+// Opens them, and adds the places of their styles to `read`.
+Status AddWishes(StyleSet& set, const std::map<std::string, std::string>& wishes, const std::string& kind,
+                 const std::string& file, std::set<std::size_t>& read) {
+  for (const auto& [name, wish] : wishes) {
+    if (IsAssigned(set, name)) continue;
+    if (const auto known = set.wanted.find(wish); known != set.wanted.end()) {
+      read.insert(known->second);
+      continue;
+    }
+    const std::string who = file + ": " + kind + " '" + name + "' wants the style '" + wish +
+                            "' (property scumble_style)";
+    const std::string mend = "; mend the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
+    const Expected<std::uint16_t> place = PlaceOrWord(set, wish, std::filesystem::path(file).parent_path());
+    if (!place) return Error{place.error().kind, who + ": " + place.error().message + mend};
+    if (*place == StyleMap::kCatch && !PaintsShadows(set.first())) {
+      return InputError(who + ", and the style of the picture paints no shadows that it could catch: give --set " +
+                        "transfer.shadow=paint" + mend);
+    }
+    set.wanted[wish] = *place;
+    read.insert(*place);
+  }
+  return Ok();
+}
+
+std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set, const std::map<std::uint32_t, std::string>& wishes) {
+  std::map<std::uint32_t, std::uint16_t> styles;
+  for (const auto& [id, wish] : wishes) {
+    if (const auto found = set.wanted.find(wish); found != set.wanted.end()) styles[id] = found->second;
+  }
+  return styles;
+}
+
+void NameWishes(const std::map<std::uint32_t, std::string>& styles, const std::map<std::uint32_t, std::string>& names,
+                std::map<std::string, std::string>& wishes) {
+  for (const auto& [id, style] : styles) {
+    const auto name = names.find(id);
+    wishes[name != names.end() ? name->second : "id " + std::to_string(id)] = style;
+  }
+}
+
+}  // namespace
+
+bool StyleSet::NeedsMap(const GuideSet& guides) const {
+  const auto any = [this](const auto& wishes) {
+    return std::any_of(wishes.begin(), wishes.end(), [this](const auto& wish) { return wanted.count(wish.second) > 0; });
+  };
+  return !assigned.empty() || any(guides.object_styles) || any(guides.material_styles);
+}
+
+StyleWishes WishesOf(std::span<const Instance> instances, const Scene& scene) {
+  StyleWishes wishes;
+  for (const Instance& instance : instances) {
+    if (!instance.style.empty()) wishes.objects[instance.object] = instance.style;
+    const Material& material = scene.materials[scene.meshes[instance.mesh].material];
+    if (!material.style.empty()) wishes.materials[material.name] = material.style;
+  }
+  return wishes;
+}
+
+StyleWishes WishesOf(const GuideSet& guides) {
+  StyleWishes wishes;
+  NameWishes(guides.object_styles, guides.object_names, wishes.objects);
+  NameWishes(guides.material_styles, guides.material_names, wishes.materials);
+  return wishes;
+}
+
+LayerSet StyleSet::LayersOfNames(const StyleWishes& wishes) const {
+  const bool wished = options.scene_styles && (!wishes.objects.empty() || !wishes.materials.empty());
+  return wished || !assigned.empty() ? LayerSet{Layer::kObject, Layer::kMaterial} : LayerSet();
+}
+
+Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+  std::set<std::size_t> read;
+  for (std::size_t i = 0; i < set.chosen; ++i) read.insert(i);
+  if (set.options.scene_styles) {
+    SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.objects, "object", file, read));
+    SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.materials, "material", file, read));
+  }
+  LayerSet layers;
+  for (const std::size_t i : read) {
+    if (i >= set.styles.size()) continue;  // words that are no style
+    SCUMBLE_ASSIGN(const LayerSet of_style, LayersOverTime(set.styles[i]));
+    layers.Add(of_style);
+  }
+  return layers;
+}
+
+Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+  SCUMBLE_ASSIGN(LayerSet layers, StyleLayers(set, wishes, file));
+  return layers.Add(set.LayersOfNames(wishes));
+}
+
+namespace {
+
+// "NAME:KEY=VALUE" or "KEY=VALUE". No key holds a colon; names may.
+Expected<StyleSet::Override> ParseOverride(const std::string& text) {
+  const std::size_t colon = text.substr(0, text.find('=')).rfind(':');
+  if (colon == std::string::npos) return StyleSet::Override{"", "", text};
+  StyleSet::Override one{text.substr(0, colon), "", text.substr(colon + 1)};
+  if (one.style.empty()) return UsageError("--set " + text + ": expected a style's name before the colon");
+  if (const auto found = FindStyle(one.style)) one.path = PathOf(*found);
+  return one;
+}
+
+// An override of a style that nothing is painted in is a slip.
+Status CheckOverrides(const StyleSet& set) {
+  for (const StyleSet::Override& one : set.overrides) {
+    if (one.style.empty() || set.opened.count(one.path)) continue;
+    std::string names;
+    for (const std::string& name : set.given) names += (names.empty() ? "" : ", ") + name;
+    return UsageError("--set " + one.style + ":" + one.text + ": --style and --assign give no style '" + one.style +
+                      "'; they give " + names);
+  }
+  return Ok();
+}
+
+}  // namespace
+
+Expected<StyleSet> OpenStyles(const StyleOptions& options) {
+  StyleSet set;
+  set.options = options;
+  for (const std::string& text : options.sets) {
+    SCUMBLE_ASSIGN(StyleSet::Override one, ParseOverride(text));
+    set.overrides.push_back(std::move(one));
+  }
+  SCUMBLE_RETURN_IF_ERROR(PlaceOf(set, options.style, {}));
+  SCUMBLE_ASSIGN(const std::vector<Assignment> assignments, ReadAssignments(options.assigned));
+  std::map<std::string, std::uint16_t> by_name;  // thousands of assignments name few styles
+  for (const auto& [pattern, name, where] : assignments) {
+    if (!by_name.count(name)) {
+      const Expected<std::uint16_t> place = PlaceOrWord(set, name, {});
+      if (!place) return Error{place.error().kind, where + ": " + place.error().message};
+      by_name[name] = *place;
+    }
+    const std::uint16_t place = by_name[name];
+    set.assigned.push_back({pattern, place, where});
+    if (place == StyleMap::kCatch && !PaintsShadows(set.first())) {
+      return UsageError(where + ": the style paints no shadows that it could catch; give --set " +
+                        "transfer.shadow=paint, or " + pattern + "=rendered to leave it out");
+    }
+  }
+  set.chosen = set.styles.size();
+  SCUMBLE_RETURN_IF_ERROR(CheckOverrides(set));
+  return set;
+}
+
+namespace {
+
+void WarnOnce(StyleSet& set, const std::string& text) {
+  if (std::find(set.warnings.begin(), set.warnings.end(), text) != set.warnings.end()) return;
+  set.warnings.push_back(text);
+  Warn(text);
+}
+
+}  // namespace
+
+Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file) {
+  static const std::map<std::uint32_t, std::string> kNone;
+  const bool has_objects = guides.Has(Layer::kObject), has_materials = guides.Has(Layer::kMaterial);
+  const auto& objects = has_objects ? guides.object_names : kNone;
+  const auto& materials = has_materials ? guides.material_names : kNone;
+  RankedAssignment assignment;
+  for (std::size_t rank = 0; rank < set.assigned.size(); ++rank) {
+    StyleSet::Assigned& one = set.assigned[rank];
+    bool fits = false;
+    for (const auto& [names, styles] : {std::pair(&objects, &assignment.of_object), {&materials, &assignment.of_material}}) {
+      for (const auto& [id, name] : *names) {
+        if (!FitsPattern(name, one.pattern)) continue;
+        (*styles)[id] = {rank, one.style};
+        fits = true;
+      }
+    }
+    if (!fits && (!has_objects || !has_materials)) {
+      const std::string lacks = has_objects ? "layer material" : has_materials ? "layer object" : "layers object and material";
+      return InputError(one.where + ": " + file + " names no such object or material: " +
+                        DescribeNames(one.pattern, objects, materials) + "; it lacks the " + lacks +
+                        ", which may know more: make guides with scumble guidegen, or render with that Cryptomatte");
+    }
+    if (!fits && !one.named && !one.told) {
+      one.told = true;
+      WarnOnce(set, one.where + ": the scene has no such object or material; " +
+                        DescribeNames(one.pattern, objects, materials));
+    }
+    one.named = one.named || fits;
+  }
+  const auto wished = [&](bool has, const auto& wishes) {
+    return has ? Granted(set, wishes) : std::map<std::uint32_t, std::uint16_t>();
+  };
+  StyleMap map = MapStyles(
+      guides, {wished(has_objects, guides.object_styles), wished(has_materials, guides.material_styles), 0});
+  std::vector<std::size_t> pixels(set.assigned.size());
+  AssignStyles(guides, assignment, map, pixels);
+  for (std::size_t rank = 0; rank < pixels.size(); ++rank) set.assigned[rank].pixels += pixels[rank];
+  return map;
+}
+
+nlohmann::ordered_json SayHowAssigned(StyleSet& set) {
+  std::vector<std::string> idle;
+  for (const StyleSet::Assigned& one : set.assigned) {
+    if (one.named && one.pixels == 0) idle.push_back(one.where);
+  }
+  if (!idle.empty()) {
+    WarnOnce(set, SomeOf(idle) + (idle.size() == 1 ? " paints" : " paint") +
+                      " no pixel: what is named there is not seen, or a later assignment names it too");
+  }
+  return {{"warnings", set.warnings}};
+}
+
+}  // namespace scumble

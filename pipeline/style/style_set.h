@@ -1,0 +1,80 @@
+// The styles of one run: a default one, and those that --assign gives to objects and materials.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/cli/app/options.h"
+#include "guidegen/scene/scene.h"
+#include "core/image/guides.h"
+#include "core/image/style.h"
+#include "transfer/frame/style_map.h"
+
+namespace scumble {
+
+struct StyleWishes;
+
+struct StyleSet {
+  struct Assigned {
+    std::string pattern;  // name of an object or material; * stands for any text
+    std::uint16_t style = 0;
+    std::string where;       // the option, or the file and its line, for messages
+    bool named = false;      // some frame so far has such an object or material
+    bool told = false;       // that one has none
+    std::size_t pixels = 0;  // that it has painted in all frames so far
+  };
+  // One --set.
+  struct Override {
+    std::string style;  // name as it was given; empty: for all
+    std::string path;   // of that style
+    std::string text;   // KEY=VALUE
+  };
+  std::vector<Style> styles;       // the default first, never empty
+  std::vector<std::string> given;  // by style: its name as the user or the scene gives it
+  std::vector<Assigned> assigned;
+  std::vector<Override> overrides;
+  std::map<std::string, std::uint16_t> wanted;  // by what the scene says; below `assigned`
+  StyleOptions options;                         // that it was opened with
+  std::size_t chosen = 1;                       // so many of `styles` are the user's, the others the scene's
+  std::map<std::string, std::uint16_t> opened;  // by path
+  std::vector<std::string> warnings;            // said so far
+
+  const Style& first() const { return styles.front(); }
+  // Whether any of these guides' pixels may have another style than the default.
+  bool NeedsMap(const GuideSet& guides) const;
+  // The layers that say which object or material a pixel belongs to, where that matters. One of them may do.
+  LayerSet LayersOfNames(const StyleWishes& wishes) const;
+};
+
+// What a scene's author wants painted otherwise, by name. From a scene: of the instances, and of materials in use.
+struct StyleWishes {
+  std::map<std::string, std::string> objects;
+  std::map<std::string, std::string> materials;
+};
+StyleWishes WishesOf(std::span<const Instance> instances, const Scene& scene);
+StyleWishes WishesOf(const GuideSet& guides);
+
+// Opens what is wished for and not opened yet, except for what --assign settles and under --no-scene-styles, and returns
+// everything that the user's styles and these read, in any frame. Paths are relative to the folder of `file`, the scene
+// or guide file that the wishes are from. A kInput error names the object.
+Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file);
+
+// The same with LayersOfNames: what guides must be made with.
+Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file);
+
+// Opens the default style and every assigned one, each once. "rendered" leaves objects as they are,
+// "catcher" shows nothing of them but the shadows on them.
+Expected<StyleSet> OpenStyles(const StyleOptions& options);
+
+// Which style paints which pixel, by the names in the guides, which are `file`'s; the last assignment that fits a pixel's
+// object or material wins, and any before what the scene says, an object's before its material's. Warns, once in all
+// frames, of a pattern that fits nothing; it is kInput where the guides lack the layer in which it might.
+Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file);
+
+// After the last frame: warns of assignments that have painted no pixel. Returns {"warnings": […]}, with all that were said.
+nlohmann::ordered_json SayHowAssigned(StyleSet& set);
+
+}  // namespace scumble

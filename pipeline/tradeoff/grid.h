@@ -1,0 +1,40 @@
+// The grid that `scumble tradeoff` measures: ways to stylise a scene around a style's own settings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/variant/variant.h"
+#include "core/image/style.h"
+
+namespace scumble {
+
+struct TradeGridOptions {
+  int width = 0, height = 0;  // of the picture
+  bool quick = false;         // the small grid
+  bool chance = false;        // the guides need samples: lights with extent, or light paths
+  int samples = 0;            // the style's own
+};
+
+struct TradeGrid {
+  std::vector<Way> ways;              // "the style" first, then "the exact way", then axis by axis
+  std::vector<std::string> left_out;  // in words, with why
+};
+
+// Names of axes for what changes nothing and for what the others are measured against.
+inline constexpr const char* kStyleAxis = "style";
+inline constexpr const char* kExactAxis = "exact";
+
+// One axis at a time around the style; without --quick also every combination of method, blend_radius, levels and resolution
+// of a few values, and the style itself with other seeds. What the style has anyway is left out of its axis, and so is what would change nothing: levels of the Lit
+// Sphere, tables where guides of light are weighed.
+TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options);
+
+// The axes in the grid's order, each once.
+std::vector<std::string> AxesOf(const std::vector<Way>& ways);
+
+// The ways that --only names, "levels,nearest*": those of an axis of that name, and those whose own name fits; with the style
+// in any case. A kUsage error lists the axes where a part names nothing.
+Expected<std::vector<Way>> ChooseWays(const std::vector<Way>& ways, const std::string& only);
+
+}  // namespace scumble

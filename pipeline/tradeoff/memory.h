@@ -1,0 +1,38 @@
+// What `scumble tradeoff` takes at its peak, told before any of it is taken; docs/memory.md has it in words.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "apps/cli/app/command.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/tradeoff/stage.h"
+#include "core/image/layers.h"
+#include "core/image/style.h"
+
+namespace scumble {
+
+class TradeMemory {
+ public:
+  // All are borrowed.
+  TradeMemory(const TradeSetup& setup, const TradeStage& stage, const Globals& globals)
+      : setup_(setup), stage_(stage), globals_(globals) {}
+
+  // Adds what there is whichever ways are at work: the style and what all are measured against, one more picture, made
+  // without the scene's colours, and the pictures of so many ways, as files and in the page. `need` has the program, the
+  // scene and the guides that last already.
+  void AddReport(std::size_t ways, MemoryNeed& need) const;
+
+  // Adds a way that is at work, and the energy of its picture. `own_guides`: no other that is there has the same.
+  void AddWay(const Way& way, const Style& style, const LayerSet& layers, bool own_guides, MemoryNeed& need) const;
+
+ private:
+  std::uint64_t Pixels() const { return std::uint64_t(stage_.width) * std::uint64_t(stage_.height); }
+  std::uint64_t Places() const;
+
+  const TradeSetup& setup_;
+  const TradeStage& stage_;
+  const Globals& globals_;
+};
+
+}  // namespace scumble

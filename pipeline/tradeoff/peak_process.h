@@ -1,0 +1,24 @@
+// The memory that a way takes, measured in a process of its own: in one that has made other pictures before, memory is
+// already there.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pipeline/tradeoff/measure.h"
+
+namespace scumble {
+
+// Options that say when, whence, how and in how bright a light the scene is seen, with their values; only those that are not the
+// usual ones.
+std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup);
+
+// The verb's arguments that set this up, behind the program's name. No option of output is among them.
+std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals);
+
+// Runs this program again for one way. 0 where that fails: memory is not worth an error. kCancelled where a signal has come.
+Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const Globals& globals);
+
+}  // namespace scumble

@@ -1,0 +1,178 @@
+#include "pipeline/tradeoff/stage.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "pipeline/variant/quality_ladder.h"
+#include "apps/cli/app/shell_quote.h"
+#include "pipeline/style/style_set.h"
+#include "pipeline/tradeoff/peak_process.h"
+#include "pipeline/frame/paint_frame.h"
+#include "core/image/stopwatch.h"
+#include "core/style/style_keyframes.h"
+
+namespace scumble {
+namespace {
+
+constexpr const char* kNoPaper = "transfer.paper=";
+
+Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::string>& settings) {
+  StyleOptions one = setup.style;
+  one.scene_styles = false;
+  one.sets.insert(one.sets.end(), settings.begin(), settings.end());
+  SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(one));
+  Style style = std::move(styles.styles.front());
+  SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, setup.frame.value_or(0)));
+  return style;
+}
+
+std::uint64_t SeedOf(const TradeSetup& setup, const Way& way) {
+  return setup.scene.seed + std::uint64_t(way.more_seed);
+}
+
+// What --quality names, where it is not the style itself.
+Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
+  StyleOptions options = setup.style;
+  options.scene_styles = false;
+  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(options));
+  const int samples = stage.chance && !setup.scene.samples_given ? setup.scene.samples : 0;
+  const std::pair<const char*, Quality> kNamed[] = {{"preview", Quality::kPreview}, {"draft", Quality::kDraft}};
+  for (const auto& [name, quality] : kNamed) {
+    Way way = WayOf(quality, styles,
+                    {.casts = true, .width = stage.width, .height = stage.height, .samples = samples});
+    if (way.settings.empty() && way.guide_scale == 1.0 && way.samples == 0) continue;
+    way.axis = "quality", way.value = name, way.name = std::string("quality ") + name;
+    stage.grid.ways.push_back(std::move(way));
+  }
+  return Ok();
+}
+
+}  // namespace
+
+Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way) {
+  std::vector<std::string> settings = way.settings;
+  settings.push_back(kNoPaper);
+  return OpenStyleWith(setup, settings);
+}
+
+Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& globals) {
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(setup.scene));
+  TradeStage stage;
+  SCUMBLE_ASSIGN(stage.style, OpenStyleWith(setup, {}));
+  stage.has_paper = stage.style.paper.color || stage.style.paper.picture;
+  stage.style.paper = {};
+  SCUMBLE_ASSIGN(const Size size, ParseSize(setup.scene.size));
+  stage.width = size.width, stage.height = size.height;
+  const auto layers = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
+    stage.has_wishes = !wishes.objects.empty() || !wishes.materials.empty();
+    return LayersOverTime(stage.style);
+  };
+  SCUMBLE_ASSIGN(stage.scene, OpenSceneAt(setup.frame, setup.scene, layers, globals));
+  stage.chance = NeedSamples(stage.scene.scene, stage.scene.layers, setup.scene);
+  stage.grid = MakeTradeGrid(stage.style, {size.width, size.height, setup.quick, stage.chance, setup.scene.samples});
+  SCUMBLE_RETURN_IF_ERROR(AddQualities(setup, stage));
+  return stage;
+}
+
+RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const Way& way) {
+  if (way.precision != GuidePrecision::kFloat) return {"", "stylize has its guides as floats, but for colours with --half"};
+  if (way.guide_scale > 1.0) {
+    return {"", fmt::format("stylize with --size {}x{}, then each 2 x 2 pixels averaged", 2 * stage.width,
+                            2 * stage.height)};
+  }
+  if (way.table_resolution != LookUpTable::kResolution) {
+    return {"", fmt::format("tables of stylize have {} cells a side", LookUpTable::kResolution)};
+  }
+  std::string text = "--style " + Quoted(setup.style.style);
+  const auto add = [&](const std::string& option, const std::string& value) {
+    text += " " + option + " " + Quoted(value);
+  };
+  for (const std::string& set : setup.style.sets) add("--set", set);
+  for (const std::string& set : way.settings) add("--set", set);
+  if (stage.has_paper) add("--set", kNoPaper);
+  add("--size", fmt::format("{}x{}", stage.width, stage.height));
+  for (const auto& [option, value] : SceneArguments(setup)) add(option, value);
+  if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
+  const int samples = way.samples > 0 ? way.samples : setup.scene.samples;
+  if (stage.chance && samples != SceneOptions().samples) add("--samples", std::to_string(samples));
+  if (setup.scene.max_bounces != SceneOptions().max_bounces) {
+    add("--max-bounces", std::to_string(setup.scene.max_bounces));
+  }
+  if (!way.robust) text += " --no-robust";
+  if (stage.has_wishes) text += " --no-scene-styles";
+  if (const std::uint64_t seed = SeedOf(setup, way); seed != 0) add("--seed", std::to_string(seed));
+  return {text, ""};
+}
+
+Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way, const Style& style,
+                                         std::shared_ptr<const WayGuides> guides, const Globals& globals) {
+  WayPainter painter;
+  painter.guides_ = std::move(guides);
+  PrepareOptions prepare;
+  prepare.table_resolution = way.table_resolution;
+  prepare.cache = nullptr;  // what a table costs would not be seen where it is kept
+  prepare.threads = globals.threads;
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
+  painter.prepare_ms_ = watch.Lap();
+  SCUMBLE_ASSIGN(std::optional<double> stops, ParseExposure(setup.exposure));
+  if (!stops) stops = MeasureExposure({&painter.prepared_, 1}, painter.guides_->ForExposure(), globals.threads);
+  painter.options_.exposure = stops.value_or(0.0);
+  PictureOptions picture;
+  picture.fps = setup.scene.fps;
+  SCUMBLE_ASSIGN(const FrameRate rate, RateFor(picture, painter.guides_->guides));
+  painter.options_.frame = setup.frame.value_or(0);
+  painter.options_.fps_numerator = rate.numerator, painter.options_.fps_denominator = rate.denominator;
+  painter.options_.seed = SeedOf(setup, way);
+  painter.options_.threads = globals.threads;
+  painter.factor_ = SupersampleOf(way);
+  return painter;
+}
+
+Expected<double> WayPainter::Paint(bool keep_field) {
+  options_.keep_field = keep_field;
+  scratch_ = TransferScratch(), picture_ = Picture();  // what the run before leaves would be a sequence's
+  Stopwatch watch;
+  SCUMBLE_RETURN_IF_ERROR(Transfer(prepared_, guides_->guides, options_, scratch_, picture_));
+  if (factor_ > 1) small_ = Averaged(picture_, factor_);
+  return watch.Lap();
+}
+
+Expected<Picture> WayPainter::PaintUntinted() {
+  PreparedStyle untinted = prepared_;
+  untinted.settings.colorize = 0.0;
+  TransferOptions options = options_;
+  options.keep_field = false;
+  TransferScratch scratch;
+  Picture picture;
+  SCUMBLE_RETURN_IF_ERROR(Transfer(untinted, guides_->guides, options, scratch, picture));
+  return factor_ > 1 ? Averaged(picture, factor_) : picture;
+}
+
+Picture Averaged(const Picture& picture, int factor) {
+  Picture small(picture.width / factor, picture.height / factor);
+  const std::uint64_t count = std::uint64_t(factor) * std::uint64_t(factor);
+  for (int y = 0; y < small.height; ++y) {
+    for (int x = 0; x < small.width; ++x) {
+      std::uint64_t alpha = 0;
+      std::array<std::uint64_t, 3> color{};
+      for (int v = 0; v < factor; ++v) {
+        for (int u = 0; u < factor; ++u) {
+          const std::uint16_t* from = picture.At(factor * x + u, factor * y + v);
+          for (std::size_t c = 0; c < 3; ++c) color[c] += std::uint64_t(from[c]) * from[3];
+          alpha += from[3];
+        }
+      }
+      std::uint16_t* to = small.At(x, y);
+      for (std::size_t c = 0; c < 3 && alpha > 0; ++c)
+        to[c] = static_cast<std::uint16_t>((color[c] + alpha / 2) / alpha);
+      to[3] = static_cast<std::uint16_t>((alpha + count / 2) / count);
+    }
+  }
+  return small;
+}
+
+}  // namespace scumble

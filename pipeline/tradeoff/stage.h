@@ -1,0 +1,74 @@
+// One way of `scumble tradeoff`, ready to paint.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "pipeline/scene/scene_sequence.h"
+#include "pipeline/tradeoff/grid.h"
+#include "pipeline/variant/variant_guides.h"
+#include "pipeline/tradeoff/measure.h"
+#include "transfer/transfer.h"
+
+namespace scumble {
+
+// The scene and the grid around the style, both opened once.
+struct TradeStage {
+  SceneAtRest scene;
+  Style style;        // as it is, but for its paper
+  bool has_paper = false;
+  bool has_wishes = false;  // the scene asks for other styles
+  bool chance = false;
+  int width = 0, height = 0;
+  TradeGrid grid;
+};
+Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& globals);
+
+// The style with what the way changes of it, without paper.
+Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way);
+
+// The options of stylize that make the way's picture again; or none, and why.
+struct RepeatOptions {
+  std::string options;
+  std::string note;
+};
+RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const Way& way);
+
+// The picture of a way, painted as often as asked for. Not for several threads at once.
+class WayPainter {
+ public:
+  // `guides` are those of this way, and are kept.
+  static Expected<WayPainter> Prepare(const TradeSetup& setup, const Way& way, const Style& style,
+                                      std::shared_ptr<const WayGuides> guides, const Globals& globals);
+
+  // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the first
+  // picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
+  Expected<double> Paint(bool keep_field = false);
+
+  // The same without base colours of the scene, which no exemplar has. Only for measures of the paint.
+  bool is_tinted() const { return prepared_.settings.colorize > 0.0; }
+  Expected<Picture> PaintUntinted();
+
+  const Picture& picture() const { return factor_ > 1 ? small_ : picture_; }
+  const SourceField* field() const { return factor_ > 1 ? nullptr : &scratch_.field; }  // after keep_field
+  const PreparedStyle& prepared() const { return prepared_; }
+  const WayGuides& guides() const { return *guides_; }
+  double exposure() const { return options_.exposure; }
+  double prepare_ms() const { return prepare_ms_; }
+
+ private:
+  WayPainter() = default;
+
+  std::shared_ptr<const WayGuides> guides_;
+  PreparedStyle prepared_;
+  TransferOptions options_;
+  TransferScratch scratch_;
+  double prepare_ms_ = 0.0;
+  int factor_ = 1;
+  Picture picture_, small_;
+};
+
+// Blocks of factor × factor pixels averaged: colours weigh by their alpha, in their encoding, to the nearest.
+Picture Averaged(const Picture& picture, int factor);
+
+}  // namespace scumble

@@ -1,0 +1,200 @@
+#include "pipeline/variant/quality_ladder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "core/image/check.h"
+#include "core/style/style_keyframes.h"
+#include "core/style/style_keys.h"
+
+namespace scumble {
+namespace {
+
+// A key of the style that a rung may set, and where that would change something.
+struct Lever {
+  const char* key;
+  const char* text;
+  KeyValue value;
+  bool (*changes)(const TransferSettings& settings);
+  bool (*raises)(const TransferSettings& settings) = nullptr;  // to more than the style itself has; null: never
+};
+
+std::span<const Lever> Levers() {
+  static const std::vector<Lever> kLevers = {
+      {"transfer.method", "styleblit", std::string("styleblit"),
+       [](const TransferSettings& settings) { return settings.method == Method::kBruteForce; },
+       [](const TransferSettings& settings) { return settings.method == Method::kLitSphere; }},
+      {"transfer.method", "litsphere", std::string("litsphere"),
+       [](const TransferSettings& settings) { return settings.method != Method::kLitSphere; }},
+      {"transfer.blend_radius", "0", std::int64_t(0),
+       [](const TransferSettings& settings) { return settings.blend_radius != 0; }},
+      {"transfer.hybrid", "0", 0.0, [](const TransferSettings& settings) { return settings.hybrid != 0.0; }},
+  };
+  return kLevers;
+}
+
+const Lever& LeverOf(const std::string& setting) {
+  for (const Lever& lever : Levers()) {
+    if (setting == fmt::format("{}={}", lever.key, lever.text)) return lever;
+  }
+  SCUMBLE_CHECK(false);
+  return Levers().front();
+}
+
+// Of a pixel: what they cost is noise that the energy does not see, so they go before all else, but for those that the
+// eye sees.
+constexpr int kManySamples = std::numeric_limits<int>::max(), kSomeSamples = 16, kFewSamples = 4;
+
+struct Rung {
+  int upsample;
+  std::vector<std::string> settings;
+  int samples = kFewSamples;  // at most
+};
+
+constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "transfer.method=litsphere",
+                     *kUnsplit = "transfer.hybrid=0", *kCrisp = "transfer.blend_radius=0";
+
+// By rising energy, the mean over scenes and styles: docs/budget.md. But for guides of an eighth, whose steps it hardly
+// sees: they stand below no blending and the Lit Sphere, which have whole outlines.
+const std::vector<Rung>& Rungs() {
+  static const std::vector<Rung> kRungs = {
+      {1, {}, kManySamples},
+      {1, {}, kSomeSamples},
+      {1, {}},
+      {1, {kStyleBlit}},
+      {1, {kStyleBlit, kUnsplit}},
+      {2, {kStyleBlit, kUnsplit}},
+      {4, {kStyleBlit, kUnsplit}},
+      {1, {kStyleBlit, kUnsplit, kCrisp}},
+      {1, {kLitSphere, kUnsplit}},
+      {8, {kStyleBlit, kUnsplit}},
+      {4, {kLitSphere, kUnsplit}},
+      {8, {kLitSphere, kUnsplit}},
+      {1, {kLitSphere, kUnsplit, kCrisp}},
+      {8, {kLitSphere, kUnsplit, kCrisp}},
+  };
+  return kRungs;
+}
+
+bool IsSetByUser(const StyleSet& styles, std::size_t style, const std::string& key) {
+  return std::any_of(styles.overrides.begin(), styles.overrides.end(), [&](const StyleSet::Override& one) {
+    if (one.text.substr(0, one.text.find('=')) != key) return false;
+    if (one.style.empty()) return true;
+    const auto place = styles.opened.find(one.path);
+    return place != styles.opened.end() && place->second == style;
+  });
+}
+
+bool HasTrack(const Style& style, const std::string& key) {
+  return std::any_of(style.tracks.begin(), style.tracks.end(), [&](const StyleTrack& one) { return one.name == key; });
+}
+
+bool ChangesSomething(const Lever& lever, const StyleSet& styles) {
+  for (std::size_t i = 0; i < styles.styles.size(); ++i) {
+    if (IsSetByUser(styles, i, lever.key)) continue;
+    if (HasTrack(styles.styles[i], lever.key) || lever.changes(styles.styles[i].transfer)) return true;
+  }
+  return false;
+}
+
+bool RaisesSomething(const Lever& lever, const StyleSet& styles) {
+  for (std::size_t i = 0; i < styles.styles.size(); ++i) {
+    if (lever.raises && !IsSetByUser(styles, i, lever.key) && lever.raises(styles.styles[i].transfer)) return true;
+  }
+  return false;
+}
+
+// Then a search in the tree for each pixel takes longer than the chunks' for each seed.
+bool WeighGuides(const StyleSet& styles) {
+  return std::any_of(styles.styles.begin(), styles.styles.end(),
+                     [](const Style& style) { return !style.transfer.guide_weights.ArePlain(); });
+}
+
+// How much smaller the guides can be, where so much is wanted.
+int SmallerBy(int upsample, const LadderFrame& frame) {
+  if (!frame.casts || frame.fixed_guides) return 1;
+  while (frame.width % upsample || frame.height % upsample) upsample /= 2;
+  return upsample;
+}
+
+Way MakeWay(const Rung& rung, const StyleSet& styles, const LadderFrame& frame) {
+  Way way;
+  way.guide_scale = 1.0 / SmallerBy(rung.upsample, frame);
+  if (rung.samples < frame.samples) way.samples = rung.samples;
+  for (std::string setting : rung.settings) {
+    if (setting == kLitSphere && WeighGuides(styles)) setting = kStyleBlit;
+    if (!ChangesSomething(LeverOf(setting), styles)) continue;
+    // All styles take one setting, and none may come to more than it has: then all take the least.
+    if (RaisesSomething(LeverOf(setting), styles)) setting = kLitSphere;
+    way.settings.push_back(std::move(setting));
+  }
+  way.name = way.value = OptionsOf(way);
+  way.axis = "quality";
+  if (way.name.empty()) way.name = way.value = "the style";
+  return way;
+}
+
+}  // namespace
+
+std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame) {
+  std::vector<Way> ways;
+  for (const Rung& rung : Rungs()) {
+    Way way = MakeWay(rung, styles, frame);
+    const bool known = std::any_of(ways.begin(), ways.end(), [&](const Way& other) { return other.name == way.name; });
+    if (!known) ways.push_back(std::move(way));
+  }
+  return ways;
+}
+
+bool AreRivals(const Way& a, const Way& b) {
+  const auto has = [](const Way& way, const char* setting) {
+    return std::find(way.settings.begin(), way.settings.end(), setting) != way.settings.end();
+  };
+  const bool same_guides = a.guide_scale == b.guide_scale && a.samples == b.samples;
+  return same_guides && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
+         has(a, kCrisp) != has(b, kCrisp);
+}
+
+Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
+  if (quality == Quality::kFinal) return MakeWay(Rungs().front(), styles, frame);
+  Rung rung{4, {kLitSphere, kUnsplit}};
+  if (quality == Quality::kPreview) rung = {2, {kStyleBlit, kUnsplit}};
+  // Guides of normals alone take so little that nothing is gained which would not be seen.
+  const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
+  const bool drafts_guides = quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks: that is all there is
+  if (frame.casts && !lit && !drafts_guides) return MakeWay({1, rung.settings}, styles, frame);
+  if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
+  return MakeWay(rung, styles, frame);
+}
+
+std::string OptionsOf(const Way& way) {
+  std::string text;
+  const auto add = [&](const std::string& option) { text += (text.empty() ? "" : " ") + option; };
+  if (UpsampleOf(way) > 1) add(fmt::format("--upsample {}", UpsampleOf(way)));
+  if (way.samples > 0) add(fmt::format("--samples {}", way.samples));
+  for (const std::string& setting : way.settings) add("--set " + setting);
+  return text;
+}
+
+Status ApplyWay(const Way& way, StyleSet& styles) {
+  for (const std::string& setting : way.settings) {
+    const Lever& lever = LeverOf(setting);
+    const StyleKey* const key = FindStyleKey(lever.key);
+    SCUMBLE_CHECK(key != nullptr);
+    for (std::size_t i = 0; i < styles.styles.size(); ++i) {
+      if (IsSetByUser(styles, i, lever.key)) continue;
+      RemoveTrack(styles.styles[i], lever.key);
+      SCUMBLE_RETURN_IF_ERROR(key->set(styles.styles[i], lever.value, {}));
+    }
+  }
+  std::vector<StyleSet::Override> first;
+  for (const std::string& setting : way.settings) first.push_back({"", "", setting});
+  styles.overrides.insert(styles.overrides.begin(), first.begin(), first.end());
+  return Ok();
+}
+
+}  // namespace scumble

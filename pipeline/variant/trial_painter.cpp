@@ -1,0 +1,136 @@
+#include "pipeline/variant/trial_painter.h"
+
+#include <limits>
+#include <memory>
+
+#include "pipeline/file_cache.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/variant/quality_ladder.h"
+#include "pipeline/frame/explain_frame.h"
+#include "pipeline/variant/variant_error.h"
+#include "core/image/check.h"
+#include "core/image/stopwatch.h"
+#include "core/io/picture_file.h"
+#include "core/style/style_keyframes.h"
+#include "transfer/upsample_guides.h"
+
+namespace scumble {
+
+namespace {
+
+std::size_t PixelsOf(const PreparedStyle& style) {
+  const PreparedExemplar& exemplar = *style.exemplar;
+  return std::size_t(exemplar.width()) * std::size_t(exemplar.height()) * std::size_t(exemplar.count());
+}
+
+// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy/energy.h), and the planes
+// that it is made of.
+bool HasMemoryFor(std::size_t places, const Globals& globals) {
+  constexpr std::uint64_t kEachPlace = 250 + 100;
+  const MemoryLimit limit = LimitFor(globals);
+  return limit.bytes == 0 || ResidentMemory() + kEachPlace * places <= limit.bytes;
+}
+
+}  // namespace
+
+// `bare`: without paper, and without the scene's colours, which no exemplar has.
+Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample, bool bare) {
+  const std::string wanted = way.name + (bare ? ", bare" : "");
+  if (prepared_for_ == wanted) return Ok();
+  StyleSet styles = styles_;
+  SCUMBLE_RETURN_IF_ERROR(ApplyWay(way, styles));
+  FileCache cache = UserCache();
+  PrepareOptions options;
+  options.cache = &cache, options.threads = globals_.threads;
+  prepared_.clear();
+  for (Style& style : styles.styles) {
+    SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame_.value_or(0)));
+    if (bare) style.paper = {}, style.transfer.colorize = 0.0;
+    SCUMBLE_ASSIGN(PreparedStyle one, scumble::Prepare(style, guides.height() * upsample, options));
+    prepared_.push_back(std::move(one));
+  }
+  SCUMBLE_ASSIGN(const std::optional<double> given, ParseExposure(picture_.exposure));
+  exposure_ = given ? *given : MeasureExposure(prepared_, guides, globals_.threads).value_or(0.0);
+  prepared_for_ = wanted;
+  return Ok();
+}
+
+Expected<const Picture*> PaintTrial::Over(const GuideSet& guides) {
+  if (over_file_.empty()) return static_cast<const Picture*>(nullptr);
+  if (!over_) {
+    SCUMBLE_ASSIGN(over_, ReadPicture(over_file_));
+  }
+  const bool fits = over_->width == guides.width() && over_->height == guides.height();
+  return fits ? &*over_ : nullptr;
+}
+
+Status PaintTrial::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture, double& ms) {
+  std::vector<const PreparedStyle*> pointers;
+  for (const PreparedStyle& one : prepared_) pointers.push_back(&one);
+  const bool needs_map = styles_.NeedsMap(guides);
+  StyleMap map;
+  if (needs_map) {
+    SCUMBLE_ASSIGN(map, MapStyles(styles_, guides, name_));
+  }
+  TransferOptions options;
+  options.seed = picture_.seed, options.exposure = exposure_, options.threads = globals_.threads;
+  options.frame = frame_.value_or(0);
+  SCUMBLE_ASSIGN(const FrameRate fps, RateFor(picture_, guides));
+  options.fps_numerator = fps.numerator, options.fps_denominator = fps.denominator;
+  options.keep_field = bare || KeepsField(picture_, globals_);
+  if (!bare) {
+    SCUMBLE_ASSIGN(options.over, Over(guides));
+  }
+  Stopwatch watch;
+  SCUMBLE_RETURN_IF_ERROR(needs_map ? scumble::Transfer(pointers, map, guides, options, scratch, picture)
+                                    : scumble::Transfer(prepared_.front(), guides, options, scratch, picture));
+  ms += watch.Lap();
+  return Ok();
+}
+
+Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
+  const int upsample = picture_.upsample * UpsampleOf(way);
+  SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample, false));
+  Stopwatch watch;
+  std::optional<GuideSet> larger;
+  if (upsample > 1) {
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, globals_.threads));
+  }
+  double ms = watch.Lap();
+  TransferScratch scratch;
+  Picture picture;
+  SCUMBLE_RETURN_IF_ERROR(Transfer(larger ? *larger : given, false, scratch, picture, ms));
+  return ms;
+}
+
+Expected<double> PaintTrial::Judge(const Way& way, const GuideSet& given) {
+  SCUMBLE_CHECK_EQ(UpsampleOf(way), 1);
+  constexpr double kNotKnown = std::numeric_limits<double>::infinity();
+  if (styles_.styles.size() > 1 || styles_.NeedsMap(given)) return kNotKnown;
+  const int upsample = picture_.upsample;
+  std::optional<GuideSet> larger;
+  if (upsample > 1) {
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, globals_.threads));
+  }
+  const GuideSet& guides = larger ? *larger : given;
+  SCUMBLE_RETURN_IF_ERROR(Prepare(Way(), given, upsample, true));
+  const PreparedStyle exact = prepared_.front();
+  if (!HasMemoryFor(guides.pixel_count() + PixelsOf(exact), globals_)) return kNotKnown;
+  const double exposure = exposure_;
+  SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample, true));
+  TransferScratch scratch;
+  Picture picture;
+  double ms = 0.0;
+  SCUMBLE_RETURN_IF_ERROR(Transfer(guides, true, scratch, picture, ms));
+  // The guides are the caller's and outlive it.
+  const TradeReference reference(std::shared_ptr<const GuideSet>(std::shared_ptr<void>(), &guides), exact, exposure,
+                                 globals_.threads);
+  EnergyOptions options;
+  options.samples = kJudgedPatches;
+  TradeMeasure measure;
+  // Guides that are no numbers can be painted by, but not be measured.
+  if (!reference.MeasurePaint(picture, &scratch.field, options, measure).ok()) return kNotKnown;
+  return measure.both.mean;
+}
+
+}  // namespace scumble

@@ -1,0 +1,38 @@
+// The guides of the ways that `scumble tradeoff` measures: made as `stylize` would make them.
+#pragma once
+
+#include <string>
+
+#include "apps/cli/app/options.h"
+#include "pipeline/scene/scene_sequence.h"
+#include "pipeline/variant/variant.h"
+#include "core/image/guides.h"
+
+namespace scumble {
+
+// Whether guides of these layers need chance there, so that their samples matter.
+bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneOptions& options);
+
+struct WayGuides {
+  GuideSet guides;  // as the transfer reads them
+  GuideSet given;   // before they were upsampled, by which the exposure is measured; empty where they were not
+  double ms = 0.0;  // of wall clock: building the acceleration structure, casting, upsampling; not rounding
+
+  const GuideSet& ForExposure() const { return given.pixel_count() > 0 ? given : guides; }
+};
+
+// `options.size` is the picture's.
+Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
+                                  const LayerSet& layers, const Globals& globals);
+
+// Guides of 1/factor the sides, to be compared with guides of that size: of every block of factor × factor pixels the
+// mean coverage, and of its covered pixels the mean light and colours and the mean normal, at unit length again.
+// Background where none is covered; a mean normal of length 0 stays 0. Other layers are left out. The sides must be
+// multiples of `factor`.
+GuideSet AveragedGuides(const GuideSet& guides, int factor);
+
+// Ways with equal text have equal guides; with `rounded` false, guides that take the same time: no rounding and no
+// seed is asked for.
+std::string GuidesKey(const Way& way, const LayerSet& layers, bool rounded);
+
+}  // namespace scumble
