@@ -26,7 +26,7 @@ test-asan: ## all tests but the longest of the painter's under AddressSanitizer 
 	@.ci/install test
 	@cmake --preset asan
 	@cmake --build build-asan -j $(JOBS)
-	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -E painting_repeats
+	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -E painting_repeats
 
 # GCC 12's sanitizer guesses where the C library keeps what libraries have for each thread, wrongly once one is loaded late, and
 # then dies of looking for leaks there.
@@ -37,7 +37,7 @@ test-tsan: ## all tests but the longest of Blender's and of the painter's under 
 	@.ci/tsan_tbb build-tsan/onetbb
 	@cmake --preset tsan
 	@cmake --build build-tsan -j $(JOBS)
-	@TSAN_OPTIONS=history_size=7:suppressions=$(CURDIR)/tests/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -E "painting_repeats|cycles_matrix_test"
+	@TSAN_OPTIONS=history_size=7:suppressions=$(CURDIR)/tests/support/threads.supp ctest --test-dir build-tsan --output-on-failure -j $(JOBS) -E "painting_repeats|cycles_matrix_test"
 
 fuzz: ## libFuzzer (clang) on everything that reads other people's files, 60 s each; FUZZ="600 gltf" 600 s of one
 	@.ci/install fuzz

@@ -12,7 +12,7 @@
 #include "bench/bare_embree.h"
 #include "guidegen/guidegen.h"
 #include "core/image/stopwatch.h"
-#include "tests/guidegen_scenes.h"
+#include "tests/support/guidegen_scenes.h"
 
 namespace scumble::testing {
 namespace {

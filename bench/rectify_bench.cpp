@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/style/scan/rectify.h"
-#include "tests/scan_fixtures.h"
+#include "tests/support/scan_fixtures.h"
 
 namespace scumble {
 namespace {

@@ -1,5 +1,5 @@
 // What the verbs take, term by term: the formula of docs/memory.md. Every term is the most that its part takes, for pictures
-// that are covered from edge to edge and paint that does not pack at all; tests/memory_need_test.cpp holds it against what
+// that are covered from edge to edge and paint that does not pack at all; tests/pipeline/memory_estimate_test.cpp holds it against what
 // the system counted.
 #pragma once
 

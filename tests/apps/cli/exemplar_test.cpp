@@ -1,0 +1,177 @@
+// Exemplars with guides of their own, from the command line: painting scenes, the cache of tables, styles check.
+#include <chrono>
+#include <filesystem>
+#include <vector>
+
+#include "tests/support/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CliExemplar : public CliTest {
+ protected:
+  // A style painted on suzanne, 96×54.
+  void WriteSceneStyle() {
+    RunOk({"guidegen", Scene("suzanne.glb"), "--size", "96x54", "-q", "-o", "style/scene.exr"});
+    WritePainted("style/scene.png", 96, 54);
+    WriteText("style/style.toml",
+              "name = \"scene\"\n[transfer]\nreference_height = 0\nlevels = 4\n"
+              "[[exemplar]]\nimage = \"scene.png\"\nguides = \"scene.exr\"\n");
+  }
+  std::string Paint(const std::string& name, const Arguments& more = {}) {
+    WriteGuideFile("ball.exr", Ball(48));
+    RunOk(With({"transfer", "ball.exr", "--style", "style", "-o", name}, more));
+    return Bytes(name);
+  }
+  std::vector<fs::path> Tables() const {
+    std::vector<fs::path> files;
+    std::error_code failed;
+    for (const auto& entry : fs::directory_iterator(Cache() / "scumble", failed)) files.push_back(entry.path());
+    return files;
+  }
+};
+
+TEST_F(CliExemplar, TablesAreKeptAndDamagedOnesRebuilt) {
+  fs::create_directory(At("style"));
+  WriteSceneStyle();
+  const std::string first = Paint("first.png");
+  ASSERT_EQ(Tables().size(), 1u);
+  const fs::path table = Tables()[0];
+  const std::string kept = ReadAll(table.string());
+  EXPECT_GT(kept.size(), 512u * 512u * 4u);
+  const auto made = fs::last_write_time(table);
+  EXPECT_EQ(Paint("second.png"), first);
+  EXPECT_EQ(fs::last_write_time(table), made) << "read, not made again";
+  for (int damage = 0; damage < 4; ++damage) {
+    std::string bytes = kept;
+    if (damage == 0) bytes.clear();
+    if (damage == 1) bytes.resize(bytes.size() / 2);
+    if (damage == 2) bytes[bytes.size() / 2] ^= 1;
+    if (damage == 3) bytes += "more";
+    std::ofstream(table, std::ios::binary | std::ios::trunc) << bytes;
+    EXPECT_EQ(Paint("again.png"), first) << damage;
+    EXPECT_EQ(ReadAll(table.string()), kept) << damage;
+  }
+  EXPECT_EQ(Paint("tree.png", {"--set", "transfer.nearest=tree"}).empty(), false);
+  EXPECT_EQ(Tables().size(), 1u) << "nothing but the table; the style's folder is not written to";
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(At("style"))) ++files;
+  EXPECT_EQ(files, 3u);
+}
+
+TEST_F(CliExemplar, GuidesOfLightFromTheSphereToThePicture) {
+  RunOk({"sphere", "--size", "64", "--layers", "lpe.LDE,lpe.LSE", "-q", "-o", "ball"});
+  WritePainted("ball/lit.png", 64, 64);
+  WriteText("ball/style.toml",
+            "name = \"ball\"\n[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = 2\n"
+            "[transfer.guide_weights]\nluminance = 1.0\n\"lpe.LDE\" = 0.5\n"
+            "[[exemplar]]\nimage = \"lit.png\"\nguides = \"guides.exr\"\n");
+  const std::string scene = Scene("stilllife.glb");
+  const Arguments size = {"--size", "96x54", "--aa", "4"};
+  RunOk(With({"stylize", scene, "--style", "ball", "-o", "one.png"}, size));
+  RunOk(With({"guidegen", scene, "--style", "ball", "-q", "-o", "scene.exr"}, size));
+  RunOk({"transfer", "scene.exr", "--style", "ball", "-o", "two.png"});
+  EXPECT_EQ(Bytes("one.png"), Bytes("two.png"));
+  RunOk({"transfer", "scene.exr", "--style", "ball", "--threads", "1", "-o", "single.png"});
+  EXPECT_EQ(Bytes("one.png"), Bytes("single.png"));
+  // Neutral: the plain engine's bytes. Not neutral: others.
+  const Arguments plain = {"--set", "transfer.guide_weights.luminance=0", "--set", "transfer.guide_weights.lpe.LDE=0"};
+  RunOk(With({"transfer", "scene.exr", "--style", "ball", "-o", "neutral.png"}, plain));
+  WriteText("ball/plain.toml",
+            "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = 2\n"
+            "[[exemplar]]\nimage = \"lit.png\"\nguides = \"guides.exr\"\n");
+  RunOk({"transfer", "scene.exr", "--style", "ball/plain.toml", "-o", "other.png"});
+  EXPECT_EQ(Bytes("other.png"), Bytes("neutral.png"));
+  EXPECT_FALSE(Pixels("one.png") == Pixels("neutral.png"));
+  for (const char* what : {"error", "sources"}) {
+    RunOk({"transfer", "scene.exr", "--style", "ball", "--show", what, "-o", "show.png"});
+  }
+  RunOk(With({"transfer", "scene.exr", "--style", "oil", "--assign", "Vase=ball", "-o", "many.png"}, {}));
+  const auto checked = RunOk({"styles", "check", "ball"});
+  EXPECT_NE(checked.out.find("guides: 7 dimensions"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("lpe.LDE shows 0.00 to"), std::string::npos) << checked.out;
+  // Guides that do not hold what is asked for.
+  RunOk(With({"guidegen", scene, "-q", "-o", "dark.exr"}, size));
+  const auto refused = Run({"transfer", "dark.exr", "--style", "ball", "-o", "no.png"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("luminance"), std::string::npos) << refused.err;
+}
+
+TEST_F(CliExemplar, ACacheThatCannotBeWrittenIsNoError) {
+  fs::create_directory(At("style"));
+  WriteSceneStyle();
+  const std::string first = Paint("first.png");
+  fs::remove_all(Cache());
+  WriteText("../cache", "a file where the folder should be");
+  EXPECT_EQ(Paint("second.png"), first);
+  ::setenv("XDG_CACHE_HOME", "/proc/none", 1);
+  EXPECT_EQ(Paint("third.png"), first);
+  ::setenv("XDG_CACHE_HOME", "relative", 1);
+  ::setenv("HOME", (Work() / "home").c_str(), 1);
+  EXPECT_EQ(Paint("fourth.png"), first);
+  EXPECT_TRUE(Exists("home/.cache/scumble")) << "a relative XDG_CACHE_HOME does not count";
+  EXPECT_FALSE(Exists("relative"));
+  ::unsetenv("HOME");
+  EXPECT_EQ(Paint("fifth.png"), first);
+}
+
+TEST_F(CliExemplar, TheCacheDoesNotGrowForEver) {
+  fs::create_directory(At("style"));
+  WriteSceneStyle();
+  for (int i = 0; i < 300; ++i) {
+    WriteText("../cache/scumble/" + std::to_string(i) + ".table", "old");
+    fs::last_write_time(Cache() / "scumble" / (std::to_string(i) + ".table"),
+                        fs::file_time_type::clock::now() - std::chrono::hours(1000 - i));
+  }
+  WriteText("../cache/scumble/notes.txt", "not ours to remove");
+  Paint("first.png");
+  EXPECT_EQ(Tables().size(), 257u) << "256 tables and the notes";
+  EXPECT_TRUE(fs::exists(Cache() / "scumble/notes.txt"));
+  EXPECT_FALSE(fs::exists(Cache() / "scumble/44.table")) << "the 45 oldest are gone";
+  EXPECT_TRUE(fs::exists(Cache() / "scumble/45.table"));
+}
+
+TEST_F(CliExemplar, SpheresNeedNoTable) {
+  WriteStyle("style");
+  Paint("first.png");
+  EXPECT_TRUE(Tables().empty());
+  ExpectError({"transfer", "ball.exr", "--style", "style", "--set", "transfer.nearest=magic", "-o", "x.png"}, 2,
+              {"transfer.nearest", "analytic"});
+}
+
+TEST_F(CliExemplar, CheckReportsDirectionsAndRepeats) {
+  WriteStyle("style");
+  const CommandResult sphere = RunOk({"styles", "check", "style"});
+  EXPECT_NE(sphere.out.find("test: 64² pixels"), std::string::npos) << sphere.out;
+  EXPECT_NE(sphere.out.find("\ndirections: "), std::string::npos) << sphere.out;
+  EXPECT_NE(sphere.out.find("\nrepeats: "), std::string::npos) << sphere.out;
+  EXPECT_EQ(sphere.err.find("directions"), std::string::npos) << sphere.err;
+  EXPECT_EQ(sphere.err.find("flat faces"), std::string::npos) << sphere.err;
+  const nlohmann::json json = RunOk({"styles", "check", "style", "--json"}).Json();
+  EXPECT_EQ(json["shape"], "sphere");
+  EXPECT_GT(json["directions"]["covered_percent"], 65.0);
+  EXPECT_EQ(json["directions"]["flat_percent"], 0.0);
+  // A wedge: two flat faces.
+  GuideSet wedge = Ball(64);
+  for (int i = 0; i < 64 * 64; ++i) {
+    const float values[3] = {i % 64 < 32 ? -0.6f : 0.6f, 0.0f, 0.8f};
+    for (int c = 0; c < 3; ++c)
+      wedge.Plane(Layer::kNormal, c)[i] = wedge.Plane(Layer::kCoverage)[i] > 0 ? values[c] : 0.0f;
+  }
+  fs::create_directory(At("wedge"));
+  WriteGuideFile("wedge/wedge.exr", wedge);
+  WritePainted("wedge/wedge.png", 64, 64);
+  WriteText("wedge/style.toml", "[[exemplar]]\nimage = \"wedge.png\"\nguides = \"wedge.exr\"\n");
+  const CommandResult flat = RunOk({"styles", "check", "wedge"});
+  EXPECT_NE(flat.err.find("100% of the painting shows flat faces: 2 of"), std::string::npos) << flat.err;
+  EXPECT_NE(flat.err.find("use a rounded shape"), std::string::npos) << flat.err;
+  EXPECT_EQ(RunOk({"styles", "check", "wedge", "--json"}).Json()["directions"]["shown"], 2);
+  EXPECT_EQ(RunOk({"styles", "check", "wedge", "--json"}).out, RunOk({"styles", "check", "wedge", "--json"}).out);
+  ExpectError({"transfer", "wedge/wedge.exr", "--style", "wedge", "--set", "transfer.nearest=analytic", "-o", "x.png"},
+              2, {"transfer.nearest", "spheres"});
+}
+
+}  // namespace
+}  // namespace scumble

@@ -1,0 +1,173 @@
+// scumble styles check: what it says, on which channel, and with which exit code.
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/cli_harness.h"
+#include "tests/support/painted_spheres.h"
+
+namespace scumble {
+namespace {
+
+bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+class StylesCheck : public CliTest {
+ protected:
+  void Write(const std::string& name, const Picture& picture) {
+    std::filesystem::create_directories(At(name).parent_path());
+    const Status written = WritePicture(At(name), picture);
+    ASSERT_TRUE(written) << written.error().message;
+  }
+  std::set<std::string> CodesOf(const nlohmann::json& report) {
+    std::set<std::string> codes;
+    for (const auto& fault : report["faults"]) codes.insert(fault["code"].get<std::string>());
+    return codes;
+  }
+  std::set<std::string> CodesIn(const std::string& style) { return CodesOf(RunOk({"styles", "check", style, "--json"}).Json()); }
+};
+
+using Codes = std::set<std::string>;
+
+TEST_F(StylesCheck, AGoodStyleIsSilent) {
+  Write("good.png", PaintSphere({}));
+  const CommandResult check = RunOk({"styles", "check", "good.png", "--strict"});
+  EXPECT_EQ(check.err, "");
+  EXPECT_TRUE(Contains(check.out, "good: 512² pixels, tonal range")) << check.out;
+  EXPECT_TRUE(Contains(check.out, "usable\n")) << check.out;
+  const nlohmann::json json = RunOk({"styles", "check", "good.png", "--json"}).Json();
+  EXPECT_TRUE(json["faults"].is_array() && json["faults"].empty()) << json["faults"];
+  const nlohmann::json& paint = json["exemplars"][0];
+  EXPECT_GT(paint["covered_percent"], 99.0);
+  EXPECT_NEAR(paint["painted_light"]["azimuth"].get<double>(), -40.0, 10.0);
+  EXPECT_NEAR(paint["template_light"]["azimuth"].get<double>(), -40.0, 10.0);
+  for (const char* key : {"transparent_percent", "lightness", "anisotropy", "regularity", "holes", "fringe_percent", "template_percent"}) {
+    EXPECT_TRUE(paint.contains(key)) << key;
+  }
+}
+
+TEST_F(StylesCheck, MistakesAreWarningsAndStrictCountsThem) {
+  PaintedSphere shifted;
+  shifted.x = 0.53, shifted.reach = 1.0, shifted.waver = 0.0;
+  Write("off.png", PaintSphere(shifted));
+  const CommandResult plain = RunOk({"styles", "check", "off.png"});
+  EXPECT_TRUE(Contains(plain.Warning(), "off.png: the painted sphere is 3.0% of its diameter off the middle")) << plain.err;
+  EXPECT_TRUE(Contains(plain.Warning(), "pixels to the left")) << plain.err;
+  EXPECT_TRUE(Contains(plain.out, "usable, with 1 mistake\n")) << plain.out;
+  EXPECT_EQ(Run({"styles", "check", "off.png", "--strict"}).code, 1);
+  const CommandResult json = Run({"styles", "check", "off.png", "--strict", "--json"});
+  EXPECT_EQ(json.code, 1);
+  EXPECT_EQ(CodesOf(json.Json()), Codes{"off-centre"});
+  EXPECT_EQ(json.Json()["faults"][0]["weight"], "mistake");
+  EXPECT_TRUE(Contains(json.Json()["faults"][0]["image"], "off.png"));
+}
+
+TEST_F(StylesCheck, RemarksAreNoMistakes) {
+  PaintedSphere right;
+  right.azimuth = 40.0;
+  Write("right.png", PaintSphere(right));
+  const CommandResult check = RunOk({"styles", "check", "right.png", "--strict"});
+  EXPECT_EQ(check.err, "");
+  EXPECT_TRUE(Contains(check.out, "usable, 1 remark\n")) << check.out;
+  EXPECT_TRUE(Contains(check.out, "remark: right.png: the painted light comes from azimuth ")) << check.out;
+}
+
+TEST_F(StylesCheck, SeveralStyles) {
+  Write("good.png", PaintSphere({}));
+  PaintedSphere pale;
+  pale.dark = 0.5, pale.light = 0.6, pale.grain = 0.02;
+  Write("pale.png", PaintSphere(pale));
+  const CommandResult two = RunOk({"styles", "check", "good.png", "pale.png"});
+  EXPECT_TRUE(Contains(two.Warning(), "pale.png: light and dark differ by")) << two.err;
+  EXPECT_TRUE(Contains(two.out, "2 styles: 1 without a mistake, 1 with 1 mistakes, 0 cannot be used\n")) << two.out;
+  const nlohmann::json json = RunOk({"styles", "check", "good.png", "pale.png", "--json"}).Json();
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(CodesOf(json[1]), Codes{"flat"});
+  // One that cannot be read hides none of the others.
+  WriteText("broken.png", "no picture");
+  const CommandResult three = Run({"styles", "check", "broken.png", "good.png"});
+  EXPECT_EQ(three.code, 3);
+  EXPECT_TRUE(Contains(three.Warning(), "broken.png cannot be used")) << three.err;
+  EXPECT_TRUE(Contains(three.out, "good: 512²")) << three.out;
+  EXPECT_TRUE(Contains(three.out, "1 cannot be used")) << three.out;
+  ExpectError({"styles", "check", "broken.png"}, 3, {"broken.png"});
+}
+
+// The kit's own grey, in the light of its guides, margin or no margin.
+TEST_F(StylesCheck, WhatIsLeftOfTheKitsTemplate) {
+  RunOk({"sphere", "--size", "512", "-o", "kit", "--light", "60,20", "-q"});
+  const Expected<Picture> drawn = ReadPicture(At("kit/template.png"));
+  ASSERT_TRUE(drawn);
+  ASSERT_EQ(drawn->width, 640);
+  Write("kit/lit.png", *drawn);
+  const nlohmann::json untouched = RunOk({"styles", "check", "kit", "--json"}).Json();
+  EXPECT_EQ(CodesOf(untouched).count("bare-template"), 1u);
+  EXPECT_GT(untouched["exemplars"][0]["template_percent"], 95.0);
+  // Painted but for a patch; its place is told in the file.
+  PaintedSphere sphere;
+  sphere.azimuth = 60.0, sphere.elevation = 20.0, sphere.paper = 1.0;
+  const Picture paint = PaintSphere(sphere);
+  Picture whole = *drawn;
+  for (int y = 0; y < 512; ++y) std::copy_n(paint.At(0, y), 4 * 512, whole.At(64, y + 64));
+  Write("kit/lit.png", whole);
+  EXPECT_EQ(CodesIn("kit"), Codes{});
+  for (int y = 300; y < 350; ++y) std::copy_n(drawn->At(300, y), 4 * 50, whole.At(300, y));
+  Write("kit/lit.png", whole);
+  const nlohmann::json patch = RunOk({"styles", "check", "kit", "--json"}).Json();
+  EXPECT_EQ(CodesOf(patch), Codes{"bare-template"});
+  EXPECT_NEAR(patch["faults"][0]["x"].get<int>(), 325, 2);
+  EXPECT_NEAR(patch["faults"][0]["y"].get<int>(), 325, 2);
+  EXPECT_EQ(patch["exemplars"][0]["margin"], 64);
+  // Painted for another light than the template's.
+  sphere.azimuth = -60.0;
+  Write("kit/lit.png", PaintSphere(sphere));
+  EXPECT_EQ(CodesIn("kit"), Codes{"other-light"});
+  // The same picture without guides, margin included.
+  WriteText("bare/style.toml", "[[exemplar]]\nimage = \"lit.png\"\n");
+  for (int y = 0; y < 512; ++y) std::copy_n(paint.At(0, y), 4 * 512, whole.At(64, y + 64));
+  Write("bare/lit.png", whole);
+  EXPECT_EQ(CodesIn("bare").count("margin"), 1u);
+}
+
+// A rim larger than the sphere is the style's business; looking at it does no harm.
+TEST_F(StylesCheck, ARimThatTakesTheWholeSphere) {
+  Write("rim/lit.png", PaintSphere({}));
+  for (const char* rim : {"0", "250", "600", "16000"}) {
+    WriteText("rim/style.toml", std::string("[transfer]\nrim = ") + rim + "\n[[exemplar]]\nimage = \"lit.png\"\n");
+    const CommandResult check = Run({"styles", "check", "rim", "--json"});
+    ASSERT_EQ(check.code, 0) << rim << check.err;
+    EXPECT_LE(check.Json()["exemplars"][0]["fringe_percent"], 0.0) << rim;
+  }
+}
+
+TEST_F(StylesCheck, LightsOfOneStyle) {
+  PaintedSphere lit, shade;
+  shade.dark = 0.05, shade.light = 0.3, shade.azimuth = 0.0, shade.elevation = 80.0, shade.size = 256;
+  Write("two/lit.png", PaintSphere(lit));
+  Write("two/shade.png", PaintSphere(shade));
+  WriteText("two/style.toml",
+            "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
+  const nlohmann::json json = RunOk({"styles", "check", "two", "--json"}).Json();
+  EXPECT_EQ(CodesOf(json), Codes{"other-size"});
+  EXPECT_TRUE(Contains(json["faults"][0]["image"], "shade.png"));
+}
+
+TEST_F(StylesCheck, TheBundledStylesAreWithoutAMistake) {
+  Arguments arguments = {"styles", "check", "--strict"};
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars")) {
+    if (std::filesystem::exists(entry.path() / "style.toml")) arguments.push_back(entry.path().string());
+  }
+  EXPECT_GE(arguments.size(), 9u);
+  CommandSettings settings;
+  settings.patience_seconds = 500;
+  const CommandResult check = Run(arguments, settings);
+  EXPECT_EQ(check.code, 0) << check.err;
+  EXPECT_EQ(check.err, "");
+  const auto listed = RunOk({"styles", "--json"}).Json();
+  for (const auto& style : listed) {
+    ASSERT_TRUE(style.contains("thumbnail")) << style;
+    EXPECT_TRUE(std::filesystem::exists(style["thumbnail"].get<std::string>())) << style;
+  }
+}
+
+}  // namespace
+}  // namespace scumble

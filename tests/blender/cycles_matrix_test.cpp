@@ -1,0 +1,72 @@
+// Every kind of lamp over diffuse, glossy and textured surfaces, and what else a light path may get wrong, against
+// Cycles: `scumble crosscheck` on the scenes of tests/blender/make_matrix.py, by its built-in limits.
+#include <cstdlib>
+#include <map>
+#include <utility>
+
+#include "tests/support/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+class CyclesMatrixTest : public CliTest {
+ protected:
+  // The scenes by what makes them one run: size and samples.
+  std::map<std::pair<std::string, int>, std::vector<std::string>> Make() {
+    const std::string log = At("log").string();
+    const std::string command = std::string("blender -b -noaudio --factory-startup -P ") + SCUMBLE_SOURCE_DIR +
+                                "/tests/blender/make_matrix.py -- --output " + Work().string() + " > " + log + " 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0) << Bytes("log");
+    matrix_ = nlohmann::json::parse(std::ifstream(At("matrix.json")), nullptr, false);
+    std::map<std::pair<std::string, int>, std::vector<std::string>> runs;
+    if (!matrix_.is_object()) return runs;
+    for (const auto& [name, scene] : matrix_.items()) {
+      runs[{scene["size"].get<std::string>(), scene["samples"].get<int>()}].push_back(name);
+    }
+    return runs;
+  }
+
+  // The one of that layer; null where there is none.
+  static nlohmann::json OfLayer(const nlohmann::json& list, const std::string& layer) {
+    for (const nlohmann::json& item : list) {
+      if (item["layer"] == layer) return item;
+    }
+    return {};
+  }
+
+  void ExpectAgrees(const std::string& name, const nlohmann::json& report) const {
+    SCOPED_TRACE(name);
+    EXPECT_TRUE(report["passed"].get<bool>()) << report.dump(1);
+    EXPECT_GT(report["compared"].get<int>(), 2000);
+    EXPECT_EQ(report["skipped"].size(), 0u) << report["skipped"];
+    // A scene whose light never arrives would agree with everything.
+    for (const nlohmann::json& layer : matrix_[name]["layers"]) {
+      const nlohmann::json noise = OfLayer(report["noise"], "lpe." + layer.get<std::string>());
+      ASSERT_TRUE(noise.is_object()) << layer;
+      EXPECT_FALSE(noise["no_such_light"].get<bool>()) << layer;
+    }
+    // Only Principled surfaces are not compared as authored.
+    EXPECT_EQ(report["warnings"].size(), name == "principled" ? 1u : 0u) << report["warnings"];
+    EXPECT_EQ(report["unsupported"].size(), 0u) << report["unsupported"];
+  }
+
+  nlohmann::json matrix_;
+};
+
+TEST_F(CyclesMatrixTest, EverySceneAgrees) {
+  const auto runs = Make();
+  ASSERT_FALSE(runs.empty()) << "make_matrix.py wrote no matrix.json";
+  for (const auto& [setup, names] : runs) {
+    // Minutes: longer than the harness lets a command run.
+    std::string command = "cd " + Work().string() + " && " SCUMBLE_BINARY " crosscheck --json --quiet --size " +
+                          setup.first + " --samples " + std::to_string(setup.second);
+    for (const std::string& name : names) command += " " + name + ".blend";
+    EXPECT_EQ(std::system((command + " > reports.json 2> message").c_str()), 0) << Bytes("message");
+    const nlohmann::json reports = nlohmann::json::parse(std::ifstream(At("reports.json")), nullptr, false);
+    ASSERT_EQ(reports.size(), names.size()) << Bytes("message");
+    for (std::size_t i = 0; i < names.size(); ++i) ExpectAgrees(names[i], reports[i]);
+  }
+}
+
+}  // namespace
+}  // namespace scumble

@@ -1,0 +1,604 @@
+// Blender scenes, through the real Blender: what the loader makes of an export against Blender's own numbers, and the
+// verbs that run the export by themselves. tests/blender/make_cases.py makes the scenes.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "guidegen/rays/camera_rays.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "tests/support/cli_harness.h"
+#include "tests/support/cycles_passes.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::UnorderedElementsAre;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr const char* kBlender = "blender -b -noaudio --factory-startup -Y ";
+
+// The scenes of make_cases.py, made and exported once for all tests.
+class Cases : public testing::Environment {
+ public:
+  void SetUp() override {
+    folder_ = new TemporaryFolder;
+    Shell(kBlender + ("-P " + Source("tests/blender/make_cases.py")) + " -- --output " + folder_->path().string());
+    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken"}) Export(name, "", name);
+    Export("objects", " --frame 6", "objects6");
+    Export("deformed", " --frame 6", "deformed6");
+    expected_ = nlohmann::json::parse(std::ifstream(*folder_ / "expected.json"), nullptr, false);
+    ASSERT_TRUE(expected_.is_object()) << "make_cases.py wrote no expected.json";
+  }
+  void TearDown() override { delete folder_; }
+
+  // Cycles' data passes through these cameras of the scene, as "Camera:160x90".
+  static void Render(const std::string& scene, const std::string& views) {
+    Shell(kBlender + File(scene + ".blend").string() + " -P " + Source("tests/blender/render_normals.py") +
+          " -- --output " + folder_->path().string() + " --view " + views);
+  }
+
+  static fs::path File(const std::string& name) { return *folder_ / name; }
+  static const nlohmann::json& Expected(const std::string& name) { return expected_[name]; }
+  static std::string Source(const std::string& name) { return std::string(SCUMBLE_SOURCE_DIR) + "/" + name; }
+
+ private:
+  static void Shell(const std::string& command) {
+    const std::string log = (*folder_ / "log").string();
+    if (std::system((command + " > " + log + " 2>&1").c_str()) == 0) return;
+    std::ifstream stream(log);
+    FAIL() << command << "\n" << std::string(std::istreambuf_iterator<char>(stream), {});
+  }
+  static void Export(const std::string& scene, const std::string& more, const std::string& name) {
+    Shell(kBlender + File(scene + ".blend").string() + " -P " + Source("blender_scripts/export_scene.py") +
+          " -- --output " + File(name + ".glb").string() + more);
+  }
+
+  inline static TemporaryFolder* folder_ = nullptr;
+  inline static nlohmann::json expected_;
+};
+const testing::Environment* const kCases = testing::AddGlobalTestEnvironment(new Cases);
+
+Scene Loaded(const std::string& name) {
+  Expected<Scene> scene = LoadScene(Cases::File(name + ".glb"));
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+  return scene ? std::move(*scene) : Scene();
+}
+
+template <class T>
+const T& Named(const std::vector<T>& list, const std::string& name) {
+  static const T kNone{};
+  for (const T& thing : list) {
+    if (thing.name == name) return thing;
+  }
+  ADD_FAILURE() << "there is no " << name;
+  return kNone;
+}
+
+// Values that went through Blender's floats.
+void ExpectClose(double found, double expected, const std::string& what) {
+  EXPECT_NEAR(found, expected, 1e-6 * std::max(1.0, std::abs(expected))) << what;
+}
+void ExpectColor(const glm::vec3& found, const glm::vec3& expected, const std::string& what) {
+  for (int i = 0; i < 3; ++i) ExpectClose(found[i], expected[i], what);
+}
+
+// What `pref` holds stays where it is while modifiers and shape keys move the vertices.
+TEST(BlenderMeshes, RestPositionsDoNotMove) {
+  const Scene first = Loaded("deformed"), sixth = Loaded("deformed6");
+  const auto mesh = [](const Scene& scene, const std::string& object) {
+    for (const Instance& instance : scene.instances) {
+      if (instance.object == object) return scene.meshes[std::size_t(instance.mesh)];
+    }
+    ADD_FAILURE() << "there is no " << object;
+    return Mesh();
+  };
+  EXPECT_TRUE(mesh(first, "Plain").rest_positions.empty());
+  for (const std::string object : {"Bent", "Shaped"}) {
+    SCOPED_TRACE(object);
+    const Mesh a = mesh(first, object), b = mesh(sixth, object);
+    ASSERT_EQ(a.rest_positions.size(), a.positions.size());
+    EXPECT_EQ(a.rest_positions, b.rest_positions);
+    EXPECT_NE(a.positions, b.positions);
+    glm::vec3 low(1e30f), high(-1e30f);
+    for (const glm::vec3& place : a.rest_positions) low = glm::min(low, place), high = glm::max(high, place);
+    // Cubes of 1 m, three of them side by side; not bent, and not stretched by the object's scale.
+    EXPECT_EQ(low, glm::vec3(-0.5f));
+    EXPECT_EQ(high, object == "Bent" ? glm::vec3(2.5f, 0.5f, 0.5f) : glm::vec3(0.5f));
+  }
+  // At value 0 the shape is that of the basis, vertex by vertex: the axes are glTF's.
+  EXPECT_EQ(mesh(first, "Shaped").rest_positions, mesh(first, "Shaped").positions);
+}
+
+TEST(BlenderLamps, PointsAndSpots) {
+  const Scene scene = Loaded("lamps");
+  const Light& point = Named(scene.lights, "Point");
+  EXPECT_EQ(point.type, LightType::kPoint);
+  ExpectClose(point.intensity, 100.0 / (4 * kPi), "point");
+  ExpectClose(point.radius, 0.25, "radius");
+  ExpectColor(point.color, {1.0f, 0.5f, 0.25f}, "colour");
+  ExpectColor(glm::vec3(point.world_from_light[3]), glm::vec3(YUp({1, 2, 3})), "place");
+  const Light& spot = Named(scene.lights, "Spot");
+  EXPECT_EQ(spot.type, LightType::kSpot);
+  EXPECT_TRUE(spot.cycles_spot);
+  ExpectClose(spot.intensity, 60.0 / (4 * kPi), "spot");
+  ExpectClose(spot.outer_cone_degrees, 25.0, "half angle");
+  ExpectClose(spot.spot_blend, 0.4, "blend");
+  ExpectClose(spot.radius, 0.0, "radius");
+  ExpectColor(-glm::vec3(spot.world_from_light[2]), {0, -1, 0}, "it shines down");
+  ExpectClose(Named(scene.lights, "NodePoint").intensity, 5.0 / (4 * kPi), "node strength");
+}
+
+TEST(BlenderLamps, SunsKeepTheirStrengthWithNodesToo) {
+  const Scene scene = Loaded("lamps");
+  const Light& sun = Named(scene.lights, "Sun");
+  EXPECT_EQ(sun.type, LightType::kSun);
+  ExpectClose(sun.intensity, 2.0, "strength");
+  ExpectClose(sun.angle_degrees, 3.0, "angle");
+  ExpectColor(-glm::vec3(sun.world_from_light[2]), glm::vec3(YUp({0, 1, 0})), "direction");
+  const Light& node_sun = Named(scene.lights, "NodeSun");
+  ExpectClose(node_sun.intensity, 6.0, "2 times the node's 3");
+  ExpectColor(node_sun.color, {0.5f, 1.0f, 1.0f}, "the node's colour");
+}
+
+TEST(BlenderLamps, AreasOfEveryShape) {
+  const Scene scene = Loaded("lamps");
+  struct Case {
+    const char* name;
+    bool ellipse;
+    double x, y, area;
+  };
+  for (const Case& c :
+       {Case{"Square", false, 2, 2, 4}, Case{"Rectangle", false, 2, 0.5, 1}, Case{"Disc", true, 2, 2, kPi},
+        Case{"Ellipse", true, 2, 1, kPi / 2}, Case{"ScaledSquare", false, 2, 3, 6}}) {
+    const Light& light = Named(scene.lights, c.name);
+    EXPECT_EQ(light.type, LightType::kArea) << c.name;
+    EXPECT_EQ(light.ellipse, c.ellipse) << c.name;
+    ExpectClose(light.size_x, c.x, c.name);
+    ExpectClose(light.size_y, c.y, c.name);
+    ExpectClose(light.intensity, 10.0 / (4.0 * c.area), c.name);
+  }
+}
+
+TEST(BlenderLamps, TheWorldAndWhatIsLeftOut) {
+  const Scene scene = Loaded("lamps");
+  ExpectColor(scene.world_radiance, {0.5f, 1.0f, 2.0f}, "world");
+  EXPECT_EQ(scene.lights.size(), 12u) << "all but the hidden one";
+  EXPECT_THAT(scene.warnings, testing::UnorderedElementsAre(AllOf(HasSubstr("OddPoint"), HasSubstr("TEX_NOISE")),
+                                                            AllOf(HasSubstr("'Shy'"), HasSubstr("glossy surfaces")),
+                                                            AllOf(HasSubstr("'Shy'"), HasSubstr("after 0 bounces")),
+                                                            AllOf(HasSubstr("'World'"), HasSubstr("diffuse surfaces"))));
+}
+
+TEST(BlenderMaterials, PureShaders) {
+  const Scene scene = Loaded("materials");
+  const Material& diffuse = Named(scene.materials, "Diffuse");
+  EXPECT_EQ(diffuse.bsdf, Bsdf::kDiffuse);
+  EXPECT_TRUE(diffuse.double_sided) << "culling is the viewport's";
+  ExpectColor(diffuse.base_color, {0.2f, 0.4f, 0.8f}, "diffuse");
+  const Material& glossy = Named(scene.materials, "Glossy");
+  EXPECT_EQ(glossy.bsdf, Bsdf::kGlossy);
+  ExpectColor(glossy.base_color, {0.9f, 0.7f, 0.3f}, "glossy");
+  ExpectClose(glossy.roughness, 0.3, "roughness");
+  EXPECT_EQ(Named(scene.materials, "Sharp").roughness, 0.0f);
+  const Material& emission = Named(scene.materials, "Emission");
+  EXPECT_EQ(emission.bsdf, Bsdf::kEmission);
+  ExpectColor(emission.emission, {4.0f, 2.0f, 1.0f}, "emission");
+}
+
+TEST(BlenderMaterials, PrincipledAndNone) {
+  const Scene scene = Loaded("materials");
+  const Material& principled = Named(scene.materials, "Principled");
+  EXPECT_EQ(principled.bsdf, Bsdf::kMetallicRoughness);
+  ExpectColor(principled.base_color, {0.3f, 0.6f, 0.9f}, "base colour");
+  ExpectClose(principled.metallic, 0.25, "metallic");
+  ExpectClose(principled.roughness, 0.35, "roughness");
+  ExpectColor(principled.emission, {1.5f, 0.75f, 0.0f}, "emission");
+  ExpectColor(Named(scene.materials, "Plain").base_color, {0.7f, 0.6f, 0.5f}, "without nodes");
+  EXPECT_EQ(Named(scene.materials, "Plain").bsdf, Bsdf::kDiffuse);
+  ExpectColor(Named(scene.materials, "default").base_color, {0.8f, 0.8f, 0.8f}, "faces without a material");
+}
+
+TEST(BlenderMaterials, TexturesAndPaintStay) {
+  const Scene scene = Loaded("materials");
+  for (const char* name : {"DiffuseTextured", "GlossyTextured", "EmissionTextured", "PrincipledTextured"}) {
+    const Material& material = Named(scene.materials, name);
+    ExpectColor(material.base_color, glm::vec3(1.0f), name);
+    ASSERT_GE(material.base_color_texture.texture, 0) << name;
+    EXPECT_TRUE(material.base_color_texture.nearest) << name;
+    const Picture& picture = scene.textures[std::size_t(material.base_color_texture.texture)];
+    ASSERT_EQ(picture.width, 4) << name;
+    EXPECT_EQ(picture.At(0, 3)[0], 65535) << "the first row of Blender's pixels is the lowest";
+    EXPECT_EQ(picture.At(3, 3)[1], 65535);
+  }
+  EXPECT_EQ(Named(scene.materials, "GlossyTextured").bsdf, Bsdf::kGlossy);
+  ExpectClose(Named(scene.materials, "GlossyTextured").base_color_texture.uv_transform[0][0], 2.0, "mapping");
+  EXPECT_GE(Named(scene.materials, "EmissionTextured").emission_texture.texture, 0);
+  ExpectColor(Named(scene.materials, "EmissionTextured").emission, glm::vec3(2.0f), "strength");
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+    EXPECT_EQ(!mesh.colors.empty(), instance.object == "OnSeen") << instance.object;
+    EXPECT_FALSE(mesh.uvs[0].empty()) << instance.object;
+    if (!mesh.colors.empty()) ExpectColor(mesh.colors[0], {0.25f, 0.5f, 0.75f}, "paint");
+  }
+}
+
+TEST(BlenderMaterials, WhatCannotBeExpressedIsNamed) {
+  const Scene scene = Loaded("materials");
+  EXPECT_THAT(scene.warnings,
+              UnorderedElementsAre(AllOf(HasSubstr("'Mixed'"), HasSubstr("MIX_SHADER"), HasSubstr("viewport colour")),
+                                   AllOf(HasSubstr("'Noisy'"), HasSubstr("TEX_NOISE")),
+                                   AllOf(HasSubstr("'Unlinked'"), HasSubstr("black")),
+                                   AllOf(HasSubstr("'Waxy'"), HasSubstr("Subsurface"))));
+  ExpectColor(Named(scene.materials, "Mixed").base_color, {0.1f, 0.2f, 0.3f}, "viewport colour");
+  ExpectColor(Named(scene.materials, "Noisy").base_color, {0.5f, 0.25f, 0.75f}, "the node's own");
+  ExpectColor(Named(scene.materials, "Unlinked").base_color, glm::vec3(0.0f), "as Cycles shows it");
+}
+
+struct Box {
+  std::size_t triangles = 0;
+  glm::dvec3 low{1e9};
+  glm::dvec3 high{-1e9};
+};
+
+std::map<std::string, Box> Boxes(const Scene& scene) {
+  std::map<std::string, Box> boxes;
+  for (const Instance& instance : scene.instances) {
+    // Blender counts its copies in expected.json together.
+    Box& box = boxes[instance.object.substr(0, instance.object.find('#'))];
+    const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+    box.triangles += mesh.triangles.size();
+    for (const glm::vec3& position : mesh.positions) {
+      const glm::dvec3 world(instance.world_from_object * glm::dvec4(glm::dvec3(position), 1.0));
+      box.low = glm::min(box.low, world), box.high = glm::max(box.high, world);
+    }
+  }
+  return boxes;
+}
+
+void ExpectBoxes(const Scene& scene, const nlohmann::json& expected) {
+  const std::map<std::string, Box> boxes = Boxes(scene);
+  for (const auto& [name, box] : boxes) EXPECT_TRUE(expected.contains(name)) << name << " should not be there";
+  for (const auto& [name, entry] : expected.items()) {
+    ASSERT_TRUE(boxes.count(name)) << name;
+    const Box& box = boxes.at(name);
+    EXPECT_EQ(box.triangles, entry["triangles"].get<std::size_t>()) << name;
+    const auto& low = entry["low"];
+    const auto& high = entry["high"];
+    // The y axis changes its sign, and with it which end is the low one.
+    const glm::dvec3 first(low[0], low[2], -high[1].get<double>()), last(high[0], high[2], -low[1].get<double>());
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_NEAR(box.low[i], first[i], 4e-6) << name << " axis " << i;
+      EXPECT_NEAR(box.high[i], last[i], 4e-6) << name << " axis " << i;
+    }
+  }
+}
+
+TEST(BlenderObjects, StandWhereTheRenderHasThem) {
+  ExpectBoxes(Loaded("objects"), Cases::Expected("objects")["1"]);
+  EXPECT_GT(Cases::Expected("objects")["1"].size(), 12u);
+}
+
+TEST(BlenderObjects, AtTheFrameAskedFor) { ExpectBoxes(Loaded("objects6"), Cases::Expected("objects")["6"]); }
+
+TEST(BlenderObjects, InstancesShareTheirMesh) {
+  const Scene scene = Loaded("objects");
+  std::map<std::string, int> meshes;
+  std::set<std::string> names;
+  for (const Instance& instance : scene.instances) {
+    meshes[instance.object] = instance.mesh;
+    EXPECT_TRUE(names.insert(instance.object).second) << instance.object;
+  }
+  for (const char* name : {"Two", "Mirrored", "Stretched"}) EXPECT_EQ(meshes[name], meshes["One"]) << name;
+  EXPECT_EQ(meshes["First/Member"], meshes["Second/Member"]);
+  EXPECT_NE(meshes["Smooth"], meshes["One"]);
+  EXPECT_EQ(meshes.count("Scatter/Leaf#8"), 1u) << "one for each corner of the instancer";
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(AllOf(HasSubstr("'Strands'"), HasSubstr("left out"))));
+}
+
+TEST(BlenderFiles, WhatIsLostOrAsleepIsNamed) {
+  const Scene scene = Loaded("broken");
+  EXPECT_THAT(
+      scene.warnings,
+      UnorderedElementsAre(
+          AllOf(HasSubstr("image 'Gone'"), HasSubstr("//textures/gone.png"), HasSubstr("'MissingTexture'")),
+          AllOf(HasSubstr("lost.blend' is missing"), HasSubstr("'Lost'"), HasSubstr("'LostToo'")),
+          AllOf(HasSubstr("poor.blend' has lost"), HasSubstr("'Goes'"), testing::Not(HasSubstr("'Stays'"))),
+          AllOf(HasSubstr("object 'Driven'"), HasSubstr("location[0] = unknown(frame) and 1 more")),
+          HasSubstr("script 'rig.py'"), AllOf(HasSubstr("'ViewLayer'"), HasSubstr("material override 'Clay'"))));
+  ExpectColor(Named(scene.materials, "MissingTexture").base_color, glm::vec3(1.0f), "as the warning says");
+  EXPECT_LT(Named(scene.materials, "MissingTexture").base_color_texture.texture, 0);
+  for (const char* name : {"PackedTexture", "GeneratedTexture"}) {
+    EXPECT_GE(Named(scene.materials, name).base_color_texture.texture, 0) << name;
+  }
+  const std::map<std::string, Box> boxes = Boxes(scene);
+  for (const char* name : {"Lost", "LostToo", "Goes"}) EXPECT_FALSE(boxes.count(name)) << name;
+  ASSERT_TRUE(boxes.count("Stays") && boxes.count("Driven"));
+  EXPECT_NEAR(boxes.at("Driven").low.y, 6.5, 1e-6) << "a driver that needs no script works";
+}
+
+TEST(BlenderCameras, TheActiveOneComesFirst) {
+  const Scene scene = Loaded("cameras");
+  ASSERT_EQ(scene.cameras.size(), 7u);
+  EXPECT_EQ(scene.cameras.front().name, "Shifted");
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("'Panorama'")));
+}
+
+TEST(BlenderCameras, ProjectAsBlenderDoesInEveryPicture) {
+  const Scene scene = Loaded("cameras");
+  for (const auto& [name, entry] : Cases::Expected("cameras").items()) {
+    const Camera& camera = Named(scene.cameras, name);
+    for (const auto& [size, rows] : entry["projection"].items()) {
+      const int width = std::stoi(size), height = std::stoi(size.substr(size.find('x') + 1));
+      const auto rays = CameraRays::Make(camera, width, height);
+      ASSERT_TRUE(rays) << rays.error().message;
+      const GuideCamera ours = rays->ToGuideCamera();
+      for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 4; ++column) {
+          const double theirs = rows[std::size_t(row)][std::size_t(column)];
+          EXPECT_NEAR(ours.clip_from_view[column][row], theirs, 2e-6 * std::max(1.0, std::abs(theirs)))
+              << name << " " << size << " row " << row << " column " << column;
+        }
+      }
+      // A ray through the corner meets the corner of clip space.
+      const ViewRay ray = rays->Through(width, 0.0);
+      const glm::dvec4 clip = ours.clip_from_view * glm::dvec4(ray.origin + 3.0 * ray.direction, 1.0);
+      EXPECT_NEAR(clip.x / clip.w, 1.0, 1e-12) << name;
+      EXPECT_NEAR(clip.y / clip.w, 1.0, 1e-12) << name;
+    }
+    const auto& world = entry["world"];
+    for (int column = 0; column < 4; ++column) {
+      const glm::dvec3 theirs(world[0][std::size_t(column)], world[1][std::size_t(column)],
+                              world[2][std::size_t(column)]);
+      ExpectColor(glm::vec3(camera.world_from_camera[column]), glm::vec3(YUp(theirs)), name);
+    }
+  }
+}
+
+void ExpectLikeCycles(const GuideSet& ours, const CyclesPasses& theirs, const std::string& view) {
+  ASSERT_EQ(ours.width(), theirs.width) << view;
+  ASSERT_EQ(ours.height(), theirs.height) << view;
+  const glm::dmat3 world_from_view = glm::transpose(glm::dmat3(ours.camera->view_from_world));
+  const nlohmann::json& pass_indices = Cases::Expected("rendered");
+  std::vector<double> angles, depths, positions;
+  std::size_t wrong_ids = 0, different_coverage = 0;
+  for (std::size_t i = 0; i < ours.pixel_count(); ++i) {
+    different_coverage += (ours.Plane(Layer::kCoverage)[i] > 0.5f) != (theirs.depth[i] < 1e9f);
+  }
+  const std::vector<std::size_t> inside = Eroded(ours);
+  ASSERT_GT(inside.size(), ours.pixel_count() / 8) << view;
+  for (std::size_t i : inside) {
+    const glm::dvec3 normal = world_from_view * glm::dvec3(ours.Vec3(Layer::kNormal, i));
+    const glm::dvec3 theirs_unit = glm::normalize(theirs.normal[i]);
+    angles.push_back(
+        glm::degrees(std::atan2(glm::length(glm::cross(normal, theirs_unit)), glm::dot(normal, theirs_unit))));
+    const double depth = theirs.depth[i];
+    depths.push_back(std::abs(ours.Plane(Layer::kDepth)[i] - depth) / depth);
+    positions.push_back(glm::length(glm::dvec3(ours.Vec3(Layer::kPosition, i)) - theirs.position[i]) / depth);
+    const std::string& name = ours.object_names.at(std::uint32_t(ours.Plane(Layer::kObject)[i]));
+    const std::size_t slash = name.find('/');
+    const std::string object = slash == std::string::npos ? name : name.substr(slash + 1);
+    wrong_ids += pass_indices.at(object).get<float>() != theirs.index[i];
+  }
+  EXPECT_LT(Percentile(angles, 0.99), 0.01) << view << ": degrees";
+  EXPECT_LT(Percentile(angles, 0.999), 0.1) << view << ": degrees";
+  EXPECT_LT(Percentile(depths, 0.999), 1e-5) << view;
+  EXPECT_LT(Percentile(positions, 0.999), 1e-5) << view;
+  EXPECT_EQ(wrong_ids, 0u) << view;
+  EXPECT_LE(double(different_coverage), 0.0002 * double(ours.pixel_count()) + 1.0) << view;
+  testing::Test::RecordProperty(view + "_p99_degrees", std::to_string(Percentile(angles, 0.99)));
+}
+
+TEST(BlenderRenders, CyclesSeesTheSameSurfaces) {
+  const std::vector<std::string> views = {"Auto:240x160",     "Auto:120x200",  "Shifted:240x160",
+                                          "Vertical:240x160", "Ortho:200x200", "Ortho:120x200"};
+  std::string all;
+  for (const std::string& view : views) all += " " + view;
+  Cases::Render("rendered", all);
+  const Scene scene = Loaded("rendered");
+  for (const std::string& view : views) {
+    const std::size_t colon = view.find(':');
+    GuidegenOptions options;
+    options.width = std::stoi(view.substr(colon + 1));
+    options.height = std::stoi(view.substr(view.find('x') + 1));
+    options.layers.Add(Layer::kPosition);
+    const auto ours = RenderGuides(scene, Named(scene.cameras, view.substr(0, colon)), options);
+    ASSERT_TRUE(ours) << ours.error().message;
+    std::string file = view;
+    file[colon] = '-';
+    ExpectLikeCycles(ours->guides, ReadCycles(Cases::File(file + ".exr")), view);
+  }
+}
+
+// The program beside its scripts, wherever it was built.
+class BlenderVerbs : public CliTest {
+ protected:
+  BlenderVerbs() : settings_(CopyProgram("home/bin")) {
+    fs::create_directory_symlink(Cases::Source("blender_scripts"), At("home/blender_scripts"));
+    fs::create_directory_symlink(Cases::Source("exemplars"), At("home/exemplars"));
+  }
+  CommandResult RunHere(const Arguments& arguments) { return Run(arguments, settings_); }
+  void ExpectErrorHere(const Arguments& arguments, int code, const std::vector<std::string>& parts) {
+    ExpectError(arguments, code, parts, settings_);
+  }
+  void WriteProgram(const std::string& name, const std::string& body) {
+    WriteText(name, "#!/bin/sh\n" + body + "\n");
+    fs::permissions(At(name), fs::perms::owner_all);
+  }
+  static std::string Blend(const std::string& name) { return Cases::File(name + ".blend").string(); }
+
+ private:
+  CommandSettings settings_;
+};
+
+TEST_F(BlenderVerbs, GuidegenExportsByItself) {
+  const Arguments tail = {"--size", "96x54", "--view", "20,30", "-o"};
+  const CommandResult run = RunHere(With(With({"guidegen", Blend("objects"), "--frame", "6"}, tail), {"blend.exr"}));
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.err, AllOf(HasSubstr("objects.blend: blender exports it at frame 6"), HasSubstr("'Strands'")));
+  RunOk(With(With({"guidegen", Cases::File("objects6.glb").string()}, tail), {"glb.exr"}));
+  const CommandResult compared = Run({"compare", "blend.exr", "glb.exr"});
+  EXPECT_EQ(compared.code, 0) << compared.out;
+  for (const auto& entry : fs::directory_iterator(fs::temp_directory_path())) {
+    if (entry.path().filename().string().rfind("scumble-", 0) != 0) continue;
+    EXPECT_FALSE(fs::exists(entry.path() / "scene.glb")) << "a temporary export is left behind";
+  }
+}
+
+TEST_F(BlenderVerbs, StylizeToo) {
+  WriteStyle("style");
+  const CommandResult run = RunHere({"stylize", Blend("cameras"), "--style", "style", "--size", "64", "-o", "p.png"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(Exists("p.png"));
+}
+
+// What is measured of a .blend is what is painted of it: its frame, and its view.
+TEST_F(BlenderVerbs, TradeoffAndBudgetTakeAFrame) {
+  WriteStyle("style");
+  const Arguments seen = {"--style", "style", "--size", "64x36", "--view", "20,30", "--frame", "6"};
+  const Arguments stylize = With({"stylize", Blend("objects")}, seen);
+  ASSERT_EQ(RunHere(With(stylize, {"-o", "plain.png"})).code, 0);
+  const CommandResult within = RunHere(With(stylize, {"--budget-ms", "3600000", "--json", "-o", "picked.png"}));
+  ASSERT_EQ(within.code, 0) << within.err;
+  EXPECT_EQ(within.Json().at("budget").at("picked"), "the style");
+  EXPECT_EQ(Bytes("picked.png"), Bytes("plain.png"));
+  const CommandResult trade = RunHere(
+      With(With({"tradeoff", Blend("objects")}, seen), {"--only", "method", "--repeat", "1", "--json", "-o", "out"}));
+  ASSERT_EQ(trade.code, 0) << trade.err;
+  const nlohmann::json ways = trade.Json().at("ways");
+  ASSERT_EQ(ways.size(), 3u);
+  std::istringstream options(ways[0].at("options").get<std::string>());
+  const Arguments words{std::istream_iterator<std::string>(options), {}};
+  ASSERT_EQ(RunHere(With(With({"stylize", Blend("objects")}, words), {"-o", "again.png"})).code, 0);
+  EXPECT_TRUE(Pixels("out/pictures/01-the-style.png") == Pixels("again.png")) << options.str();
+  for (const auto& way : ways) EXPECT_TRUE(way.at("memory_bytes").is_null()) << "Blender would run for each";
+}
+
+// One Blender for the range; more frames than it may be ahead, backwards and with a stop in between.
+TEST_F(BlenderVerbs, ARangeIsItsFramesByteForByte) {
+  const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30"};
+  const CommandResult range = RunHere(With(guidegen, {"--frames", "6-1,-2", "-o", "range.##.exr"}));
+  ASSERT_EQ(range.code, 0) << range.err;
+  EXPECT_THAT(range.err, HasSubstr("objects.blend: blender exports frames 6-1,-2"));
+  EXPECT_EQ(range.err.find("'Strands'"), range.err.rfind("'Strands'")) << "a warning is given once\n" << range.err;
+  for (const std::string frame : {"6", "2", "-2"}) {
+    const CommandResult one = RunHere(With(guidegen, {"--frame", frame, "-o", "one.exr"}));
+    ASSERT_EQ(one.code, 0) << one.err;
+    const std::string name = frame == "-2" ? "range.-02.exr" : "range.0" + frame + ".exr";
+    EXPECT_EQ(Bytes(name), Bytes("one.exr")) << frame;
+  }
+  EXPECT_NE(Bytes("range.06.exr"), Bytes("range.02.exr")) << "nothing moves";
+  // With nothing to make there is no Blender to miss.
+  const Arguments again = With(guidegen, {"--frames", "1-6", "-o", "range.##.exr", "--resume", "--blender", "no/blender"});
+  const CommandResult kept = RunHere(again);
+  EXPECT_EQ(kept.code, 0) << kept.err;
+  EXPECT_THAT(kept.out, HasSubstr("0 made, 6 kept"));
+
+  WriteStyle("style");
+  const Arguments stylize = {"stylize", Blend("objects"), "--size", "64x36", "--view", "20,30", "--style", "style"};
+  ASSERT_EQ(RunHere(With(stylize, {"--frames", "5-6", "-o", "p#.png"})).code, 0);
+  RunOk({"transfer", "range.##.exr", "--style", "style", "--frame", "6", "-o", "two.png"});
+  EXPECT_EQ(Bytes("p6.png"), Bytes("two.png"));
+
+  WriteProgram("stops", "echo 'scumble: error: the export stopped' >&2; exit 3");
+  const CommandResult stopped = RunHere(With(guidegen, {"--frames", "1-3", "-o", "s#.exr", "--blender", "./stops"}));
+  EXPECT_EQ(stopped.code, 3);
+  EXPECT_THAT(stopped.Error(), AllOf(HasSubstr("3 of 3 frames were not made: 1-3"), HasSubstr("the export stopped")));
+  ExpectErrorHere(With(guidegen, {"--frames", "1-3", "-o", "s#.exr", "--blender", "no/blender"}), 5, {"no/blender"});
+}
+
+TEST_F(BlenderVerbs, MotionTakesTheNextFrameToo) {
+  const Arguments guidegen = {"guidegen", Blend("objects"), "--size", "64x36", "--view", "20,30", "--layers", "motion"};
+  const CommandResult range = RunHere(With(guidegen, {"--frames", "5-1x-2,2", "-o", "m#.exr"}));
+  ASSERT_EQ(range.code, 0) << range.err;
+  EXPECT_THAT(range.err, HasSubstr("exports frames 5-6,3-4,1-2"));
+  ASSERT_EQ(RunHere(With(guidegen, {"--frame", "3", "-o", "one.exr"})).code, 0);
+  EXPECT_EQ(Bytes("one.exr"), Bytes("m3.exr"));
+  GuideReadOptions read;
+  read.required = AlwaysWritten().Add(Layer::kMotion);
+  const auto guides = ReadGuides(At("m2.exr"), read);
+  ASSERT_TRUE(guides) << guides.error().message;
+  const auto motion = guides->Plane(Layer::kMotion, 0);
+  EXPECT_TRUE(std::any_of(motion.begin(), motion.end(), [](float x) { return x != 0.0f; })) << "nothing moves";
+}
+
+// In objects.blend the object One wants oil, and the material Grey to be left as rendered.
+TEST_F(BlenderVerbs, StylesOfTheFileAreHeeded) {
+  WriteStyle("style");
+  const Arguments stylize = {"stylize", Blend("objects"), "--size", "64x36", "--view", "20,30", "--style", "style"};
+  const auto picture = [&](const Arguments& more) {
+    const CommandResult run = RunHere(With(With(stylize, more), {"-o", "p.png"}));
+    EXPECT_EQ(run.code, 0) << run.err;
+    return Pixels("p.png");
+  };
+  const std::string heeded = picture({}), plain = picture({"--no-scene-styles"});
+  EXPECT_FALSE(heeded == plain);
+  EXPECT_TRUE(picture({"--no-scene-styles", "--assign", "Grey=rendered", "--assign", "One=oil"}) == heeded);
+  EXPECT_TRUE(picture({"--assign", "*=style"}) == plain);
+  ASSERT_EQ(RunHere(With(stylize, {"--frames", "1-2", "-o", "r#.png"})).code, 0);
+  ASSERT_EQ(RunHere(With(stylize, {"--frame", "2", "-o", "p.png"})).code, 0);
+  EXPECT_EQ(Bytes("r2.png"), Bytes("p.png"));
+}
+
+TEST_F(BlenderVerbs, FailuresAreReadable) {
+  const Arguments tail = {"--size", "32", "-o", "g.exr"};
+  WriteText("bad.blend", "no scene at all");
+  ExpectErrorHere(With({"guidegen", "bad.blend"}, tail), 3, {"bad.blend", "File format is not supported"});
+  ExpectErrorHere(With({"guidegen", "lost.blend"}, tail), 3, {"lost.blend", "no such file"});
+  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "no/blender"}, tail), 5,
+                  {"no/blender", "--blender PATH"});
+  WriteProgram("newer", "echo 'scumble: error: this is Blender 9.9.9; only 3.4 is supported' >&2; exit 5");
+  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./newer"}, tail), 5, {"Blender 9.9.9"});
+  WriteProgram("silent", "exit 0");
+  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./silent"}, tail), 3, {"./silent", "says nothing"});
+  WriteProgram("crashing", "kill -SEGV $$");
+  ExpectErrorHere(With({"guidegen", "bad.blend", "--blender", "./crashing"}, tail), 3, {"./crashing crashed"});
+  EXPECT_FALSE(Exists("g.exr"));
+}
+
+TEST_F(BlenderVerbs, OptionsForBlenderNeedABlendFile) {
+  WriteText("s.gltf", TriangleGltf(false));
+  ExpectErrorHere({"guidegen", "s.gltf", "--blender", "blender", "-o", "g.exr"}, 2, {"--blender", "s.gltf"});
+}
+
+TEST_F(BlenderVerbs, WithoutTheScriptTheyAreNotBuiltIn) {
+  fs::remove(At("home/blender_scripts"));
+  ExpectErrorHere({"guidegen", Blend("lamps"), "-o", "g.exr"}, 5, {"lamps.blend", "export_scene.py is not found"});
+}
+
+TEST(BlenderExtras, BrokenOnesAreNamed) {
+  const TemporaryFolder folder;
+  const auto load = [&](const std::string& extras) {
+    std::ofstream(folder / "s.gltf")
+        << R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"L","extras":{"scumble":)"
+        << extras << "}}]}";
+    return LoadScene(folder / "s.gltf");
+  };
+  EXPECT_TRUE(load(R"({"lamp":{"type":"SUN","color":[1,1,1],"energy":2,"angle":0}})"));
+  EXPECT_TRUE(load("3")) << "somebody else's";
+  for (const char* lamp :
+       {R"({"type":"MOON","color":[1,1,1],"energy":2})", R"({"type":"SUN","color":[1,1],"energy":2})",
+        R"({"type":"SUN","color":[1,1,1],"energy":-2,"angle":0})", R"({"type":"SUN"})", "7",
+        R"({"type":"AREA","color":[1,1,1],"energy":2,"shape":"STAR","size":1,"size_y":1})"}) {
+    const auto scene = load(std::string(R"({"lamp":)") + lamp + "}");
+    ASSERT_FALSE(scene) << lamp;
+    EXPECT_EQ(scene.error().kind, ErrorKind::kInput) << lamp;
+    EXPECT_THAT(scene.error().message, AllOf(HasSubstr("'L'"), HasSubstr("extras of scumble"))) << lamp;
+  }
+  const auto dark = load(R"({"lamp":{"type":"AREA","color":[1,1,1],"energy":2,"shape":"DISK","size":0,"size_y":1}})");
+  ASSERT_TRUE(dark);
+  EXPECT_EQ(dark->lights.at(0).intensity, 0.0) << "a lamp without an area gives no light";
+}
+
+}  // namespace
+}  // namespace scumble

@@ -1,0 +1,141 @@
+// Guides from renders that a user makes by hand in Blender, through the real Blender: the solved camera against the one
+// that Blender had, names and coverage. tests/blender/render_plain.py renders them.
+#include <cmath>
+#include <cstdlib>
+#include <set>
+
+#include "core/io/blender/blender_camera.h"
+#include "tests/support/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Rendered once for all tests; what a shot's name means stands in render_plain.py.
+class Shots : public testing::Environment {
+ public:
+  void SetUp() override {
+    folder_ = new TemporaryFolder;
+    const std::string log = (*folder_ / "log").string();
+    const std::string command =
+        "blender -b -noaudio --factory-startup -P " SCUMBLE_SOURCE_DIR "/tests/blender/render_plain.py -- --output " +
+        folder_->path().string() +
+        " --shot landscape-opaque-filtered landscape-clear-filtered landscape-clear-sharp "
+        "portrait-shifted-clear-filtered "
+        "shifted-clear-sharp ortho-shifted-clear-sharp ortho-opaque-filtered far-clear-sharp landscape-slightdof "
+        "landscape-lens landscape-dof landscape-nopos > " +
+        log + " 2>&1";
+    std::string text;
+    if (std::system(command.c_str()) != 0) {
+      std::ifstream stream(log);
+      text.assign(std::istreambuf_iterator<char>(stream), {});
+      FAIL() << command << "\n" << text;
+    }
+  }
+  void TearDown() override { delete folder_; }
+  static fs::path File(const std::string& name) { return *folder_ / name; }
+
+ private:
+  static inline TemporaryFolder* folder_ = nullptr;
+};
+
+const auto* const kShots = testing::AddGlobalTestEnvironment(new Shots);
+
+GuideSet Read(const std::string& shot, bool with_camera) {
+  GuideReadOptions options;
+  options.required.Add(Layer::kPosition).Remove(Layer::kMaterial);
+  options.optional = {Layer::kMaterial};
+  if (with_camera) options.blender_camera = Shots::File(shot + ".camera");
+  auto guides = ReadGuides(Shots::File(shot + ".exr"), options);
+  EXPECT_TRUE(guides) << guides.error().message;
+  return guides ? std::move(*guides) : GuideSet(1, 1);
+}
+
+glm::dvec2 Project(const GuideSet& guides, const GuideCamera& camera, glm::dvec3 world) {
+  const glm::dvec4 clip = camera.clip_from_view * camera.view_from_world * glm::dvec4(world, 1.0);
+  return {0.5 * guides.width() * (1.0 + clip.x / clip.w), 0.5 * guides.height() * (1.0 - clip.y / clip.w)};
+}
+
+TEST(BlenderRender, TheSolvedCameraIsBlendersOwn) {
+  for (const char* shot :
+       {"landscape-opaque-filtered", "landscape-clear-sharp", "portrait-shifted-clear-filtered", "shifted-clear-sharp",
+        "ortho-shifted-clear-sharp", "ortho-opaque-filtered", "far-clear-sharp"}) {
+    const GuideSet solved = Read(shot, false), told = Read(shot, true);
+    ASSERT_EQ(solved.pixel_count(), told.pixel_count());
+    double angle = 0.0, pixels = 0.0;
+    std::size_t covered = 0;
+    for (std::size_t i = 0; i < solved.pixel_count(); ++i) {
+      if (!(solved.Plane(Layer::kCoverage)[i] > 0.0f)) continue;
+      ++covered;
+      const glm::dvec3 a = glm::normalize(glm::dvec3(solved.Vec3(Layer::kNormal, i)));
+      const glm::dvec3 b = glm::normalize(glm::dvec3(told.Vec3(Layer::kNormal, i)));
+      angle = std::max(angle, std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 57.29577951308232);
+      const glm::dvec3 world(solved.Vec3(Layer::kPosition, i));
+      pixels =
+          std::max(pixels, glm::length(Project(solved, *solved.camera, world) - Project(solved, *told.camera, world)));
+    }
+    EXPECT_GT(covered, 10000u) << shot;
+    EXPECT_LT(angle, 0.01) << shot;
+    EXPECT_LT(pixels, 0.01) << shot;
+  }
+}
+
+// A circle of confusion below a pixel scatters positions and leaves no doubt about the camera.
+TEST(BlenderRender, ALittleDepthOfFieldIsNoHindrance) {
+  const GuideSet solved = Read("landscape-slightdof", false);
+  const auto told = ReadBlenderCamera(Shots::File("landscape-slightdof.camera"));
+  ASSERT_TRUE(told) << told.error().message;
+  ASSERT_TRUE(solved.camera);
+  const glm::dmat3 turn(solved.camera->view_from_world * glm::inverse(told->view_from_world));
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(turn[k][k], 1.0, 1e-7) << "0.03° at most";
+}
+
+TEST(BlenderRender, NamesAreThoseOfTheScene) {
+  for (const char* shot : {"landscape-opaque-filtered", "landscape-clear-sharp"}) {
+    const GuideSet guides = Read(shot, false);
+    std::set<std::string> names;
+    for (const auto& [id, name] : guides.object_names) names.insert(name);
+    EXPECT_EQ(names, (std::set<std::string>{"Ball", "Floor", "The \"ring\""})) << shot;
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
+      const bool covered = guides.Plane(Layer::kCoverage)[i] > 0.0f;
+      const auto id = static_cast<std::uint32_t>(guides.Plane(Layer::kObject)[i]);
+      ASSERT_EQ(covered, guides.object_names.count(id) == 1) << shot << " at " << i;
+    }
+  }
+  const GuideSet sharp = Read("landscape-clear-sharp", false);
+  ASSERT_EQ(sharp.material_names.size(), 1u);
+  EXPECT_EQ(sharp.material_names.begin()->second, "Red \"paint\"");
+}
+
+// An opaque film's alpha is 1 everywhere; Cryptomatte knows what a transparent film's alpha would have been.
+TEST(BlenderRender, CoverageIsThatOfATransparentFilm) {
+  const GuideSet opaque = Read("landscape-opaque-filtered", false), clear = Read("landscape-clear-filtered", false);
+  std::size_t partial = 0;
+  for (std::size_t i = 0; i < opaque.pixel_count(); ++i) {
+    const float a = opaque.Plane(Layer::kCoverage)[i], b = clear.Plane(Layer::kCoverage)[i];
+    ASSERT_NEAR(a, b, 1e-4f) << i;
+    partial += a > 0.0f && a < 1.0f;
+    ASSERT_EQ(a > 0.0f, opaque.Plane(Layer::kDepth)[i] < 100.0f) << "an edge has the depth of what it is the edge of";
+  }
+  EXPECT_GT(partial, 100u);
+}
+
+class BlenderTransfer : public CliTest {};
+
+TEST_F(BlenderTransfer, APlainRenderBecomesAPicture) {
+  RunOk({"transfer", Shots::File("landscape-opaque-filtered.exr"), "--style", "oil", "-o", "a.png"});
+  RunOk({"transfer", Shots::File("landscape-opaque-filtered.exr"), "--style", "oil", "-o", "b.png", "--camera",
+         Shots::File("landscape-opaque-filtered.camera")});
+  // Cameras that differ in the seventh digit settle a few pixels on another chunk.
+  RunOk({"compare", "a.png", "b.png", "--fail", "0.02", "--failpercent", "2"});
+  ExpectError({"transfer", Shots::File("landscape-nopos.exr"), "--style", "oil", "-o", "c.png"}, 3,
+              {"landscape-nopos.exr", "pass Position", "--camera FILE"});
+  ExpectError({"transfer", Shots::File("landscape-lens.exr"), "--style", "oil", "-o", "c.png"}, 3,
+              {"landscape-lens.exr", "not planar", "panoramic", "--camera FILE"});
+  ExpectError({"transfer", Shots::File("landscape-dof.exr"), "--style", "oil", "-o", "c.png"}, 3,
+              {"landscape-dof.exr", "depth of field", "--camera FILE"});
+}
+
+}  // namespace
+}  // namespace scumble

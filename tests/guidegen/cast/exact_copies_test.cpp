@@ -1,0 +1,59 @@
+// Objects that stand exactly where another one stands: which of them are left out.
+#include "guidegen/rays/coincident_objects.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/support/guidegen_scenes.h"
+
+namespace scumble::testing {
+namespace {
+
+struct Stand {
+  Mesh mesh = QuadMesh();
+  Material solid, single, holes, lamp;
+
+  Stand() {
+    single.double_sided = false;
+    holes.alpha_mode = AlphaMode::kMask;
+    lamp.emission = glm::vec3(1.0f);
+  }
+  PlacedObject Of(const Material& material) const { return Place(&mesh, &material, {}, glm::dmat4(1.0)); }
+};
+
+// Of two in one place the first is left out where the second hides all of it: never behind holes, nor behind what is
+// culled where it is not; and what emits is a light besides.
+TEST(ExactCopies, AreCoveredByWhatHidesThemWhole) {
+  const Stand stand;
+  const auto first_is_covered = [&](const Material& first, const Material& second) {
+    const std::vector<bool> covered = FindCoveredCopies(std::vector{stand.Of(first), stand.Of(second)});
+    EXPECT_FALSE(covered[1]);
+    return bool(covered[0]);
+  };
+  for (const Material& under : {stand.solid, stand.single, stand.holes}) {
+    EXPECT_TRUE(first_is_covered(under, stand.solid));
+    EXPECT_FALSE(first_is_covered(under, stand.holes));
+    EXPECT_FALSE(first_is_covered(under, stand.lamp));
+  }
+  EXPECT_TRUE(first_is_covered(stand.single, stand.single));
+  EXPECT_FALSE(first_is_covered(stand.solid, stand.single));
+  EXPECT_FALSE(first_is_covered(stand.lamp, stand.solid));
+}
+
+// A tree of masked leaves that somebody placed half a million times: nothing is covered, and each is looked at once,
+// in less than a second. Were each compared with each, 1.25e11 pairs would take longer than a test may.
+TEST(ExactCopies, WithHolesAreNotComparedWithEachOther) {
+  const Stand stand;
+  const std::vector<PlacedObject> leaves(500'000, stand.Of(stand.holes));
+  const std::vector<bool> covered = FindCoveredCopies(leaves);
+  EXPECT_EQ(std::count(covered.begin(), covered.end(), true), 0);
+  std::vector<PlacedObject> hidden = leaves;
+  hidden.push_back(stand.Of(stand.solid));
+  const std::vector<bool> all = FindCoveredCopies(hidden);
+  EXPECT_EQ(std::count(all.begin(), all.end(), true), 500'000);
+}
+
+}  // namespace
+}  // namespace scumble::testing

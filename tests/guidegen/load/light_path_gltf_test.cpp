@@ -1,0 +1,53 @@
+// What glTF says of how materials answer and emit light.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "guidegen/load/load_scene.h"
+#include "tests/support/gltf_builder.h"
+
+namespace scumble {
+namespace {
+
+using GltfLight = LoaderTest;
+
+TEST_F(GltfLight, FactorsAndStrengthAreRead) {
+  GltfBuilder gltf;
+  gltf.Triangle();
+  gltf.Append("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
+                            {"emissiveFactor", {0.5, 0.25, 1.0}},
+                            {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4.0}}}}}});
+  gltf.Append("materials", {{"name", "plain"}});
+  gltf.json["extensionsUsed"] = {"KHR_materials_emissive_strength"};
+  const auto scene = LoadScene(Write("a.glb", gltf.Glb()));
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(scene->materials[0].bsdf, Bsdf::kMetallicRoughness);
+  EXPECT_FLOAT_EQ(scene->materials[0].metallic, 0.25f);
+  EXPECT_FLOAT_EQ(scene->materials[0].roughness, 0.75f);
+  EXPECT_EQ(scene->materials[0].emission, glm::vec3(2.0f, 1.0f, 4.0f));
+  // glTF's own defaults: a rough metal that does not glow.
+  EXPECT_EQ(scene->materials[1].metallic, 1.0f);
+  EXPECT_EQ(scene->materials[1].roughness, 1.0f);
+  EXPECT_EQ(scene->materials[1].emission, glm::vec3(0.0f));
+  EXPECT_EQ(scene->materials[1].metallic_roughness_texture.texture, -1);
+}
+
+TEST_F(GltfLight, ValuesOutOfRangeAreRefusedByName) {
+  const auto refuse = [&](const nlohmann::json& material, const std::string& what) {
+    GltfBuilder gltf;
+    gltf.Triangle();
+    gltf.Append("materials", material);
+    const auto scene = LoadScene(Write("bad.glb", gltf.Glb()));
+    ASSERT_FALSE(scene) << what;
+    EXPECT_EQ(scene.error().kind, ErrorKind::kInput);
+    EXPECT_NE(scene.error().message.find("bad.glb"), std::string::npos) << scene.error().message;
+    EXPECT_NE(scene.error().message.find(what), std::string::npos) << scene.error().message;
+  };
+  refuse({{"pbrMetallicRoughness", {{"roughnessFactor", 1.5}}}}, "roughness");
+  refuse({{"pbrMetallicRoughness", {{"metallicFactor", -0.1}}}}, "metallic");
+  refuse({{"emissiveFactor", {-1.0, 0.0, 0.0}}}, "emissive");
+  refuse({{"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", -2.0}}}}}}, "emissive strength");
+}
+
+}  // namespace
+}  // namespace scumble

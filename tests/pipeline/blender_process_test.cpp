@@ -1,0 +1,168 @@
+// How Blender is run: in whose environment, what a signal leaves behind, and what a failure says. Scripts of a few lines
+// stand in for it.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "tests/support/cli_harness.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A variable that is as before when this is gone.
+class Setting {
+ public:
+  Setting(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    ::setenv(name, value.c_str(), 1);
+  }
+  ~Setting() { before_.empty() ? ::unsetenv(name_) : ::setenv(name_, before_.c_str(), 1); }
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+class BlenderProcess : public CliTest {
+ protected:
+  void WriteProgram(const std::string& name, const std::string& body) {
+    WriteText(name, "#!/bin/sh\n" + body + "\n");
+    fs::permissions(At(name), fs::perms::owner_all);
+  }
+  CommandResult Export(const std::string& blender) {
+    WriteText("shot.blend", "");
+    return Run({"guidegen", "shot.blend", "--blender", blender, "-o", "g.exr"});
+  }
+};
+
+// Blender's Python takes the packages beside the first python3 in PATH.
+TEST_F(BlenderProcess, AVirtualEnvironmentIsNotItsOwn) {
+  WriteProgram("venv/bin/python3", "exit 1");
+  WriteProgram("real/blender", "{ command -v python3; command -v blender; env; } > \"" + At("seen").string() + "\"");
+  fs::create_directory_symlink(At("real"), At("linked"));
+  const Setting path("PATH", At("venv/bin").string() + ":" + At("linked").string() + ":" + std::getenv("PATH"));
+  const Setting home("PYTHONHOME", "/nowhere"), packages("PYTHONPATH", "/nowhere"), first("PYTHONSTARTUP", "/nowhere");
+  const Setting venv("VIRTUAL_ENV", At("venv").string()), kept("SCUMBLE_KEPT", "yes");
+  EXPECT_EQ(Export("blender").code, 3);
+  const std::string seen = Bytes("seen");
+  const std::string real = fs::canonical(At("real")).string();
+  EXPECT_EQ(seen.rfind("/usr/bin/python3\n" + real + "/blender\n", 0), 0u) << seen;
+  EXPECT_NE(seen.find("\nSCUMBLE_KEPT=yes\n"), std::string::npos) << seen;
+  EXPECT_NE(seen.find(At("venv/bin").string()), std::string::npos) << "the caller's PATH stands behind";
+  for (const char* gone : {"\nPYTHON", "\nVIRTUAL_ENV="}) EXPECT_EQ(seen.find(gone), std::string::npos) << gone;
+}
+
+// Whether a process still does anything: one that nobody waited for does not.
+bool Runs(const std::string& pid) {
+  std::ifstream stream("/proc/" + pid + "/stat");
+  const std::string stat{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t name_ends = stat.rfind(')');
+  return name_ends != std::string::npos && stat.at(name_ends + 2) != 'Z';
+}
+
+// A process that was killed goes when the system next looks at it, which is not at once.
+bool EndsSoon(const std::string& pid) {
+  for (int tries = 0; tries < 500 && Runs(pid); ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return !Runs(pid);
+}
+
+TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
+  fs::create_directory(At("tmp"));
+  const Setting temporary("TMPDIR", At("tmp").string());
+  for (const auto& [name, number] : {std::pair("TERM", SIGTERM), {"INT", SIGINT}, {"HUP", SIGHUP}}) {
+    // Its own temporary files, a child that sleeps, and then the user's signal to the program that waits for it.
+    WriteProgram("blender", "echo x > \"$TMPDIR/of_blender\"; sleep 50 & echo $! > sleeper; echo $$ > self; kill -" +
+                                std::string(name) + " $PPID; sleep 50");
+    for (const Arguments& verb : {Arguments{"guidegen", "shot.blend", "-o", "g.exr"},
+                                  Arguments{"crosscheck", Scene("suzanne.glb"), "--size", "32", "--samples", "0"}}) {
+      WriteText("shot.blend", "");
+      const CommandResult result = Run(With(verb, {"--blender", "./blender"}));
+      EXPECT_EQ(result.code, 128 + number) << name << result.err;
+      EXPECT_TRUE(fs::is_empty(At("tmp"))) << name;
+      for (const char* file : {"sleeper", "self"}) {
+        std::string pid = Bytes(file);
+        pid.pop_back();
+        EXPECT_TRUE(EndsSoon(pid)) << name << ", " << file << " " << pid;
+      }
+    }
+  }
+  EXPECT_FALSE(Exists("g.exr"));
+}
+
+// While a frame of a range is cast, nobody waits for Blender, which may be at work or have ended. The casting alone would
+// take longer than the test has patience.
+TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
+  fs::create_directory(At("tmp"));
+  const Setting temporary("TMPDIR", At("tmp").string());
+  WriteText("shot.blend", "");
+  const auto exported = [&](const std::string& frame) {
+    for (const auto& folder : fs::directory_iterator(At("tmp"))) {
+      if (fs::exists(folder.path() / ("scene." + frame + ".glb"))) return true;
+    }
+    return false;
+  };
+  for (const auto& [last_words, signal] : {std::pair("sleep 50", SIGTERM), {"exit 0", SIGINT}}) {
+    WriteProgram("blender",
+                 "while [ \"$1\" != --output ]; do shift; done; folder=$(dirname \"$2\")\n"
+                 "for frame in 1 2; do cp " + Scene("suzanne.glb") + " \"$folder/part\"; "
+                 "mv \"$folder/part\" \"$folder/scene.$frame.glb\"; done; echo $$ > self; " + last_words);
+    fs::remove(At("self"));
+    const pid_t child = Start({"guidegen", "shot.blend", "--blender", "./blender", "--frames", "1-2", "--size", "1024",
+                               "--layers", "lpe.full", "--samples", "65536", "-o", "g.#.exr"});
+    for (int tries = 0; tries < 2000 && (Bytes("self").empty() || exported("1")); ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(exported("2")) << "the first is loaded, the second waits";
+    ::kill(child, signal);
+    const CommandResult result = Finish(child);
+    EXPECT_EQ(result.code, 128 + signal) << result.err;
+    EXPECT_TRUE(fs::is_empty(At("tmp"))) << last_words;
+    std::string blender = Bytes("self");
+    if (!blender.empty()) blender.pop_back();
+    EXPECT_TRUE(EndsSoon(blender)) << last_words;
+  }
+  EXPECT_FALSE(Exists("g.1.exr"));
+}
+
+TEST_F(BlenderProcess, BothVerbsTellTheSameFailureInTheSameWords) {
+  WriteProgram("talking", "echo 'Fra:1 Mem:1M'; echo 'out of paint'; echo 'Fra:2 Mem:1M'; exit 1");
+  WriteProgram("killed", "kill -KILL $$");
+  WriteText("shot.blend", "");
+  const auto fails = [&](const std::string& blender, int code, const std::string& part) {
+    for (const Arguments& verb : {Arguments{"guidegen", "shot.blend", "-o", "g.exr"},
+                                  Arguments{"crosscheck", Scene("suzanne.glb"), "--size", "32", "--samples", "0"}}) {
+      const CommandResult result = Run(With(verb, {"--blender", blender}));
+      EXPECT_EQ(result.code, code) << result.err;
+      EXPECT_NE(result.Error().find(part), std::string::npos) << result.err;
+      EXPECT_EQ(result.Error().find("Fra:"), std::string::npos) << result.err;
+      if (verb[0] == "crosscheck") {
+        EXPECT_EQ(result.Error().find("by hand"), std::string::npos) << result.err;
+      }
+    }
+  };
+  fails("./talking", 3, ": out of paint");
+  fails("./killed", 3, "ended from outside (Killed)");
+  fails("./none", 5, "./none cannot be run (No such file or directory): install Blender 3.4, or say where it is");
+}
+
+TEST_F(BlenderProcess, TargetsAreCheckedBeforeItRuns) {
+  WriteProgram("blender", "touch ran");
+  WriteText("shot.blend", "");
+  const Arguments with = {"--blender", "./blender"};
+  ExpectError(With({"guidegen", "shot.blend", "-o", "nodir/g.exr"}, with), 4, {"nodir/g.exr", "there is no folder"});
+  ExpectError(With({"crosscheck", Scene("suzanne.glb"), "-o", "/proc/report.html"}, with), 4, {"/proc/report.html"});
+  EXPECT_FALSE(Exists("ran"));
+  ExpectError({"info", "shot.blend", "--blender", "./none"}, 5, {"./none"});
+  ExpectError({"info", Scene("suzanne.glb"), "--blender", "./blender"}, 2, {"--blender is for .blend scenes"});
+  WriteStyle("style");
+  ExpectError({"transfer", "shot.blend", "--style", "style", "-o", "p.png"}, 3, {"scumble stylize"});
+}
+
+}  // namespace
+}  // namespace scumble

@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+"""Checks the #include lines of the sources against the table of who may include whom.
+
+Usage: check_includes.py [SOURCE_FOLDER]     Prints each offender as file:line; exit code 1 if there are any.
+
+Libraries include only the libraries that the table names. Inside a library a folder's subfolders are stages of the data's way,
+listed in order: a stage includes itself, its parent folders' headers and the stages before it. Files in the root of a library
+conduct, and may include every stage.
+"""
+import pathlib
+import re
+import sys
+
+# Each library: its folder, the libraries that it may include, and its stages in order. A stage's own stages follow as
+# "parent/child".
+LIBRARIES = {
+    "image": ("core/image", set(), []),
+    "io": ("core/io", {"image"}, []),
+    "filter": ("core/filter", {"image"}, []),
+    "guidegen": ("guidegen", {"image", "io"}, []),
+    "style": ("core/style", {"image", "io"}, []),
+    "transfer": ("transfer", {"image", "filter"}, []),
+    "measure": ("measure", {"image", "io", "filter"}, []),
+    "pipeline": ("pipeline", {"image", "io", "filter", "guidegen", "style", "transfer", "measure", "cli"}, []),
+    "cli": ("apps/cli", {"image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"}, []),
+}
+
+# Third parties by the start of the included path, and the libraries that may name them.
+THIRD_PARTY = {
+    "glm/": {"filter", "image", "io", "guidegen", "style", "transfer", "measure", "cli", "pipeline"},
+    "OpenImageIO/": {"io"},
+    "OpenEXR/": {"io"},
+    "Imath/": {"io"},
+    "png.h": {"io"},
+    "zip.h": {"io"},
+    "zlib.h": {"io"},
+    "hpdf.h": {"style"},
+    "embree": {"guidegen"},
+    "tiny_gltf": {"guidegen"},
+    "tinygltf": {"guidegen"},
+    "tiny_obj_loader": {"guidegen"},
+    "stb_image": {"guidegen"},
+    "oneapi/tbb": {"guidegen", "transfer"},
+    "tbb/": {"cli", "filter", "guidegen", "pipeline", "transfer"},
+    "nanoflann": {"transfer"},
+    "hwy/": {"guidegen", "transfer"},
+    "toml++/": {"style"},
+    "apriltag/": {"style"},
+    "fmt/": {"measure", "cli", "pipeline"},
+    "nlohmann/": {"measure", "cli", "pipeline"},
+    "CLI/": {"cli", "pipeline"},
+}
+
+# What C, C++ and POSIX bring along.
+STANDARD = re.compile(r"[a-z0-9_]+(\.h)?|sys/[a-z]+\.h")
+
+INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
+
+
+def library_of(path):
+    """The library that a path from the repository's root lies in, and the rest of the path; (None, path) outside."""
+    for library, (folder, _, _) in LIBRARIES.items():
+        if path.startswith(folder + "/"):
+            return library, path[len(folder) + 1:]
+    return None, path
+
+
+def stage_of(inside):
+    """The stage that a path inside its library lies in; "" for the root."""
+    return inside.rpartition("/")[0]
+
+
+def rank(library, stage):
+    """Where a stage stands in its library's order; the root conducts and stands above all."""
+    stages = LIBRARIES[library][2]
+    return stages.index(stage) if stage in stages else None
+
+
+def stage_offence(library, stage, included):
+    """What is wrong with an include from one stage of a library to another, or None."""
+    if not stage or stage == included or included == "" or stage.startswith(included + "/") or included.startswith(stage + "/"):
+        return None
+    for name in (stage, included):
+        if rank(library, name) is None:
+            return f"joins the stages of {LIBRARIES[library][0]}/, of which {name}/ is none: add it to the table in its place"
+    if rank(library, included) > rank(library, stage):
+        return f"points upwards: {included}/ comes after {stage}/ in {LIBRARIES[library][0]}/"
+    return None
+
+
+def offence(name, quoted, bracketed, root):
+    """What is wrong with one #include line of the file `name`, or None."""
+    library, inside = library_of(name)
+    _, allowed, _ = LIBRARIES[library]
+    if quoted:
+        if "/" not in quoted:
+            return "is not written from the repository's root"
+        if not (root / quoted).is_file():
+            return "is no file of this repository; third parties go into angle brackets"
+        owner, rest = library_of(quoted)
+        if owner == library:
+            return stage_offence(library, stage_of(inside), stage_of(rest))
+        if owner not in allowed:
+            return f"is not for {library}, which may include {', '.join(sorted(allowed)) or 'nothing else'}"
+        return None
+    if library_of(bracketed)[0]:
+        return "is ours: write it in quotes"
+    for start, libraries in THIRD_PARTY.items():
+        if bracketed.startswith(start):
+            return None if library in libraries else f"is not for {library}, only for {', '.join(sorted(libraries))}"
+    return None if STANDARD.fullmatch(bracketed) else "is a third party that no library may include yet"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
+    files = [path for folder, _, _ in LIBRARIES.values() for path in sorted((root / folder).rglob("*"))
+             if path.suffix in (".h", ".cpp")]
+    offences = []
+    for path in files:
+        name = path.relative_to(root).as_posix()
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            found = INCLUDE.match(line)
+            problem = offence(name, found[1], found[2], root) if found else None
+            if problem:
+                offences.append(f"{name}:{number}: {found[1] or found[2]} {problem}")
+    if not files:
+        offences.append(f"{root} holds none of {', '.join(LIBRARIES)}: name the folder of the sources")
+    print("\n".join(offences) if offences else f"{len(files)} files include only what they may")
+    return 1 if offences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

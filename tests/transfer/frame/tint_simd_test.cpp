@@ -1,0 +1,199 @@
+// Many pixels at once are tinted as each by itself is, to the last bit.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "core/image/color.h"
+#include "tests/support/every_instruction_set.h"
+#include "tests/support/transfer_fixtures.h"
+#include "transfer/tint/colorize.h"
+#include "transfer/tint/multiply.h"
+#include "transfer/tint/oklab.h"
+
+namespace scumble {
+namespace {
+
+using namespace testing;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+struct Pixels {
+  std::vector<float> albedo[3];
+  std::vector<std::uint16_t> texels;
+
+  explicit Pixels(std::size_t count) : texels(4 * count) {
+    for (auto& plane : albedo) plane.resize(count);
+  }
+  std::size_t count() const { return albedo[0].size(); }
+};
+
+// Albedos of many kinds: even, dark, of every magnitude, nearly 1, the same everywhere, beyond the gamut, and extremes.
+float AnyAlbedo(int kind, std::size_t i, int c) {
+  constexpr float kExtremes[] = {0.0f, -0.0f, 1.0f, 1.0000001f, 2.0f,  1e-30f, 1e-45f,    3.0517578e-5f,
+                                 1e30f, -1.0f, 0.5f, kInfinity,  kNan, 65504.0f, -kInfinity, 0.0031308f};
+  const float u = UnitFloat(Hash(kind, i, c));
+  switch (kind % 8) {
+    case 0: return u;
+    case 1: return u * u * u * u;
+    case 2: return std::ldexp(1.0f + u, -int(Hash(i, c, 9) % 30));
+    case 3: return 1.0f - 1e-3f * u;
+    case 4: return UnitFloat(Hash(kind, c));
+    case 5: return 2.5f * u - 0.2f;
+    case 6: return i / 50 % 2 == 0 ? 1.0f : 0.0f;
+    default: return kExtremes[Hash(kind, i, c) % std::size(kExtremes)];
+  }
+}
+
+Pixels AnyPixels(std::size_t count, int kind) {
+  Pixels pixels(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      pixels.albedo[c][i] = AnyAlbedo(kind, i, c);
+      // Every code once in 65,536; with kinds of 16 and more only dark ones.
+      const std::size_t code = i + 20011 * std::size_t(c);
+      pixels.texels[4 * i + std::size_t(c)] = static_cast<std::uint16_t>(kind < 16 ? code : code % 3000);
+    }
+    pixels.texels[4 * i + 3] = static_cast<std::uint16_t>(Hash(i, 5));
+  }
+  return pixels;
+}
+
+void ExpectPlain(const Pixels& pixels, const internal::Tint& tint) {
+  std::vector<std::uint16_t> expected = pixels.texels, found = pixels.texels;
+  for (std::size_t i = 0; i < pixels.count(); ++i) {
+    tint.Apply({pixels.albedo[0][i], pixels.albedo[1][i], pixels.albedo[2][i]}, &expected[4 * i]);
+  }
+  const float* const albedo[3] = {pixels.albedo[0].data(), pixels.albedo[1].data(), pixels.albedo[2].data()};
+  if (tint.mode == ColorizeMode::kMultiply) internal::MultiplyTint(albedo, pixels.count(), tint.weight, found.data());
+  else internal::OklabTint(albedo, pixels.count(), tint, found.data());
+  const auto [a, b] = std::mismatch(expected.begin(), expected.end(), found.begin());
+  if (a == expected.end()) return;
+  const auto at = static_cast<std::size_t>(a - expected.begin());
+  ADD_FAILURE() << "texel " << at / 4 << " channel " << at % 4 << ": " << pixels.texels[at] << " by albedo "
+                << pixels.albedo[at % 4][at / 4] << ", weight " << tint.weight << " became " << *b << ", not " << *a;
+}
+
+internal::Tint Multiplied(float weight) { return {0.0f, weight, ColorizeMode::kMultiply}; }
+
+TEST(FastTint, MultipliesEveryCodeAsThePlainTintDoes) {
+  OnEveryInstructionSet([] {
+    for (int kind = 0; kind < 24; ++kind) {
+      ExpectPlain(AnyPixels(65536, kind), Multiplied(kind % 3 == 0 ? 1.0f : UnitFloat(Hash(kind, 77))));
+    }
+  });
+}
+
+// Paint of any colour, and paint that is nearly grey, as much of it is; references as low and as high as they may be.
+TEST(FastTint, TakesHueAndChromaAsThePlainTintDoes) {
+  constexpr float kReferences[] = {0.75f, 0.0f, 1.0f, 0.3f, 0.6f, 0.9f, 1e-7f}, kWeights[] = {1.0f, 0.5f, 0.01f, 1.0f, 0.9f};
+  OnEveryInstructionSet([&] {
+    for (int kind = 0; kind < 48; ++kind) {
+      Pixels pixels = AnyPixels(6000, kind % 24);
+      for (std::size_t i = 0; i < pixels.count(); ++i) {
+        const std::uint64_t grey = 10000 + Hash(i / 8, kind) % 45000;
+        for (std::size_t c = 0; c < 3 && kind < 24; ++c) {
+          pixels.texels[4 * i + c] = static_cast<std::uint16_t>(kind % 2 ? Hash(i, c, kind) : grey + Hash(i, c) % 9000);
+        }
+      }
+      ExpectPlain(pixels, {kReferences[kind % 7], kWeights[kind % 5], ColorizeMode::kOklab});
+    }
+  });
+}
+
+// Greys of every code, on one albedo and on albedos of every magnitude.
+TEST(FastTint, TintsEveryGrey) {
+  OnEveryInstructionSet([] {
+    Pixels pixels(1 << 17);
+    for (std::size_t i = 0; i < pixels.count(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        pixels.albedo[c][i] = i < 65536 ? 0.3f : std::ldexp(1.0f + static_cast<float>(i % 65536) / 65536.0f, -int(i % 70));
+        pixels.texels[4 * i + c] = static_cast<std::uint16_t>(i);
+      }
+    }
+    ExpectPlain(pixels, {0.6f, 1.0f, ColorizeMode::kOklab});
+  });
+}
+
+TEST(FastTint, EveryLengthAndPlace) {
+  OnEveryInstructionSet([] {
+    for (std::size_t count = 0; count < 70; ++count) {
+      ExpectPlain(AnyPixels(count, int(count)), Multiplied(0.7f));
+      ExpectPlain(AnyPixels(count, int(count)), {0.6f, 0.7f, ColorizeMode::kOklab});
+    }
+    for (const std::size_t count : {255u, 256u, 257u, 511u, 1000u}) {
+      ExpectPlain(AnyPixels(count, 0), {0.5f, 1.0f, ColorizeMode::kOklab});
+    }
+  });
+}
+
+// The pixels around a run keep their bytes, whatever lies in between.
+TEST(FastTint, OnlyActivePixelsOfTheRegionChange) {
+  constexpr int kWidth = 83, kHeight = 9;
+  GuideSet guides(kWidth, kHeight);
+  guides.Add(Layer::kAlbedo);
+  for (int c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kAlbedo, c)[i] = AnyAlbedo(0, i, c);
+  }
+  Picture before(kWidth, kHeight);
+  for (std::size_t i = 0; i < before.rgba.size(); ++i) before.rgba[i] = static_cast<std::uint16_t>(Hash(i));
+  for (const ColorizeMode mode : {ColorizeMode::kMultiply, ColorizeMode::kOklab}) {
+    for (const int dense : {1, 2, 10, 60}) {
+      std::vector<std::uint8_t> active(guides.pixel_count());
+      for (std::size_t i = 0; i < active.size(); ++i) active[i] = Hash(i, dense) % std::uint64_t(dense) != 0 || dense == 1;
+      const internal::Tint tint{0.6f, 0.8f, mode};
+      for (const Region& region : {Region{0, 0, kWidth, kHeight}, Region{7, 2, 80, 5}, Region{82, 0, 83, 9}, Region{}}) {
+        Picture expected = before, found = before;
+        for (int y = region.y0; y < region.y1; ++y) {
+          for (int x = region.x0; x < region.x1; ++x) {
+            const std::size_t i = guides.Index(x, y);
+            if (active[i]) tint.Apply(guides.Vec3(Layer::kAlbedo, i), expected.At(x, y));
+          }
+        }
+        for (int y = region.y0; y < region.y1; ++y) {
+          internal::ColorizeRow({guides, active, tint}, y, region.x0, region.x1, found);
+        }
+        ASSERT_TRUE(found.rgba == expected.rgba) << "one in " << dense;
+      }
+    }
+  }
+}
+
+// The code of a value by the definition: the last that begins at or below it.
+TEST(FastTint, EncodingFindsTheCodeOfEveryValue) {
+  std::vector<float> borders{0.0f};  // where each code begins, found by halving the floats
+  for (int code = 1; code < 65536; ++code) {
+    float low = borders.back(), high = 1.0f;
+    while (std::nextafter(low, 2.0f) < high) {
+      std::uint32_t a, b;
+      std::memcpy(&a, &low, 4), std::memcpy(&b, &high, 4);
+      const std::uint32_t middle = a + (b - a) / 2;
+      float value;
+      std::memcpy(&value, &middle, 4);
+      (Srgb16FromLinear(value) >= code ? high : low) = value;
+    }
+    borders.push_back(high);
+  }
+  for (int code = 1; code < 65536; ++code) {
+    const float border = borders[std::size_t(code)], before = std::nextafter(border, 0.0f);
+    ASSERT_EQ(Srgb16FromLinear(border), code);
+    ASSERT_EQ(Srgb16FromLinear(before), code - 1);
+    const double exact = (code - 0.5) / 65535.0;
+    const double linear = exact <= 0.04045 ? exact / 12.92 : std::pow((exact + 0.055) / 1.055, 2.4);
+    ASSERT_NEAR(border, linear, 1e-7 * linear) << "the standard's curve";
+    for (const int guess : {0, code - 2, code - 1, code, code + 1, 65535}) {
+      const auto from = static_cast<std::uint16_t>(std::clamp(guess, 0, 65535));
+      ASSERT_EQ(Srgb16().Encode(border, from), code);
+      ASSERT_EQ(Srgb16().Encode(before, from), code - 1);
+    }
+  }
+  for (const float value : {-1.0f, kNan, -kInfinity, kInfinity, 2.0f, 0.0f, 1e-38f, 1e-45f, 4e-7f}) {
+    for (const std::uint16_t guess : {0, 1, 65535}) ASSERT_EQ(Srgb16().Encode(value, guess), Srgb16FromLinear(value));
+  }
+}
+
+}  // namespace
+}  // namespace scumble
