@@ -8,6 +8,7 @@
 
 #include "guidegen/light/path_layers.h"
 #include "core/style/kit/sphere_template.h"
+#include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble {
 namespace {
@@ -64,8 +65,8 @@ bool NeedsModule(const std::string& output) {
 }
 
 // Of a pixel of the picture, to encode it; without the file's module.
-Bytes EncodedBytes(const PictureOptions& options) {
-  if (IsExr(options.output)) return 8 * kFloat;  // four floats, and as many in the file; or halves and halves
+Bytes EncodedBytes(const PictureRequest& options) {
+  if (HasEnding(options.output, {".exr"})) return 8 * kFloat;  // four floats, and as many in the file; or halves and halves
   const Bytes samples = options.bits == 16 ? 8 : 4;
   // PNG is packed by bands, which are joined; others are turned into the file's own bits, and a file that grows is copied.
   return samples * (NeedsModule(options.output) ? 3 : 2);
@@ -122,7 +123,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
 }
 
 // The sources of all pixels and what their match and votes look at.
-void AddSources(const PictureWork& work, const PictureOptions& options, const Size& size, MemoryNeed& need) {
+void AddSources(const PictureWork& work, const PictureRequest& options, const Size& size, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   bool keeps = work.keeps_field, lit = false;
   Bytes of_pixel = 0, briefly = 0;
@@ -167,7 +168,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   need.Briefly("decoding a texture", kDecoded * more.largest);
 }
 
-void AddGuides(const Size& size, const LayerSet& layers, const SceneOptions& options, MemoryNeed& need) {
+void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   need.Take("guides", PlanesOf(size, Made(layers)));
   Bytes path_layers = 0;
@@ -202,7 +203,7 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   need.Briefly("channels of the file", kFloat * channels * pixels);
 }
 
-void AddPicture(const PictureWork& work, const PictureOptions& options, MemoryNeed& need) {
+void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need) {
   const Size size{work.guides.width * options.upsample, work.guides.height * options.upsample};
   const Bytes pixels = PixelsOf(size), encoded = EncodedBytes(options);
   if (work.is_sequence) need.Take("frame that is written", (kPaint + encoded) * pixels);
@@ -214,7 +215,7 @@ void AddPicture(const PictureWork& work, const PictureOptions& options, MemoryNe
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
   AddSources(work, options, size, need);
-  if (!options.show.empty()) need.Briefly("explaining", kExplained * pixels);
+  if (options.show) need.Briefly("explaining", kExplained * pixels);
   else if (work.keeps_field) need.Briefly("figures", kCoherence * pixels);
   if (NeedsModule(options.output)) need.Take("writer", kFormatsModule);
   need.Briefly("picture file", encoded * pixels);

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "transfer/tint/colorize.h"
 #include "core/filter/edge_test.h"
 #include "transfer/frame/frame_setup.h"

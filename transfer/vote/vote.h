@@ -7,7 +7,7 @@
 #include <span>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/filter/edge_test.h"
 #include "core/filter/parallel.h"
 #include "transfer/exemplar/prepared_exemplar.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/exemplar/usable_rows.h"
 #include "transfer/vote/wide/chunk_runs.h"

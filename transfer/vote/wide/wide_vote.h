@@ -1,7 +1,7 @@
 // Voting in large windows (Sýkora et al. 2019, section 3.3): not pixel by pixel, but chunk by chunk.
 #pragma once
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/filter/parallel.h"
 #include "transfer/vote/vote.h"
 

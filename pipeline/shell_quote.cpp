@@ -1,4 +1,4 @@
-#include "apps/cli/app/shell_quote.h"
+#include "pipeline/shell_quote.h"
 
 namespace scumble {
 

@@ -1,6 +1,5 @@
-#include "apps/cli/app/timing.h"
+#include "pipeline/stage_clock.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -44,18 +43,18 @@ std::optional<double> ProcessStart() { return std::nullopt; }
 
 }  // namespace
 
-Timing::Timing() : last_wall_ms_(Wall()), last_cpu_ms_(Now(CLOCK_PROCESS_CPUTIME_ID)) {
+StageClock::StageClock() : last_wall_ms_(Wall()), last_cpu_ms_(Now(CLOCK_PROCESS_CPUTIME_ID)) {
   // A tick is coarse: what the processor has worked already on this one thread is the least that it can be.
   begun_wall_ms_ = std::min(ProcessStart().value_or(last_wall_ms_), last_wall_ms_ - last_cpu_ms_);
   stages_.push_back({"start", last_wall_ms_ - begun_wall_ms_, last_cpu_ms_});
 }
 
-Stage& Timing::At(const std::string& name) {
+Stage& StageClock::At(const std::string& name) {
   const auto found = std::find_if(stages_.begin(), stages_.end(), [&](const Stage& stage) { return stage.name == name; });
   return found != stages_.end() ? *found : stages_.emplace_back(Stage{name, 0.0, std::nullopt});
 }
 
-void Timing::End(const std::string& name, const std::vector<std::pair<std::string, double>>& inside) {
+void StageClock::End(const std::string& name, const std::vector<std::pair<std::string, double>>& inside) {
   const double wall = Wall(), cpu = Now(CLOCK_PROCESS_CPUTIME_ID);
   double rest = wall - last_wall_ms_;
   for (const auto& [stage, ms] : inside) {
@@ -68,42 +67,12 @@ void Timing::End(const std::string& name, const std::vector<std::pair<std::strin
   last_wall_ms_ = wall, last_cpu_ms_ = cpu;
 }
 
-void Timing::Add(const std::string& name, double wall_ms) { At(name).wall_ms += wall_ms; }
+void StageClock::Add(const std::string& name, double wall_ms) { At(name).wall_ms += wall_ms; }
 
-std::vector<Stage> Timing::Stages() const {
+std::vector<Stage> StageClock::Stages() const {
   std::vector<Stage> stages = stages_;
   stages.push_back({"total", Wall() - begun_wall_ms_, Now(CLOCK_PROCESS_CPUTIME_ID)});
   return stages;
-}
-
-std::string Timing::ToText() const {
-  std::string text = fmt::format("{:<12} {:>10} {:>10}\n", "stage", "wall ms", "cpu ms");
-  for (const Stage& stage : Stages()) {
-    text += fmt::format("{:<12} {:>10.1f} {:>10}\n", stage.name, stage.wall_ms,
-                        stage.cpu_ms ? fmt::format("{:.1f}", *stage.cpu_ms) : "");
-  }
-  return text;
-}
-
-nlohmann::ordered_json Timing::ToJson() const {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const Stage& stage : Stages()) {
-    nlohmann::ordered_json one{{"stage", stage.name}, {"wall_ms", stage.wall_ms}};
-    if (stage.cpu_ms) one["cpu_ms"] = *stage.cpu_ms;
-    json.push_back(std::move(one));
-  }
-  return json;
-}
-
-void EndStage(const Globals& globals, const std::string& name,
-              const std::vector<std::pair<std::string, double>>& inside) {
-  if (globals.timing) globals.timing->End(name, inside);
-}
-
-void AddTimingOption(CLI::App& verb, Globals& globals) {
-  verb.add_flag_callback(
-      "--timing", [&globals] { globals.timing = std::make_shared<Timing>(); },
-      "print where the time went, from the start of the process: wall and processor time of each stage");
 }
 
 }  // namespace scumble

@@ -1,14 +1,14 @@
-#include "pipeline/run/run_inputs.h"
+#include "pipeline/scene/run_inputs.h"
 
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -33,6 +33,53 @@ std::optional<Identity> IdentityOf(const std::string& path) {
 
 // No system takes longer names.
 constexpr std::size_t kLongestName = 4096;
+
+// Four hexadecimal digits at a place of the text; nothing where there are none.
+std::optional<unsigned> Hex4(std::string_view text, std::size_t at) {
+  if (at + 4 > text.size()) return std::nullopt;
+  unsigned value = 0;
+  const auto [end, failure] = std::from_chars(text.data() + at, text.data() + at + 4, value, 16);
+  return failure == std::errc() && end == text.data() + at + 4 ? std::optional(value) : std::nullopt;
+}
+
+void AppendUtf8(unsigned code, std::string& text) {
+  const auto add = [&](unsigned byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) return add(code);
+  if (code < 0x800) return add(0xc0 | code >> 6), add(0x80 | (code & 0x3f));
+  if (code < 0x10000) return add(0xe0 | code >> 12), add(0x80 | (code >> 6 & 0x3f)), add(0x80 | (code & 0x3f));
+  add(0xf0 | code >> 18), add(0x80 | (code >> 12 & 0x3f)), add(0x80 | (code >> 6 & 0x3f)), add(0x80 | (code & 0x3f));
+}
+
+// The text between the quotes of a JSON string (RFC 8259, section 7), as "gr\u00fcn.png"; nothing where it is none.
+std::optional<std::string> UnescapeJson(std::string_view text) {
+  constexpr std::string_view kEscapes = "\"\\/bfnrt", kMeanings = "\"\\/\b\f\n\r\t";
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (static_cast<unsigned char>(text[i]) < 0x20) return std::nullopt;
+    if (text[i] != '\\') {
+      result += text[i];
+      continue;
+    }
+    if (++i >= text.size()) return std::nullopt;
+    if (const std::size_t known = kEscapes.find(text[i]); known != std::string_view::npos) {
+      result += kMeanings[known];
+      continue;
+    }
+    if (text[i] != 'u') return std::nullopt;
+    auto code = Hex4(text, i + 1);
+    if (!code) return std::nullopt;
+    i += 4;
+    if (*code >= 0xd800 && *code < 0xe000) {  // one of a surrogate pair
+      const bool paired = *code < 0xdc00 && text.substr(std::min(i + 1, text.size()), 2) == "\\u";
+      const auto low = paired ? Hex4(text, i + 3) : std::nullopt;
+      if (!low || *low < 0xdc00 || *low >= 0xe000) return std::nullopt;
+      code = 0x10000 + ((*code - 0xd800) << 10) + (*low - 0xdc00);
+      i += 6;
+    }
+    AppendUtf8(*code, result);
+  }
+  return result;
+}
 
 // Its beginning, where files are named; of a .glb the description, which comes first. Files of /proc, which say that they
 // are empty, name none.
@@ -165,10 +212,11 @@ void RunFiles::ReadsUris(const std::string& what, const std::string& file, const
     std::size_t end = begin + 1;
     while (end < text.size() && text[end] != '"') end += text[end] == '\\' ? 2 : 1;
     if (end >= text.size() || end - begin > kLongestName) continue;
-    const auto json = nlohmann::json::parse(text.substr(begin, end - begin + 1), nullptr, false);  // "gr\u00fcn.png"
-    if (!json.is_string()) continue;
-    const auto name = json.get<std::string>();
-    for (const std::string& spelling : {name, WithoutPercents(name)}) Reads(what, (fs::path(folder) / spelling).string());
+    const auto name = UnescapeJson(std::string_view(text).substr(begin + 1, end - begin - 1));
+    if (!name) continue;
+    for (const std::string& spelling : {*name, WithoutPercents(*name)}) {
+      Reads(what, (fs::path(folder) / spelling).string());
+    }
   }
 }
 
