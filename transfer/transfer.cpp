@@ -123,7 +123,7 @@ class Run {
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
       const TransferSettings& settings = style->settings;
       return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 && !style->space &&
-             style->tones.empty() && style->rims.empty() && style->blend_radius <= internal::kSmallRadius;
+             style->tones.empty() && style->rims.empty() && style->blend_radius <= internal::kMostBandRadius;
     });
   }
 

@@ -62,7 +62,8 @@ class RowShares {
 struct SharedStyle {
   const BandStyle& style;
   ExemplarRows exemplar;
-  SmallVotes votes;
+  SmallVotes small_votes;
+  std::optional<WideVotes> wide_votes;  // for radii above kSmallRadius
 };
 
 // One thread's share.
@@ -202,7 +203,13 @@ class Band {
       while (next != words.end() && next - to <= kGap) to = next + 1, next = std::find(to, words.end(), 1);
       votes.region.x0 = std::max(painted.x0, 64 * static_cast<int>(from - words.begin()));
       votes.region.x1 = std::min(painted.x1, 64 * static_cast<int>(to - words.begin()));
-      if (!votes.region.empty()) shared.votes.Vote(votes, out_);
+      if (!votes.region.empty()) {
+        if (shared.wide_votes) {
+          shared.wide_votes->Vote(votes, memory_.votes, out_);
+        } else {
+          shared.small_votes.Vote(votes, out_);
+        }
+      }
       from = next;
     }
     std::ranges::fill(words, 0);
@@ -231,7 +238,8 @@ BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styl
   std::vector<SharedStyle> shared;
   shared.reserve(styles.size());
   for (const BandStyle& style : styles) {
-    shared.push_back({style, style.match.exemplar.Rows(), SmallVotes(style.match.exemplar, style.radius)});
+    shared.push_back({style, style.match.exemplar.Rows(), SmallVotes(style.match.exemplar), std::nullopt});
+    if (style.radius > kSmallRadius) shared.back().wide_votes.emplace(style.match.exemplar);
   }
   const int workers = tbb::this_task_arena::max_concurrency();
   RowShares shares(frame.region.y0, std::max(frame.region.y0, frame.region.y1), workers);

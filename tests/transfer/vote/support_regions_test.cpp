@@ -5,7 +5,7 @@
 #include <map>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/chunk_interiors.h"
+#include "transfer/vote/edge/support_regions.h"
 #include "transfer/vote/vote.h"
 
 namespace scumble {
@@ -29,34 +29,42 @@ float SlopeAt(const GuideSet& guides, int x, int y, int dx, int dy) {
   return std::fabs(back) < std::fabs(front) ? back : front;
 }
 
-bool Alike(const GuideSet& guides, const Limits& limits, int px, int py, int qx, int qy) {
-  const std::size_t p = guides.Index(px, py), q = guides.Index(qx, qy);
-  if (!(guides.Plane(Layer::kCoverage)[p] > 0.0f) || !(guides.Plane(Layer::kCoverage)[q] > 0.0f)) return false;
-  if (guides.Plane(Layer::kObject)[p] != guides.Plane(Layer::kObject)[q]) return false;
-  const float x = static_cast<float>(qx - px), y = static_cast<float>(qy - py);
-  const float ax = SlopeAt(guides, px, py, 1, 0), bx = SlopeAt(guides, qx, qy, 1, 0);
-  const float ay = SlopeAt(guides, px, py, 0, 1), by = SlopeAt(guides, qx, qy, 0, 1);
-  const float expected = 0.5f * ((ax + bx) * x + (ay + by) * y);
-  const float give = std::min(std::fabs(ax), std::fabs(bx)) * std::fabs(x) + std::min(std::fabs(ay), std::fabs(by)) * std::fabs(y);
-  const float near = guides.Plane(Layer::kDepth)[p], far = guides.Plane(Layer::kDepth)[q];
-  if (!(std::fabs(far - near - expected) <= give + limits.tolerance * std::min(near, far))) return false;
-  const glm::vec3 a = guides.Vec3(Layer::kNormal, p), b = guides.Vec3(Layer::kNormal, q);
+bool NormalsAlike(const GuideSet& guides, const Limits& limits, glm::ivec2 p, glm::ivec2 q) {
+  const glm::vec3 a = guides.Vec3(Layer::kNormal, guides.Index(p.x, p.y));
+  const glm::vec3 b = guides.Vec3(Layer::kNormal, guides.Index(q.x, q.y));
   return a.x * b.x + a.y * b.y + a.z * b.z > limits.crease_cosine;
 }
 
-// Walks back from q to p: one less along the longer side, and the nearest row or column to the line; halves away from p.
-bool Joined(const GuideSet& guides, const Limits& limits, int px, int py, int qx, int qy) {
-  if (px == qx && py == qy) return true;
-  if (!Alike(guides, limits, px, py, qx, qy)) return false;
-  int x = qx - px, y = qy - py;
-  while (x != 0 || y != 0) {
-    const int n = std::max(std::abs(x), std::abs(y));
-    const auto before = [&](int side) { return static_cast<int>(std::round(static_cast<double>(side) * (n - 1) / n)); };
-    const int u = before(x), v = before(y);
-    if (!Alike(guides, limits, px + u, py + v, px + x, py + y)) return false;
-    x = u, y = v;
+// The edge test between neighbours of one row or column.
+bool StepIsOpen(const GuideSet& guides, const Limits& limits, glm::ivec2 a, glm::ivec2 b) {
+  const std::size_t p = guides.Index(a.x, a.y), q = guides.Index(b.x, b.y);
+  if (!(guides.Plane(Layer::kCoverage)[p] > 0.0f) || !(guides.Plane(Layer::kCoverage)[q] > 0.0f)) return false;
+  if (guides.Plane(Layer::kObject)[p] != guides.Plane(Layer::kObject)[q]) return false;
+  const int dx = std::abs(b.x - a.x), dy = std::abs(b.y - a.y);
+  const float slope = SlopeAt(guides, a.x, a.y, dx, dy), other = SlopeAt(guides, b.x, b.y, dx, dy);
+  const float near = guides.Plane(Layer::kDepth)[p], far = guides.Plane(Layer::kDepth)[q];
+  const float expected = static_cast<float>(b.x - a.x + b.y - a.y) * (0.5f * (slope + other));
+  const float give = std::min(std::fabs(slope), std::fabs(other)) + limits.tolerance * std::min(near, far);
+  return std::fabs(far - near - expected) <= give && NormalsAlike(guides, limits, a, b);
+}
+
+// Whether two pixels of one row or column are on one arm: every step between them and every pair of normals.
+bool OnOneArm(const GuideSet& guides, const Limits& limits, glm::ivec2 a, glm::ivec2 b) {
+  const glm::ivec2 step = glm::sign(b - a);
+  for (glm::ivec2 p = a; p != b; p += step) {
+    if (!StepIsOpen(guides, limits, p, p + step)) return false;
+    for (glm::ivec2 q = p; q != b;) {
+      q += step;
+      if (!NormalsAlike(guides, limits, p, q)) return false;
+    }
   }
   return true;
+}
+
+// Whether q is in the support region of p.
+bool Joined(const GuideSet& guides, const Limits& limits, int px, int py, int qx, int qy) {
+  const glm::ivec2 corner(px, qy);
+  return OnOneArm(guides, limits, {px, py}, corner) && OnOneArm(guides, limits, corner, {qx, qy});
 }
 
 Picture PlainVote(const GuideSet& guides, const SourceField& field, const PreparedExemplar& exemplar, int radius,
@@ -140,7 +148,7 @@ SourceField RoughField(const GuideSet& guides, int size) {
   return field;
 }
 
-TEST(Joined, VotesEqualTheirPlainForm) {
+TEST(Support, VotesEqualTheirPlainForm) {
   for (const bool extreme : {false, true}) {
     const GuideSet guides = RoughGuides(76, 52, extreme);
     internal::LateSlopes slopes(guides);
@@ -153,7 +161,7 @@ TEST(Joined, VotesEqualTheirPlainForm) {
     const PreparedExemplar exemplar(pictures, 0.0, 300);
     const SourceField field = RoughField(guides, 300);
     const Region all{0, 0, 76, 52};
-    for (const int radius : {0, 1, 3, 8}) {
+    for (const int radius : {0, 1, 2, 3, 8}) {
       EXPECT_EQ(EngineVote(guides, field, exemplar, radius, nullptr, all).rgba,
                 PlainVote(guides, field, exemplar, radius, nullptr).rgba)
           << radius;
@@ -172,35 +180,66 @@ TEST(Joined, VotesEqualTheirPlainForm) {
   }
 }
 
-TEST(Joined, ChunkInteriorsAreWholeWindowsOfOneChunk) {
-  const GuideSet guides = RoughGuides(90, 60, false);
-  const SourceField field = RoughField(guides, 300);
-  const std::vector<std::uint8_t> active = Covered(guides);
-  for (const Region& region : {Region{0, 0, 90, 60}, Region{11, 7, 80, 31}, Region{3, 3, 4, 60}, Region{}}) {
-    for (const int radius : {0, 1, 3, 8, 100}) {
-      const std::vector<std::uint8_t> inside = internal::ChunkInteriors(field, active, radius, region);
-      std::size_t k = 0, count = 0;
-      for (int y = region.y0; y < region.y1; ++y) {
-        for (int x = region.x0; x < region.x1; ++x, ++k) {
-          bool whole = true;
-          const std::size_t p = field.Index(x, y);
-          for (int v = std::max(0, y - radius); v <= std::min(59, y + radius); ++v) {
-            for (int u = std::max(0, x - radius); u <= std::min(89, x + radius); ++u) {
-              const std::size_t q = field.Index(u, v);
-              whole &= active[q] && field.x[q] - u == field.x[p] - x && field.y[q] - v == field.y[p] - y &&
-                       field.exemplar[q] == field.exemplar[p];
-            }
-          }
-          ASSERT_EQ(inside[k] != 0, whole) << x << ", " << y << " radius " << radius;
-          count += whole;
-        }
-      }
-      ASSERT_EQ(k, inside.size());
-      if (radius > 0 && radius < 8 && k > 2000) {
-        EXPECT_GT(count, 100u) << radius;
+// What the fast ways rely on: q is on an arm of p where p is on one of q, and so is everything between the two.
+TEST(Support, ArmsAreSymmetricAndHereditary) {
+  for (const bool extreme : {false, true}) {
+    const GuideSet guides = RoughGuides(60, 44, extreme);
+    const std::vector<std::uint8_t> active = Covered(guides);
+    internal::LateSlopes slopes(guides);
+    const internal::EdgeRules edges{guides, slopes, 40.0, 0.002};
+    const internal::SupportRegions regions(edges, active, 9, {0, 0, 60, 44});
+    std::vector<std::vector<std::uint8_t>> across(active.size(), std::vector<std::uint8_t>(60)), down = across;
+    std::size_t cut = 0;
+    for (int y = 0; y < 44; ++y) {
+      for (int x = 0; x < 60; ++x) {
+        if (!active[guides.Index(x, y)]) continue;
+        regions.ForEach(x, y, [&](std::size_t q, int dx, int dy) {
+          ASSERT_EQ(q, guides.Index(x + dx, y + dy));
+          if (dy == 0) across[guides.Index(x, y)][std::size_t(x + dx)] = 1;
+          if (dx == 0) down[guides.Index(x, y)][std::size_t(y + dy)] = 1;
+        });
       }
     }
+    const auto check = [&](const auto& on_arm, glm::ivec2 p, glm::ivec2 step, int far) {
+      const glm::ivec2 q = p + far * step;
+      if (q.x >= 60 || q.y >= 44) return;
+      const auto at = [&](glm::ivec2 a, glm::ivec2 b) {
+        return on_arm[guides.Index(a.x, a.y)][std::size_t(step.x ? b.x : b.y)] != 0;
+      };
+      ASSERT_EQ(at(p, q), at(q, p));
+      if (!at(p, q)) ++cut;
+      for (int i = 0; at(p, q) && i <= far; ++i) {
+        for (int j = i; j <= far; ++j) ASSERT_TRUE(at(p + i * step, p + j * step)) << p.x << ", " << p.y;
+      }
+    };
+    for (int y = 0; y < 44; ++y) {
+      for (int x = 0; x < 60; ++x) {
+        for (int far = 0; far <= 9 && active[guides.Index(x, y)]; ++far) {
+          check(across, {x, y}, {1, 0}, far), check(down, {x, y}, {0, 1}, far);
+        }
+      }
+    }
+    EXPECT_GT(cut, 3000u);
   }
+}
+
+// A rod seen from the side turns by half a circle within its width: pixels far across it do not vote for each other,
+// though every step is open.
+TEST(Support, ArmsEndWhereASurfaceTurnsByTheCrease) {
+  const GuideSet guides = MakeGuides(40, 30, [](int x, int) {
+    const float angle = (static_cast<float>(x) - 19.5f) * 0.15f;
+    return std::fabs(angle) < 1.5f ? glm::vec3(std::sin(angle), 0, std::cos(angle)) : glm::vec3(0.0f);
+  });
+  const std::vector<std::uint8_t> active = Covered(guides);
+  internal::LateSlopes slopes(guides);
+  const internal::EdgeRules edges{guides, slopes, 60.0, 0.002};
+  const internal::SupportRegions regions(edges, active, 9, {0, 0, 40, 30});
+  int widest = 0, highest = 0;
+  regions.ForEach(19, 15, [&](std::size_t, int dx, int dy) {
+    widest = std::max(widest, dx), highest = std::max(highest, dy);
+  });
+  EXPECT_EQ(widest, 6) << "6 · 0.15 rad are 51.6 degrees";
+  EXPECT_EQ(highest, 9);
 }
 
 // Black paint on what stands in front and white on what is behind: grey is a vote that crossed.
@@ -225,7 +264,7 @@ std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& fron
 
 // One object of one normal: only depth tells. Fingers, stairs, blobs and single pixels stand before a slanted surface, by
 // more than twice its slope per pixel and the tolerance.
-TEST(Joined, StepsOnSlantedSurfacesAreNeverCrossed) {
+TEST(Support, StepsOnSlantedSurfacesAreNeverCrossed) {
   const auto shapes = std::array{
       +[](int x, int y) { return y > 8 && x % 16 > 8 && x % 16 < 13; },          // fingers
       +[](int x, int) { return x >= 40; },                                       // one edge
@@ -257,7 +296,7 @@ TEST(Joined, StepsOnSlantedSurfacesAreNeverCrossed) {
 }
 
 // The slanted surface itself goes on being one: votes are as many as without edges.
-TEST(Joined, SlopesAndCurvesAreNoSteps) {
+TEST(Support, SlopesAndCurvesAreNoSteps) {
   for (const double bend : {0.0, 1e-4, 1e-3}) {
     GuideSet guides = MakeGuides(70, 50, [](int, int) { return glm::vec3(0, 0, 1); });
     for (int y = 0; y < 50; ++y) {
