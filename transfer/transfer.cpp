@@ -68,7 +68,6 @@ class Run {
                                : Region{0, 0, guides.width(), guides.height()}),
         frame_{guides, map, styles, region_} {
     scratch.times = {};
-    scratch.seed_maps.BeginFrame();
   }
 
   Status PaintAll(std::span<const PreparedStyle* const> styles) {
@@ -237,7 +236,6 @@ class Run {
         matched};
     input.space = style.space.get();
     input.brightness = static_cast<float>(Exp2(options_.exposure));
-    input.seed_map = scratch_.seed_maps.For(input.seeds, guides_.width(), guides_.height());
     return input;
   }
 

@@ -33,7 +33,6 @@ constexpr Bytes kMoved = 13;                // SourceField::moved and who is mat
 constexpr Bytes kMatched = 32;              // of one that is matched then
 constexpr Bytes kSlopes = 8;                // DepthSlopes
 constexpr Bytes kSurfaceSeeds = 48;         // MatchCoherent
-constexpr Bytes kSeedMap = 7;               // 1.13 bytes on each of six levels
 constexpr Bytes kBandTile = 110'000;        // seeds of 512 columns, for one thread
 constexpr int kBandRadius = 3;              // up to it sources are kept for a few rows only
 constexpr Bytes kExplained = 24;            // planes that --show is drawn from, and a second picture
@@ -138,7 +137,6 @@ void AddSources(const PictureWork& work, const PictureRequest& options, const Si
   if (keeps) of_pixel += kSource, briefly += kSlopes;
   if (lit) briefly += kFloat;  // exposed
   if (work.has_map) of_pixel += 2;
-  if (work.is_sequence || options.repeat > 1) of_pixel += kSeedMap;
   if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
   const Bytes tiles = (Bytes(size.width) + 511) / 512;
   need.Take("seeds of the threads", ThreadsOf(work.threads) * tiles * kBandTile * work.styles.size());
