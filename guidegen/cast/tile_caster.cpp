@@ -8,6 +8,7 @@
 
 #include "guidegen/light/area_light.h"
 #include "guidegen/cast/tile_store.h"
+#include "guidegen/rays/ray_offset.h"
 #include "core/image/check.h"
 
 namespace scumble {

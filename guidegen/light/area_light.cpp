@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "guidegen/surface/bsdf.h"
+#include "guidegen/light/light_visibility.h"
+#include "guidegen/rays/ray_offset.h"
 #include "guidegen/rays/single_ray.h"
 #include "guidegen/surface/work_counters.h"
 

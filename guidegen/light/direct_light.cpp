@@ -25,12 +25,6 @@ constexpr double kWidestSun = 179.9;
 // Layers hold floats: brighter than this cannot be told.
 constexpr double kMaxIrradiance = std::numeric_limits<float>::max() * glm::pi<double>();
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-glm::dvec3 WithinRange(const glm::dvec3& v) {
-  return glm::clamp(v, glm::dvec3(-kLargestInRay), glm::dvec3(kLargestInRay));
-}
-
 Status CheckBrightness(const Light& light, const std::string& who) {
   for (int i = 0; i < 3; ++i) {
     const double value = light.intensity * light.color[i];
@@ -153,37 +147,6 @@ LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
   irradiance *= SpotAttenuation(light, -direction);
   sample.luminance = irradiance * glm::one_over_pi<double>();
   return sample;
-}
-
-double LightGap(const glm::dvec3& origin, const glm::dvec3& light) {
-  return kRoundingPerCoordinate * std::max(LargestCoordinate(origin), LargestCoordinate(light));
-}
-
-LightRay LightRayTo(const glm::dvec3& origin, const glm::dvec3& light) {
-  LightRay ray{WithinRange(origin), light - origin, 1.0, 0.0};
-  const double largest = LargestCoordinate(ray.direction);
-  if (largest > kLargestInRay) {
-    ray.end = largest;
-    ray.direction /= largest;
-  }
-  ray.reach = std::max(0.0, ray.end - LightGap(origin, light) / glm::length(ray.direction));  // 0 for no way at all
-  return ray;
-}
-
-LightRay EndlessLightRay(const glm::dvec3& origin, const glm::dvec3& direction) {
-  return {WithinRange(origin), direction, kInfinity, kInfinity};
-}
-
-glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {
-  // Seen flatter than this (about half a degree), the way back would have to be too long for the height it gains.
-  constexpr double kLeastCosine = 0.01;
-  const double height = point.largest_coordinate * kRoundingPerCoordinate;
-  const double length = glm::length(point.clear_way);
-  if (!(length > 0.0)) return point.position + point.facing * height;
-  const glm::dvec3 way = point.clear_way / length;
-  const double cosine = glm::dot(point.facing, way);
-  const double back = std::min(height / std::max(cosine, kLeastCosine), length);
-  return point.position + way * back + point.facing * (height - back * cosine);
 }
 
 }  // namespace scumble

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "guidegen/rays/ray_offset.h"
 #include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/work_counters.h"
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "guidegen/light/light_visibility.h"
+#include "guidegen/rays/ray_offset.h"
 #include "guidegen/rays/single_ray.h"
 
 namespace scumble {

@@ -19,7 +19,8 @@
 #include <optional>
 
 #include "guidegen/surface/bsdf.h"
-#include "guidegen/cast/cast_guides.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/light/view.h"
 #include "guidegen/rays/embree_scene.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/path_layers.h"

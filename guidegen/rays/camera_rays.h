@@ -5,20 +5,11 @@
 #include <optional>
 
 #include "guidegen/scene/scene.h"
+#include "guidegen/scene/view_ray.h"
 #include "core/image/guides.h"
 #include "core/image/status.h"
 
 namespace scumble {
-
-// Embree takes no ray with a larger component, of its origin in metres or of its direction: built with assertions, as
-// Debian's is, it ends the process. Its own limit is 1.844e18.
-inline constexpr double kLargestInRay = 0x1.9p60;
-
-// `direction.z` is exactly −1, so that the ray's parameter is the planar depth.
-struct ViewRay {
-  glm::dvec3 origin{0.0};
-  glm::dvec3 direction{0.0, 0.0, -1.0};
-};
 
 // A camera in front of a picture of a certain size. Immutable; free to use from any thread.
 class CameraRays {

@@ -5,15 +5,14 @@
 #include <glm/glm.hpp>
 
 #include "guidegen/rays/embree_scene.h"
-#include "guidegen/light/light_sampling.h"
+#include "guidegen/rays/ray_offset.h"
 
 namespace scumble {
 
-// Whether anything lies between a surface and the light that was drawn from it. With kEmitters nothing but meshes that
-// emit can be in the way.
+// What counts as being in a ray's way: everything, or nothing but meshes that emit.
 enum class Blockers { kAll, kEmitters };
-bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw,
-               Blockers blockers = Blockers::kAll);
+// Whether the ray meets any of `blockers` before its reach ends. `target` is left out; by default there is none.
+bool IsOccluded(const EmbreeScene& scene, const LightRay& ray, const ShadowTarget& target, Blockers blockers);
 
 // The nearest hit in a direction; its geomID is RTC_INVALID_GEOMETRY_ID where there is none.
 RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction);

@@ -1,9 +1,10 @@
+#include "guidegen/scene/framing.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
-#include "guidegen/load/load_scene.h"
 #include "core/image/check.h"
 
 namespace scumble {

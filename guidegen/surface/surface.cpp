@@ -1,4 +1,5 @@
 #include "guidegen/surface/surface.h"
+#include "guidegen/surface/texture.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "guidegen/rays/camera_rays.h"
 #include "guidegen/scene/scene.h"
+#include "guidegen/scene/view_ray.h"
 #include "core/image/picture.h"
 
 namespace scumble {
@@ -107,10 +107,5 @@ bool AllDoubleSided(std::span<const PlacedObject> objects);
 // Whether rays pass here: alpha masks, and blending taken for a mask at one half.
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
 bool MayHaveHoles(const Material& material);
-
-// Linear colour and alpha, bilinear unless `use` says nearest. Coordinates that are not finite read as 0.
-glm::vec4 SampleColor(const Picture& picture, const TextureUse& use, glm::vec2 uv);
-// The stored values in [0, 1], not decoded: for normal maps.
-glm::vec4 SampleRaw(const Picture& picture, const TextureUse& use, glm::vec2 uv);
 
 }  // namespace scumble

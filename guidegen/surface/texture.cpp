@@ -1,7 +1,8 @@
+#include "guidegen/surface/texture.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "guidegen/surface/surface.h"
 #include "guidegen/surface/work_counters.h"
 #include "core/image/color.h"
 

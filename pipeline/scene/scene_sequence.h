@@ -15,6 +15,7 @@
 #include "pipeline/run/sequence.h"
 #include "pipeline/style/style_set.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 
 namespace scumble {
 

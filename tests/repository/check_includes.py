@@ -15,9 +15,10 @@ import sys
 # "parent/child".
 LIBRARIES = {
     "image": ("core/image", set(), []),
-    "io": ("core/io", {"image"}, []),
+    "io": ("core/io", {"image"}, ["file", "png", "exr", "picture", "guides", "blender", "oiio"]),
     "filter": ("core/filter", {"image"}, []),
-    "guidegen": ("guidegen", {"image", "io"}, []),
+    "guidegen": ("guidegen", {"image", "io"},
+                 ["scene", "load", "load/gltf", "surface", "rays", "light", "cast"]),
     "style": ("core/style", {"image", "io"}, []),
     "transfer": ("transfer", {"image", "filter"}, []),
     "measure": ("measure", {"image", "io", "filter"}, []),

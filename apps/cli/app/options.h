@@ -16,6 +16,7 @@
 #include "pipeline/memory/memory_limit.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "core/image/stopwatch.h"
 #include "core/image/style.h"
 #include "core/io/picture_file.h"

@@ -9,6 +9,7 @@
 
 #include "guidegen/rays/camera_rays.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"

@@ -16,6 +16,7 @@
 
 #include "guidegen/surface/bsdf.h"
 #include "guidegen/light/direct_light.h"
+#include "guidegen/rays/ray_offset.h"
 #include "core/image/hash.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/light_path_scenes.h"

@@ -1,5 +1,6 @@
 // What all scene loaders share, and the formats that are quickly told: normals, polygons, OBJ, PLY, framing.
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 
 #include <gmock/gmock.h>
 

@@ -1,0 +1,50 @@
+#include "guidegen/rays/ray_offset.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "guidegen/scene/view_ray.h"
+
+namespace scumble {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+glm::dvec3 WithinRange(const glm::dvec3& v) {
+  return glm::clamp(v, glm::dvec3(-kLargestInRay), glm::dvec3(kLargestInRay));
+}
+
+}  // namespace
+
+double LightGap(const glm::dvec3& origin, const glm::dvec3& light) {
+  return kRoundingPerCoordinate * std::max(LargestCoordinate(origin), LargestCoordinate(light));
+}
+
+LightRay LightRayTo(const glm::dvec3& origin, const glm::dvec3& light) {
+  LightRay ray{WithinRange(origin), light - origin, 1.0, 0.0};
+  const double largest = LargestCoordinate(ray.direction);
+  if (largest > kLargestInRay) {
+    ray.end = largest;
+    ray.direction /= largest;
+  }
+  ray.reach = std::max(0.0, ray.end - LightGap(origin, light) / glm::length(ray.direction));  // 0 for no way at all
+  return ray;
+}
+
+LightRay EndlessLightRay(const glm::dvec3& origin, const glm::dvec3& direction) {
+  return {WithinRange(origin), direction, kInfinity, kInfinity};
+}
+
+glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {
+  // Seen flatter than this (about half a degree), the way back would have to be too long for the height it gains.
+  constexpr double kLeastCosine = 0.01;
+  const double height = point.largest_coordinate * kRoundingPerCoordinate;
+  const double length = glm::length(point.clear_way);
+  if (!(length > 0.0)) return point.position + point.facing * height;
+  const glm::dvec3 way = point.clear_way / length;
+  const double cosine = glm::dot(point.facing, way);
+  const double back = std::min(height / std::max(cosine, kLeastCosine), length);
+  return point.position + way * back + point.facing * (height - back * cosine);
+}
+
+}  // namespace scumble
