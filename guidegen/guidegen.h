@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -86,7 +87,8 @@ struct GuidegenResult {
   GuideSet guides;
   RayCounts rays;
   WorkCounts work;
-  double build_ms = 0;  // acceleration structure
+  int builds = 0;       // acceleration structures that this call built: 1, or 0 where the RayScene had it
+  double build_ms = 0;  // for that; 0 without a build
   double render_ms = 0;
   // Of each pixel, in light-path layers; 0 where they need no chance. Also in guides.attributes["scumble:samples"].
   int samples = 0;
@@ -97,8 +99,8 @@ struct GuidegenResult {
 // double and Embree's scene is relative to the camera. Deterministic for one isa, whatever the threads; the isa in use
 // is recorded in guides.attributes["scumble:isa"]. Light-path layers are in light_paths.h; each is traced only as far
 // as its expression and the scene's lights and materials require. Layers that are not built in yet are a kUnavailable
-// error by name. An empty scene, or a camera that sees nothing, is an empty picture and no error. Uses oneTBB and
-// Embree 3.
+// error by name. An empty scene, or a camera that sees nothing, is an empty picture and no error. If options.progress
+// returns false, the call ends with kCancelled within a fraction of a second. Uses oneTBB and Embree 3.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options);
 
 // What the layer `motion` is measured against: the same scene and camera, one frame later, as AnimatedScene gives them.
@@ -113,6 +115,36 @@ struct NextFrame {
 // what stands still; it says nothing of whether something else hides the place then.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options);
+
+// A scene before a camera, ready to be cast many times: names and ids, and the acceleration structure, which is built
+// by the first cast and kept. Casts may differ in every option. They build again only for another `isa` or `robust`, and
+// once more when light is first asked for.
+//
+// The scene is borrowed, and must outlive this. Between casts lights, the world's radiance, styles and textures may
+// change (DecodeTextures may be called); whoever changes anything else of the scene, or the camera, makes a new one:
+// triangles are stored relative to the camera. Casts never change a RayScene as seen from outside: several threads may
+// cast at once, and a cast that was cancelled or has failed leaves it as good as before.
+class RayScene {
+ public:
+  // Fails with kInput where the camera has no direction, or a lens that no picture can have.
+  static Expected<RayScene> Make(const Scene& scene, const Camera& camera);
+  static Expected<RayScene> Make(const Scene&& scene, const Camera& camera) = delete;  // would not outlive this
+
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+  ~RayScene();
+
+ private:
+  struct State;
+  explicit RayScene(std::unique_ptr<State> state);
+  friend struct RayCast;  // RenderGuides, inside
+
+  std::unique_ptr<State> state_;
+};
+
+// As RenderGuides above: the same bytes, whatever was cast before.
+Expected<GuidegenResult> RenderGuides(const RayScene& scene, const GuidegenOptions& options);
+Expected<GuidegenResult> RenderGuides(const RayScene& scene, const NextFrame& next, const GuidegenOptions& options);
 
 struct SphereOptions {
   int size = 512;  // N × N pixels

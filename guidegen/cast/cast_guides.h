@@ -3,14 +3,16 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/light/view.h"
+#include "guidegen/rays/lazy_scene.h"
 
 namespace scumble {
 
 // kUsage or kUnavailable where the options make no sense or ask for what is not built in.
 Status CheckOptions(const GuidegenOptions& options, bool has_next_frame = false);
 
-// Fills the layers, the camera and the attributes; names of objects and materials are the caller's. `options` have
+// Casts into `objects`, which are built if this cast is the first that needs them so. Fills the layers, the camera and
+// the attributes; names of objects and materials are the caller's. `options` have
 // passed CheckOptions.
-Expected<GuidegenResult> CastGuides(View view, const GuidegenOptions& options);
+Expected<GuidegenResult> CastGuides(LazyScene& objects, const View& view, const GuidegenOptions& options);
 
 }  // namespace scumble

@@ -428,7 +428,7 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
 }
 
 void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points,
-                       RayCounts& counts) const {
+                       Share& share) const {
   std::array<double, kTilePixels> reached = {};  // shadows included
   std::array<double, kTilePixels> unoccluded = {};
   OcclusionBatch<std::pair<int, double>> batch(scene_.handle(), false);
@@ -442,7 +442,7 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
       const LightSample sample = SampleLight(light, points[pixel]);
       if (!(sample.luminance > 0.0)) return;
       unoccluded[pixel] += sample.luminance;
-      ++counts.shadow;
+      ++share.rays.shadow;
       const glm::dvec3 origin = ShadowRayOrigin(points[pixel]);
       const LightRay ray =
           sample.endless ? EndlessLightRay(origin, sample.to_light) : LightRayTo(origin, light.position);
@@ -454,8 +454,9 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
     if (!hits.Met(pixel)) return;
     const std::size_t index = Index(tile, pixel);
     if (lights_.CanBeMet()) {
+      if (!share.gate.Continue()) return;  // thousands of samples may follow
       const Sampler sampler(std::uint32_t(index), kSoftStream, options_.seed);
-      const SoftLight soft = SampleSoftLight(scene_, lights_, points[pixel], sampler, options_.samples, counts);
+      const SoftLight soft = SampleSoftLight(scene_, lights_, points[pixel], sampler, options_.samples, share.rays);
       reached[pixel] += soft.reached;
       unoccluded[pixel] += soft.unoccluded;
     }
@@ -488,11 +489,11 @@ void TileCaster::WriteWhole(std::span<const Tile> tiles, const Scratch& scratch)
   }
 }
 
-void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, RayCounts& counts,
+void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, Share& share,
                       std::vector<PathPixel>* pixels) const {
   const TileHits& hits = scratch.hits;
   scratch.moved.clear();
-  Cover(tile, scratch, counts);
+  Cover(tile, scratch, share.rays);
   FindTileSurface(hits, scratch.rays, triangles, scratch.guides, points_ ? &scratch.points : nullptr);
   for (int i = 0; i < scratch.guides.left_over_count; ++i) {
     const int pixel = scratch.guides.left_over[std::size_t(i)];
@@ -515,19 +516,19 @@ void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& s
     });
   }
   // Where nothing shines, luminance and shadow keep their background value, which is 0.
-  if (lit_) Light(tile, hits, scratch.lit, counts);
+  if (lit_) Light(tile, hits, scratch.lit, share);
 }
 
-void TileCaster::Cast(std::span<const Tile> tiles, Scratch& scratch, RayCounts& counts,
+void TileCaster::Cast(std::span<const Tile> tiles, Scratch& scratch, Share& share,
                       std::span<std::vector<PathPixel>> pixels) const {
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     TileScratch& own = scratch.tiles[i];
     PlaceRays(tiles[i], own.rays);
     CastCentres(tiles[i], own.rays, lit_ || !pixels.empty(), own.hits);
-    counts.primary += std::size_t(tiles[i].width) * tiles[i].height;
+    share.rays.primary += std::size_t(tiles[i].width) * tiles[i].height;
   }
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    Fill(tiles[i], scratch.triangles, scratch.tiles[i], counts, pixels.empty() ? nullptr : &pixels[i]);
+    Fill(tiles[i], scratch.triangles, scratch.tiles[i], share, pixels.empty() ? nullptr : &pixels[i]);
   }
   WriteWhole(tiles, scratch);
 }

@@ -9,6 +9,7 @@
 
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/rays/embree_scene.h"
+#include "guidegen/rays/progress_gate.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/light/path_tracer.h"
 #include "guidegen/light/light_sampling.h"
@@ -51,10 +52,16 @@ class TileCaster {
     std::vector<OfTile> tiles;
   };
 
-  // Casts 1 to kStripTiles tiles that stand side by side from the left to the right. Adds what was cast to `counts`,
+  // One thread's share of the work: the gate that it asks whether to go on, and the rays that it has cast.
+  struct Share {
+    ProgressGate& gate;
+    RayCounts rays;
+  };
+
+  // Casts 1 to kStripTiles tiles that stand side by side from the left to the right. Adds what was cast to `share`,
   // and to pixels[i], unless there are none, the covered pixels of tile i for their light paths. Other threads see what
-  // was written after PublishTiles().
-  void Cast(std::span<const Tile> tiles, Scratch& scratch, RayCounts& counts,
+  // was written after PublishTiles(). If the gate is cancelled, the tiles may stay incomplete.
+  void Cast(std::span<const Tile> tiles, Scratch& scratch, Share& share,
             std::span<std::vector<PathPixel>> pixels = {}) const;
 
  private:
@@ -103,9 +110,9 @@ class TileCaster {
   void WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const;
-  void Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, RayCounts& counts,
+  void Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, Share& share,
             std::vector<PathPixel>* pixels) const;
-  void Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points, RayCounts& counts) const;
+  void Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points, Share& share) const;
   glm::dvec2 Centre(const Tile& tile, int pixel) const {
     return {tile.x0 + TileColumn(pixel) + 0.5, tile.y0 + TileRow(pixel) + 0.5};
   }

@@ -53,7 +53,7 @@ Status PlaceCone(const Light& light, const std::string& who, PlacedLight& placed
   return Ok();
 }
 
-Status PlaceArea(const Light& light, const std::string& who, const CameraRays& camera, PlacedLight& placed) {
+Status PlaceArea(const Light& light, const std::string& who, const CameraPose& camera, PlacedLight& placed) {
   SCUMBLE_RETURN_IF_ERROR(CheckExtent(who, "size", light.size_x));
   SCUMBLE_RETURN_IF_ERROR(CheckExtent(who, "size", light.size_y));
   placed.ellipse = light.ellipse;
@@ -67,7 +67,7 @@ Status PlaceArea(const Light& light, const std::string& who, const CameraRays& c
   return Ok();
 }
 
-Expected<PlacedLight> PlaceLight(const Light& light, const CameraRays& camera) {
+Expected<PlacedLight> PlaceLight(const Light& light, const CameraPose& camera) {
   const std::string who = "light \"" + light.name + "\" ";
   PlacedLight placed;
   placed.type = light.type;
@@ -107,7 +107,7 @@ Expected<PlacedLight> PlaceLight(const Light& light, const CameraRays& camera) {
 
 }  // namespace
 
-Expected<std::vector<PlacedLight>> PlaceLights(const std::vector<Light>& lights, const CameraRays& camera) {
+Expected<std::vector<PlacedLight>> PlaceLights(const std::vector<Light>& lights, const CameraPose& camera) {
   std::vector<PlacedLight> placed;
   for (const Light& light : lights) {
     SCUMBLE_ASSIGN(PlacedLight one, PlaceLight(light, camera));

@@ -34,7 +34,7 @@ struct PlacedLight {
 
 // Fails with kInput, naming the light, where a value is not finite or negative, a sun is wider than 180°, or a matrix
 // has no direction.
-Expected<std::vector<PlacedLight>> PlaceLights(const std::vector<Light>& lights, const CameraRays& camera);
+Expected<std::vector<PlacedLight>> PlaceLights(const std::vector<Light>& lights, const CameraPose& camera);
 
 // The share of a spot's intensity that leaves it in a direction, a unit vector; 1 for other lights.
 double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light);

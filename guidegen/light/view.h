@@ -1,4 +1,4 @@
-// What stands before a camera: objects, lights, and the camera's own rays.
+// What a cast looks at besides the objects: the camera's rays, lights, and the next frame.
 #pragma once
 
 #include <vector>
@@ -10,16 +10,15 @@
 
 namespace scumble {
 
-// Objects and lights in the camera's view space.
+// All in the camera's view space. The objects are the EmbreeScene's.
 struct View {
   CameraRays camera;
-  std::vector<PlacedObject> objects;
   std::vector<PlacedLight> lights;  // looked at only where a layer needs them, as the rest
   glm::dvec3 world_radiance{0.0};
   PathSupply supply;
 
-  // For the motion layer; empty where nobody asks for it. Of each of `objects`, in their order, as it stands in the
-  // next frame before that frame's camera; without a mesh where it is gone by then.
+  // For the motion layer; empty where nobody asks for it. Each of the scene's objects, in their order, as it stands in
+  // the next frame before that frame's camera; without a mesh where it is gone by then.
   std::vector<PlacedObject> next_objects;
   CameraRays next_camera;
 };

@@ -10,6 +10,7 @@
 
 #include "guidegen/surface/bsdf.h"
 #include "guidegen/rays/coincident_objects.h"
+#include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/work_counters.h"
 #include "core/image/check.h"
 
@@ -186,14 +187,22 @@ RTCScene NewScene(RTCDevice device, bool robust) {
   return scene;
 }
 
+// If the gate is cancelled, the scene is of no use.
+void CommitScene(RTCScene scene, ProgressGate& gate) {
+  const auto go_on = [](void* asked, double) { return static_cast<ProgressGate*>(asked)->Continue(); };
+  rtcSetSceneProgressMonitorFunction(scene, go_on, &gate);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+}
+
 }  // namespace
 
 Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa,
-                                         const Needs& needs) {
+                                         const Needs& needs, const Progress& progress) {
   EmbreeScene scene;
   scene.objects_ = std::make_unique<std::vector<PlacedObject>>(std::move(objects));
   SCUMBLE_RETURN_IF_ERROR(scene.OpenDevice(isa));
-  SCUMBLE_RETURN_IF_ERROR(scene.Commit(needs));
+  SCUMBLE_RETURN_IF_ERROR(scene.Commit(needs, progress));
   return scene;
 }
 
@@ -221,7 +230,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
                     AvailableIsas());
 }
 
-Status EmbreeScene::Commit(const Needs& needs) {
+Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
   std::string reason;  // the first of a row is the root of the others
   rtcSetDeviceErrorFunction(
       device_.get(),
@@ -246,10 +255,12 @@ Status EmbreeScene::Commit(const Needs& needs) {
     }
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(scene_.get());
-  if (emitters_) rtcCommitScene(emitters_.get());
+  ProgressGate gate(progress, 1, 0.0, 0.0);
+  CommitScene(scene_.get(), gate);
+  if (emitters_) CommitScene(emitters_.get(), gate);
   rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
   const RTCError error = rtcGetDeviceError(device_.get());
+  if (gate.cancelled()) return CancelledError();
   if (error == RTC_ERROR_NONE) return Ok();
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
     return MemoryError("the scene does not fit into memory: give it fewer triangles or instances");

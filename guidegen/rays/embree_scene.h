@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "guidegen/surface/surface.h"
+#include "core/image/progress.h"
 #include "core/image/status.h"
 
 namespace scumble {
@@ -55,7 +56,9 @@ class EmbreeScene {
     bool emitters = false;    // emitters() will be asked for
     bool robust = true;       // as in GuidegenOptions
   };
-  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs);
+  // While it builds, `progress` is asked with a share of 0 whether to go on; if it says no, Build fails with kCancelled.
+  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs,
+                                     const Progress& progress = {});
 
   RTCScene handle() const { return scene_.get(); }
   RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none
@@ -73,7 +76,7 @@ class EmbreeScene {
 
   EmbreeScene() = default;
   Status OpenDevice(const std::string& isa);
-  Status Commit(const Needs& needs);
+  Status Commit(const Needs& needs, const Progress& progress);
 
   // Filter functions keep pointers to the objects, so they must not move with this. Order matters: the scene goes
   // before its device, the device before the objects.
