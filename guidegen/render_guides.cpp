@@ -55,8 +55,8 @@ bool NeedsLight(const LayerSet& layers) {
 
 // Luminance and shadow are cast in one go with a fixed number of samples.
 Status CheckOpenEnd(const GuidegenOptions& options, const PathSupply& supply) {
-  const bool soft = supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
-  if (!soft || (options.noise <= 0.0 && options.time_budget_seconds <= 0.0)) return Ok();
+  const bool sampled = supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
+  if (!sampled || (options.noise <= 0.0 && options.time_budget_seconds <= 0.0)) return Ok();
   return UsageError(std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
                     " is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples: "
                     "make these two in a run of their own with --samples");

@@ -124,7 +124,7 @@ std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSe
 constexpr std::size_t kCachedPixels = std::size_t(1) << 19;
 
 // The sampler's stream for luminance and shadow: not the light paths' own.
-constexpr std::uint32_t kSoftStream = 1;
+constexpr std::uint32_t kAreaLightStream = 1;
 
 }  // namespace
 
@@ -225,12 +225,12 @@ void TileCaster::FindClear(const Packet& packet, const int* valid, CastContext& 
 
 // A square is a packet of 16 rays or two of 8.
 template <class Packet>
-void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const {
+void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const {
   constexpr int kRays = kRaysIn<Packet>;
   constexpr int kRows = kRays / kSquareSide;
   CastContext context(true);
   std::array<BacksPassed, kRays> passed;
-  if (ways && backs_) context.passed = passed.data();
+  if (find_clear && backs_) context.passed = passed.data();
   Packet packet = {};
   alignas(64) int valid[kRays];
   // Of the packets in a column and in a row of them.
@@ -269,13 +269,13 @@ void TileCaster::CastPackets(const Tile& tile, const TileRays& rays, bool ways, 
   }
 }
 
-void TileCaster::CastCentres(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const {
+void TileCaster::CastCentres(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const {
   if (tile.width < kTileSide || tile.height < kTileSide) hits.object.fill(TileHits::kNothing);
-  if (ways && !backs_) hits.clear_from.fill(float(view_.camera.near_depth()));
+  if (find_clear && !backs_) hits.clear_from.fill(float(view_.camera.near_depth()));
   if (scene_.wide_packets()) {
-    CastPackets<RTCRayHit16>(tile, rays, ways, hits);
+    CastPackets<RTCRayHit16>(tile, rays, find_clear, hits);
   } else {
-    CastPackets<RTCRayHit8>(tile, rays, ways, hits);
+    CastPackets<RTCRayHit8>(tile, rays, find_clear, hits);
   }
 }
 
@@ -424,7 +424,7 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
   }
   if (!lit_) return;
   scratch.lit[pixel] = point;
-  scratch.lit[pixel].clear_way = ClearWay(view_.camera.Through(at.x, at.y), hits.clear_from[pixel], point.position);
+  scratch.lit[pixel].max_ray_offset = MaxRayOffset(view_.camera.Through(at.x, at.y), hits.clear_from[pixel], point.position);
 }
 
 void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points,
@@ -455,10 +455,10 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
     const std::size_t index = Index(tile, pixel);
     if (lights_.CanBeMet()) {
       if (!share.gate.Continue()) return;  // thousands of samples may follow
-      const Sampler sampler(std::uint32_t(index), kSoftStream, options_.seed);
-      const SoftLight soft = SampleSoftLight(scene_, lights_, points[pixel], sampler, options_.samples, share.rays);
-      reached[pixel] += soft.reached;
-      unoccluded[pixel] += soft.unoccluded;
+      const Sampler sampler(std::uint32_t(index), kAreaLightStream, options_.seed);
+      const AreaLighting lighting = SampleAreaLights(scene_, lights_, points[pixel], sampler, options_.samples, share.rays);
+      reached[pixel] += lighting.reached;
+      unoccluded[pixel] += lighting.unoccluded;
     }
     // Each light is within float's range; their sum need not be.
     constexpr double kMaxFloat = std::numeric_limits<float>::max();

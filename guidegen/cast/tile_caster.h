@@ -95,10 +95,10 @@ class TileCaster {
   };
 
   void PlaceRays(const Tile& tile, TileRays& rays) const;
-  // `ways`: whether hits.clear_from is asked for.
-  void CastCentres(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const;
+  // `find_clear`: whether hits.clear_from is asked for.
+  void CastCentres(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const;
   template <class Packet>
-  void CastPackets(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const;
+  void CastPackets(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const;
   template <class Packet>
   void FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const;
   Mask FindWhole(const Tile& tile, const TileHits& hits) const;

@@ -11,13 +11,13 @@ namespace scumble {
 
 // Reflected luminance, irradiance/π, with and without what stands in the way. What shines does not count as standing in
 // the way of other shining meshes, nor the front of one as standing before its back: a ball of light casts no shadow.
-struct SoftLight {
+struct AreaLighting {
   double reached = 0.0;
   double unoccluded = 0.0;
 };
 
 // The mean of `samples` samples; delta lights are left out. The same sampler gives the same bits.
-SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
+AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
                           const Sampler& sampler, int samples, RayCounts& rays);
 
 }  // namespace scumble

@@ -130,7 +130,7 @@ double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light) {
 }
 
 LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
-  ++work_tally.light_samples;
+  ++thread_counters.light_samples;
   LightSample sample;
   sample.endless = light.type == LightType::kSun;
   sample.to_light = sample.endless ? -light.axis : light.position - point.position;

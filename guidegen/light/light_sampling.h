@@ -33,22 +33,22 @@ struct LightDraw {
 // The lights of a scene. Borrows the objects, which must outlive it. Immutable; free to use from any thread.
 class LightSet {
  public:
-  LightSet(std::span<const PlacedLight> lamps, std::span<const PlacedObject> objects, const glm::dvec3& world);
+  LightSet(std::span<const PlacedLight> lights, std::span<const PlacedObject> objects, const glm::dvec3& world);
 
   // Lights are numbered: the lamps that shine, then the objects that emit. The world is none of them: directions
   // sampled from a surface's lobes meet it by themselves.
-  int count() const { return int(lamps_.size() + emitters_.size()); }
+  int count() const { return int(analytic_.size() + emitters_.size()); }
   int delta_count() const { return delta_count_; }
   // Whether those that are no delta lights are so few that a surface which matters can look at each of them.
   bool FewHaveExtent() const { return count() - delta_count_ <= 8; }
   bool has_emitters() const { return !emitters_.empty(); }
-  bool has_extended_lamps() const { return delta_count_ < int(lamps_.size()); }
+  bool has_extended_analytic() const { return delta_count_ < int(analytic_.size()); }
   bool has_world() const { return world_ != glm::dvec3(0.0); }
   // Whether a ray may meet light: whether anything but delta lights shines.
-  bool CanBeMet() const { return has_emitters() || has_extended_lamps() || has_world(); }
+  bool CanBeMet() const { return has_emitters() || has_extended_analytic() || has_world(); }
   bool empty() const { return count() == 0 && !has_world(); }
-  bool IsDelta(int light) const { return light < int(lamps_.size()) && lamps_[std::size_t(light)].IsDelta(); }
-  bool IsEmitter(int light) const { return light >= int(lamps_.size()); }
+  bool IsDelta(int light) const { return light < int(analytic_.size()) && analytic_[std::size_t(light)].IsDelta(); }
+  bool IsEmitter(int light) const { return light >= int(analytic_.size()); }
   const glm::dvec3& world() const { return world_; }
 
   // Chooses a light about in proportion to what it may do to a point when nothing is in the way; `with_delta` says
@@ -67,8 +67,8 @@ class LightSet {
   // Calls visit(light, radiance, density) for each lamp with extent that the ray meets before `length` (infinite: it
   // meets nothing else); `density` is Draw's. The world is left to the caller.
   template <class Visit>
-  void VisitLamps(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
-    if (!has_extended_lamps()) return;
+  void VisitAnalytic(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
+    if (!has_extended_analytic()) return;
     tree_.VisitAlong(point, direction, [&](int light) {
       if (IsEmitter(light)) return;
       const LightDraw met = Meet(light, point, direction, length);
@@ -104,7 +104,7 @@ class LightSet {
   void AddEmitter(std::uint32_t object);
 
   std::span<const PlacedObject> objects_;
-  std::vector<PlacedLight> lamps_;
+  std::vector<PlacedLight> analytic_;
   std::vector<Emitter> emitters_;
   std::vector<int> emitter_of_;    // by object
   std::vector<TreeLight> shapes_;  // by light

@@ -48,7 +48,7 @@ LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::u
                                                     double clear_from, double least_alpha) const {
   const PlacedObject& placed = scene_.objects()[object];
   SurfacePoint point = FindSurfacePoint(placed, primitive, ray);
-  point.clear_way = ClearWay(ray, clear_from, point.position);
+  point.max_ray_offset = MaxRayOffset(ray, clear_from, point.position);
   const SurfaceBsdf bsdf(placed, primitive, point, glm::normalize(-ray.direction), least_alpha);
   return {point, bsdf, ShadowRayOrigin(point), object, primitive};
 }
@@ -127,7 +127,7 @@ void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, int ligh
 void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length,
                              PathSums& sums) const {
   // From where the ray leaves: a lamp in the surface itself is then behind it, however either is rounded.
-  lights_.VisitLamps(vertex.origin, flight.direction, length,
+  lights_.VisitAnalytic(vertex.origin, flight.direction, length,
                      [&](int light, const glm::dvec3& radiance, double density) {
                        if (!LooksFor(light, vertex, flight.lobe)) return;
                        const double other = density * ChoiceOf(light, vertex, flight);
@@ -150,7 +150,7 @@ bool LightPathTracer::MayMeetLight(const Vertex& vertex, const Flight& flight) c
   if (lights_.has_world() || lights_.has_emitters()) return true;
   bool met = false;
   const auto visit = [&](int light, const glm::dvec3&, double) { met = met || LooksFor(light, vertex, flight.lobe); };
-  lights_.VisitLamps(vertex.origin, flight.direction, kInfinity, visit);
+  lights_.VisitAnalytic(vertex.origin, flight.direction, kInfinity, visit);
   return met;
 }
 
@@ -190,7 +190,7 @@ void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const 
                                 const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
   const LightChoice choice = lights_.Choose(vertex.point, u[0], with_delta);
   if (choice.light < 0) return;
-  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, choice.rest, u[1]);
+  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, choice.remainder, u[1]);
   AddDraw(vertex, lobes, choice.light, draw, choice.probability, throughput, sums, rays);
 }
 
@@ -200,12 +200,12 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   flight.lobe = u[2] < lobes.probability[0] ? 0 : 1;
   const double probability = lobes.probability[flight.lobe];
   if (!(probability > 0.0)) return false;
-  const SurfaceBsdf::Bounce way =
+  const SurfaceBsdf::Bounce sampled =
       flight.lobe == 0 ? vertex.bsdf.SampleDiffuse(u[0], u[1]) : vertex.bsdf.SampleSpecular(u[0], u[1]);
-  flight.throughput *= way.weight / probability;
-  flight.direction = way.direction;
-  flight.density = way.density * probability;
-  flight.widest = std::min(flight.widest, way.density);
+  flight.throughput *= sampled.weight / probability;
+  flight.direction = sampled.direction;
+  flight.density = sampled.density * probability;
+  flight.widest = std::min(flight.widest, sampled.density);
   flight.first = bounce == 0;
   if (flight.throughput == glm::dvec3(0.0)) return false;
   if (bounce < kFirstRoulette) return true;

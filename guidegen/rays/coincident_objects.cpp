@@ -41,7 +41,7 @@ bool Covers(const PlacedObject& over, const PlacedObject& under) {
 
 }  // namespace
 
-std::vector<bool> FindCoveredCopies(std::span<const PlacedObject> objects) {
+std::vector<bool> FindHiddenCoincident(std::span<const PlacedObject> objects) {
   std::vector<bool> covered(objects.size(), false);
   std::unordered_map<std::uint64_t, std::vector<const PlacedObject*>> seen;
   for (std::size_t i = objects.size(); i-- > 0;) {

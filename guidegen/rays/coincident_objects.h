@@ -14,6 +14,6 @@ namespace scumble {
 // same matrix. Nothing with holes, and nothing culled where the other is not, covers anything. What emits is left
 // alone: it is a light besides. Shapes that merely touch, or that agree by other sums, are not looked for. Reads a
 // shape only where another of its size stands in its place.
-std::vector<bool> FindCoveredCopies(std::span<const PlacedObject> objects);
+std::vector<bool> FindHiddenCoincident(std::span<const PlacedObject> objects);
 
 }  // namespace scumble

@@ -103,7 +103,7 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
   const unsigned count = args->N;
   for (unsigned i = 0; i < count; ++i) {
     if (args->valid[i] == 0) continue;
-    ++work_tally.filtered_hits;
+    ++thread_counters.filtered_hits;
     if (may_be_target &&
         (RTCRayN_tfar(args->ray, count, i) >= context.target.near_end ||
          (context.target.object == &object && RTCHitN_primID(args->hit, count, i) == context.target.primitive))) {
@@ -240,7 +240,7 @@ Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
       },
       &reason);
   scene_.reset(NewScene(device_.get(), needs.robust));
-  const std::vector<bool> covered = FindCoveredCopies(*objects_);
+  const std::vector<bool> covered = FindHiddenCoincident(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
     if (covered[i] || (object.mesh && object.mesh->triangles.empty())) continue;

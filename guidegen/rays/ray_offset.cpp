@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "guidegen/scene/view_ray.h"
-
 namespace scumble {
 namespace {
 
@@ -35,16 +33,21 @@ LightRay EndlessLightRay(const glm::dvec3& origin, const glm::dvec3& direction) 
   return {WithinRange(origin), direction, kInfinity, kInfinity};
 }
 
+glm::dvec3 MaxRayOffset(const ViewRay& ray, double clear_from, const glm::dvec3& point) {
+  const glm::dvec3 back = ray.origin + ray.direction * clear_from - point;
+  return glm::dot(back, ray.direction) < 0.0 ? back : glm::dvec3(0.0);
+}
+
 glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {
   // Seen flatter than this (about half a degree), the way back would have to be too long for the height it gains.
   constexpr double kLeastCosine = 0.01;
   const double height = point.largest_coordinate * kRoundingPerCoordinate;
-  const double length = glm::length(point.clear_way);
+  const double length = glm::length(point.max_ray_offset);
   if (!(length > 0.0)) return point.position + point.facing * height;
-  const glm::dvec3 way = point.clear_way / length;
-  const double cosine = glm::dot(point.facing, way);
+  const glm::dvec3 direction = point.max_ray_offset / length;
+  const double cosine = glm::dot(point.facing, direction);
   const double back = std::min(height / std::max(cosine, kLeastCosine), length);
-  return point.position + way * back + point.facing * (height - back * cosine);
+  return point.position + direction * back + point.facing * (height - back * cosine);
 }
 
 }  // namespace scumble

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include "guidegen/scene/view_ray.h"
 #include "guidegen/surface/surface.h"
 
 namespace scumble {
@@ -32,6 +33,10 @@ struct LightRay {
 };
 LightRay LightRayTo(const glm::dvec3& origin, const glm::dvec3& light);
 LightRay EndlessLightRay(const glm::dvec3& origin, const glm::dvec3& direction);  // a unit vector
+
+// SurfacePoint::max_ray_offset of a point that a ray met. The ray passed nothing from `clear_from` lengths of its
+// direction up to the point. 0 where float has put that place behind the point.
+glm::dvec3 MaxRayOffset(const ViewRay& ray, double clear_from, const glm::dvec3& point);
 
 // Where a shadow ray starts: above the surface, on the viewer's side, by more than Embree's floats can be wrong. It
 // goes up along the point's clear way where there is one, so that no other surface comes to lie between: beside an edge

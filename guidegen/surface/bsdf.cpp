@@ -196,7 +196,7 @@ bool MayEmit(const Material& material) { return NotNegative(glm::dvec3(material.
 glm::dvec3 SurfaceEmission(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
   const Material& material = *object.material;
   if (!MayEmit(material)) return glm::dvec3(0.0);
-  ++work_tally.materials;
+  ++thread_counters.materials;
   glm::dvec3 emission(material.emission);
   if (const auto texel = SampleSurfaceColor(object, material.emission_texture, primitive, barycentric)) {
     emission *= glm::dvec3(*texel);

@@ -60,7 +60,7 @@ struct SurfacePoint {
   // A way from the point that nothing is in: back along the ray that met it, as far as the ray came, or to a place before
   // the last back of a single-sided surface that a camera ray passed. 0: none is known.
   // Whoever casts the rays fills it in.
-  glm::dvec3 clear_way{0.0};
+  glm::dvec3 max_ray_offset{0.0};
 };
 
 // Embree's hit is a float's worth of the truth; this meets the same surface again in double. A triangle that the exact
@@ -96,10 +96,6 @@ std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const Texture
                                        glm::dvec2 barycentric);
 std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
                                             glm::dvec2 barycentric);
-
-// SurfacePoint::clear_way of a point that a ray met and before which, from `clear_from` lengths of the ray's direction
-// on, it passed nothing. 0 where float has put that place behind the point.
-glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point);
 
 // Whether no object is single-sided: rays of light, which meet backs as well, then pass wherever camera rays pass.
 bool AllDoubleSided(std::span<const PlacedObject> objects);

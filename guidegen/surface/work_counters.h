@@ -10,7 +10,7 @@
 namespace scumble {
 
 // Of this thread, since it began.
-inline constinit thread_local WorkCounts work_tally;
+inline constinit thread_local WorkCounts thread_counters;
 
 inline constexpr std::size_t WorkCounts::* kWorkCounts[] = {
     &WorkCounts::light_samples, &WorkCounts::materials,     &WorkCounts::texture_lookups,
@@ -25,12 +25,12 @@ class WorkMeter {
  public:
   WorkCounts Since() const {
     WorkCounts done;
-    for (const auto count : kWorkCounts) done.*count = work_tally.*count - begin_.*count;
+    for (const auto count : kWorkCounts) done.*count = thread_counters.*count - begin_.*count;
     return done;
   }
 
  private:
-  const WorkCounts begin_ = work_tally;
+  const WorkCounts begin_ = thread_counters;
 };
 
 }  // namespace scumble

@@ -183,7 +183,7 @@ Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std:
   return Ok();
 }
 
-Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const std::string& where) {
+Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const std::string& where) {
   const tinygltf::Value* lamp = Find(node.extras, "lamp");
   if (!lamp) return std::optional<Light>();
   Fields fields(*lamp, where);

@@ -28,7 +28,7 @@ Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std:
 
 // The lamp that a node's extras describe, in watts as Cycles 3.4 means them: point and spot I = P/(4π), sun W/m², area
 // L = P/(4A). Name and place are the caller's. Nothing where the node is no such lamp. `where` is for the messages.
-Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const std::string& where);
+Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const std::string& where);
 
 // Completes an instance by the style and pass index that its node's extras name.
 Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance);

@@ -321,8 +321,8 @@ class GltfLoader {
       SCUMBLE_RETURN_IF_ERROR(LoadCamera(visit));
       rig_.camera_nodes.push_back(static_cast<int>(index));
     }
-    SCUMBLE_ASSIGN(const std::optional<Light> lamp, ReadLampExtras(node, file_ + ": " + NodeLabel(visit.node)));
-    if (lamp) return PlaceLight(visit, *lamp);
+    SCUMBLE_ASSIGN(const std::optional<Light> from_blender, ReadLightExtras(node, file_ + ": " + NodeLabel(visit.node)));
+    if (from_blender) return PlaceLight(visit, *from_blender);
     const std::optional<int> light = LightOf(node);
     return light ? LoadLight(visit, *light) : Ok();
   }

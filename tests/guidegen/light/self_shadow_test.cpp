@@ -590,15 +590,15 @@ TEST(ShadowRayOrigin, StandsAtItsHeightOnTheClearWay) {
     MakeFrame(point.facing, x, y);
     for (const double cosine : {1.0, 0.5, 0.02}) {
       const glm::dvec3 way = point.facing * cosine + x * std::sqrt(1.0 - cosine * cosine);
-      point.clear_way = way * (2.0 * coordinate);
+      point.max_ray_offset = way * (2.0 * coordinate);
       EXPECT_NEAR(up(), height, rounding) << cosine;
       const glm::dvec3 moved = ShadowRayOrigin(point) - point.position;
       EXPECT_LE(glm::length(moved - way * (height / cosine)), 2.0 * rounding) << cosine;
     }
     // Flatter, and with less room than that: at the same height still, never past where the ray came from.
-    point.clear_way = x * coordinate;
+    point.max_ray_offset = x * coordinate;
     EXPECT_NEAR(up(), height, rounding);
-    point.clear_way = point.facing * (0.25 * height);
+    point.max_ray_offset = point.facing * (0.25 * height);
     EXPECT_NEAR(up(), height, rounding);
   }
 }
