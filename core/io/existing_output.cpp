@@ -1,4 +1,4 @@
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 
 #include <algorithm>
 #include <cctype>
@@ -73,7 +73,7 @@ Status CheckSettings(const std::filesystem::path& path, const std::string& found
 Expected<StoredPicture> Inspect(const std::filesystem::path& path) {
   if (internal::IsPngFile(path)) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
-    SCUMBLE_RETURN_IF_ERROR(internal::CheckPngIsWhole(bytes, path.string()));
+    SCUMBLE_RETURN_IF_ERROR(internal::CheckPngIntegrity(bytes, path.string()));
     if (auto stored = internal::InspectPlainPng(bytes)) return *std::move(stored);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));

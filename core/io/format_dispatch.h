@@ -1,7 +1,7 @@
 // Where OpenImageIO is: in a module that is loaded when a file first needs it. Loading that library with all that it
 // brings along takes a fifth of a second of looking up names, and a picture in PNG of a scene without EXR or JPEG needs none of
 // it; nor do Scumble's own guides and the writing of EXR pictures, for which core/io/exr/scanline_exr.h is enough. Everybody else calls the functions of
-// picture_file.h, channel_file.h, guide_file.h and whole_output.h.
+// picture_file.h, channel_file.h, guide_file.h and existing_output.h.
 #pragma once
 
 #include <cstddef>

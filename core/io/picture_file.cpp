@@ -21,7 +21,7 @@ namespace {
 
 // A PNG that is whole and plain; nothing else.
 std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name) {
-  if (!internal::IsPng(bytes) || !internal::CheckPngIsWhole(bytes, name)) return std::nullopt;
+  if (!internal::IsPng(bytes) || !internal::CheckPngIntegrity(bytes, name)) return std::nullopt;
   return internal::ReadPlainPng(bytes);
 }
 

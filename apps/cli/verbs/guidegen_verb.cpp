@@ -20,7 +20,7 @@
 #include "apps/cli/app/timing.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 
 namespace scumble {
 namespace {

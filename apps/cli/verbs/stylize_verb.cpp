@@ -21,7 +21,7 @@
 #include "core/io/blender/blender_camera.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 #include "core/style/style_keyframes.h"
 
 namespace scumble {

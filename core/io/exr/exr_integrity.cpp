@@ -71,7 +71,7 @@ std::optional<std::string> ReadName(std::istream& file) {
 }
 
 // Of one pixel, in a list of channels: name, NUL, type, 4 bytes, sampling in x and y; an empty name ends it. Channels
-// with fewer samples than pixels, which no guides have, count as nothing: less is promised. Nothing where the list ends
+// with fewer samples than pixels, which no guides have, count as nothing: less is declared. Nothing where the list ends
 // elsewhere than its attribute, or a type is none: OpenImageIO would end the whole process.
 std::optional<std::uint64_t> PixelBytes(const std::string& list) {
   constexpr std::size_t kBehindName = 16;
@@ -206,7 +206,7 @@ Status Check(std::istream& file, std::uint64_t file_bytes, const std::string& na
 
 }  // namespace
 
-Status CheckExrPromises(const std::filesystem::path& path) {
+Status CheckExrIntegrity(const std::filesystem::path& path) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return Ok();
   const auto bytes = std::filesystem::file_size(path, failed);
@@ -215,7 +215,7 @@ Status CheckExrPromises(const std::filesystem::path& path) {
   return Check(file, bytes, path.string());
 }
 
-Status CheckExrPromises(std::span<const std::byte> bytes, const std::string& name) {
+Status CheckExrIntegrity(std::span<const std::byte> bytes, const std::string& name) {
   const char* const begin = reinterpret_cast<const char*>(bytes.data());
   if (bytes.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), begin)) return Ok();
   SpanBuffer buffer(bytes);

@@ -25,7 +25,7 @@
 
 #include "core/image/guides.h"
 #include "core/io/format_dispatch.h"
-#include "core/io/guides/guide_storage.h"
+#include "core/io/exr/half_float.h"
 #include "core/io/exr/exr_integrity.h"
 
 namespace scumble::internal {
@@ -182,7 +182,7 @@ std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
                                       const std::function<std::optional<PlaneFor>(const ExrHeader&)>& look) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;  // a pipe would be waited for without end
-  if (!CheckExrPromises(path)) return std::nullopt;
+  if (!CheckExrIntegrity(path)) return std::nullopt;
   SetThreads();
   try {
     Imf::MultiPartInputFile file(path.c_str());

@@ -1,4 +1,5 @@
-// How little a packed picture can take: what a file promises beyond is a lie, and is refused before memory is taken for it.
+// How little a packed picture can take: a file that declares more is refused
+// before memory is taken for it.
 #pragma once
 
 #include <cstdint>

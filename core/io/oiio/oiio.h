@@ -25,7 +25,7 @@ Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
 // The same from memory; `proxy` must outlive the input.
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name);
 
-// Calls a reader of the library, which may throw where a file promises what no memory holds: kInput then, but for want of
+// Calls a reader of the library, which may throw where a file declares more than memory holds: kInput then, but for want of
 // memory, which is the caller's.
 template <class Call>
 Status WithoutExceptions(const std::string& name, const Call& call) {

@@ -27,8 +27,8 @@ Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::fil
 // writes, and a TGA's colours it takes without looking how many there are. Of PSDs core/io/oiio/flat_psd.h takes care.
 Status CheckStart(std::string_view reader, std::span<const std::byte> start, const std::string& name);
 
-// That a file of so many bytes is too short for what its header promises.
-Error BrokenPromise(const std::string& name, std::uint64_t bytes);
+// That a file of so many bytes is too short for the size that its header declares.
+Error DeclaredSizeError(const std::string& name, std::uint64_t bytes);
 
 // The first kStartBytes of a file, or all there are.
 Expected<std::vector<std::byte>> ReadStart(const std::filesystem::path& path);

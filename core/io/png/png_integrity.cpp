@@ -61,7 +61,7 @@ bool IsPngFile(const std::filesystem::path& path) {
   return IsPng(std::as_bytes(std::span(start)));
 }
 
-Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name) {
+Status CheckPngIntegrity(std::span<const std::byte> bytes, const std::string& name) {
   constexpr std::size_t kAround = 12;  // length, type and sum
   const std::optional<PngHeader> header = ReadPngHeader(bytes);
   std::uint64_t packed = 0;

@@ -59,7 +59,7 @@ Expected<Picture> ReadByLibrary(const fs::path& path) {
 }
 
 void ExpectHolds(const std::vector<std::byte>& bytes, const Picture& picture) {
-  EXPECT_TRUE(internal::CheckPngIsWhole(bytes, "p.png"));
+  EXPECT_TRUE(internal::CheckPngIntegrity(bytes, "p.png"));
   const auto plain = internal::ReadPlainPng(bytes);
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->width, picture.width);

@@ -61,7 +61,7 @@ class Promises : public testing::Test {
     EXPECT_THAT(guides.error().message, HasSubstr("g.exr"));
     EXPECT_FALSE(ReadChannels(path_));
     EXPECT_FALSE(InspectGuides(path_));
-    EXPECT_FALSE(internal::CheckExrPromises(file, "g.exr"));
+    EXPECT_FALSE(internal::CheckExrIntegrity(file, "g.exr"));
     EXPECT_FALSE(CountPixels(path_));
     for (const Expected<Picture>& picture : {ReadPicture(path_), DecodePicture(file, "g.exr")}) {
       ASSERT_FALSE(picture);
@@ -78,7 +78,7 @@ class Promises : public testing::Test {
 TEST_F(Promises, WhatIsPackedTightlyIsRead) {
   for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
     const auto file = Guides(compression, 1024);
-    EXPECT_TRUE(internal::CheckExrPromises(file, "g.exr")) << compression;
+    EXPECT_TRUE(internal::CheckExrIntegrity(file, "g.exr")) << compression;
     const auto guides = ReadGuides(path_);
     ASSERT_TRUE(guides) << guides.error().message;
     EXPECT_EQ(guides->width(), 1024);
@@ -114,11 +114,11 @@ TEST_F(Promises, ExrHeadersAreReadWhereTheyStand) {
   if (start == MAP_FAILED) GTEST_SKIP() << "the system gives no terabyte of addresses";
   std::memcpy(start, file.data(), file.size());
   const std::span<const std::byte> bytes(static_cast<const std::byte*>(start), kTerabyte);
-  EXPECT_NO_THROW(EXPECT_TRUE(internal::CheckExrPromises(bytes, "g.exr")));
+  EXPECT_NO_THROW(EXPECT_TRUE(internal::CheckExrIntegrity(bytes, "g.exr")));
   // Cut short at every place, in the header and behind it: never read beyond, which the sanitizers see.
   for (std::size_t length = 0; length < file.size(); ++length) {
     const std::vector<std::byte> cut(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(length));
-    static_cast<void>(internal::CheckExrPromises(cut, "g.exr"));
+    static_cast<void>(internal::CheckExrIntegrity(cut, "g.exr"));
   }
   ::munmap(start, kTerabyte);
 }
@@ -195,7 +195,7 @@ TEST(PromisesOfPng, SidesThatNoDataOfThatSizeFills) {
 
 TEST(PromisesOfPng, WhatIsPackedTightlyIsRead) {
   const auto file = *EncodePng(Picture(2048, 2048), 0);
-  EXPECT_TRUE(internal::CheckPngIsWhole(file, "p.png"));
+  EXPECT_TRUE(internal::CheckPngIntegrity(file, "p.png"));
   EXPECT_TRUE(DecodePicture(file, "p.png"));
 }
 
