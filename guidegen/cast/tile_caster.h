@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,13 +12,12 @@
 #include "guidegen/guidegen.h"
 #include "guidegen/light/path_tracer.h"
 #include "guidegen/light/light_sampling.h"
+#include "guidegen/cast/primary_rays.h"
 #include "guidegen/cast/tile_hits.h"
 #include "guidegen/cast/tile_surface.h"
 #include "guidegen/surface/triangle_cache.h"
 
 namespace scumble {
-
-inline constexpr int kMaxAa = 16;
 
 // Casts tiles into a GuideSet. Shared by all threads; tiles do not overlap, so nothing is locked.
 class TileCaster {
@@ -34,11 +32,6 @@ class TileCaster {
 
    private:
     friend class TileCaster;
-    // A pixel whose centre misses, and where in the picture the ray went that met something all the same.
-    struct Moved {
-      int pixel;
-      glm::dvec2 at;
-    };
     struct OfTile {
       TileHits hits;
       TileRays rays;
@@ -46,7 +39,7 @@ class TileCaster {
       TileGuides guides;
       TilePoints points;
       std::vector<SurfacePoint> lit;
-      std::vector<Moved> moved;
+      std::vector<PrimaryRays::Moved> moved;
     };
     TriangleCache triangles;
     std::vector<OfTile> tiles;
@@ -65,15 +58,8 @@ class TileCaster {
             std::span<std::vector<PathPixel>> pixels = {}) const;
 
  private:
-  using Samples = std::bitset<kMaxAa * kMaxAa>;  // by rank: nearest the pixel's centre first
-  using Mask = std::bitset<kTilePixels>;
-  using Moved = Scratch::Moved;
   using TileScratch = Scratch::OfTile;
 
-  struct Offset {
-    double x;
-    double y;
-  };
   // A layer that is wanted; background is what its pixels are where nothing was met.
   struct Plane {
     float* values;
@@ -94,17 +80,6 @@ class TileCaster {
     std::vector<Plane> others;  // that are not written as whole tiles
   };
 
-  void PlaceRays(const Tile& tile, TileRays& rays) const;
-  // `find_clear`: whether hits.clear_from is asked for.
-  void CastCentres(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const;
-  template <class Packet>
-  void CastPackets(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const;
-  template <class Packet>
-  void FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const;
-  Mask FindWhole(const Tile& tile, const TileHits& hits) const;
-  std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
-  std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, TileScratch& scratch) const;
-  void Cover(const Tile& tile, TileScratch& scratch, RayCounts& counts) const;
   // How far the place that was hit moves in the picture until the next frame, pixels; 0 where it is not seen then.
   glm::dvec2 MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const;
   void WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const;
@@ -125,12 +100,9 @@ class TileCaster {
   const GuidegenOptions& options_;
   std::size_t width_;
   bool past_caches_;
+  const PrimaryRays primary_;
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
-  const bool backs_;             // whether camera rays may pass what rays of light do not
-  std::vector<Offset> offsets_;  // of subsamples, by rank
-  std::vector<double> across_;   // of the rays through centres, as TileRays has it, by the picture's column
-  std::vector<double> up_;       // and by its row; a tile's more of both than there are
   Planes planes_;
   bool lit_ = false;     // luminance or shadow, and something shines
   bool points_ = false;  // whether any layer asks for more than a tile's own guides
