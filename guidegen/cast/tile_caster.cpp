@@ -36,7 +36,7 @@ std::array<float*, 3> PlanesOrNull(GuideSet& guides, Layer layer) {
   return {PlaneOrNull(guides, layer, 0), PlaneOrNull(guides, layer, 1), PlaneOrNull(guides, layer, 2)};
 }
 
-// Whose emission luminance and shadow ask for; nobody looks at it where neither is wanted.
+// The objects whose emission luminance and shadow need; none where neither is wanted.
 std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSet& guides) {
   if (!guides.Has(Layer::kLuminance) && !guides.Has(Layer::kShadow)) return {};
   return scene.objects();

@@ -255,7 +255,7 @@ class TileWork {
     const auto back = hn::Gt(hn::Xor(along, hn::And(objects.winding, minus)), zero);
     const D side = hn::IfThenElseZero(back, minus);
 
-    // ObjectNormal and its way into view space.
+    // ObjectNormal, and its transform into view space.
     const F fv = hn::DemoteTo(f, v);
     const F fw = hn::DemoteTo(f, w);
     const F fu = hn::Sub(hn::Sub(hn::Set(f, 1.0f), fv), fw);

@@ -1,5 +1,5 @@
-// Direct light on white Lambert from lights with extent: lamps, meshes that emit, the world. The luminance and shadow
-// layers' share that no single ray can tell.
+// Direct light on white Lambert from lights with extent: area lights, meshes that emit, the world. This is the part of the
+// luminance and shadow layers that takes many rays.
 #pragma once
 
 #include "guidegen/rays/embree_scene.h"
@@ -9,8 +9,8 @@
 
 namespace scumble {
 
-// Reflected luminance, irradiance/π, with and without what stands in the way. What shines does not count as standing in
-// the way of other shining meshes, nor the front of one as standing before its back: a ball of light casts no shadow.
+// Reflected luminance, irradiance/π, with and without occluders. A mesh that emits does not occlude other meshes that emit,
+// nor its own back: a sphere of light casts no shadow.
 struct AreaLighting {
   double reached = 0.0;
   double unoccluded = 0.0;

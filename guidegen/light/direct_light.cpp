@@ -12,8 +12,8 @@
 namespace scumble {
 namespace {
 
-// Metres up to which a lamp has no extent: as floats hold no less, no scene is so small, and a radiance, over the square
-// of it, stays within a double's range.
+// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is so small; and a radiance, over the
+// square of it, stays within a double's range.
 constexpr double kLeastRadius = 0x1p-149;
 
 // Radians up to which a sun has none: in floats nothing tells the two apart.

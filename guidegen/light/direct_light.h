@@ -1,4 +1,5 @@
-// Lights before the camera, and their direct light on white Lambert: what reaches a point when nothing is in the way.
+// Lights before the camera, and their direct light on white Lambert: the light that reaches a point without
+// occluders.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,7 +12,7 @@
 
 namespace scumble {
 
-// A light before the camera, in view space. A light without extent is a delta light: one ray tells all about it.
+// A light before the camera, in view space. A light without extent is a delta light: one ray is enough for it.
 struct PlacedLight {
   LightType type = LightType::kPoint;
   glm::dvec3 position{0.0};
@@ -43,7 +44,7 @@ double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light);
 struct LightSample {
   double luminance = 0.0;    // reflected radiance of white Lambert, irradiance/π; 0 where the light cannot reach
   glm::dvec3 to_light{0.0};  // view space; reaches the light at length 1 unless `endless`
-  bool endless = false;      // a sun: the way has no end
+  bool endless = false;      // a sun: infinitely far
 };
 
 // For delta lights. Point: I cosθ/(π d²). Spot: the same within its cone. Sun: E cosθ/π. Light must come from the

@@ -19,7 +19,7 @@ constexpr double kLeastSquare = 1e-30;
 // The distance from a plane, over the largest coordinate, that doubles cannot be trusted to tell.
 constexpr double kFlat = 0x1.0p-40;
 
-// Irradiance beyond this does not fit a float once it is reflected, and could become infinite on its way.
+// Irradiance beyond this does not fit a float once it is reflected, and could become infinite before.
 constexpr double kMostIrradiance = std::numeric_limits<float>::max();
 
 double AreaOf(const PlacedLight& light) {

@@ -16,16 +16,16 @@
 
 namespace scumble {
 
-// Which light to sample.
+// A light that was chosen for sampling.
 struct LightChoice {
   int light = -1;  // −1: none can reach the point
   double probability = 0.0;
-  // What is left of the number that chose, stretched to [0, 1): it takes part in drawing a point of the light, so that
+  // The remainder of the random number that chose, stretched to [0, 1). It is used to sample a point of the light, so that
   // the points on each light are spread as evenly as the numbers were.
   double remainder = 0.0;
 };
 
-// A light as the tree sees it: a ball somewhere, or a sun, which is as strong everywhere.
+// A light as the tree sees it: a bounding sphere, or a sun, which is equally strong everywhere.
 struct TreeLight {
   glm::dvec3 centre{0.0};
   double radius = 0.0;  // of suns half the angle, in radians
@@ -40,8 +40,8 @@ double BallWeight(const glm::dvec3& centre, double radius, double power, const S
 // The same for light that comes from one direction.
 double SunWeight(const glm::dvec3& direction, double half_angle, double power, const SurfacePoint& point);
 
-// Whether a light fills so much of the sky that directions of a wide lobe should look for it too. For smaller ones,
-// points drawn on the light are all alike, and such directions would be spent for nothing.
+// Whether a light fills so much of the hemisphere that directions of a wide lobe should sample it too. For a smaller
+// light, all points on it contribute about equally, and such directions would be wasted.
 inline bool IsWide(const TreeLight& light, const glm::dvec3& point) {
   constexpr double kWideDistance = 4.0;  // radii
   if (light.is_delta) return false;

@@ -29,7 +29,7 @@ constexpr PathEvent kLobeEvents[2] = {PathEvent::kDiffuse, PathEvent::kSpecular}
 double Balance(double a, double b) { return std::isinf(a) ? 1.0 : a / (a + b); }
 
 // The blur of what a path sees after a wide reflection, by the smallest density on its way: Cycles' "filter glossy" at
-// its default of 1. A mirror that only diffuse light looks into would otherwise show lamps as fireflies.
+// its default of 1. A mirror that only diffuse light looks into would otherwise show lights as fireflies.
 double RoughenedAlpha(double density) { return density < 1.0 ? 0.5 * std::sqrt(1.0 - density) : 0.0; }
 
 double Largest(const glm::dvec3& c) { return std::max(c.r, std::max(c.g, c.b)); }
@@ -123,10 +123,10 @@ void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, int ligh
   }
 }
 
-// Lamps that a sampled direction meets before `length`, and the world where it meets nothing.
+// Analytic lights that a sampled direction meets before `length`, and the world where it meets nothing.
 void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length,
                              PathSums& sums) const {
-  // From where the ray leaves: a lamp in the surface itself is then behind it, however either is rounded.
+  // From where the ray leaves: a light in the surface itself is then behind it, however either is rounded.
   lights_.VisitAnalytic(vertex.origin, flight.direction, length,
                      [&](int light, const glm::dvec3& radiance, double density) {
                        if (!LooksFor(light, vertex, flight.lobe)) return;
@@ -215,7 +215,7 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   return u[3] < survival;
 }
 
-// Follows the flight to the next surface, adding the light on its way; nothing where the path ends.
+// Follows the flight to the next surface, adding the light that it meets; nothing where the path ends.
 std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex, const Lobes& lobes,
                                                             const Flight& flight, bool goes_on, PathSums& sums,
                                                             RayCounts& rays) const {

@@ -2,7 +2,7 @@
 // and Russian roulette (Veach 1997; Kajiya 1986).
 //
 // Each reflection chooses one lobe, so that every path has one string of events, and what it carries goes to exactly
-// the layers whose expression matches. On the first surface lamps without extent are summed, not sampled: where nothing
+// the layers whose expression matches. On the first surface lights without extent are summed, not sampled: where nothing
 // else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few;
 // everywhere else one light is chosen.
 //
@@ -67,7 +67,7 @@ class LightPathTracer {
   };
   First FirstVertex(const PathPixel& pixel) const;
 
-  // What needs no chance: emission that the eye sees, and delta lights on the first surface.
+  // The part that needs no random numbers: emission that the eye sees, and delta lights on the first surface.
   void AddExact(const First& first, PathSums& sums, RayCounts& rays) const;
   // One path and all its light. The mean over the samples 0 … N − 1 and the exact part make the layers.
   void AddSample(const First& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,

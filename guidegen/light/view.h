@@ -13,11 +13,11 @@ namespace scumble {
 // All in the camera's view space. The objects are the EmbreeScene's.
 struct View {
   CameraRays camera;
-  std::vector<PlacedLight> lights;  // looked at only where a layer needs them, as the rest
+  std::vector<PlacedLight> lights;  // these and what follows only where a layer needs them
   glm::dvec3 world_radiance{0.0};
   PathSupply supply;
 
-  // For the motion layer; empty where nobody asks for it. Each of the scene's objects, in their order, as it stands in
+  // For the motion layer; empty where it is not asked for. Each of the scene's objects, in their order, as it stands in
   // the next frame before that frame's camera; without a mesh where it is gone by then.
   std::vector<PlacedObject> next_objects;
   CameraRays next_camera;

@@ -49,7 +49,7 @@ void CheckPromises(const Scene& scene) {
   }
 }
 
-// Calls load() and turns the ways in which memory can run out into an error.
+// Calls load() and turns each kind of memory exhaustion into an error.
 template <class Load>
 auto WithinMemory(const std::filesystem::path& path, Load load) -> decltype(load()) {
   try {

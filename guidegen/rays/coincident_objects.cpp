@@ -11,7 +11,7 @@
 namespace scumble {
 namespace {
 
-// Of the matrix, of how much there is, and of the first and last place: what tells nearly all objects apart.
+// Of the matrix, the sizes, and the first and last position: enough to tell nearly all objects apart.
 std::uint64_t HashOf(const PlacedObject& object) {
   const Mesh& mesh = *object.mesh;
   std::uint64_t hash = Hash(mesh.positions.size(), mesh.triangles.size());
@@ -30,7 +30,6 @@ bool IsCopy(const PlacedObject& a, const PlacedObject& b) {
   return a.mesh == b.mesh || (a.mesh->positions == b.mesh->positions && a.mesh->triangles == b.mesh->triangles);
 }
 
-// What has holes never does.
 bool MayCover(const PlacedObject& over) { return !MayHaveHoles(*over.material); }
 
 bool Covers(const PlacedObject& over, const PlacedObject& under) {

@@ -15,17 +15,17 @@
 
 namespace scumble {
 
-// The place on an emissive mesh that a shadow ray goes to. It does not shade itself: neither the triangle that was
-// aimed at counts, wherever Embree's floats put it, nor what shines so near the end that it may be the same place: the
-// next triangle, or the next piece of a light that was cut in pieces.
+// The place on an emissive mesh that a shadow ray goes to. It does not shade itself. So the triangle that was sampled does
+// not count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the sampled
+// place: the next triangle, or the next part of a light that was cut into several meshes.
 struct ShadowTarget {
   const PlacedObject* object = nullptr;
   std::uint32_t primitive = 0;
   float near_end = 1.0f;  // in lengths of the ray's direction
 };
 
-// Where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Not only before what it meets:
-// Embree goes its own way.
+// Where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Embree visits boxes in its own
+// order, so backs behind the hit may be among them.
 struct BacksPassed {
   float nearest = std::numeric_limits<float>::infinity();
   float farthest = -std::numeric_limits<float>::infinity();
@@ -41,7 +41,7 @@ struct CastContext {
   RTCIntersectContext embree;  // first: Embree passes its address on
   bool camera_rays;
   ShadowTarget target;
-  BacksPassed* passed = nullptr;  // by a ray's id; null: nobody asks
+  BacksPassed* passed = nullptr;  // by a ray's id; null: not recorded
 };
 
 // Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.

@@ -22,7 +22,7 @@ class LazyScene {
   };
   // A scene of this instruction set that meets the needs; errors as EmbreeScene::Build has them. It is built if there is
   // none yet, if the last one had another instruction set or another `robust`, or if the needs have grown. A scene that
-  // meets more needs gives the same hits. Safe to call from several threads: they wait for the one that builds. After an
+  // meets more needs gives equal hits. Safe to call from several threads: they wait for the one that builds. After an
   // error the next call builds again.
   Expected<Lease> Get(const std::string& isa, const EmbreeScene::Needs& needs, const Progress& progress);
 

@@ -1,5 +1,4 @@
-// Rays that go their own way, one at a time; packets of neighbouring rays are tile_caster.cpp's. Backs of single-sided
-// surfaces are there for them, as for shadow rays.
+// Incoherent rays, cast one at a time. They meet the backs of single-sided surfaces, as shadow rays do.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,9 +8,9 @@
 
 namespace scumble {
 
-// What counts as being in a ray's way: everything, or nothing but meshes that emit.
+// What can block a ray: all objects, or only meshes that emit.
 enum class Blockers { kAll, kEmitters };
-// Whether the ray meets any of `blockers` before its reach ends. `target` is left out; by default there is none.
+// Whether the ray meets any of `blockers` before its reach ends. `target`, if it names an object, does not count.
 bool IsOccluded(const EmbreeScene& scene, const LightRay& ray, const ShadowTarget& target, Blockers blockers);
 
 // The nearest hit in a direction; its geomID is RTC_INVALID_GEOMETRY_ID where there is none.

@@ -1,4 +1,4 @@
-// From where a scene is seen, and by which light, where its file does not say.
+// The camera and the light of a scene whose file has none.
 #pragma once
 
 #include <optional>

@@ -25,7 +25,7 @@ struct PlacedObject {
   glm::dmat3 view_from_normal{1.0};  // the inverse transpose up to a positive factor, defined for flat objects too
   double winding = 1.0;              // −1 where the matrix mirrors and triangles turn their back
 
-  bool reaches_far = false;  // EmbreeScene finds out, where rays of light will ask
+  bool reaches_far = false;  // set by EmbreeScene, if rays of light will be cast
 };
 
 PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,
@@ -57,9 +57,9 @@ struct SurfacePoint {
   glm::dvec3 rest_position{0.0};    // object space
   glm::dvec2 barycentric{0.0};      // weights of the second and third corner
   double largest_coordinate = 0.0;  // of the point and its triangle: what float rounding errors are relative to
-  // A way from the point that nothing is in: back along the ray that met it, as far as the ray came, or to a place before
-  // the last back of a single-sided surface that a camera ray passed. 0: none is known.
-  // Whoever casts the rays fills it in.
+  // The longest offset of a ray's origin from the point with nothing between: back along the ray that met it, to that
+  // ray's start, or to a place before the last back of a single-sided surface that a camera ray passed. 0: unknown. The
+  // caster of the ray sets it (MaxRayOffset in rays/ray_offset.h).
   glm::dvec3 max_ray_offset{0.0};
 };
 

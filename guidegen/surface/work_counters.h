@@ -1,6 +1,6 @@
 // Counters that the innermost loops of the ray caster add to. Each thread has its own, so that nothing is locked and
-// nothing is handed down to them; whoever splits the work takes the differences and adds them up. Sums of whole numbers
-// do not depend on how the work was split.
+// nothing is passed down to the loops. The function that splits the work adds up the differences. Sums of integers do not
+// depend on the split.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace scumble {
 
-// Of this thread, since it began.
+// This thread's counters, since its start.
 inline constinit thread_local WorkCounts thread_counters;
 
 inline constexpr std::size_t WorkCounts::* kWorkCounts[] = {
@@ -20,7 +20,7 @@ inline void AddWork(const WorkCounts& from, WorkCounts& to) {
   for (const auto count : kWorkCounts) to.*count += from.*count;
 }
 
-// What this thread does while it stands. Work that is handed to other threads meanwhile is theirs to count.
+// The counts of this thread since the meter was made. Work that other threads do for it is counted there.
 class WorkMeter {
  public:
   WorkCounts Since() const {

@@ -85,7 +85,7 @@ void ReadSpot(Fields& fields, Light& light) {
   light.inner_cone_degrees = light.outer_cone_degrees * (1.0 - light.spot_blend);
 }
 
-// False where the lamp has no area, and so gives no light.
+// False where the light has no area, and so gives none.
 bool ReadArea(Fields& fields, Light& light, double energy) {
   const std::string shape = fields.Text("shape");
   light.ellipse = shape == "DISK" || shape == "ELLIPSE";
