@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/direction.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 
@@ -111,19 +111,20 @@ struct NextFrame {
 };
 
 // As above; `motion` can be asked for as well: how far the point that a pixel shows moves until the next frame, in
-// pixels, +X right and +Y down. It is 0 for background, for objects that are gone by then, and exactly 0 for points that
-// do not move. A point may be hidden in the next frame; `motion` does not tell.
+// pixels, +X right and +Y down. It is 0 for background, for objects that are gone by then, and exactly 0 for points
+// that do not move. A point may be hidden in the next frame; `motion` does not tell.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options);
 
 // A scene before a camera, ready to be cast many times: names and ids, and the acceleration structure, which is built
-// by the first cast and kept. Casts may differ in every option. They build again only for another `isa` or `robust`, and
-// once more when light is first asked for.
+// by the first cast and kept. Casts may differ in every option. They build again only for another `isa` or `robust`,
+// and once more when light is first asked for.
 //
-// The scene is borrowed, and must outlive this. Between casts lights, the world's radiance, styles and textures may
-// change (DecodeTextures may be called); whoever changes anything else of the scene, or the camera, makes a new one:
-// triangles are stored relative to the camera. Casts never change a RayScene as seen from outside: several threads may
-// cast at once, and a cast that was cancelled or has failed leaves it as good as before.
+// The scene is borrowed, and must outlive this. Between casts lights, the world's radiance and styles may change, and
+// DecodeTextures may be called. If anything else of the scene changes, if the camera does, or if DecodeTextures leaves
+// a texture out, make a new RayScene: the structure depends on materials, and its triangles are relative to the camera.
+//
+// Safe to use from several threads at once. A cast that is cancelled or fails leaves it as good as before.
 class RayScene {
  public:
   // Fails with kInput where the camera has no direction, or a lens that no picture can have.

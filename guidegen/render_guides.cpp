@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/image/check.h"
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/scene_textures.h"
-#include "core/image/check.h"
 
 namespace scumble {
 namespace {
@@ -55,11 +55,13 @@ bool NeedsLight(const LayerSet& layers) {
 
 // Luminance and shadow are cast in one go with a fixed number of samples.
 Status CheckOpenEnd(const GuidegenOptions& options, const PathSupply& supply) {
-  const bool sampled = supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
+  const bool sampled =
+      supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
   if (!sampled || (options.noise <= 0.0 && options.time_budget_seconds <= 0.0)) return Ok();
-  return UsageError(std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
-                    " is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples: "
-                    "make these two in a run of their own with --samples");
+  return UsageError(
+      std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
+      " is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples: "
+      "make these two in a run of their own with --samples");
 }
 
 Status CheckRadiance(const std::string& who, const glm::vec3& radiance) {
@@ -144,8 +146,8 @@ std::vector<PlacedObject> PlaceObjects(const Scene& scene, const CameraPose& cam
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
     const auto material = std::size_t(mesh.material);
-    PlacedObject object = Place(&mesh, &scene.materials[material], scene.textures,
-                                camera.ViewFromObject(instance.world_from_object));
+    PlacedObject object =
+        Place(&mesh, &scene.materials[material], scene.textures, camera.ViewFromObject(instance.world_from_object));
     object.object_id = object_ids[i];
     object.material_id = material_ids[material];
     objects.push_back(object);

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "core/image/direction.h"
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
-#include "core/image/direction.h"
 
 namespace scumble {
 namespace {

@@ -14,14 +14,14 @@
 #include <span>
 #include <string>
 
-#include "guidegen/rays/embree_scene.h"
-#include "guidegen/light/light_passes.h"
-#include "guidegen/light/path_layers.h"
-#include "guidegen/rays/progress_gate.h"
+#include "core/image/stopwatch.h"
 #include "guidegen/cast/tile_caster.h"
 #include "guidegen/cast/tile_store.h"
+#include "guidegen/light/light_passes.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/rays/embree_scene.h"
+#include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/work_counters.h"
-#include "core/image/stopwatch.h"
 
 namespace scumble {
 namespace {

@@ -48,9 +48,9 @@ void PrimaryRays::PlaceRays(const Tile& tile, TileRays& rays) const {
   std::copy_n(up_.begin() + tile.y0, kTileSide, rays.up.begin());
 }
 
-// From where on the rays of a packet that was cast are clear. A ray that passed backs both before and behind what it met,
-// by context.passed, is cast again, only as far as that hit. The back itself may be a rounding nearer than float has it:
-// half of the distance counts.
+// From where on the rays of a packet that was cast are clear. A ray that passed backs both before and behind what it
+// met, by context.passed, is cast again, only as far as that hit. The back itself may be a rounding nearer than float
+// has it: half of the distance counts.
 template <class Packet>
 void PrimaryRays::FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const {
   constexpr int kRays = kRaysIn<Packet>;
@@ -177,7 +177,7 @@ std::array<PrimaryRays::Samples, kTilePixels> PrimaryRays::CastSubsamples(const 
 // Looks for a surface at the covered subsamples, nearest first, and returns how many rays that took. The nearest nearly
 // always has it; a ray that grazes an edge may be blocked in one packet and pass alone.
 std::size_t PrimaryRays::CastMissed(const Tile& tile, Samples samples, int pixel, TileHits& hits,
-                                     std::vector<Moved>& moved) const {
+                                    std::vector<Moved>& moved) const {
   std::size_t cast = 0;
   for (std::size_t rank = 0; rank < offsets_.size(); ++rank) {
     if (!samples.test(rank)) continue;

@@ -31,9 +31,9 @@ class PrimaryRays {
     int pixel;
     glm::dvec2 at;
   };
-  // Fills the coverage of a tile whose centres are cast. If a pixel's centre misses, but a subsample meets something, the
-  // pixel takes the hit of its nearest covered subsample, and is added to `moved`. A pixel whose centre is hit counts as
-  // one subsample at least, so that nothing thin is lost between them. Returns the number of rays.
+  // Fills the coverage of a tile whose centres are cast. If a pixel's centre misses, but a subsample meets something,
+  // the pixel takes the hit of its nearest covered subsample, and is added to `moved`. A pixel whose centre is hit
+  // counts as one subsample at least, so that nothing thin is lost between them. Returns the number of rays.
   std::size_t Cover(const Tile& tile, TileHits& hits, std::array<float, kTilePixels>& coverage,
                     std::vector<Moved>& moved) const;
 

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "guidegen/light/area_light.h"
+#include "core/image/check.h"
 #include "guidegen/cast/ray_packets.h"
 #include "guidegen/cast/tile_store.h"
+#include "guidegen/light/area_light.h"
 #include "guidegen/rays/ray_offset.h"
-#include "core/image/check.h"
 
 namespace scumble {
 namespace {
@@ -138,7 +138,8 @@ void TileCaster::WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, 
   }
   if (!lit_) return;
   scratch.lit[pixel] = point;
-  scratch.lit[pixel].max_ray_offset = MaxRayOffset(view_.camera.Through(at.x, at.y), hits.clear_from[pixel], point.position);
+  scratch.lit[pixel].max_ray_offset =
+      MaxRayOffset(view_.camera.Through(at.x, at.y), hits.clear_from[pixel], point.position);
 }
 
 void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points,
@@ -170,7 +171,8 @@ void TileCaster::Light(const Tile& tile, const TileHits& hits, const std::vector
     if (lights_.CanBeMet()) {
       if (!share.gate.Continue()) return;  // thousands of samples may follow
       const Sampler sampler(std::uint32_t(index), kAreaLightStream, options_.seed);
-      const AreaLighting lighting = SampleAreaLights(scene_, lights_, points[pixel], sampler, options_.samples, share.rays);
+      const AreaLighting lighting =
+          SampleAreaLights(scene_, lights_, points[pixel], sampler, options_.samples, share.rays);
       reached[pixel] += lighting.reached;
       unoccluded[pixel] += lighting.unoccluded;
     }
@@ -224,8 +226,8 @@ void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& s
       const glm::dvec2 at = found != scratch.moved.end() ? found->at : Centre(tile, pixel);
       if (points_) WriteOthers(tile, pixel, at, scratch);
       if (pixels) {
-        pixels->push_back({std::uint32_t(Index(tile, pixel)), hits.object[pixel], hits.primitive[pixel], at,
-                           hits.clear_from[pixel]});
+        pixels->push_back(
+            {std::uint32_t(Index(tile, pixel)), hits.object[pixel], hits.primitive[pixel], at, hits.clear_from[pixel]});
       }
     });
   }

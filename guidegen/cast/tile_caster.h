@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "guidegen/cast/cast_guides.h"
-#include "guidegen/rays/embree_scene.h"
-#include "guidegen/rays/progress_gate.h"
-#include "guidegen/guidegen.h"
-#include "guidegen/light/path_tracer.h"
-#include "guidegen/light/light_sampling.h"
 #include "guidegen/cast/primary_rays.h"
 #include "guidegen/cast/tile_hits.h"
 #include "guidegen/cast/tile_surface.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/light/light_sampling.h"
+#include "guidegen/light/path_tracer.h"
+#include "guidegen/rays/embree_scene.h"
+#include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/triangle_cache.h"
 
 namespace scumble {

@@ -45,8 +45,8 @@ struct TileHits {
   alignas(64) std::array<std::uint32_t, kTilePixels> object;
   alignas(64) std::array<std::uint32_t, kTilePixels> primitive;
 
-  // From where up to its hit the ray is clear for rays of light, too, in lengths of its direction. Only set for hits, and
-  // only where it is asked for.
+  // From where up to its hit the ray is clear for rays of light, too, in lengths of its direction. Only set for hits,
+  // and only where it is asked for.
   alignas(64) std::array<float, kTilePixels> clear_from;
 
   bool Met(int pixel) const { return object[std::size_t(pixel)] != kNothing; }

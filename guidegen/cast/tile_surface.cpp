@@ -236,10 +236,11 @@ class TileWork {
     // MeetTriangle. A product with −1 changes the sign and no more.
     const D3 from = {hn::Sub(origin.x, triangles.corner.x), hn::Sub(origin.y, triangles.corner.y),
                      hn::Sub(origin.z, triangles.corner.z)};
-    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(direction.y, from.z)), hn::Add(hn::Mul(from.z, direction.x), from.x),
+    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(direction.y, from.z)),
+                       hn::Add(hn::Mul(from.z, direction.x), from.x),
                        hn::Sub(hn::Mul(from.x, direction.y), hn::Mul(direction.x, from.y))};
-    const D along =
-        hn::Sub(hn::Add(hn::Mul(triangles.area.x, direction.x), hn::Mul(triangles.area.y, direction.y)), triangles.area.z);
+    const D along = hn::Sub(hn::Add(hn::Mul(triangles.area.x, direction.x), hn::Mul(triangles.area.y, direction.y)),
+                            triangles.area.z);
     const D scale = hn::Div(hn::Set(d, -1.0), along);
     const D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
     const D w = hn::Mul(Dot(triangles.first_edge, moment), scale);

@@ -4,10 +4,10 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "guidegen/surface/bsdf.h"
 #include "guidegen/light/light_visibility.h"
 #include "guidegen/rays/ray_offset.h"
 #include "guidegen/rays/single_ray.h"
+#include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
@@ -121,7 +121,7 @@ struct Sample {
 }  // namespace
 
 AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
-                          const Sampler& sampler, int samples, RayCounts& rays) {
+                              const Sampler& sampler, int samples, RayCounts& rays) {
   AreaLighting sum;
   Sample sample{scene, lights, point, ShadowRayOrigin(point), sum, rays};
   const bool by_light = lights.delta_count() < lights.count();

@@ -6,14 +6,14 @@
 #include <limits>
 #include <string>
 
-#include "guidegen/surface/work_counters.h"
 #include "core/image/color.h"
+#include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {
 
-// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is so small; and a radiance, over the
-// square of it, stays within a double's range.
+// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is so small; and a radiance, over
+// the square of it, stays within a double's range.
 constexpr double kLeastRadius = 0x1p-149;
 
 // Radians up to which a sun has none: in floats nothing tells the two apart.

@@ -5,10 +5,10 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "core/image/status.h"
 #include "guidegen/rays/camera_rays.h"
 #include "guidegen/scene/scene.h"
 #include "guidegen/surface/surface.h"
-#include "core/image/status.h"
 
 namespace scumble {
 

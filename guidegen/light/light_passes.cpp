@@ -7,10 +7,10 @@
 #include <limits>
 #include <span>
 
-#include "guidegen/surface/bsdf.h"
-#include "guidegen/rays/progress_gate.h"
-#include "guidegen/surface/work_counters.h"
 #include "core/image/stopwatch.h"
+#include "guidegen/rays/progress_gate.h"
+#include "guidegen/surface/bsdf.h"
+#include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {

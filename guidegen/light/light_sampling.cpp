@@ -159,7 +159,8 @@ double MostAttenuation(const PlacedLight& spot, const glm::dvec3& from_centre) {
 }
 
 TreeLight ShapeOf(const PlacedLight& light) {
-  TreeLight shape{light.position, light.radius, std::min(Brightness(light.color), kMostIrradiance), false, light.IsDelta()};
+  TreeLight shape{light.position, light.radius, std::min(Brightness(light.color), kMostIrradiance), false,
+                  light.IsDelta()};
   shape.is_sun = light.type == LightType::kSun;
   if (shape.is_sun) shape.radius = light.half_angle;
   if (light.type == LightType::kArea) {

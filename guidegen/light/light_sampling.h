@@ -65,8 +65,8 @@ class LightSet {
   // u picks among triangles too and is stretched for it. A draw that cannot reach the point has no radiance.
   LightDraw Draw(int light, const glm::dvec3& point, double u, double v) const;
 
-  // Calls visit(light, radiance, density) for each analytic light with extent that the ray meets before `length` (infinite: it
-  // meets nothing else); `density` is Draw's. The world is left to the caller.
+  // Calls visit(light, radiance, density) for each analytic light with extent that the ray meets before `length`
+  // (infinite: it meets nothing else); `density` is Draw's. The world is left to the caller.
   template <class Visit>
   void VisitAnalytic(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
     if (!has_extended_analytic()) return;

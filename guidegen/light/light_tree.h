@@ -20,8 +20,8 @@ namespace scumble {
 struct LightChoice {
   int light = -1;  // −1: none can reach the point
   double probability = 0.0;
-  // The remainder of the random number that chose, stretched to [0, 1). It is used to sample a point of the light, so that
-  // the points on each light are spread as evenly as the numbers were.
+  // The remainder of the random number that chose, stretched to [0, 1). It is used to sample a point of the light, so
+  // that the points on each light are spread as evenly as the numbers were.
   double remainder = 0.0;
 };
 
@@ -83,7 +83,8 @@ class LightTree {
       if (left < weights[i]) break;
       left -= weights[i];
     }
-    choice.remainder = std::clamp(choice.remainder, 0.0, kBelowOne);  // rounding may leave a little over for the last one
+    choice.remainder =
+        std::clamp(choice.remainder, 0.0, kBelowOne);  // rounding may leave a little over for the last one
     return choice;
   }
 
@@ -138,8 +139,8 @@ class LightTree {
   }
   static bool MayMeet(const Node& node, const glm::dvec3& origin, const glm::dvec3& direction);
 
-  std::vector<Node> nodes_;            // the root first
-  std::vector<int> order_;             // lights, leaf by leaf
+  std::vector<Node> nodes_;             // the root first
+  std::vector<int> order_;              // lights, leaf by leaf
   std::vector<std::uint64_t> path_to_;  // by light: bit d says which child is taken at depth d
 };
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "core/image/layers.h"
 #include "guidegen/light/path_expression.h"
 #include "guidegen/scene/scene.h"
-#include "core/image/layers.h"
 
 namespace scumble {
 

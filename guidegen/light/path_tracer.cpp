@@ -128,11 +128,11 @@ void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const
                              PathSums& sums) const {
   // From where the ray leaves: a light in the surface itself is then behind it, however either is rounded.
   lights_.VisitAnalytic(vertex.origin, flight.direction, length,
-                     [&](int light, const glm::dvec3& radiance, double density) {
-                       if (!LooksFor(light, vertex, flight.lobe)) return;
-                       const double other = density * ChoiceOf(light, vertex, flight);
-                       Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
-                     });
+                        [&](int light, const glm::dvec3& radiance, double density) {
+                          if (!LooksFor(light, vertex, flight.lobe)) return;
+                          const double other = density * ChoiceOf(light, vertex, flight);
+                          Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
+                        });
   if (std::isinf(length)) Add(state, flight.throughput * lights_.world(), sums);
 }
 
@@ -228,8 +228,8 @@ std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex
     if (lit) AddMet(vertex, state, flight, kInfinity, sums);
     return std::nullopt;
   }
-  const Vertex next = MakeVertex(hit.hit.geomID, hit.hit.primID, {vertex.origin, flight.direction}, 0.0,
-                                 RoughenedAlpha(flight.widest));
+  const Vertex next =
+      MakeVertex(hit.hit.geomID, hit.hit.primID, {vertex.origin, flight.direction}, 0.0, RoughenedAlpha(flight.widest));
   if (lit) {
     AddMet(vertex, state, flight, glm::length(next.point.position - vertex.origin), sums);
     AddEmission(vertex, next, state, flight, sums);

@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/image/check.h"
 #include "guidegen/load/gltf/gltf_scene.h"
+#include "guidegen/load/loader_util.h"
 #include "guidegen/load/obj.h"
 #include "guidegen/load/ply.h"
-#include "guidegen/load/loader_util.h"
 #include "guidegen/scene_textures.h"
-#include "core/image/check.h"
 
 namespace scumble {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 
@@ -41,7 +41,7 @@ class AnimatedScene {
   bool moves() const;
   const Scene& rest() const { return rest_; }  // as LoadScene sees it
   std::vector<Instance> objects() const;       // all that are seen at any time, as at rest
-  double duration_seconds() const;  // of the last key, from 0; Blender puts frame N at N / fps
+  double duration_seconds() const;             // of the last key, from 0; Blender puts frame N at N / fps
   const std::vector<std::string>& animations() const { return animations_; }  // the file's, by name
 
   // A copy at that time. Before the first key and after the last one everything stands still. The result depends on

@@ -12,13 +12,13 @@
 #include <span>
 #include <unordered_map>
 
+#include "core/image/color.h"
+#include "core/image/hash.h"
+#include "core/io/picture_file.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
 #include "guidegen/load/mtl_materials.h"
 #include "guidegen/load/obj_parse.h"
-#include "core/image/color.h"
-#include "core/image/hash.h"
-#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {
@@ -319,8 +319,8 @@ class ObjLoader {
     }
   }
 
-  // To be decoded later. Where it is left out, the materials that use it are made anew, and no others: a library may have
-  // as many missing textures as materials.
+  // To be decoded later. Where it is left out, the materials that use it are made anew, and no others: a library may
+  // have as many missing textures as materials.
   void KeepTexture(const std::string& name, std::size_t material) {
     const auto [known, is_new] = mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size()));
     if (!is_new) {
@@ -456,7 +456,7 @@ class ObjLoader {
   std::vector<glm::dvec3> origins_;  // of the shapes
   std::vector<Frame> frames_;
   std::vector<glm::vec3> positions_;  // of all vertices, each relative to its frame's origin
-  std::shared_ptr<MtlLibrary> mtl_;  // once it is loaded
+  std::shared_ptr<MtlLibrary> mtl_;   // once it is loaded
   std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
   std::vector<Triangle> triangles_;
   std::vector<glm::vec3> smooth_normals_;

@@ -13,9 +13,9 @@ namespace {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
-// Makes comments of what tinyobjloader would hold and nobody looks at; the numbers of lines stay. Of a subdivision tag's 20
-// bytes it makes 360 KB, and again in each shape. The lines and points of an object it copies at each change of material:
-// the first index of each kind says that they are there.
+// Makes comments of what tinyobjloader would hold and nobody looks at; the numbers of lines stay. Of a subdivision
+// tag's 20 bytes it makes 360 KB, and again in each shape. The lines and points of an object it copies at each change
+// of material: the first index of each kind says that they are there.
 void BlankUnused(std::string& text) {
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
@@ -86,7 +86,8 @@ Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, Obj
   try {
     // Polygons are cut here and not by tinyobjloader, which reads the corners' positions before checking their
     // indices.
-    ok = tinyobj::LoadObj(&contents.attributes, &contents.shapes, &contents.materials, &warning, &error, &stream, &library,
+    ok = tinyobj::LoadObj(&contents.attributes, &contents.shapes, &contents.materials, &warning, &error, &stream,
+                          &library,
                           /*triangulate=*/false, /*default_vcols_fallback=*/false);
   } catch (const std::bad_alloc&) {
     return MemoryError(file + " asks for more memory than there is: simplify the scene");

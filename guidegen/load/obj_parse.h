@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/loader_util.h"
 #include "core/image/status.h"
+#include "guidegen/load/loader_util.h"
 
 namespace scumble {
 
@@ -18,8 +18,8 @@ struct ObjContents {
   std::vector<tinyobj::material_t> materials;
 };
 
-// Fills `contents` from a file. A library that is missing becomes a warning; what tinyobjloader refuses or throws becomes a
-// kInput error that names the file. Only regular files are read.
+// Fills `contents` from a file. A library that is missing becomes a warning; what tinyobjloader refuses or throws
+// becomes a kInput error that names the file. Only regular files are read.
 Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, ObjContents& contents);
 
 // The file that a scene names, which stands beside it.

@@ -80,9 +80,9 @@ Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int heigh
   const double most = std::max(farthest.x, farthest.y);
   if (!(most <= kLargestInRay)) {
     std::ostringstream fault;
-    fault << "sees " << most << (camera.orthographic ? " m" : " m at a distance of 1 m") << " to one side in a picture of "
-          << width << "x" << height << " pixels; expected at most " << kLargestInRay << ": give it a smaller "
-          << (camera.orthographic ? "height" : "angle") << ", aspect or shift";
+    fault << "sees " << most << (camera.orthographic ? " m" : " m at a distance of 1 m")
+          << " to one side in a picture of " << width << "x" << height << " pixels; expected at most " << kLargestInRay
+          << ": give it a smaller " << (camera.orthographic ? "height" : "angle") << ", aspect or shift";
     return InputError(Called(camera) + fault.str());
   }
   return rays;

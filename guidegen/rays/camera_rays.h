@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "guidegen/scene/scene.h"
-#include "guidegen/scene/view_ray.h"
 #include "core/image/guides.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
+#include "guidegen/scene/view_ray.h"
 
 namespace scumble {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "guidegen/surface/bsdf.h"
 #include "core/image/hash.h"
+#include "guidegen/surface/bsdf.h"
 
 namespace scumble {
 namespace {

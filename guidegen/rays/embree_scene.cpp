@@ -8,11 +8,11 @@
 #include <atomic>
 #include <stdexcept>
 
-#include "guidegen/surface/bsdf.h"
+#include "core/image/check.h"
 #include "guidegen/rays/coincident_objects.h"
 #include "guidegen/rays/progress_gate.h"
+#include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/work_counters.h"
-#include "core/image/check.h"
 
 namespace scumble {
 namespace {
@@ -48,8 +48,8 @@ bool MachineHas(const std::string& isa) {
 // The packet width that an instruction set promises must be there: a build of Embree without it falls back silently.
 RTCDevice OpenIfSupported(const IsaInfo& isa) {
   if (!MachineHas(isa.name)) return nullptr;
-  // No cache for surfaces that Embree would divide: there are none, it is 128 MB of addresses, and a device that finds no
-  // room for it never lets go of its own lock.
+  // No cache for surfaces that Embree would divide: there are none, it is 128 MB of addresses, and a device that finds
+  // no room for it never lets go of its own lock.
   RTCDevice device = rtcNewDevice(("isa=" + std::string(isa.name) + ",tessellation_cache_size=0").c_str());
   if (device && rtcGetDeviceProperty(device, isa.native_packets) == 0) {
     rtcReleaseDevice(device);
@@ -69,9 +69,10 @@ std::string AvailableIsas() {
   return names;
 }
 
-// Whether the ray leaves the plane of the triangle, or runs along it, so that it cannot meet it: to float, what lies in a
-// large ground or just above it may be below that ground.
-bool LeavesPlane(const PlacedObject& object, std::uint32_t primitive, const glm::dvec3& origin, const glm::dvec3& direction) {
+// Whether the ray leaves the plane of the triangle, or runs along it, so that it cannot meet it: to float, what lies in
+// a large ground or just above it may be below that ground.
+bool LeavesPlane(const PlacedObject& object, std::uint32_t primitive, const glm::dvec3& origin,
+                 const glm::dvec3& direction) {
   const Triangle triangle = ViewTriangle(object, primitive);
   const glm::dvec3 normal =
       glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
@@ -197,8 +198,8 @@ void CommitScene(RTCScene scene, ProgressGate& gate) {
 
 }  // namespace
 
-Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa,
-                                         const Needs& needs, const Progress& progress) {
+Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs,
+                                         const Progress& progress) {
   EmbreeScene scene;
   scene.objects_ = std::make_unique<std::vector<PlacedObject>>(std::move(objects));
   SCUMBLE_RETURN_IF_ERROR(scene.OpenDevice(isa));
@@ -220,7 +221,8 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
     // Not the next instruction set then: its guides would be others. Want of threads is an unknown error to Embree.
     const RTCError error = rtcGetDeviceError(nullptr);
     if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN) {
-      return MemoryError("Embree finds too little memory or no thread: allow more, or take fewer threads, as --threads 1");
+      return MemoryError(
+          "Embree finds too little memory or no thread: allow more, or take fewer threads, as --threads 1");
     }
   }
   if (!known) {

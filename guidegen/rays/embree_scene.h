@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/surface/surface.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
+#include "guidegen/surface/surface.h"
 
 namespace scumble {
 
-// The place on an emissive mesh that a shadow ray goes to. It does not shade itself. So the triangle that was sampled does
-// not count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the sampled
-// place: the next triangle, or the next part of a light that was cut into several meshes.
+// The place on an emissive mesh that a shadow ray goes to. It does not shade itself. So the triangle that was sampled
+// does not count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the
+// sampled place: the next triangle, or the next part of a light that was cut into several meshes.
 struct ShadowTarget {
   const PlacedObject* object = nullptr;
   std::uint32_t primitive = 0;
@@ -56,13 +56,14 @@ class EmbreeScene {
     bool emitters = false;    // emitters() will be asked for
     bool robust = true;       // as in GuidegenOptions
   };
-  // While it builds, `progress` is asked with a share of 0 whether to go on; if it says no, Build fails with kCancelled.
+  // While it builds, `progress` is asked with a share of 0 whether to go on; if it says no, Build fails with
+  // kCancelled.
   static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs,
                                      const Progress& progress = {});
 
   RTCScene handle() const { return scene_.get(); }
-  RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none
-  const std::string& isa() const { return isa_; }        // what is in use, never empty
+  RTCScene emitters() const { return emitters_.get(); }   // the objects that emit, under the same ids; null: none
+  const std::string& isa() const { return isa_; }         // what is in use, never empty
   bool wide_packets() const { return isa_ == "avx512"; }  // whether packets of 16 rays are faster than those of 8
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 

@@ -25,7 +25,8 @@ LightRay LightRayTo(const glm::dvec3& origin, const glm::dvec3& light) {
     ray.end = largest;
     ray.direction /= largest;
   }
-  ray.reach = std::max(0.0, ray.end - LightGap(origin, light) / glm::length(ray.direction));  // 0 if both ends are one point
+  ray.reach =
+      std::max(0.0, ray.end - LightGap(origin, light) / glm::length(ray.direction));  // 0 if both ends are one point
   return ray;
 }
 
@@ -39,7 +40,8 @@ glm::dvec3 MaxRayOffset(const ViewRay& ray, double clear_from, const glm::dvec3&
 }
 
 glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {
-  // If the surface is seen flatter than this (about half a degree), the offset would be too long for the height it gains.
+  // If the surface is seen flatter than this (about half a degree), the offset would be too long for the height it
+  // gains.
   constexpr double kLeastCosine = 0.01;
   const double height = point.largest_coordinate * kRoundingPerCoordinate;
   const double length = glm::length(point.max_ray_offset);

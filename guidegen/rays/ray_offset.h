@@ -10,21 +10,21 @@ namespace scumble {
 
 // How far Embree's floats may be from a surface, for each metre of its largest coordinate C. Across the surface, in
 // units of u = 2⁻²⁴: corners and the ray's origin, rounded to float, are off by √3 C each; the ray's direction by 1 for
-// each metre of its length on the triangle; the corners relative to the origin, and the three products of that vector with the
-// normal, by 1 and 3 for each metre of the triangle's length L, and the normal itself, which comes of two products of
-// edges, by 4 L over the sine between them. That is 2√3 C + 5 L + 4 L / sine, and 16 C covers it for triangles up to
-// L = 1.39 C. (Larger ones fill the view, and their errors never all have one sign: measured, 2 C is enough for them,
-// and 8 C for slivers.)
+// each metre of its length on the triangle; the corners relative to the origin, and the three products of that vector
+// with the normal, by 1 and 3 for each metre of the triangle's length L, and the normal itself, which comes of two
+// products of edges, by 4 L over the sine between them. That is 2√3 C + 5 L + 4 L / sine, and 16 C covers it for
+// triangles up to L = 1.39 C. (Larger ones fill the view, and their errors never all have one sign: measured, 2 C is
+// enough for them, and 8 C for slivers.)
 inline constexpr double kRoundingPerCoordinate = 0x1.0p-20;
 
-// How far from a light a ray ends, in metres: the most that Embree's floats put its two ends off. A nearer surface may be
-// the wall that the light is mounted on. So a wall hides a light behind it if the light is farther from it than this gap
-// and the wall's own rounding together: 2⁻¹⁹ of the largest coordinate of the wall's triangle, the light and the lit
-// point. Analytic lights have no surface; ShadowTarget keeps an emissive mesh from shading itself.
+// How far from a light a ray ends, in metres: the most that Embree's floats put its two ends off. A nearer surface may
+// be the wall that the light is mounted on. So a wall hides a light behind it if the light is farther from it than this
+// gap and the wall's own rounding together: 2⁻¹⁹ of the largest coordinate of the wall's triangle, the light and the
+// lit point. Analytic lights have no surface; ShadowTarget keeps an emissive mesh from shading itself.
 double LightGap(const glm::dvec3& origin, const glm::dvec3& light);
 
-// A ray of light as Embree can take it, at any distance. If it is too long for a direction, the direction is shorter, and
-// `end` and `reach` are larger. If a surface lies at the end of Embree's range, the origin stays within that range.
+// A ray of light as Embree can take it, at any distance. If it is too long for a direction, the direction is shorter,
+// and `end` and `reach` are larger. If a surface lies at the end of Embree's range, the origin stays within that range.
 struct LightRay {
   glm::dvec3 origin;
   glm::dvec3 direction;

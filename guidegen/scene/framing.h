@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/direction.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 

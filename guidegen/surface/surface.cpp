@@ -1,10 +1,10 @@
 #include "guidegen/surface/surface.h"
-#include "guidegen/surface/texture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "guidegen/surface/texture.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
@@ -44,9 +44,9 @@ EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray, dou
   const glm::dvec3 miss = from + across * share;
   const double reach = along(corner + edge * share);
   constexpr double kRounding = 0x1p-48;  // some steps of a double, of what was added up
-  const bool behind =
-      reach < 0.0 && reach * reach * squared >
-                       kRounding * kRounding * (glm::dot(corner, corner) + glm::dot(edge, edge) + summands * summands);
+  const bool behind = reach < 0.0 && reach * reach * squared >
+                                         kRounding * kRounding *
+                                             (glm::dot(corner, corner) + glm::dot(edge, edge) + summands * summands);
   return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), reach, behind};
 }
 

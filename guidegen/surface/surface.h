@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
+#include "core/image/picture.h"
 #include "guidegen/scene/scene.h"
 #include "guidegen/scene/view_ray.h"
-#include "core/image/picture.h"
 
 namespace scumble {
 

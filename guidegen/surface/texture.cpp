@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "guidegen/surface/work_counters.h"
 #include "core/image/color.h"
+#include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <glm/glm.hpp>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/picture.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 

@@ -1,6 +1,6 @@
 // Counters that the innermost loops of the ray caster add to. Each thread has its own, so that nothing is locked and
-// nothing is passed down to the loops. The function that splits the work adds up the differences. Sums of integers do not
-// depend on the split.
+// nothing is passed down to the loops. The function that splits the work adds up the differences. Sums of integers do
+// not depend on the split.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace scumble {
 // This thread's counters, since its start.
 inline constinit thread_local WorkCounts thread_counters;
 
-inline constexpr std::size_t WorkCounts::* kWorkCounts[] = {
-    &WorkCounts::light_samples, &WorkCounts::materials,     &WorkCounts::texture_lookups,
-    &WorkCounts::texels,        &WorkCounts::filtered_hits, &WorkCounts::plane_bytes};
+inline constexpr std::size_t WorkCounts::*kWorkCounts[] = {&WorkCounts::light_samples,   &WorkCounts::materials,
+                                                           &WorkCounts::texture_lookups, &WorkCounts::texels,
+                                                           &WorkCounts::filtered_hits,   &WorkCounts::plane_bytes};
 
 inline void AddWork(const WorkCounts& from, WorkCounts& to) {
   for (const auto count : kWorkCounts) to.*count += from.*count;

@@ -20,8 +20,8 @@ constexpr std::uint32_t kNotOnlyImages = 0x800, kManyParts = 0x1000;
 constexpr std::size_t kLongestName = 255;
 
 // By the number in the header: none; rle, 64 to 1; zips, zip; piz, whose Huffman code of 510 bytes in 9 bits is below
-// Deflate's bound; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32 bytes in 3; dwaa and dwab, which leave at
-// least 4 bytes of a block of 8 × 8 floats to it.
+// Deflate's bound; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32 bytes in 3; dwaa and dwab, which leave
+// at least 4 bytes of a block of 8 × 8 floats to it.
 constexpr std::uint64_t kMostPacked[] = {
     1,  64, kMostDeflated,      kMostDeflated,     kMostDeflated, kMostDeflated * 4 / 3,
     11, 11, 64 * kMostDeflated, 64 * kMostDeflated};
@@ -148,7 +148,8 @@ void Take(const std::string& name, const std::string& type, const std::string& v
 
 Status CheckPart(const Part& part, std::uint64_t file_bytes, const std::string& name) {
   if (part.is_deep) {
-    return InputError("cannot read " + name + ": it holds deep pixels, and flat ones are expected; flatten it, or save " +
+    return InputError("cannot read " + name +
+                      ": it holds deep pixels, and flat ones are expected; flatten it, or save " +
                       "its flat parts as a file of their own");
   }
   const std::string size = std::to_string(part.width) + "×" + std::to_string(part.height) + " pixels";

@@ -1,5 +1,5 @@
-// Integrity check of EXR files: whether a file can hold the size that its header declares. OpenEXR believes a header, and
-// asks for the memory first.
+// Integrity check of EXR files: whether a file can hold the size that its header declares. OpenEXR believes a header,
+// and asks for the memory first.
 #pragma once
 
 #include <filesystem>

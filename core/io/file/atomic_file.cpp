@@ -55,8 +55,8 @@ Expected<fs::path> FollowLinks(const fs::path& path) {
   return failed || canonical.empty() ? target : canonical;
 }
 
-// The process's umask, which the system tells only by setting another; Linux has it in proc(5) as well (4.7 and later), so
-// that files that other threads make meanwhile get none of it. Elsewhere it is asked once.
+// The process's umask, which the system tells only by setting another; Linux has it in proc(5) as well (4.7 and later),
+// so that files that other threads make meanwhile get none of it. Elsewhere it is asked once.
 mode_t FileModeMask() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {

@@ -19,9 +19,10 @@ namespace internal {
 // destructor removes it.
 class PendingTemporary {
  public:
-  // Makes a new file beside `target`: hidden, with a random name, short enough where the target's own name is as long as
-  // a name may be, and locked as long as this lives. The caller closes descriptor(). If no file can be made (it takes two
-  // descriptors), descriptor() is -1 and errno says why. The first one in a folder removes stale temporaries there.
+  // Makes a new file beside `target`: hidden, with a random name, short enough where the target's own name is as long
+  // as a name may be, and locked as long as this lives. The caller closes descriptor(). If no file can be made (it
+  // takes two descriptors), descriptor() is -1 and errno says why. The first one in a folder removes stale temporaries
+  // there.
   explicit PendingTemporary(const std::filesystem::path& target);
   ~PendingTemporary();
   PendingTemporary(const PendingTemporary&) = delete;
@@ -39,8 +40,9 @@ class PendingTemporary {
 
   std::string name_;
   int descriptor_ = -1;
-  int lock_ = -1;                              // the same file: its lock lasts when the caller has closed the other
-  std::atomic<const char*>* place_ = nullptr;  // where RemovePendingTemporaries finds the name; null where all are taken
+  int lock_ = -1;  // the same file: its lock lasts when the caller has closed the other
+  std::atomic<const char*>* place_ =
+      nullptr;  // where RemovePendingTemporaries finds the name; null where all are taken
   bool is_there_ = false;
 };
 

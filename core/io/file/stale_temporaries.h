@@ -2,9 +2,9 @@
 //
 // A file that is being written is called ".NAME.MARK-XXXXXX.scumble-tmp": NAME is the output's own, MARK stands for the
 // system that runs since it was started, X are random. It is locked (flock) until it has its final name, and the system
-// drops the lock of a process that is killed. A file with this system's mark is stale if no process holds its lock. A file
-// with another mark comes from another machine that shares the folder, or from before a power failure; its lock cannot be
-// seen from here. It is stale if, besides, nothing was written to it for a day.
+// drops the lock of a process that is killed. A file with this system's mark is stale if no process holds its lock. A
+// file with another mark comes from another machine that shares the folder, or from before a power failure; its lock
+// cannot be seen from here. It is stale if, besides, nothing was written to it for a day.
 #pragma once
 
 #include <filesystem>

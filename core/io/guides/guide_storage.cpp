@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <iterator>
+#include <limits>
 
 #include "core/io/exr/half_float.h"
 #include "core/io/guide_file.h"

@@ -6,12 +6,12 @@
 #include <system_error>
 
 #include "core/image/guides.h"
-#include "core/io/file/atomic_file.h"
-#include "core/io/oiio/flat_psd.h"
-#include "core/io/format_dispatch.h"
-#include "core/io/picture/format_detection.h"
-#include "core/io/file/readable_file.h"
 #include "core/io/exr/exr_integrity.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/file/readable_file.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/oiio/flat_psd.h"
+#include "core/io/picture/format_detection.h"
 #include "core/io/png/png_integrity.h"
 
 namespace scumble {
@@ -69,7 +69,7 @@ Error OpenFailure(const std::string& reason, const std::string& name) {
 
 // Before memory is taken for pixels that so short a file cannot hold.
 Status CheckDeclaredSize(const OIIO::ImageSpec& spec, const std::string& reader, std::uint64_t bytes,
-                    const std::string& name) {
+                         const std::string& name) {
   const std::uint64_t most = MostSamplesInAByte(reader);
   if (most == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return Ok();
   const auto samples =

@@ -23,8 +23,9 @@ namespace scumble::internal {
 inline constexpr std::size_t kStartBytes = 64;
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name);
 
-// Whether that reader may open a file that starts so: BMPs that are packed by runs OpenImageIO unpacks without looking where it
-// writes, and a TGA's colours it takes without looking how many there are. Of PSDs core/io/oiio/flat_psd.h takes care.
+// Whether that reader may open a file that starts so: BMPs that are packed by runs OpenImageIO unpacks without looking
+// where it writes, and a TGA's colours it takes without looking how many there are. Of PSDs core/io/oiio/flat_psd.h
+// takes care.
 Status CheckStart(std::string_view reader, std::span<const std::byte> start, const std::string& name);
 
 // That a file of so many bytes is too short for the size that its header declares.

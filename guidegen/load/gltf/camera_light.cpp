@@ -15,8 +15,8 @@ constexpr double kLumensPerWatt = 683.0;
 constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
 // By KHR_lights_punctual, without its place.
-Expected<Light> ReadPunctualLight(const tinygltf::Model& model, const std::string& file, const RigNode& visit, int index,
-                                  WarningCounter& warnings) {
+Expected<Light> ReadPunctualLight(const tinygltf::Model& model, const std::string& file, const RigNode& visit,
+                                  int index, WarningCounter& warnings) {
   const auto bad = [&](const std::string& what) {
     return InputError(file + ": the light of " + NodeLabel(model, visit.node) + " " + what + ": export it again");
   };
@@ -39,14 +39,12 @@ Expected<Light> ReadPunctualLight(const tinygltf::Model& model, const std::strin
   if (light.type != LightType::kSun && from.range > 0.0) {
     warnings.Add("the range of lights is ignored, they reach as far as physics has it", NodeLabel(model, visit.node));
   }
-  if (!IsFinite(light.color) || glm::any(glm::lessThan(light.color, glm::vec3(0.0f))))
-    return bad("has a wrong colour");
+  if (!IsFinite(light.color) || glm::any(glm::lessThan(light.color, glm::vec3(0.0f)))) return bad("has a wrong colour");
   if (!std::isfinite(light.intensity) || light.intensity < 0.0) return bad("has a wrong intensity");
   light.inner_cone_degrees = from.spot.innerConeAngle * kDegreesPerRadian;
   light.outer_cone_degrees = from.spot.outerConeAngle * kDegreesPerRadian;
-  if (light.type == LightType::kSpot &&
-      !(light.inner_cone_degrees >= 0.0 && light.outer_cone_degrees <= 90.0 + 1e-6 &&
-        light.inner_cone_degrees <= light.outer_cone_degrees)) {
+  if (light.type == LightType::kSpot && !(light.inner_cone_degrees >= 0.0 && light.outer_cone_degrees <= 90.0 + 1e-6 &&
+                                          light.inner_cone_degrees <= light.outer_cone_degrees)) {
     return bad("has wrong cone angles");
   }
   return light;

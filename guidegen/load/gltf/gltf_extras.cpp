@@ -12,7 +12,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegreesPerRadian = 180.0 / kPi;
 constexpr std::size_t kMaxWarnings = 100;
-constexpr std::size_t kLongestWarning = 400;  // bytes; export_scene.py writes less
+constexpr std::size_t kLongestWarning = 400;   // bytes; export_scene.py writes less
 constexpr double kLargestPassIndex = 32767.0;  // Blender's limit
 
 // The object of that name inside extras.scumble, or null.

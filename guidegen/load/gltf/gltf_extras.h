@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace tinygltf {
 class Model;

@@ -11,27 +11,27 @@
 
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/gltf/camera_light.h"
+#include "guidegen/load/gltf/gltf_extras.h"
 #include "guidegen/load/gltf/materials.h"
 #include "guidegen/load/gltf/meshes.h"
 #include "guidegen/load/gltf/nodes.h"
 #include "guidegen/load/gltf/parse.h"
-#include "guidegen/load/gltf/gltf_extras.h"
 #include "guidegen/load/loader_util.h"
 
 namespace scumble {
 namespace {
 
-// Morph targets are what exporters write without data: 100 that do nothing to the positions and normals of 100,000 vertices
-// are 20 million.
+// Morph targets are what exporters write without data: 100 that do nothing to the positions and normals of 100,000
+// vertices are 20 million.
 constexpr std::uint64_t kMaxZerosOfTargets = 4 * kMaxZeroElements;
-// Counted for each node. 100,000 meshes of 150 targets with three attributes have 60 million; the vertices of all those targets
-// come to more than their own limit long before.
+// Counted for each node. 100,000 meshes of 150 targets with three attributes have 60 million; the vertices of all those
+// targets come to more than their own limit long before.
 constexpr std::uint64_t kMaxParts = 64'000'000;
 // Skins have as many inverse bind matrices as joints; more are allowed, and not looked at.
 constexpr std::size_t kMaxSpareMatrices = 1024;
 
-// Extensions that a file may require: those read here, in part if need be, and those that change only shading that no guide
-// holds.
+// Extensions that a file may require: those read here, in part if need be, and those that change only shading that no
+// guide holds.
 bool IsKnownExtension(std::string_view name) {
   constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
                                          "EXT_texture_webp"};
@@ -86,8 +86,8 @@ class GltfLoader {
                       "meshopt: switch compression off)");
   }
 
-  // A default of the file's own may stand anywhere in its list: looked for anew for each primitive without a material, that
-  // would take the square of what the file holds. One that is made stands at the end, and is found at once.
+  // A default of the file's own may stand anywhere in its list: looked for anew for each primitive without a material,
+  // that would take the square of what the file holds. One that is made stands at the end, and is found at once.
   void ShareDefaultMaterial() {
     const int shared = FindDefaultMaterial(scene_);
     if (shared < 0) return;
@@ -171,8 +171,8 @@ class GltfLoader {
     return primitives.empty() ? Ok() : TakeParts(primitives[0].targets.size());
   }
 
-  // Before a mesh is read for one more node, which has it for itself: its primitives, those among them that will be left
-  // out, and what each consists of, however empty that is. It is all looked through for each node.
+  // Before a mesh is read for one more node, which has it for itself: its primitives, those among them that will be
+  // left out, and what each consists of, however empty that is. It is all looked through for each node.
   Status TakeDeformed(int mesh, bool with_targets) {
     for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
       SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, Mesh(), true));
@@ -185,8 +185,8 @@ class GltfLoader {
     return Ok();
   }
 
-  // Before a mesh is read, what it has of elements without data: all its primitives', and their morph targets' where those
-  // are read too.
+  // Before a mesh is read, what it has of elements without data: all its primitives', and their morph targets' where
+  // those are read too.
   Status TakeZeros(int mesh, bool with_targets) {
     for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
       SCUMBLE_RETURN_IF_ERROR(zeros_.Take(model_, file_, primitive.indices));

@@ -76,8 +76,8 @@ class NodeReader {
                           std::to_string(model_.nodes.size()) + ": export it again");
       }
       if (seen[std::size_t(visit.node)]) {
-        return InputError(file_ + ": " + NodeLabel(model_, visit.node) + " is reached twice; nodes must form a tree, without " +
-                          "cycles and with one parent each");
+        return InputError(file_ + ": " + NodeLabel(model_, visit.node) +
+                          " is reached twice; nodes must form a tree, without " + "cycles and with one parent each");
       }
       if (visit.depth > kMaxNodeDepth) {
         return InputError(file_ + ": nodes are nested more than " + std::to_string(kMaxNodeDepth) + " levels deep");
@@ -202,8 +202,9 @@ class ObjectNamer {
     return path;
   }
 
-  // A name is in the file once and kept many times: with each primitive of a mesh, in the path of each node below, by each
-  // node that shows one camera or light. So names are counted before the paths are made, which nodes `with_path` get.
+  // A name is in the file once and kept many times: with each primitive of a mesh, in the path of each node below, by
+  // each node that shows one camera or light. So names are counted before the paths are made, which nodes `with_path`
+  // get.
   Status CheckNames(const std::vector<std::size_t>& with_path) const {
     std::vector<bool> has_path(nodes_.size(), false);
     for (std::size_t i : with_path) has_path[i] = true;
@@ -221,7 +222,8 @@ class ObjectNamer {
       if (node.name.empty()) bytes += NameBytesOf(model_.lights, LightOf(node).value_or(-1));
       if (bytes > kMaxNameBytes) {
         return InputError(file_ + ": the names of its objects, cameras and lights come to more than " +
-                          std::to_string(kMaxNameBytes) + " bytes, at " + NodeLabel(model_, visit.node) + "; where a name is " +
+                          std::to_string(kMaxNameBytes) + " bytes, at " + NodeLabel(model_, visit.node) +
+                          "; where a name is " +
                           "taken, the path counts: give shorter names, or each object one of its own");
       }
     }

@@ -1,4 +1,6 @@
 // Temporary files that killed runs leave: which are taken away, and which are not.
+#include "core/io/file/stale_temporaries.h"
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -14,7 +16,6 @@
 #include <vector>
 
 #include "core/io/file/atomic_file.h"
-#include "core/io/file/stale_temporaries.h"
 #include "core/io/file/pending_temporaries.h"
 #include "tests/support/temporary_folder.h"
 
@@ -72,7 +73,8 @@ TEST(LeftoverFiles, AreThoseOfProcessesThatAreNoMore) {
 // With one descriptor left the file can be made and cannot be locked: another run would take it for a leftover.
 TEST(LeftoverFiles, AFileThatCannotBeLockedIsNotWritten) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "UndefinedBehaviorSanitizer looks at an object's type through a pipe, and here is no descriptor for one";
+  GTEST_SKIP()
+      << "UndefinedBehaviorSanitizer looks at an object's type through a pipe, and here is no descriptor for one";
 #endif
   const TemporaryFolder folder;
   RemoveStaleTemporariesOnce(folder.path());

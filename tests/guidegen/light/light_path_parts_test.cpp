@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/surface/bsdf.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/path_expression.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/light/sampler.h"
+#include "guidegen/surface/bsdf.h"
 #include "tests/support/guidegen_scenes.h"
 
 namespace scumble::testing {
@@ -284,7 +284,7 @@ TEST(LightSet, DrawnDirectionsMeetTheLightWithTheSameDensity) {
       const double side = std::sqrt(1.0 - z * z);
       const glm::dvec3 direction(side * std::cos(2.0 * kPi * u[1]), side * std::sin(2.0 * kPi * u[1]), z);
       lights.VisitAnalytic(point, direction, std::numeric_limits<double>::infinity(),
-                        [&](int, const glm::dvec3&, double) { seen += 4.0 * kPi / many; });
+                           [&](int, const glm::dvec3&, double) { seen += 4.0 * kPi / many; });
     }
     EXPECT_NEAR(seen / solid_angle, 1.0, 0.01);
   }

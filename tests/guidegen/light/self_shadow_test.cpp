@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "guidegen/surface/bsdf.h"
+#include "core/image/hash.h"
 #include "guidegen/light/direct_light.h"
 #include "guidegen/rays/ray_offset.h"
-#include "core/image/hash.h"
+#include "guidegen/surface/bsdf.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/light_path_scenes.h"
 
@@ -577,7 +577,7 @@ TEST(LightLeaks, AnOpenBoxIsLitAndALidClosesIt) {
 }
 
 // Height above the plane, by its definition, to double's rounding of the coordinates themselves.
-TEST(ShadowRayOrigin, StandsAtItsHeightOnTheClearWay) {
+TEST(ShadowRayOrigin, StandsAtItsHeightOnTheRayOffset) {
   for (const double coordinate : {1e-3, 1.0, 1e7}) {
     SurfacePoint point;
     point.position = glm::dvec3(0.3, -0.2, -0.9) * coordinate;

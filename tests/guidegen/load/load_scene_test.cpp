@@ -1,16 +1,16 @@
 // What all scene loaders share, and the formats that are quickly told: normals, polygons, OBJ, PLY, framing.
 #include "guidegen/load/load_scene.h"
-#include "guidegen/scene/framing.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "core/image/color.h"
+#include "core/io/picture_file.h"
 #include "gltf_builder.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
-#include "core/image/color.h"
-#include "core/io/picture_file.h"
+#include "guidegen/scene/framing.h"
 
 namespace scumble {
 namespace {
