@@ -182,7 +182,7 @@ Status CheckOptions(const GuidegenOptions& options, bool has_next_frame) {
 }
 
 Expected<GuidegenResult> CastGuides(LazyScene& objects, const View& view, const GuidegenOptions& options) {
-  // oneTBB has no workers beyond the machine's cores unless it is told that more are welcome.
+  // oneTBB has no workers beyond the machine's cores unless the limit is raised.
   std::optional<tbb::global_control> more_workers;
   if (options.threads > tbb::this_task_arena::max_concurrency()) {
     more_workers.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));

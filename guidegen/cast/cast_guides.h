@@ -7,7 +7,7 @@
 
 namespace scumble {
 
-// kUsage or kUnavailable where the options make no sense or ask for what is not built in.
+// kUsage if an option is out of range; kUnavailable if a layer is not built in.
 Status CheckOptions(const GuidegenOptions& options, bool has_next_frame = false);
 
 // Casts into `objects`, which are built if this cast is the first that needs them so. Fills the layers, the camera and

@@ -33,7 +33,7 @@ PrimaryRays::PrimaryRays(const EmbreeScene& scene, const CameraRays& camera, int
   }
   std::sort(ranked.begin(), ranked.end());
   for (const auto& [distance, row, column] : ranked) offsets_.push_back({(column + 0.5) / n, (row + 0.5) / n});
-  // Through moves one of the two only: which one tells the kind of the camera.
+  // Pixels differ in the ray's origin or in its direction, by the kind of the camera.
   const auto moved = [&](double x, double y) {
     const ViewRay ray = camera.Through(x, y);
     return camera.orthographic() ? ray.origin : ray.direction;

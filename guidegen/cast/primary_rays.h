@@ -26,7 +26,7 @@ class PrimaryRays {
   // `find_clear`: whether hits.clear_from is asked for.
   void CastCentres(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const;
 
-  // A pixel whose centre misses, and where in the picture the ray went that met something all the same.
+  // A pixel whose centre misses, and the place in the picture whose ray hit an object instead.
   struct Moved {
     int pixel;
     glm::dvec2 at;

@@ -11,7 +11,7 @@
 
 namespace scumble {
 
-inline constexpr int kPacket = 8;  // of rays that ask for any hit
+inline constexpr int kPacket = 8;  // any-hit rays
 
 // A ray and the stretch of it, in lengths of its direction, on which surfaces count.
 struct Segment {

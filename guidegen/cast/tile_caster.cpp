@@ -42,7 +42,7 @@ std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSe
   return scene.objects();
 }
 
-// Planes of more pixels than this are not found in the caches by whoever reads them next.
+// Planes of more pixels than this do not stay in the caches until they are read.
 constexpr std::size_t kCachedPixels = std::size_t(1) << 19;
 
 // The sampler's stream for luminance and shadow: not the light paths' own.
@@ -90,7 +90,7 @@ TileCaster::Scratch::Scratch(const TileCaster& caster)
 glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const {
   const PlacedObject& next = view_.next_objects[hits.object[pixel]];
   if (!next.mesh) return glm::dvec2(0.0);
-  // Both frames by the same sums, so that what stands still moves by exactly 0.
+  // Both frames use equal arithmetic, so that points at rest move by exactly 0.
   const auto seen_at = [&](const PlacedObject& object, const CameraRays& camera) {
     const Triangle triangle = ViewTriangle(object, hits.primitive[pixel]);
     return camera.PixelOf(triangle.corner[0] + (triangle.corner[1] - triangle.corner[0]) * barycentric.x +

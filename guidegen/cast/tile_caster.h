@@ -105,7 +105,7 @@ class TileCaster {
   const std::vector<ObjectRecord> object_records_;
   Planes planes_;
   bool lit_ = false;     // luminance or shadow, and something shines
-  bool points_ = false;  // whether any layer asks for more than a tile's own guides
+  bool points_ = false;  // whether any layer needs more than TileGuides
 };
 
 }  // namespace scumble

@@ -16,13 +16,13 @@ namespace {
 // the square of it, stays within a double's range.
 constexpr double kLeastRadius = 0x1p-149;
 
-// Radians up to which a sun has none: in floats nothing tells the two apart.
+// Radians up to which a sun has no extent: floats cannot show the difference.
 constexpr double kLeastHalfAngle = 1e-9;
 
 // Degrees; beyond, the tangent of half the angle would leave every range.
 constexpr double kWidestSun = 179.9;
 
-// Layers hold floats: brighter than this cannot be told.
+// Layers hold floats: they cannot hold anything brighter.
 constexpr double kMaxIrradiance = std::numeric_limits<float>::max() * glm::pi<double>();
 
 Status CheckBrightness(const Light& light, const std::string& who) {

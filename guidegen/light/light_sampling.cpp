@@ -57,7 +57,7 @@ LightDraw DrawDelta(const PlacedLight& light, const glm::dvec3& point) {
   return draw;
 }
 
-// The radiance is the irradiance times the density, as in Cycles: what the directions bring is the same for all.
+// The radiance is the irradiance times the density, as in Cycles: all directions contribute equally.
 LightDraw DrawSun(const PlacedLight& sun, double u, double v) {
   LightDraw draw;
   draw.endless = true;

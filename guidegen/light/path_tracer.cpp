@@ -209,7 +209,7 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   flight.first = bounce == 0;
   if (flight.throughput == glm::dvec3(0.0)) return false;
   if (bounce < kFirstRoulette) return true;
-  // By the root, as in Cycles: what survives is then neither all of one brightness and rare, nor all dim and dear.
+  // By the root, as in Cycles: a compromise between rare bright paths and many dim ones that cost time.
   const double survival = std::clamp(std::sqrt(Largest(flight.throughput)), kLeastSurvival, 1.0);
   flight.throughput /= survival;
   return u[3] < survival;

@@ -343,7 +343,7 @@ class ObjLoader {
     scene_.encoded_textures.push_back(std::move(texture));
   }
 
-  // What faces without a material have: Blender's own, so that nobody meets a highlight that nobody asked for. Where
+  // The material of faces without one: Blender's, which has no highlight. Where
   // the vertices have colours, those are the surface's.
   int PlainMaterial() {
     if (plain_material_ < 0) {

@@ -13,7 +13,7 @@ namespace {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
-// Makes comments of what tinyobjloader would hold and nobody looks at; the numbers of lines stay. Of a subdivision
+// Turns lines into comments that tinyobjloader would keep and no code here reads; line numbers stay. Of a subdivision
 // tag's 20 bytes it makes 360 KB, and again in each shape. The lines and points of an object it copies at each change
 // of material: the first index of each kind says that they are there.
 void BlankUnused(std::string& text) {

@@ -19,7 +19,7 @@ namespace {
 
 struct IsaInfo {
   const char* name;
-  RTCDeviceProperty native_packets;  // what tells Embree's instruction sets apart from outside
+  RTCDeviceProperty native_packets;  // the property by which Embree's instruction sets differ
 };
 
 // Best first.
@@ -29,7 +29,7 @@ constexpr std::array<IsaInfo, 5> kIsas = {{{"avx512", RTC_DEVICE_PROPERTY_NATIVE
                                            {"sse4.2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED},
                                            {"sse2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED}}};
 
-// Embree believes whatever it is told and dies on the first unknown instruction, so the machine is asked first.
+// Embree does not check the processor and dies on the first unknown instruction, so the processor is checked first.
 bool MachineHas(const std::string& isa) {
 #if defined(__x86_64__)
   if (isa == "sse2") return __builtin_cpu_supports("sse2");
@@ -154,7 +154,7 @@ void FillVertices(RTCGeometry geometry, const PlacedObject& object) {
   });
 }
 
-// Of what shines, and of what reaches far, only rays of light ask whether they may pass.
+// Emissive objects, and those that reach far, need the filter only for rays of light.
 RTCGeometry MakeMesh(RTCDevice device, PlacedObject& object, bool light_rays) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   FillVertices(geometry, object);
@@ -267,7 +267,7 @@ Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
     return MemoryError("the scene does not fit into memory: give it fewer triangles or instances");
   }
-  // Whatever else ends its tasks, as want of threads, it tells in words alone.
+  // Any other failure, as want of threads, has no code of its own but a text.
   throw std::runtime_error(reason);
 }
 

@@ -1,6 +1,10 @@
 #include "guidegen/rays/lazy_scene.h"
 
+#include <chrono>
+#include <thread>
 #include <utility>
+
+#include "guidegen/rays/progress_gate.h"
 
 namespace scumble {
 
@@ -11,7 +15,13 @@ bool LazyScene::Suits(const std::string& isa, const EmbreeScene::Needs& needs) c
 
 Expected<LazyScene::Lease> LazyScene::Get(const std::string& isa, const EmbreeScene::Needs& needs,
                                           const Progress& progress) {
-  const std::lock_guard lock(mutex_);
+  // Another thread may build for seconds: this one can still be cancelled.
+  std::unique_lock lock(mutex_, std::try_to_lock);
+  for (ProgressGate gate(progress, 1, 0.0, 0.0); !lock.owns_lock();) {
+    if (!gate.Continue()) return CancelledError();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    (void)lock.try_lock();
+  }
   if (Suits(isa, needs)) return Lease{scene_, false};
   // Needs only grow, so that casts which take turns do not build each time.
   EmbreeScene::Needs all = needs;

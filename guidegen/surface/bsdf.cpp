@@ -14,7 +14,7 @@ constexpr double kPi = glm::pi<double>();
 
 // What glTF gives every dielectric: an index of refraction of 1.5.
 constexpr double kDielectricF0 = 0.04;
-// Below this GGX's peak is too sharp to be evaluated; Cycles draws the line at the same place.
+// Below this GGX's peak is too sharp to be evaluated; Cycles has this limit, too.
 constexpr double kSmoothestAlpha = 1e-4;
 // The eye is never lower than this above the specular normal.
 constexpr double kLowestEye = 1e-3;

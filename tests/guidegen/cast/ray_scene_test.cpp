@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -233,6 +234,34 @@ TEST(RayScene, CanBeCancelledWhileItBuilds) {
   const GuidegenResult result = TakeValid(RenderGuides(reused, options));
   EXPECT_EQ(result.builds, 1);
   EXPECT_TRUE(SameBytes(result.guides, Render(scene, FrontCamera(3.0), options).guides));
+}
+
+TEST(RayScene, CanBeCancelledWhileAnotherThreadBuilds) {
+  const Scene scene = SceneOf(BallMesh(200));
+  const RayScene reused = Ready(scene, FrontCamera(3.0));
+  std::promise<void> builds, cancelled;
+  std::thread other([&] {
+    GuidegenOptions options = Sized(32, 32);
+    int calls = 0;
+    options.progress = [&](double) {
+      if (++calls != 2) return true;  // the second call comes from the build
+      builds.set_value();
+      cancelled.get_future().wait();
+      return true;
+    };
+    EXPECT_EQ(TakeValid(RenderGuides(reused, options)).builds, 1);
+  });
+  builds.get_future().wait();
+  GuidegenOptions options = Sized(32, 32);
+  int calls = 0;
+  options.progress = [&](double) { return ++calls < 3; };
+  const auto result = RenderGuides(reused, options);
+  cancelled.set_value();
+  other.join();
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().kind, ErrorKind::kCancelled);
+  options.progress = {};
+  EXPECT_EQ(TakeValid(RenderGuides(reused, options)).builds, 0);
 }
 
 // One tile of these would take minutes.
