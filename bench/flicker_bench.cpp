@@ -11,6 +11,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "core/io/picture_file.h"
 #include "measure/compare/flicker.h"
 #include "core/style/style_file.h"

@@ -18,6 +18,7 @@
 #include "pipeline/variant/variant_error.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "core/image/stopwatch.h"
 #include "measure/tradeoff/pareto.h"
 #include "core/style/style_file.h"

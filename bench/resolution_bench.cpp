@@ -10,6 +10,7 @@
 #include "bench/or_stop.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_file.h"
 #include "transfer/transfer.h"

@@ -12,7 +12,7 @@
 #include "core/image/layers.h"
 #include "core/image/status.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "measure/mosaic/explain.h"
 #include "pipeline/frame_rate.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/image/hash.h"
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 
 namespace scumble {
 namespace {

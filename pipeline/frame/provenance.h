@@ -36,7 +36,7 @@ std::uint64_t HashOfPaint(const Style& style);
 // Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.
 std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known);
 
-// The text: parts "name value" with semicolons between, as core/io/file/existing_output.h compares them; what is not known agrees with
+// The text: parts "name value" with semicolons between, as core/io/existing_output.h compares them; what is not known agrees with
 // all. It holds nothing that stylize and transfer do not both know, and nothing that makes no other picture, so that equal
 // pictures stay equal files; but whether the exposure was measured, as --exposure auto is not known where it is compared.
 // The styles must be at the picture's frame (SetStyleFrame); those that a scene asks for are not told of.

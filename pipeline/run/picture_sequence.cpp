@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/image/stopwatch.h"
 #include "core/io/file/atomic_file.h"
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 #include "core/io/guide_file.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/run_inputs.h"

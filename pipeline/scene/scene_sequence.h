@@ -15,6 +15,7 @@
 #include "pipeline/scene/scene_guides.h"
 #include "pipeline/style/style_set.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 
 namespace scumble {
 

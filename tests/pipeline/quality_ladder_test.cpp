@@ -13,6 +13,7 @@
 #include "pipeline/frame/provenance.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 
 namespace scumble {
 namespace {

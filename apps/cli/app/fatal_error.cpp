@@ -23,7 +23,7 @@ bool IsForWantOfThreads(const std::exception& error) {
 
 [[noreturn]] void TellAndEnd() {
   const int code = TellOf(std::current_exception());
-  RemoveUnfinishedFiles();
+  RemovePendingTemporaries();
   ::_exit(code);  // other threads still run: nothing that they use may be taken down
 }
 

@@ -115,7 +115,7 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
 // Whether a report of so many bytes, its largest file of `largest`, finds room in the page's folder: they are taken, and given
 // back at once. Some file systems tell of a full disk only when the file is flushed or closed.
 Status CheckRoom(const fs::path& page, std::size_t bytes, std::size_t largest) {
-  const internal::UnfinishedFile taken(page);
+  const internal::PendingTemporary taken(page);
   int failure = errno;
   const int file = taken.descriptor();
   if (file >= 0) {

@@ -64,4 +64,7 @@ int FiducialsInPlace(const Picture& picture, int size, int margin);
 // all twelve in a template that was exported at another size, down to modules of two pixels.
 int FiducialsInProportion(const Picture& picture);
 
+// Fewest pixels across the sphere in the scan.
+inline constexpr int kMinScanSphere = 200;
+
 }  // namespace scumble

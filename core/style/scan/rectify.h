@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scumble/picture.h"
+#include "core/style/kit/fiducials.h"
 #include "core/image/status.h"
 #include "core/style/scan/template_fit.h"
 
@@ -52,8 +53,6 @@ struct Rectified {
 inline constexpr double kMaxRegistrationError = 0.01;
 // Above this one there is a warning.
 inline constexpr double kGoodRegistrationError = 0.003;
-// Fewest pixels across the sphere in the scan.
-inline constexpr int kMinScanSphere = 200;
 // Most pixels of a scan: an A4 page at 1200 dpi. A pixel takes 8 bytes, and up to 8 more, beside the file's own reader's
 // share, while it is read: of so many pixels, some gigabytes.
 inline constexpr double kMaxScanPixels = 150e6;

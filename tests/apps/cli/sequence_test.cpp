@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 #include "tests/support/cli_harness.h"
 
 namespace scumble {

@@ -9,6 +9,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "core/image/hash.h"
 #include "core/style/style_file.h"
 #include "core/filter/resample.h"

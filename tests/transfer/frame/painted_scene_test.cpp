@@ -11,6 +11,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
 #include "core/io/guide_file.h"

@@ -6,6 +6,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "core/image/color.h"
 #include "core/style/style_file.h"
 #include "tests/support/transfer_fixtures.h"

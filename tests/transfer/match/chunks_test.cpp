@@ -7,6 +7,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "measure/mosaic/coherence.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/nearest/guide_distance.h"

@@ -5,6 +5,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/transfer_fixtures.h"
 #include "core/filter/resample.h"
 #include "transfer/vote/vote.h"
