@@ -16,7 +16,7 @@ build: ## install what is missing, configure, compile (Release) into build/
 demo: build ## draw a dozen pictures and a contact sheet into out/demo/; ALL=1 draws every scene in every style
 	@.ci/demo $(if $(filter-out 0,$(ALL)),--all)
 
-bare: ## run "make demo" and "make test" in a new Debian root that holds git and make alone (as root); ONLY=demo runs one; DEBIAN=12
+bare: ## run demo and test in a new Debian root that holds only git and make (as root); ONLY=demo runs one; DEBIAN=12
 	@DEBIAN=$(or $(DEBIAN),12) .ci/bare $(foreach target,$(or $(ONLY),demo test),"make $(target)")
 
 test: ## install what is missing (Blender too), build everything, run all tests
