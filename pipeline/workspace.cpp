@@ -85,6 +85,7 @@ struct Workspace::State {
   std::optional<AnimatedScene> animation;  // none: the scene is Blender's
   std::string seen_key, pose_key;  // when and from where it is seen; the same with its light
   std::optional<SceneAtRest> posed;
+  std::optional<RayScene> rays;  // of `posed`, which it borrows
   std::size_t own_lights = 0;  // of `posed`, before a key light was added
   std::string guides_key;
   std::shared_ptr<const SceneGuides> guides;
@@ -135,7 +136,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   }
   if (key == scene_key) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
-  animation.reset(), posed.reset();
+  rays.reset(), animation.reset(), posed.reset();
   if (!blender) {
     SCUMBLE_ASSIGN(animation, AnimatedScene::Load(request.scene, {request.animation, TextureLoading::kWhenNeeded}));
     for (const std::string& warning : animation->rest().warnings) context.Warn(request.scene + ": " + warning);
@@ -164,7 +165,7 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
     posed->layers = layers;
     return Ok();
   }
-  pose_key.clear();
+  pose_key.clear(), rays.reset();
   if (!animation) {
     SCUMBLE_RETURN_IF_ERROR(ViewAgain(*posed, own_lights, request, layers));
   } else {
@@ -195,9 +196,13 @@ Status Workspace::State::Cast(const SceneRequest& request, std::optional<int> fr
                   request.half, request.time_budget_seconds, seen_key);
   if (guides && key == guides_key && guides->guides.layers().Contains(posed->layers)) return Ok();
   guides_key.clear();
+  if (!rays) {
+    SCUMBLE_ASSIGN(rays, RayScene::Make(posed->scene, posed->view.camera));
+  }
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(posed->scene, posed->view.camera, nullptr, request, posed->layers, context,
-                                             progress, false));
+                                             progress, false, &*rays));
   ++counters.guides_cast;
+  counters.structures_built += std::size_t(made.builds);
   StoreFrameRate(request, posed->film, made.guides);
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene));
   guides = std::make_shared<const SceneGuides>(std::move(made));

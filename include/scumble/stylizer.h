@@ -41,6 +41,7 @@ struct PaintSettings {
 // How often each kind of work was done so far.
 struct StylizerCounters {
   std::size_t scenes_loaded = 0;    // from files
+  std::size_t structures_built = 0;  // acceleration structures
   std::size_t guides_cast = 0;      // rays were cast
   std::size_t styles_loaded = 0;    // from files
   std::size_t styles_prepared = 0;  // exemplars were resized, tables built

@@ -119,7 +119,7 @@ std::string GuideSettings(const SceneRequest& options) {
 
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next,
                                 const SceneRequest& options, const LayerSet& layers, const RunContext& context,
-                                const Progress& progress, bool plan_only) {
+                                const Progress& progress, bool plan_only, const RayScene* rays) {
   const Size& size = options.size;
   SceneGuides result;
   GuidegenOptions guidegen;
@@ -148,12 +148,14 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   SCUMBLE_ASSIGN(result.cost, DecodeNeededTextures(scene, options, layers, context));
   const double textures_ms = watch.Lap();
   context.EndStage("scene");
-  SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
-                                               : RenderGuides(scene, camera, guidegen));
+  SCUMBLE_ASSIGN(GuidegenResult rendered, rays && !next ? RenderGuides(*rays, guidegen)
+                                          : next         ? RenderGuides(scene, camera, *next, guidegen)
+                                                         : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);
   result.times.emplace_back("rays", rendered.render_ms);
   result.guides = std::move(rendered.guides);
   result.cost.rays = rendered.rays, result.cost.work = rendered.work;
+  result.builds = rendered.builds;
   result.samples = rendered.samples, result.noise = rendered.noise;
   if (options.half) RoundColorLayersToHalf(result.guides);
   result.guides.attributes["scumble:settings"] = GuideSettings(options);
