@@ -1,6 +1,6 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits scenes gallery format clean
+.PHONY: help build demo check test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -15,6 +15,13 @@ build: ## install what is missing, configure, compile (Release) into build/
 
 demo: build ## stylise the bundled scenes with the bundled styles into out/demo/
 	@.ci/demo
+
+check: ## the quick tests, for between edits: under a minute once built; one library's: CHECK=transfer
+	@.ci/install test
+	@cmake --preset release -DSCUMBLE_TESTS=ON > build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }
+	@rm -f build.log
+	@cmake --build build --target $(if $(CHECK),$(CHECK)_test,check_programs) -j $(JOBS)
+	@ctest --test-dir build --output-on-failure -j $(JOBS) -L '^unit$$' $(if $(CHECK),-L '^$(CHECK)$$')
 
 test: ## install what is missing (Blender too), build everything, run all tests
 	@.ci/install test
