@@ -82,7 +82,7 @@ Input Mutated(const std::vector<NamedInput>& seeds, std::uint64_t number) {
   return bytes;
 }
 
-// Mutations, about three seconds of each target on one core: some write a file for each, some look at little before they
+// Mutations, about one second of each target on one core: some write a file for each, some look at little before they
 // refuse.
 std::uint64_t RunsOf(const std::string& target) {
   static const std::map<std::string, std::uint64_t> kRuns = {
