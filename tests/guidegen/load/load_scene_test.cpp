@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "gltf_builder.h"
+#include "tests/support/gltf_builder.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
 #include "core/image/color.h"
