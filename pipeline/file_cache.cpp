@@ -36,14 +36,6 @@ void RemoveOldest(const fs::path& folder) {
 
 }  // namespace
 
-std::optional<fs::path> CacheFolder() {
-  if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && fs::path(folder).is_absolute()) {
-    return fs::path(folder) / "scumble";
-  }
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "scumble";
-  return std::nullopt;
-}
-
 std::optional<std::vector<std::byte>> FileCache::Load(const std::string& key) {
   std::error_code failed;
   if (folder_.empty() || !fs::is_regular_file(FileOf(key), failed)) return std::nullopt;
@@ -72,6 +64,5 @@ void FileCache::Store(const std::string& key, std::span<const std::byte> bytes) 
   RemoveOldest(folder_);
 }
 
-FileCache UserCache() { return FileCache(CacheFolder().value_or(fs::path())); }
 
 }  // namespace scumble

@@ -12,10 +12,6 @@
 
 namespace scumble {
 
-// $XDG_CACHE_HOME/scumble, or ~/.cache/scumble; nothing where neither is known. Relative paths in XDG_CACHE_HOME are
-// ignored, as its specification says.
-std::optional<std::filesystem::path> CacheFolder();
-
 // One file a key, written whole or not at all, with a checksum. A file that is missing, cut short or altered is as if
 // it were not there; a folder that cannot be written keeps nothing, and neither is an error. Beyond kMostFiles the
 // oldest files are removed.
@@ -34,8 +30,5 @@ class FileCache : public TableCache {
 
   std::filesystem::path folder_;
 };
-
-// The cache of whoever runs the program.
-FileCache UserCache();
 
 }  // namespace scumble

@@ -68,7 +68,6 @@ class Run {
                                : Region{0, 0, guides.width(), guides.height()}),
         frame_{guides, map, styles, region_} {
     scratch.times = {};
-    scratch.seed_maps.BeginFrame();
   }
 
   Status PaintAll(std::span<const PreparedStyle* const> styles) {
@@ -123,7 +122,7 @@ class Run {
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
       const TransferSettings& settings = style->settings;
       return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 && !style->space &&
-             style->tones.empty() && style->rims.empty() && style->blend_radius <= internal::kSmallRadius;
+             style->tones.empty() && style->rims.empty() && style->blend_radius <= internal::kMostBandRadius;
     });
   }
 
@@ -237,7 +236,6 @@ class Run {
         matched};
     input.space = style.space.get();
     input.brightness = static_cast<float>(Exp2(options_.exposure));
-    input.seed_map = scratch_.seed_maps.For(input.seeds, guides_.width(), guides_.height());
     return input;
   }
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
@@ -21,7 +21,6 @@
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "core/filter/region.h"
 #include "transfer/outline/rim_paint.h"
-#include "transfer/seeds/nearest_seed_cache.h"
 #include "transfer/shadow/shadow_paint.h"
 #include "transfer/field/source_field.h"
 #include "transfer/frame/style_map.h"
@@ -106,7 +105,6 @@ struct TransferScratch {
   SourceField field;                 // empty where TransferOptions::keep_field did not ask for it and it was not needed
   std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints; empty likewise
   StageTimes times;
-  internal::SeedMaps seed_maps;  // frozen jitter's
   std::vector<internal::BandMemory> bands;  // by thread
 };
 

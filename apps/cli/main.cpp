@@ -1,4 +1,5 @@
 // scumble: paint a sphere, stylise a scene. One binary, one verb a task; `scumble help` prints verbs and exit codes.
+#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -50,6 +51,7 @@ int Run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("scumble ") + SCUMBLE_VERSION, "print the version");
   app.require_subcommand(1);
   Globals globals;
+  ConnectToTerminal(globals);
   Action chosen;
   AddVerbs(app, globals, chosen);
   try {

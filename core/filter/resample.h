@@ -1,7 +1,7 @@
 // Resizing of exemplars and papers.
 #pragma once
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -1,12 +1,14 @@
-// How a long computation talks to its caller: libraries never print.
+// Progress of a step within a whole.
 #pragma once
 
-#include <functional>
+#include "scumble/progress.h"
 
 namespace scumble {
 
-// Called with the finished share in [0, 1], from any thread but never from two at once. Returning false asks the
-// computation to stop; it then returns a kCancelled error and leaves nothing behind. An empty function is allowed.
-using Progress = std::function<bool(double share)>;
+// The part [from, to] of a progress, for one step of several.
+inline Progress Within(const Progress& progress, double from, double to) {
+  if (!progress) return {};
+  return [progress, from, to](double share) { return progress(from + (to - from) * share); };
+}
 
 }  // namespace scumble

@@ -12,7 +12,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/layers.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

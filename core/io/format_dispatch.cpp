@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iterator>
 #include <new>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -26,6 +27,9 @@ namespace fs = std::filesystem;
 std::atomic<int> io_threads{0};
 std::atomic<bool> is_loaded{false};
 
+std::mutex more_folders_mutex;
+std::vector<fs::path> more_folders;
+
 constexpr const char* kFile = "libscumble_formats.so";
 
 // Beside the program, as in a build; or where it is installed. Only files of these full names are loaded: a name alone would be
@@ -35,7 +39,10 @@ std::vector<fs::path> Folders() {
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
   if (failed) return {};
   const fs::path folder = program.parent_path();
-  return {folder, (folder / "../lib/scumble").lexically_normal()};
+  std::vector<fs::path> folders = {folder, (folder / "../lib/scumble").lexically_normal()};
+  const std::lock_guard lock(more_folders_mutex);
+  folders.insert(folders.end(), more_folders.begin(), more_folders.end());
+  return folders;
 }
 
 Error Unusable(const std::string& module, const std::string& what) {
@@ -110,6 +117,12 @@ Expected<const Formats*> LoadFormats(const std::string& file) {
 Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path) {
   SCUMBLE_RETURN_IF_ERROR(internal::CheckReadable(path));
   return LoadFormats(path.string());
+}
+
+void SetModuleFolder(const fs::path& folder) {
+  const std::lock_guard lock(more_folders_mutex);
+  const fs::path normal = folder.lexically_normal();
+  if (std::find(more_folders.begin(), more_folders.end(), normal) == more_folders.end()) more_folders.push_back(normal);
 }
 
 void SetIoThreads(int threads) { io_threads = threads; }

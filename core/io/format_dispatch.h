@@ -14,7 +14,7 @@
 
 #include "core/image/channel_image.h"
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"

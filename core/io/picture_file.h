@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 
 namespace scumble {

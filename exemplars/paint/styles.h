@@ -2,7 +2,7 @@
 #pragma once
 
 #include "exemplars/paint/studio.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 
 namespace scumble::paint {

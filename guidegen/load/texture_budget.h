@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 
 namespace scumble {

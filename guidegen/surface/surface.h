@@ -8,7 +8,7 @@
 
 #include "guidegen/rays/camera_rays.h"
 #include "guidegen/scene/scene.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

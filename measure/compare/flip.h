@@ -13,7 +13,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 
 namespace scumble {

@@ -5,35 +5,20 @@
 #include <cmath>
 
 #include "core/image/color.h"
+#include "core/image/oklab.h"
 #include "measure/compare/compare.h"
 
 namespace scumble {
 namespace {
 
-// Oklab to linear Rec.709; https://bottosson.github.io/posts/oklab/
-std::array<double, 3> LinearFromOklab(const std::array<double, 3>& lab) {
-  const double l = lab[0] + 0.3963377774 * lab[1] + 0.2158037573 * lab[2];
-  const double m = lab[0] - 0.1055613458 * lab[1] - 0.0638541728 * lab[2];
-  const double s = lab[0] - 0.0894841775 * lab[1] - 1.2914855480 * lab[2];
-  const double l3 = l * l * l;
-  const double m3 = m * m * m;
-  const double s3 = s * s * s;
-  return {4.0767416621 * l3 - 3.3077115913 * m3 + 0.2309699292 * s3,
-          -1.2684380046 * l3 + 2.6097574011 * m3 - 0.3413193965 * s3,
-          -0.0041960863 * l3 - 0.7034186147 * m3 + 1.7076147010 * s3};
-}
-
 using Color = std::array<std::uint16_t, 3>;
 
 // From dark blue to yellow, both inside the gamut of Rec.709.
 Color RampColor(double share) {
-  constexpr std::array<double, 3> kBlue = {0.26, -0.01, -0.12};
-  constexpr std::array<double, 3> kYellow = {0.92, -0.04, 0.17};
-  std::array<double, 3> lab;
-  for (std::size_t i = 0; i < 3; ++i) lab[i] = kBlue[i] + share * (kYellow[i] - kBlue[i]);
-  const std::array<double, 3> linear = LinearFromOklab(lab);
+  constexpr glm::vec3 kBlue(0.26f, -0.01f, -0.12f), kYellow(0.92f, -0.04f, 0.17f);
+  const glm::vec3 linear = LinearFromOklab(kBlue + static_cast<float>(share) * (kYellow - kBlue));
   Color color;
-  for (std::size_t i = 0; i < 3; ++i) color[i] = Srgb16FromLinear(static_cast<float>(linear[i]));
+  for (int i = 0; i < 3; ++i) color[static_cast<std::size_t>(i)] = Srgb16FromLinear(linear[i]);
   return color;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image/channel_image.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 
 namespace scumble {

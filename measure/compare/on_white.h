@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

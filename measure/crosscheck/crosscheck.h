@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/io/blender/cycles_light.h"
 

@@ -36,7 +36,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "measure/mosaic/coherence.h"
 #include "measure/energy/stratified_sample.h"

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

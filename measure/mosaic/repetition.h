@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "measure/mosaic/coherence.h"
 
 namespace scumble {

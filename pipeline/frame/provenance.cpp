@@ -11,6 +11,26 @@
 namespace scumble {
 namespace {
 
+std::uint64_t HashOfGuides(const GuideSet& guides) {
+  std::uint64_t hash = Hash(guides.width(), guides.height());
+  for (const LayerInfo& info : AllLayers()) {
+    if (!guides.Has(info.layer)) continue;
+    for (int c = 0; c < ChannelCount(info.layer); ++c) hash = Hash(hash, HashText(info.name), c, HashBytes(guides.Plane(info.layer, c)));
+  }
+  return hash;
+}
+
+std::uint64_t HashOfPicture(const Picture& picture) {
+  return Hash(picture.width, picture.height, HashBytes(std::span<const std::uint16_t>(picture.rgba)));
+}
+
+std::uint64_t HashOfExemplar(const Exemplar& exemplar) {
+  const std::uint64_t hash = Hash(HashOfPicture(exemplar.picture), exemplar.is_sphere);
+  return exemplar.guides ? Hash(hash, HashOfGuides(*exemplar.guides)) : hash;
+}
+
+}  // namespace
+
 std::string TextOf(const TransferSettings& settings) {
   // All members by name: one more does not compile until it is written below.
   const auto& [method, nearest, nearest_error, guide_weights, threshold, threshold_metric, levels, jitter, jitter_fps, coherent, blend_radius, edge_aware, crease,
@@ -31,25 +51,16 @@ std::string TextOf(const TransferSettings& settings) {
   return text;
 }
 
-std::uint64_t HashOfGuides(const GuideSet& guides) {
-  std::uint64_t hash = Hash(guides.width(), guides.height());
-  for (const LayerInfo& info : AllLayers()) {
-    if (!guides.Has(info.layer)) continue;
-    for (int c = 0; c < ChannelCount(info.layer); ++c) hash = Hash(hash, HashText(info.name), c, HashBytes(guides.Plane(info.layer, c)));
+std::uint64_t HashOfPaint(const Style& style) {
+  std::uint64_t hash = style.exemplars.size();
+  for (const Exemplar& exemplar : style.exemplars) {
+    const std::string light = exemplar.luminance ? fmt::format("{}", *exemplar.luminance) : "";
+    hash = Hash(hash, HashOfExemplar(exemplar), HashText(light), exemplar.margin);
   }
+  if (style.paper.color) hash = Hash(hash, HashBytes(std::span<const std::uint16_t>(*style.paper.color)));
+  if (style.paper.picture) hash = Hash(hash, HashOfPicture(*style.paper.picture));
   return hash;
 }
-
-std::uint64_t HashOfPicture(const Picture& picture) {
-  return Hash(picture.width, picture.height, HashBytes(std::span<const std::uint16_t>(picture.rgba)));
-}
-
-std::uint64_t HashOfExemplar(const Exemplar& exemplar) {
-  const std::uint64_t hash = Hash(HashOfPicture(exemplar.picture), exemplar.is_sphere);
-  return exemplar.guides ? Hash(hash, HashOfGuides(*exemplar.guides)) : hash;
-}
-
-}  // namespace
 
 std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known) {
   std::uint64_t hash = 0;
@@ -75,7 +86,7 @@ std::string SettingsText(const StyleSet& styles, const PictureSettings& settings
   const auto& [seed, over, show, upsample, fps, exposure, measured, samples] = settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
-                                 show.empty() ? "result" : show, upsample);
+                                 show ? ExplanationNames()[std::size_t(*show)] : "result", upsample);
   const auto chosen = std::span(styles.styles).first(styles.chosen);
   if (samples && std::any_of(chosen.begin(), chosen.end(), AsksForLight)) text += fmt::format("; samples {}", *samples);
   text += "; fps " + (fps ? fmt::format("{}", double(fps->numerator) / double(fps->denominator)) : kAnySetting);

@@ -7,7 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "pipeline/run/sequence.h"
+#include "measure/mosaic/explain.h"
+#include "pipeline/frame_rate.h"
 #include "pipeline/style/style_set.h"
 
 namespace scumble {
@@ -18,13 +19,19 @@ using ExemplarHashes = std::map<std::pair<std::size_t, std::size_t>, std::uint64
 struct PictureSettings {
   std::uint64_t seed = 0;
   bool over = false;               // something lies underneath
-  std::string show;                // an explanation's name
+  std::optional<Explanation> show;
   int upsample = 1;
   std::optional<FrameRate> fps;    // where it is known
   std::optional<double> exposure;  // where it is known; counts for styles of several exemplars, as does the next
   std::optional<bool> measured;    // whether --exposure auto found it; empty: the stops alone count
   std::optional<int> samples;      // of a pixel of light in the guides, where it is known; counts for styles that ask for any
 };
+
+// All settings of the transfer, as text: equal texts, equal settings.
+std::string TextOf(const TransferSettings& settings);
+
+// Of one style: its exemplars, their light, its paper; not its settings.
+std::uint64_t HashOfPaint(const Style& style);
 
 // Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.
 std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known);

@@ -8,6 +8,7 @@
 
 #include "guidegen/light/path_layers.h"
 #include "core/style/kit/sphere_template.h"
+#include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble {
 namespace {
@@ -32,7 +33,6 @@ constexpr Bytes kMoved = 13;                // SourceField::moved and who is mat
 constexpr Bytes kMatched = 32;              // of one that is matched then
 constexpr Bytes kSlopes = 8;                // DepthSlopes
 constexpr Bytes kSurfaceSeeds = 48;         // MatchCoherent
-constexpr Bytes kSeedMap = 7;               // 1.13 bytes on each of six levels
 constexpr Bytes kBandTile = 110'000;        // seeds of 512 columns, for one thread
 constexpr int kBandRadius = 3;              // up to it sources are kept for a few rows only
 constexpr Bytes kExplained = 24;            // planes that --show is drawn from, and a second picture
@@ -64,8 +64,8 @@ bool NeedsModule(const std::string& output) {
 }
 
 // Of a pixel of the picture, to encode it; without the file's module.
-Bytes EncodedBytes(const PictureOptions& options) {
-  if (IsExr(options.output)) return 8 * kFloat;  // four floats, and as many in the file; or halves and halves
+Bytes EncodedBytes(const PictureRequest& options) {
+  if (HasEnding(options.output, {".exr"})) return 8 * kFloat;  // four floats, and as many in the file; or halves and halves
   const Bytes samples = options.bits == 16 ? 8 : 4;
   // PNG is packed by bands, which are joined; others are turned into the file's own bits, and a file that grows is copied.
   return samples * (NeedsModule(options.output) ? 3 : 2);
@@ -122,7 +122,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
 }
 
 // The sources of all pixels and what their match and votes look at.
-void AddSources(const PictureWork& work, const PictureOptions& options, const Size& size, MemoryNeed& need) {
+void AddSources(const PictureWork& work, const PictureRequest& options, const Size& size, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   bool keeps = work.keeps_field, lit = false;
   Bytes of_pixel = 0, briefly = 0;
@@ -137,7 +137,6 @@ void AddSources(const PictureWork& work, const PictureOptions& options, const Si
   if (keeps) of_pixel += kSource, briefly += kSlopes;
   if (lit) briefly += kFloat;  // exposed
   if (work.has_map) of_pixel += 2;
-  if (work.is_sequence || options.repeat > 1) of_pixel += kSeedMap;
   if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
   const Bytes tiles = (Bytes(size.width) + 511) / 512;
   need.Take("seeds of the threads", ThreadsOf(work.threads) * tiles * kBandTile * work.styles.size());
@@ -167,7 +166,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   need.Briefly("decoding a texture", kDecoded * more.largest);
 }
 
-void AddGuides(const Size& size, const LayerSet& layers, const SceneOptions& options, MemoryNeed& need) {
+void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   need.Take("guides", PlanesOf(size, Made(layers)));
   Bytes path_layers = 0;
@@ -202,7 +201,7 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   need.Briefly("channels of the file", kFloat * channels * pixels);
 }
 
-void AddPicture(const PictureWork& work, const PictureOptions& options, MemoryNeed& need) {
+void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need) {
   const Size size{work.guides.width * options.upsample, work.guides.height * options.upsample};
   const Bytes pixels = PixelsOf(size), encoded = EncodedBytes(options);
   if (work.is_sequence) need.Take("frame that is written", (kPaint + encoded) * pixels);
@@ -214,7 +213,7 @@ void AddPicture(const PictureWork& work, const PictureOptions& options, MemoryNe
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
   AddSources(work, options, size, need);
-  if (!options.show.empty()) need.Briefly("explaining", kExplained * pixels);
+  if (options.show) need.Briefly("explaining", kExplained * pixels);
   else if (work.keeps_field) need.Briefly("figures", kCoherence * pixels);
   if (NeedsModule(options.output)) need.Take("writer", kFormatsModule);
   need.Briefly("picture file", encoded * pixels);

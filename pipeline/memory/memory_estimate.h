@@ -6,8 +6,7 @@
 #include <span>
 
 #include "pipeline/memory/memory_limit.h"
-#include "apps/cli/app/options.h"
-#include "pipeline/frame/paint_frame.h"
+#include "pipeline/requests.h"
 #include "guidegen/scene/scene.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/layers.h"
@@ -25,7 +24,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need);
 
 // Guides as guidegen makes them: the planes of `layers` and of those that are always there; briefly the pixels whose light
 // paths are followed.
-void AddGuides(const Size& size, const LayerSet& layers, const SceneOptions& options, MemoryNeed& need);
+void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need);
 
 // Briefly a guide file of these layers, packed in memory before it is written.
 void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need);
@@ -43,10 +42,10 @@ struct PictureWork {
   Size guides;             // before they are upsampled
   LayerSet layers;         // that the guides hold
   bool is_sequence = false;  // one picture is written while the next is made
-  bool keeps_field = false;  // for --json and --show
+  bool keeps_field = false;  // PictureRequest::KeepsField
   int threads = 0;
 };
-void AddPicture(const PictureWork& work, const PictureOptions& options, MemoryNeed& need);
+void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need);
 
 // The artist's kit of `scumble sphere`: `lights` of N × N guides with these layers and their template files.
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need);

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -119,8 +118,8 @@ void MemoryNeed::LookForPeak(const std::vector<Part>& parts) {
   peak_ = sum, at_peak_ = parts;
 }
 
-MemoryLimit LimitFor(const Globals& globals, const fs::path& root) {
-  if (globals.max_memory > 0) return {globals.max_memory, "--max-memory allows", true};
+MemoryLimit LimitFor(const RunContext& context, const fs::path& root) {
+  if (context.max_memory > 0) return {context.max_memory, "--max-memory allows", true};
   MemoryLimit limit{kMost, "", false};
   const auto at_most = [&](std::uint64_t bytes, const char* who) {
     if (bytes < limit.bytes) limit = {bytes, who, false};
@@ -150,38 +149,23 @@ Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::
   return limit.asked ? UsageError(message) : MemoryError(message);
 }
 
-Status CheckMemory(const MemoryNeed& need, const Globals& globals, const std::string& mend) {
-  const MemoryLimit limit = LimitFor(globals);
+Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std::string& mend) {
+  const MemoryLimit limit = LimitFor(context);
   SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, limit, mend));
-  static std::atomic<std::uint64_t> said = 0;
-  if (globals.quiet || need.peak() < kMuchMemory || need.peak() < said + said / 2) return Ok();
-  said = need.peak();
-  Say(globals, fmt::format("takes up to {} of memory{}", BytesToText(need.peak()),
+  if (!context.noted_memory) return Ok();
+  const std::uint64_t noted = *context.noted_memory;
+  if (need.peak() < kMuchMemory || need.peak() < noted + noted / 2) return Ok();
+  *context.noted_memory = need.peak();
+  context.Note(fmt::format("takes up to {} of memory{}", BytesToText(need.peak()),
                            limit.who.empty() ? "" : fmt::format("; {} {}", limit.who, BytesToText(limit.bytes))));
   return Ok();
 }
 
-std::function<Status(std::uint64_t bytes)> RoomForStyles(const Globals& globals) {
-  return [need = std::make_shared<MemoryNeed>(), limit = LimitFor(globals)](std::uint64_t bytes) {
+std::function<Status(std::uint64_t bytes)> RoomForStyles(const RunContext& context) {
+  return [need = std::make_shared<MemoryNeed>(), limit = LimitFor(context)](std::uint64_t bytes) {
     need->Take("styles", bytes);
     return CheckMemory(*need, limit, "take smaller exemplars");
   };
-}
-
-std::string MemoryToText(const MemoryNeed& need) {
-  std::string text = "memory  up to " + BytesToText(need.peak());
-  const char* separator = ": ";
-  for (const MemoryNeed::Part& part : need.parts()) {
-    text += fmt::format("{}{} {}", separator, part.name, BytesToText(part.bytes));
-    separator = ", ";
-  }
-  return text + "\n";
-}
-
-nlohmann::ordered_json MemoryToJson(const MemoryNeed& need) {
-  nlohmann::ordered_json json{{"estimated_peak_bytes", need.peak()}};
-  for (const MemoryNeed::Part& part : need.parts()) json["parts"][part.name] = part.bytes;
-  return json;
 }
 
 std::uint64_t PeakMemory() { return FieldOf("/proc/self/status", "VmHWM:").value_or(0); }
@@ -211,19 +195,6 @@ Expected<std::uint64_t> ParseBytes(const std::string& text) {
   constexpr double kMostAsked = 0x1p62;
   if (!(number >= 1.0 && number <= kMostAsked)) return wrong;
   return static_cast<std::uint64_t>(number);
-}
-
-void AddMemoryOption(CLI::App& verb, Globals& globals) {
-  verb.add_option_function<std::string>(
-          "--max-memory",
-          [&globals](const std::string& text) { globals.max_memory = ParseBytes(text).value(); },
-          "memory that the run may take, as 4G or 800M, in powers of 1024; it is estimated before it is taken, and what needs "
-          "more is refused. Left out: what the machine, its control group and ulimit -v have")
-      ->type_name("SIZE")
-      ->check([](const std::string& text) {
-        const auto bytes = ParseBytes(text);
-        return bytes ? std::string() : bytes.error().message;
-      });
 }
 
 }  // namespace scumble

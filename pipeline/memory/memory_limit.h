@@ -1,15 +1,14 @@
 // How much memory a run takes at its peak, said before it is taken, and refused where there is less.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "apps/cli/app/command.h"
+#include "core/image/status.h"
+#include "pipeline/run_context.h"
 
 namespace scumble {
 
@@ -47,24 +46,19 @@ struct MemoryLimit {
 // --max-memory where it was given, else the least of what the machine has (MemAvailable of proc(5)), what the control
 // groups that this process is in leave (memory.max of version 2, memory.limit_in_bytes of 1) and what `ulimit -v` leaves;
 // what this process has already counts as there. `root` is "/", or a folder that stands for it.
-MemoryLimit LimitFor(const Globals& globals, const std::filesystem::path& root = "/");
+MemoryLimit LimitFor(const RunContext& context, const std::filesystem::path& root = "/");
 
 // Ok, or an error that says how much is needed, for what, how much there is, and what to do: kUsage where it was
 // --max-memory, kMemory otherwise. A machine that does not tell refuses nothing.
 Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& mend);
 // The same for this machine. From kMuchMemory on what fits is said before it is taken: once, and again where a later check of
 // the run comes to half as much more.
-Status CheckMemory(const MemoryNeed& need, const Globals& globals, const std::string& mend);
+Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std::string& mend);
 inline constexpr std::uint64_t kMuchMemory = std::uint64_t(4) << 30;
 
-// For StyleOptions::room: adds up what the pictures of a run's styles take, and refuses as CheckMemory does where they
+// For StyleRequest::room: adds up what the pictures of a run's styles take, and refuses as CheckMemory does where they
 // alone are more than there is. Copies add up together.
-std::function<Status(std::uint64_t bytes)> RoomForStyles(const Globals& globals);
-
-// "memory  1.2 GiB at most: guides 0.4 GiB, …", a line for --explain.
-std::string MemoryToText(const MemoryNeed& need);
-// {"estimated_peak_bytes": …, "parts": {"guides": …}}
-nlohmann::ordered_json MemoryToJson(const MemoryNeed& need);
+std::function<Status(std::uint64_t bytes)> RoomForStyles(const RunContext& context);
 
 // The most that this process has had so far, as the system counts it (VmHWM of proc(5)); 0 where it does not.
 std::uint64_t PeakMemory();
@@ -77,8 +71,5 @@ void ForgetPeakMemory();
 std::string BytesToText(std::uint64_t bytes);
 // "4G", "1.5g", "800M", "64K", "1T" or plain bytes, in powers of 1024, as `ulimit` and systemd count.
 Expected<std::uint64_t> ParseBytes(const std::string& text);
-
-// --max-memory.
-void AddMemoryOption(CLI::App& verb, Globals& globals);
 
 }  // namespace scumble

@@ -15,25 +15,18 @@
 #include "pipeline/machine.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/needed_textures.h"
-#include "pipeline/frame/provenance.h"
-#include "apps/cli/app/progress_bar.h"
+#include "pipeline/frame/paint_picture.h"
 #include "pipeline/variant/quality_ladder.h"
-#include "pipeline/run/run_inputs.h"
+#include "pipeline/scene/run_inputs.h"
 #include "pipeline/scene/scene_sequence.h"
-#include "apps/cli/app/timing.h"
+#include "pipeline/stage_clock.h"
 #include "pipeline/variant/variant_guides.h"
 #include "core/image/hash.h"
+#include "core/image/stopwatch.h"
 #include "core/style/style_keyframes.h"
 
 namespace scumble {
 namespace {
-
-const std::vector<std::string> kQualities = {"draft", "preview", "final"};
-
-Quality QualityOf(const std::string& name) {
-  if (name == "draft") return Quality::kDraft;
-  return name == "preview" ? Quality::kPreview : Quality::kFinal;
-}
 
 // One frame by the way at a place of the ladder.
 using PaintWay = std::function<Expected<double>(const Way& way)>;
@@ -42,40 +35,46 @@ struct Trials {
   PaintWay judge;  // how far off the picture is: PaintTrial::Judge
 };
 
-FileCache TimesCache() { return FileCache(CacheFolder() ? *CacheFolder() / "times" : std::filesystem::path()); }
+FileCache TimesCache(const RunContext& context) {
+  return FileCache(context.cache_folder.empty() ? std::filesystem::path() : context.cache_folder / "times");
+}
 
 std::string WordsOf(const Way& way) {
   const std::string options = OptionsOf(way);
   return options.empty() ? "the style as it is" : options;
 }
 
-nlohmann::ordered_json OptionsJson(const Way& way) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  if (UpsampleOf(way) > 1) json.insert(json.end(), {"--upsample", std::to_string(UpsampleOf(way))});
-  if (way.samples > 0) json.insert(json.end(), {"--samples", std::to_string(way.samples)});
-  for (const std::string& setting : way.settings) json.insert(json.end(), {"--set", setting});
-  return json;
+std::vector<std::string> OptionsListOf(const Way& way) {
+  std::vector<std::string> options;
+  const auto add = [&](const char* option, const std::string& value) {
+    options.push_back(option), options.push_back(value);
+  };
+  if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
+  if (way.samples > 0) add("--samples", std::to_string(way.samples));
+  for (const std::string& setting : way.settings) add("--set", setting);
+  return options;
 }
 
-Status Take(const Way& way, StyleSet& styles, PictureOptions& picture) {
+Status Take(const Way& way, StyleSet& styles, PictureRequest& picture) {
   picture.upsample *= UpsampleOf(way);
   return ApplyWay(way, styles);
 }
 
-Way NamedWay(const BudgetOptions& options, const LadderFrame& frame, const StyleSet& styles, PictureOptions& picture,
-             const Globals& globals) {
-  const Way way = WayOf(QualityOf(options.quality), styles, frame);
+Way NamedWay(Quality quality, const LadderFrame& frame, const StyleSet& styles, const RunContext& context,
+             BudgetChoice& choice) {
+  const Way way = WayOf(quality, styles, frame);
   const bool as_it_is = OptionsOf(way).empty();
-  Say(globals, fmt::format("quality {}: {}{}", options.quality, WordsOf(way), as_it_is ? "" : ", which repeats it"));
-  picture.chosen["quality"] = {{"name", options.quality}, {"options", OptionsJson(way)}};
+  choice.quality = QualityNames()[std::size_t(quality)];
+  choice.options = OptionsListOf(way);
+  context.Note(fmt::format("quality {}: {}{}", *choice.quality, WordsOf(way), as_it_is ? "" : ", which repeats it"));
   return way;
 }
 
-Expected<Way> WayWithin(const BudgetOptions& options, const LadderFrame& frame, const std::string& circumstances,
-                        const std::string& judged, const StyleSet& styles, PictureOptions& picture, const Globals& globals,
-                        const Trials& trials) {
+Expected<Way> WayWithin(const BudgetRequest& options, const LadderFrame& frame, const std::string& circumstances,
+                        const std::string& judged, const StyleSet& styles, const RunContext& context,
+                        const Trials& trials, BudgetChoice& choice) {
   const std::vector<Way> ways = QualityLadder(styles, frame);
-  FileCache cache = TimesCache();
+  FileCache cache = TimesCache(context);
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
   for (const Way& way : ways) calibration.ways.push_back(way.name);
   calibration.judged = judged;
@@ -85,14 +84,13 @@ Expected<Way> WayWithin(const BudgetOptions& options, const LadderFrame& frame, 
       if (AreRivals(ways[i], ways[j])) calibration.rivals[i] = j;
     }
   }
-  ProgressBar bar("calibration", globals.quiet);
-  const Progress progress = bar.Part(0.0, 1.0);
+  Progress progress = context.StartProgress("calibration");
   // Each way once, the one that is taken nine times (its rival, if it has one, too), the last twice more for a cold start; and
   // two judgements.
   const double usual_runs = static_cast<double>(ways.size()) + kCalibrationRuns + 2.0 + 2.0;
   int runs = 0;
   const MeasureWay measure = [&](std::size_t place) {
-    if (runs == 0) Say(globals, fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
+    if (runs == 0) context.Note(fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
     const double done = std::min(0.99, runs++ / usual_runs);
     if (progress) progress(done);
     return trials.paint(ways[place]);
@@ -100,31 +98,31 @@ Expected<Way> WayWithin(const BudgetOptions& options, const LadderFrame& frame, 
   bool judges = false;
   const JudgeWay judge = [&](std::size_t place) {
     if (!std::exchange(judges, true)) {
-      Say(globals, "--budget-ms: two ways fit whose order differs by style; which is nearer is measured here, once");
+      context.Note("--budget-ms: two ways fit whose order differs by style; which is nearer is measured here, once");
     }
     const double done = std::min(0.99, runs++ / usual_runs);
     if (progress) progress(done);
     return trials.judge(ways[place]);
   };
   SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure, judge));
-  bar.Clear();
-  EndStage(globals, "calibration");
+  progress = nullptr;
+  context.EndStage("calibration");
   const Way& way = ways[picked.way];
-  Say(globals,
+  context.Note(
       fmt::format("budget {:g} ms: at most {:.0f} ms, nine times of ten, with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
                   WordsOf(way), OptionsOf(way).empty() ? "" : ", which repeats it"));
   if (!picked.fits) {
-    Warn(fmt::format("--budget-ms {:g}: nothing fits; the quickest way is taken, which needs about {:.0f} ms",
+    context.Warn(fmt::format("--budget-ms {:g}: nothing fits; the quickest way is taken, which needs about {:.0f} ms",
                      options.budget_ms, std::ceil(picked.predicted_ms)));
   }
-  picture.chosen["budget"] = {{"ms", options.budget_ms},
-                              {"picked", way.name},
-                              {"predicted_ms", picked.predicted_ms},
-                              {"fits", picked.fits},
-                              {"measured_runs", picked.measured},
-                              {"options", OptionsJson(way)}};
+  choice.budget_ms = options.budget_ms;
+  choice.picked = way.name;
+  choice.predicted_ms = picked.predicted_ms;
+  choice.fits = picked.fits;
+  choice.measured_runs = picked.measured;
+  choice.options = OptionsListOf(way);
   for (const auto& [place, off] : picked.compared) {
-    if (std::isfinite(off)) picture.chosen["budget"]["compared"][ways[place].name] = off;
+    if (std::isfinite(off)) choice.compared[ways[place].name] = off;
   }
   return way;
 }
@@ -146,18 +144,18 @@ std::uint64_t HashOfTracks(const StyleSet& styles) {
 
 // What times depend on in either verb, as text. Frames count by what the styles say of them alone: all frames of a scene are
 // to look alike.
-std::string CommonCircumstances(StyleSet& styles, const PictureOptions& picture, const Globals& globals) {
+std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture, const RunContext& context) {
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
   const std::uint64_t tracks = HashOfTracks(styles);
   PictureSettings settings = SettingsOf(picture, {}, {}, {});
   settings.measured.reset();  // stops that were measured before take as long as those that are measured now
-  return fmt::format("{}; {}{}{}{}{}", MachineName(globals.threads),
+  return fmt::format("{}; {}{}{}{}{}", MachineName(context.threads),
                      SettingsText(styles, settings, hashes),
                      all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
                      styles.options.scene_styles ? "" : "; without the scene's styles",
                      tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "",
-                     KeepsField(picture, globals) ? "; keeps the field" : "");
+                     picture.KeepsField() ? "; keeps the field" : "");
 }
 
 // Of the scene's file and of those that it names. What cannot be read counts for nothing: who needs it says so.
@@ -177,8 +175,9 @@ std::uint64_t HashOfFiles(const std::string& scene) {
 
 // Kept beside the times, as it takes reading the scene to know, and as little true as they are of what no circumstance tells:
 // `anew` does not look there.
-Expected<bool> KeptAnswer(const std::string& question, bool anew, const std::function<Expected<bool>()>& find) {
-  FileCache cache = TimesCache();
+Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunContext& context,
+                          const std::function<Expected<bool>()>& find) {
+  FileCache cache = TimesCache(context);
   const auto bytes = anew ? std::nullopt : cache.Load(question);
   if (bytes && bytes->size() == 1) return bytes->front() != std::byte(0);
   SCUMBLE_ASSIGN(const bool answer, find());
@@ -188,67 +187,56 @@ Expected<bool> KeptAnswer(const std::string& question, bool anew, const std::fun
 }
 
 // What is opened when the first way is measured: the frame as the run will have it.
-Expected<SceneAtRest> OpenToMeasure(const SceneOptions& options, std::optional<int> frame, StyleSet& styles,
-                                    const Globals& globals) {
+Expected<SceneAtRest> OpenToMeasure(const SceneRequest& options, std::optional<int> frame, StyleSet& styles,
+                                    const RunContext& context) {
   const LayersFor layers = [&](const StyleWishes& wishes) { return RequiredLayers(styles, wishes, options.scene); };
-  SCUMBLE_ASSIGN(SceneAtRest opened, OpenSceneAt(frame, options, layers, globals, false));
+  SCUMBLE_ASSIGN(SceneAtRest opened, OpenSceneAt(frame, options, layers, context, false));
   MemoryNeed need;
-  AddProgram(globals.threads, need);
+  AddProgram(context.threads, need);
   AddScene(opened.scene, CountNeededPixels(opened.scene, options, opened.layers), need);
-  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals, "make the scene or its textures smaller"));
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context, "make the scene or its textures smaller"));
   // Which is reading, and counts as little as that of the scene.
-  SCUMBLE_RETURN_IF_ERROR(DecodeNeededTextures(opened.scene, options, opened.layers));
+  SCUMBLE_RETURN_IF_ERROR(DecodeNeededTextures(opened.scene, options, opened.layers, context));
   return opened;
 }
 
+std::string ExposureText(const PictureRequest& picture) {
+  return picture.exposure ? fmt::format("{}", *picture.exposure) : "auto";
+}
+
 // What a picture of guides shows, which their size and coverage do not tell: their normals and light.
-std::string PictureText(const GuideSet& guides, const PictureOptions& picture) {
+std::string PictureText(const GuideSet& guides, const PictureRequest& picture) {
   std::uint64_t hash = 0;
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance}) {
     if (!guides.Has(layer)) continue;
     const auto plane = guides.Plane(layer);
     hash = Hash(hash, HashText({reinterpret_cast<const char*>(plane.data()), plane.size_bytes()}));
   }
-  return fmt::format("guides {:016x}, exposure {}", hash, picture.exposure);
+  return fmt::format("guides {:016x}, exposure {}", hash, ExposureText(picture));
 }
 
 }  // namespace
 
-void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
-  const std::string smaller = casts ? "smaller guides, fewer samples, " : "";
-  const std::string wins = std::string("--set") + (casts ? ", --upsample and --samples" : " and --upsample") + " win over it";
-  verb.add_option("--quality", options.quality,
-                  "final: the style as it is; preview and draft take less time where there is much to take, by " + smaller +
-                      "simpler ways to find the paint; what is taken is printed as options that repeat it. " + wins)
-      ->type_name("NAME")
-      ->check(CLI::IsMember(kQualities));
-  verb.add_option(
-          "--budget-ms", options.budget_ms,
-          std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
-              " of one picture may take, without start-up, reading, preparing the style and writing: of a dozen "
-              "ways, ordered by what they cost in accuracy, the first that fits is taken, by times that are measured once on this "
-              "machine and kept in the user's cache folder; one way for all frames; the options that repeat it are printed. " + wins)
-      ->type_name("N")
-      ->check(RefuseNoAmount("milliseconds, as 40"));
-  verb.add_flag("--recalibrate", options.recalibrate, "with --budget-ms: measure anew");
+std::vector<std::string> QualityNames() { return {"draft", "preview", "final"}; }
+
+std::optional<Quality> FindQuality(const std::string& name) {
+  const std::vector<std::string> names = QualityNames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Quality>(found - names.begin());
 }
 
-Status CheckBudgetOptions(const CLI::App& verb, BudgetOptions& options) {
-  options.guides_are_fixed = verb.count("--upsample") > 0;
-  if (!options.quality.empty() && options.budget_ms > 0) {
-    return UsageError("--quality " + options.quality + " and --budget-ms exclude each other: give one of them");
-  }
-  if (options.recalibrate && !(options.budget_ms > 0)) {
-    return UsageError("--recalibrate is for --budget-ms: give both, or leave it out");
-  }
-  return Ok();
-}
-
-Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std::optional<int> frame,
-                       const std::string& name, const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
-  if (!options.chooses()) return Ok();
+Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& options, const GuideSet& guides,
+                                                      std::optional<int> frame, const std::string& name,
+                                                      const std::string& over, StyleSet& styles,
+                                                      PictureRequest& picture, const RunContext& context) {
+  if (!options.chooses()) return std::optional<BudgetChoice>();
+  BudgetChoice choice;
   const LadderFrame ladder{false, guides.width(), guides.height(), true};
-  if (!options.quality.empty()) return Take(NamedWay(options, ladder, styles, picture, globals), styles, picture);
+  if (options.quality) {
+    SCUMBLE_RETURN_IF_ERROR(Take(NamedWay(*options.quality, ladder, styles, context, choice), styles, picture));
+    return std::optional(std::move(choice));
+  }
   for (Style& style : styles.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame.value_or(0)));
   const auto coverage = guides.Plane(Layer::kCoverage);
   const auto covered = std::count_if(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
@@ -256,18 +244,22 @@ Status ChooseForGuides(const BudgetOptions& options, const GuideSet& guides, std
   const std::string circumstances =
       fmt::format("transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
-                  guides.layers().ToString(), CommonCircumstances(styles, picture, globals));
-  PaintTrial trial(styles, picture, frame, name, over, globals);
-  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, PictureText(guides, picture), styles, picture, globals,
+                  guides.layers().ToString(), CommonCircumstances(styles, picture, context));
+  PaintTrial trial(styles, picture, frame, name, over, context);
+  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, PictureText(guides, picture), styles, context,
                                           {[&](const Way& one) { return trial.Paint(one, guides); },
-                                           [&](const Way& one) { return trial.Judge(one, guides); }}));
-  return Take(way, styles, picture);
+                                           [&](const Way& one) { return trial.Judge(one, guides); }}, choice));
+  SCUMBLE_RETURN_IF_ERROR(Take(way, styles, picture));
+  return std::optional(std::move(choice));
 }
 
-Status ChooseForScene(const BudgetOptions& options, SceneOptions& scene, std::optional<int> frame,
-                      const std::string& over, StyleSet& styles, PictureOptions& picture, const Globals& globals) {
-  if (!options.chooses()) return Ok();
-  SCUMBLE_ASSIGN(const Size size, ParseSize(scene.size));
+Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& options, SceneRequest& scene,
+                                                     std::optional<int> frame, const std::string& over,
+                                                     StyleSet& styles, PictureRequest& picture,
+                                                     const RunContext& context) {
+  if (!options.chooses()) return std::optional<BudgetChoice>();
+  BudgetChoice choice;
+  const Size& size = scene.size;
   // Named points do not look at the scene: where its light takes no samples, fewer make no difference.
   const bool may_have_fewer =
       !scene.samples_given && std::any_of(styles.styles.begin(), styles.styles.end(), AsksForLight);
@@ -276,15 +268,17 @@ Status ChooseForScene(const BudgetOptions& options, SceneOptions& scene, std::op
     if (way.samples > 0) scene.samples = way.samples;
     return Take(way, styles, picture);
   };
-  if (!options.quality.empty()) return take(NamedWay(options, ladder, styles, picture, globals));
+  if (options.quality) {
+    SCUMBLE_RETURN_IF_ERROR(take(NamedWay(*options.quality, ladder, styles, context, choice)));
+    return std::optional(std::move(choice));
+  }
   const std::string circumstances =
       fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
-                  HashOfFiles(scene.scene), scene.size,
-                  GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, globals));
-  Globals silent = globals;
-  silent.quiet = true, silent.timing = nullptr;
+                  HashOfFiles(scene.scene), SizeToText(scene.size),
+                  GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, context));
+  const RunContext silent = context.WithoutNotes();
   std::optional<SceneAtRest> opened;
-  PaintTrial trial(styles, picture, frame, scene.scene, over, globals);
+  PaintTrial trial(styles, picture, frame, scene.scene, over, context);
   const auto open = [&]() -> Status {
     if (opened) return Ok();
     SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
@@ -295,14 +289,14 @@ Status ChooseForScene(const BudgetOptions& options, SceneOptions& scene, std::op
     return NeedSamples(opened->scene, opened->layers, scene);
   };
   if (ladder.samples > 0) {
-    SCUMBLE_ASSIGN(const bool needed, KeptAnswer("samples; " + circumstances, options.recalibrate, needs_samples));
+    SCUMBLE_ASSIGN(const bool needed, KeptAnswer("samples; " + circumstances, options.recalibrate, context, needs_samples));
     if (!needed) ladder.samples = 0;
   }
   double casting_ms = 0.0;
   const auto cast = [&](const Way& way) -> Expected<GuideSet> {
     SCUMBLE_RETURN_IF_ERROR(open());
-    SceneOptions small = scene;
-    small.size = fmt::format("{}x{}", size.width / UpsampleOf(way), size.height / UpsampleOf(way));
+    SceneRequest small = scene;
+    small.size = {size.width / UpsampleOf(way), size.height / UpsampleOf(way)};
     if (way.samples > 0) small.samples = way.samples;
     Stopwatch watch;
     SCUMBLE_ASSIGN(SceneGuides made,
@@ -319,9 +313,10 @@ Status ChooseForScene(const BudgetOptions& options, SceneOptions& scene, std::op
     SCUMBLE_ASSIGN(const GuideSet guides, cast(way));
     return trial.Judge(way, guides);
   };
-  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, "exposure " + picture.exposure, styles, picture, globals,
-                                          {paint, judge}));
-  return take(way);
+  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, "exposure " + ExposureText(picture), styles, context,
+                                          {paint, judge}, choice));
+  SCUMBLE_RETURN_IF_ERROR(take(way));
+  return std::optional(std::move(choice));
 }
 
 }  // namespace scumble

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "core/image/check.h"
@@ -24,48 +26,78 @@ double Median(Runs runs) {
   return runs.size() % 2 ? runs[half] : 0.5 * (runs[half - 1] + runs[half]);
 }
 
-bool IsNumber(const nlohmann::json& json, double& number) {
-  if (!json.is_number()) return false;
-  number = json.get<double>();
-  return number >= 0.0 && std::isfinite(number);
-}
-
-// Times by way, as {"circumstances": …, "cold_ms": 3.5, "ways": {"--upsample 4": [12.5, …], …}, "off_of": "", "off": {"--upsample 4": 0.3}},
-// null where it cannot be known. Nothing where the text is none of ours, or of others: keys are hashes.
+// What is kept between runs.
 struct Known {
   std::map<std::string, Runs> ways;
-  std::map<std::string, double> off;  // of ways that had rivals
+  std::map<std::string, double> off;  // of ways that had rivals; infinity where it cannot be known
   std::string off_of;                 // Calibration::judged
   double cold_ms = 0.0;
 };
-std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::string& circumstances) {
-  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object() || json.value("circumstances", nlohmann::json()) != circumstances) return std::nullopt;
-  const auto ways = json.find("ways");
-  const auto cold = json.find("cold_ms");
-  if (ways == json.end() || !ways->is_object() || cold == json.end()) return std::nullopt;
-  Known known;
-  if (!IsNumber(*cold, known.cold_ms)) return std::nullopt;
-  for (const auto& [way, times] : ways->items()) {
-    if (!times.is_array() || times.size() > std::size_t(kCalibrationRuns)) return std::nullopt;
-    for (const auto& time : times) {
-      double ms = 0.0;
-      if (!IsNumber(time, ms)) return std::nullopt;
-      known.ways[way].push_back(ms);
-    }
+
+// One fact a line: a word, then numbers, then a text up to the line's end.
+constexpr std::string_view kCircumstances = "circumstances", kCold = "cold_ms", kOffOf = "off_of", kRuns = "runs",
+                           kOff = "off";
+
+std::string OneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string ToText(const Known& known, const std::string& circumstances) {
+  std::string text = fmt::format("{} {}\n{} {}\n{} {}\n", kCircumstances, OneLine(circumstances), kCold, known.cold_ms,
+                                 kOffOf, OneLine(known.off_of));
+  for (const auto& [name, runs] : known.ways) {
+    if (!runs.empty()) text += fmt::format("{} {} {} {}\n", kRuns, runs.size(), fmt::join(runs, " "), name);
   }
-  const auto off = json.find("off");
-  if (off == json.end() || !off->is_object()) return std::nullopt;
-  for (const auto& [way, value] : off->items()) {
-    if (value.is_null()) {
-      known.off[way] = std::numeric_limits<double>::infinity();
-    } else if (!IsNumber(value, known.off[way])) {
+  for (const auto& [name, off] : known.off) text += fmt::format("{} {} {}\n", kOff, off, name);
+  return text;
+}
+
+// The next number of a line, 0 or more; infinity is one.
+bool ReadNumber(std::istringstream& line, double& number) {
+  std::string word;
+  if (!(line >> word)) return false;
+  const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return failure == std::errc() && end == word.data() + word.size() && number >= 0.0;
+}
+
+std::string RestOf(std::istringstream& line) {
+  std::string text;
+  std::getline(line, text);
+  return text.empty() ? text : text.substr(1);
+}
+
+// Nothing where the text is not ours, or is of other circumstances: keys are hashes.
+std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::string& circumstances) {
+  std::istringstream text(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  Known known;
+  bool same = false, cold = false;
+  for (std::string one; std::getline(text, one);) {
+    std::istringstream line(one);
+    std::string word;
+    line >> word;
+    double number = 0.0;
+    if (word == kCircumstances) {
+      same = RestOf(line) == OneLine(circumstances);
+    } else if (word == kCold) {
+      cold = ReadNumber(line, known.cold_ms) && std::isfinite(known.cold_ms);
+    } else if (word == kOffOf) {
+      known.off_of = RestOf(line);
+    } else if (word == kRuns) {
+      if (!ReadNumber(line, number) || number > kCalibrationRuns) return std::nullopt;
+      Runs runs(static_cast<std::size_t>(number));
+      for (double& ms : runs) {
+        if (!ReadNumber(line, ms) || !std::isfinite(ms)) return std::nullopt;
+      }
+      known.ways[RestOf(line)] = std::move(runs);
+    } else if (word == kOff) {
+      if (!ReadNumber(line, number)) return std::nullopt;
+      known.off[RestOf(line)] = number;
+    } else {
       return std::nullopt;
     }
   }
-  if (const auto of = json.find("off_of"); of != json.end() && of->is_string()) known.off_of = of->get<std::string>();
-  return known;
+  return same && cold ? std::optional(std::move(known)) : std::nullopt;
 }
 
 class Picker {
@@ -96,20 +128,17 @@ class Picker {
 
   void Store() const {
     if (!calibration_.cache || (measured_ == 0 && judged_.empty()) || !cold_ms_) return;
-    nlohmann::ordered_json json{{"circumstances", calibration_.circumstances},
-                                {"cold_ms", *cold_ms_},
-                                {"ways", nlohmann::ordered_json::object()},
-                                {"off_of", calibration_.judged},
-                                {"off", nlohmann::ordered_json::object()}};
     // Another process may have measured other ways meanwhile, or all of them anew: only what was found out here joins what is kept.
     Known known;
+    known.cold_ms = *cold_ms_;
     if (const auto bytes = calibration_.cache->Load(Key()); bytes && !calibration_.anew) {
       if (const auto other = ParseTimes(*bytes, calibration_.circumstances)) {
         known = *other;
-        if (!warmed_up_) json["cold_ms"] = known.cold_ms;
+        if (warmed_up_) known.cold_ms = *cold_ms_;
       }
     }
     if (known.off_of != calibration_.judged) known.off.clear();
+    known.off_of = calibration_.judged;
     for (std::size_t way = 0; way < runs_.size(); ++way) {
       const std::string& name = calibration_.ways[way];
       Runs& runs = known.ways[name];
@@ -118,11 +147,7 @@ class Picker {
       }
     }
     for (const std::size_t way : judged_) known.off[calibration_.ways[way]] = *off_[way];
-    for (const auto& [name, runs] : known.ways) {
-      if (!runs.empty()) json["ways"][name] = runs;
-    }
-    for (const auto& [name, off] : known.off) json["off"][name] = std::isfinite(off) ? nlohmann::ordered_json(off) : nullptr;
-    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    const std::string text = ToText(known, calibration_.circumstances);
     calibration_.cache->Store(Key(), std::as_bytes(std::span(text)));
   }
 

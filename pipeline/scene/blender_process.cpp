@@ -18,7 +18,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "apps/cli/app/options.h"
 
 extern char** environ;
 
@@ -215,9 +214,9 @@ Status CheckNotSignalled(const std::string& scene) {
   return Error{ErrorKind::kCancelled, scene + ": ended by a signal (" + ::strsignal(signal) + ")"};
 }
 
-Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask& task) {
+Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask& task, const RunContext& context) {
   std::error_code failed;
-  for (const fs::path& root : DataRoots("blender_scripts")) {
+  for (const fs::path& root : context.DataFolders("blender_scripts")) {
     if (fs::is_regular_file(root / name, failed)) return root / name;
   }
   return UnavailableError(task.scene + ": " + name + " is not found beside this program: install it again" +

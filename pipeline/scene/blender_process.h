@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/image/status.h"
+#include "pipeline/run_context.h"
 
 namespace scumble {
 
@@ -43,7 +44,8 @@ struct BlenderTask {
 Status CheckNotSignalled(const std::string& scene);
 
 // The script of that name in blender_scripts/, beside the build or where `install` put it.
-Expected<std::filesystem::path> FindBlenderScript(const std::string& name, const BlenderTask& task);
+Expected<std::filesystem::path> FindBlenderScript(const std::string& name, const BlenderTask& task,
+                                                  const RunContext& context);
 
 struct ProgramEnd {
   int code = -1;   // exit code

@@ -16,7 +16,7 @@
 
 #include "pipeline/scene/blender_process.h"
 #include "pipeline/frame_range.h"
-#include "apps/cli/app/options.h"
+#include "pipeline/requests.h"
 #include "guidegen/load/load_scene.h"
 
 namespace scumble {
@@ -42,20 +42,20 @@ std::string Renamed(std::string text, const std::string& from, const std::string
   return text;
 }
 
-std::string NameOfProgram(const BlenderOptions& options) {
+std::string NameOfProgram(const BlenderRequest& options) {
   return options.program.empty() ? "blender" : options.program;
 }
 
-BlenderTask ExportTask(const std::string& path, const BlenderOptions& options) {
+BlenderTask ExportTask(const std::string& path, const BlenderRequest& options) {
   const std::string program = NameOfProgram(options);
   return {path, program, "the export by " + program + " failed", true};
 }
 
 // What runs export_scene.py on a scene, with the script's own arguments to follow.
-Expected<std::vector<std::string>> ExportCommand(const std::string& path, const BlenderOptions& options,
-                                                 const fs::path& output) {
+Expected<std::vector<std::string>> ExportCommand(const std::string& path, const BlenderRequest& options,
+                                                 const fs::path& output, const RunContext& context) {
   SCUMBLE_RETURN_IF_ERROR(CheckReadable(path));
-  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", ExportTask(path, options)));
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("export_scene.py", ExportTask(path, options), context));
   if (!output.has_parent_path())
     return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   return std::vector<std::string>{NameOfProgram(options),
@@ -94,7 +94,7 @@ fs::path In(const ScratchFolder& scratch, const char* name) {
 
 constexpr const char *kStartFile = "start.glb", *kRateFile = "fps";
 
-void AskForFilm(const ScratchFolder& scratch, const BlenderOptions& options, std::vector<std::string>& arguments) {
+void AskForFilm(const ScratchFolder& scratch, const BlenderRequest& options, std::vector<std::string>& arguments) {
   arguments.insert(arguments.end(), {"--fps-file", In(scratch, kRateFile).string(), "--start-file",
                                      In(scratch, kStartFile).string()});
   if (options.wants_start) arguments.push_back("--start-always");
@@ -122,14 +122,14 @@ bool IsBlenderScene(const std::string& path) {
   return ending == ".blend";
 }
 
-Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals,
+Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,
                                  BlenderFilm* film) {
   const ScratchFolder scratch;
   const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
-  SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported));
+  SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported, context));
   if (film) AskForFilm(scratch, options, arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
-  Say(globals, path + ": " + arguments.front() + " exports it" +
+  context.Note(path + ": " + arguments.front() + " exports it" +
                    (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
   SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), ExportTask(path, options), log, exported));
   if (film) SCUMBLE_RETURN_IF_ERROR(LoadFilm(scratch, path, *film));
@@ -143,18 +143,18 @@ BlenderRange::~BlenderRange() {
   program_.reset();  // before the folder that it writes into
 }
 
-Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& path, const BlenderOptions& options,
-                                                            std::span<const int> frames, const Globals& globals) {
+Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& path, const BlenderRequest& options,
+                                                            std::span<const int> frames, const RunContext& context) {
   std::unique_ptr<BlenderRange> range(new BlenderRange);
   range->task_ = std::make_unique<BlenderTask>(ExportTask(path, options));
   range->scratch_ = std::make_unique<ScratchFolder>();
   SCUMBLE_ASSIGN(std::vector<std::string> arguments,
-                 ExportCommand(path, options, In(*range->scratch_, kRangeOutput)));
+                 ExportCommand(path, options, In(*range->scratch_, kRangeOutput), context));
   // With an equals sign: a range that starts at a negative frame would look like an option.
   arguments.push_back("--frames=" + FramesToText(frames));
   arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
   AskForFilm(*range->scratch_, options, arguments);
-  Say(globals, path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
+  context.Note(path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
                    FramesToText(frames));
   const fs::path log = In(*range->scratch_, "log");
   auto program = RunningProgram::Start(arguments, log);

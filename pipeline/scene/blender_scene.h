@@ -6,7 +6,8 @@
 #include <span>
 #include <string>
 
-#include "apps/cli/app/command.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
 #include "guidegen/scene/scene.h"
 #include "core/image/status.h"
 
@@ -16,18 +17,12 @@ struct BlenderTask;
 class RunningProgram;
 class ScratchFolder;
 
-struct BlenderOptions {
-  std::string program;       // a path, or a name looked up in PATH; empty: "blender"
-  std::optional<int> frame;  // empty: the one that the file was saved at
-  bool wants_start = false;  // BlenderFilm::start in any case
-};
-
 // Whether the name ends in .blend.
 bool IsBlenderScene(const std::string& path);
 
 // What is the same in all frames of a .blend.
 struct BlenderFilm {
-  std::string fps;             // frames a second, as ParseFps takes them; empty: not told
+  std::string fps;             // frames a second, as ParseFrameRate takes them; empty: not told
   std::optional<Scene> start;  // the scene at its first frame, where that is needed to decide how all frames are seen: it
                                // has no camera, perhaps no lamp, or it was asked for
 };
@@ -36,7 +31,7 @@ struct BlenderFilm {
 // temporary .glb that it makes; says so on stderr. kUnavailable where Blender or the script is missing or the version
 // is not supported, kInput where the export fails, with Blender's reason. What the export cannot express is among the
 // scene's warnings.
-Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& options, const Globals& globals,
+Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,
                                  BlenderFilm* film = nullptr);  // film: filled where it is not null
 
 // A range of frames of one .blend, exported by one Blender, which is at work while earlier frames are drawn. It is at most
@@ -44,8 +39,8 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderOptions& 
 class BlenderRange {
  public:
   // `frames` as they will be asked for. Otherwise as LoadBlenderScene; options.frame does not count.
-  static Expected<std::unique_ptr<BlenderRange>> Start(const std::string& path, const BlenderOptions& options,
-                                                       std::span<const int> frames, const Globals& globals);
+  static Expected<std::unique_ptr<BlenderRange>> Start(const std::string& path, const BlenderRequest& options,
+                                                       std::span<const int> frames, const RunContext& context);
   ~BlenderRange();  // ends Blender
   BlenderRange(const BlenderRange&) = delete;
   BlenderRange& operator=(const BlenderRange&) = delete;

@@ -54,10 +54,10 @@ Expected<ProgramEnd> RunWatched(const std::vector<std::string>& arguments, const
   return running.get();
 }
 
-std::vector<std::string> Arguments(const ReferenceOptions& options, const Globals& globals, const fs::path& script,
+std::vector<std::string> Arguments(const ReferenceOptions& options, const RunContext& context, const fs::path& script,
                                    const fs::path& picture) {
   std::vector<std::string> arguments{options.blender, "-b", "-noaudio", "--factory-startup", "-Y"};
-  if (globals.threads > 0) arguments.insert(arguments.end(), {"-t", std::to_string(globals.threads)});
+  if (context.threads > 0) arguments.insert(arguments.end(), {"-t", std::to_string(context.threads)});
   arguments.insert(arguments.end(),
                    {"-P", script.string(), "--", fs::absolute(options.scene).string(), picture.string(), "--size",
                     fmt::format("{}x{}", options.width, options.height), "--materials", "pure"});
@@ -82,16 +82,16 @@ void ReadLog(const std::vector<std::string>& lines, Reference& reference) {
 
 }  // namespace
 
-Expected<Reference> RenderReference(const ReferenceOptions& options, const Globals& globals, const Progress& progress) {
+Expected<Reference> RenderReference(const ReferenceOptions& options, const RunContext& context, const Progress& progress) {
   const BlenderTask task{options.scene, options.blender, options.blender + " rendered no reference"};
-  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", task));
+  SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", task, context));
   const ScratchFolder scratch;
   if (scratch.path().empty())
     return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   const fs::path picture = scratch.path() / "cycles.exr", log = scratch.path() / "log";
-  Say(globals, options.scene + ": " + options.blender + " renders the reference");
+  context.Note(options.scene + ": " + options.blender + " renders the reference");
   SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(
-      RunWatched(Arguments(options, globals, script, picture), log, options.samples, progress), task, log, picture));
+      RunWatched(Arguments(options, context, script, picture), log, options.samples, progress), task, log, picture));
   Reference reference;
   ReadLog(LinesOf(log), reference);
   GuideReadOptions read;

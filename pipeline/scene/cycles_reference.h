@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/app/command.h"
+#include "pipeline/run_context.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
@@ -36,6 +36,6 @@ struct Reference {
 // rendered as pure ones. `progress` follows the log of the renders and is called from this thread. kUnavailable where
 // Blender or the script is missing or the version is not supported, kInput where the scene cannot be rendered, with
 // Blender's reason.
-Expected<Reference> RenderReference(const ReferenceOptions& options, const Globals& globals, const Progress& progress);
+Expected<Reference> RenderReference(const ReferenceOptions& options, const RunContext& context, const Progress& progress);
 
 }  // namespace scumble

@@ -1,11 +1,11 @@
 #include "pipeline/scene/needed_textures.h"
 
-#include "apps/cli/app/command.h"
+#include "pipeline/run_context.h"
 
 namespace scumble {
 namespace {
 
-GuidegenOptions NeedsOf(const SceneOptions& options, const LayerSet& layers) {
+GuidegenOptions NeedsOf(const SceneRequest& options, const LayerSet& layers) {
   GuidegenOptions needs;  // nothing else of them says which textures are looked at
   needs.layers = layers;
   needs.max_bounces = options.max_bounces;
@@ -14,13 +14,14 @@ GuidegenOptions NeedsOf(const SceneOptions& options, const LayerSet& layers) {
 
 }  // namespace
 
-TexturePixels CountNeededPixels(const Scene& scene, const SceneOptions& options, const LayerSet& layers) {
+TexturePixels CountNeededPixels(const Scene& scene, const SceneRequest& options, const LayerSet& layers) {
   return CountNeededPixels(scene, NeedsOf(options, layers));
 }
 
-Expected<SceneCost> DecodeNeededTextures(Scene& scene, const SceneOptions& options, const LayerSet& layers) {
+Expected<SceneCost> DecodeNeededTextures(Scene& scene, const SceneRequest& options, const LayerSet& layers,
+                                         const RunContext& context) {
   SCUMBLE_ASSIGN(const DecodedTextures decoded, DecodeTextures(scene, NeedsOf(options, layers)));
-  for (const std::string& warning : decoded.warnings) Warn(options.scene + ": " + warning);
+  for (const std::string& warning : decoded.warnings) context.Warn(options.scene + ": " + warning);
   SceneCost cost;
   cost.textures_decoded = decoded.count;
   cost.texture_bytes = decoded.bytes;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/image/stopwatch.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/scene/needed_textures.h"
 
@@ -11,7 +12,7 @@ namespace scumble {
 namespace {
 
 // How a frame of a .blend is seen: as the scene's first frame says, where the file leaves camera or light to us.
-Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneOptions& options,
+Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneRequest& options,
                                    const LayerSet& layers) {
   if (!film.start) return ViewScene(scene, options, layers);
   Scene& start = *film.start;
@@ -19,8 +20,8 @@ Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneO
   SCUMBLE_ASSIGN(PreparedView view, ViewScene(start, options, layers));
   if (start.lights.size() > lights) scene.lights.push_back(start.lights.back());
   start.lights.resize(lights);
-  if (!options.view.empty() || start.cameras.empty()) return view;
-  SceneOptions without_light = options;
+  if (options.view || start.cameras.empty()) return view;
+  SceneRequest without_light = options;
   without_light.key_light = false;
   SCUMBLE_ASSIGN(const PreparedView now, ViewScene(scene, without_light, layers));
   view.camera = now.camera;
@@ -28,9 +29,9 @@ Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneO
 }
 
 // Of a file that moves: its camera that is looked through, by its place; none where we look for ourselves.
-std::optional<int> OwnCamera(const Scene& scene, const SceneOptions& options, const Camera& seen_by) {
+std::optional<int> OwnCamera(const Scene& scene, const SceneRequest& options, const Camera& seen_by) {
   std::optional<int> found;
-  if (!options.view.empty()) return found;
+  if (options.view) return found;
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     if (scene.cameras[i].name == seen_by.name) found = static_cast<int>(i);
   }
@@ -39,14 +40,14 @@ std::optional<int> OwnCamera(const Scene& scene, const SceneOptions& options, co
 
 }  // namespace
 
-void TellRate(const SceneOptions& options, const BlenderFilm& film, GuideSet& guides) {
-  const std::string& fps = options.fps.empty() ? film.fps : options.fps;
+void StoreFrameRate(const SceneRequest& options, const BlenderFilm& film, GuideSet& guides) {
+  const std::string fps = options.fps ? FrameRateToText(*options.fps) : film.fps;
   if (!fps.empty()) guides.attributes["scumble:fps"] = fps;
 }
 
 Status SceneFrames::Start(std::span<const int> frames, const Progress& progress) {
-  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options_));
-  SCUMBLE_ASSIGN(rate_, ParseFps(options_.fps.empty() ? kUsualFps : options_.fps));
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options_));
+  rate_ = options_.fps.value_or(FrameRate());
   return IsBlenderScene(options_.scene) ? StartBlender(frames) : StartFile(progress);
 }
 
@@ -58,8 +59,8 @@ Status SceneFrames::StartBlender(std::span<const int> frames) {
       needed_by_[frame] = static_cast<int>(i);
     }
   }
-  options_.blender.wants_start = !options_.view.empty();
-  SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, exported_, globals_));
+  options_.blender.wants_start = options_.view.has_value();
+  SCUMBLE_ASSIGN(blender_, BlenderRange::Start(options_.scene, options_.blender, exported_, context_));
   return Ok();
 }
 
@@ -70,24 +71,24 @@ Status SceneFrames::StartFile(const Progress& progress) {
   WarnOnce(now_);
   SCUMBLE_ASSIGN(layers_, layers_for_(WishesOf(film_->objects(), film_->rest())));
   SCUMBLE_ASSIGN(const PreparedView view, ViewScene(now_, options_, layers_));
-  for (const std::string& note : view.notes) Say(globals_, note);
+  for (const std::string& note : view.notes) context_.Note(note);
   const double load_ms = watch.Lap();
   camera_ = view.camera;
   if (film_->moves()) {
     by_file_ = OwnCamera(now_, options_, view.camera);
     if (motion_) next_ = now_, next_.textures.clear(), next_.encoded_textures.clear();
     MemoryNeed need;
-    AddProgram(globals_.threads, need);
+    AddProgram(context_.threads, need);
     AddScene(now_, CountNeededPixels(now_, options_, layers_), need);
-    SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals_, "make the scene or its textures smaller"));
+    SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context_, "make the scene or its textures smaller"));
     // Here, so that a picture which is missing ends the sequence, and not each of its frames.
-    SCUMBLE_ASSIGN(decoded_, DecodeNeededTextures(now_, options_, layers_));
+    SCUMBLE_ASSIGN(decoded_, DecodeNeededTextures(now_, options_, layers_, context_));
     load_ms_ = load_ms + watch.Lap();
     return Ok();
   }
   const NextFrame next{now_, camera_};
   SCUMBLE_ASSIGN(*guides_,
-                 CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, globals_, progress, false));
+                 CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, context_, progress, false));
   guides_->times.insert(guides_->times.begin(), {"load", load_ms});
   film_.reset();
   now_ = {};
@@ -124,7 +125,7 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
   // Without motion the next scene is empty: it has no camera either.
   const auto next = motion_ ? std::optional(NextFrame{next_, camera_of(next_)}) : std::nullopt;
   SCUMBLE_ASSIGN(SceneGuides guides, CastScene(now_, camera_of(now_), next ? &*next : nullptr, options_, layers_,
-                                               globals_, progress, false));
+                                               context_, progress, false));
   guides.times.insert(guides.times.begin(), {"move", move_ms});
   if (load_ms_) guides.times.insert(guides.times.begin(), {"load", *load_ms_});
   load_ms_.reset();
@@ -135,7 +136,7 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
 }
 
 Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progress) {
-  const Globals& globals = spoken_ ? silent_ : globals_;
+  const RunContext& context = spoken_ ? silent_ : context_;
   Stopwatch watch;
   SCUMBLE_ASSIGN(Scene* const loaded, BlenderFrame(frame));
   const int place = place_.at(frame);
@@ -146,7 +147,7 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
   WarnOnce(scene);
   SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(WishesOf(scene.instances, scene)));
   SCUMBLE_ASSIGN(const PreparedView view, ViewBlender(scene, blender_->film(), options_, layers));
-  for (const std::string& note : view.notes) Say(globals, note);
+  for (const std::string& note : view.notes) context.Note(note);
   std::optional<Scene> following;
   PreparedView following_view;
   if (motion_) {
@@ -157,8 +158,8 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
   std::optional<NextFrame> next;
   if (following) next.emplace(NextFrame{*following, following_view.camera});
   SCUMBLE_ASSIGN(SceneGuides guides,
-                 CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, globals, progress, false));
-  TellRate(options_, blender_->film(), guides.guides);
+                 CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, context, progress, false));
+  StoreFrameRate(options_, blender_->film(), guides.guides);
   guides.times.insert(guides.times.begin(), {"load", load_ms});
   return guides;
 }
@@ -179,74 +180,89 @@ Expected<Scene*> SceneFrames::BlenderFrame(int frame) {
 
 void SceneFrames::WarnOnce(const Scene& scene) {
   for (const std::string& warning : scene.warnings) {
-    if (warned_.insert(warning).second) Warn(options_.scene + ": " + warning);
+    if (warned_.insert(warning).second) context_.Warn(options_.scene + ": " + warning);
   }
 }
 
-Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                   const Globals& globals, const Progress& progress) {
+Expected<SceneGuides> MakeGuidesAt(int frame, const SceneRequest& options, const LayersFor& layers_for, bool motion,
+                                   const RunContext& context, const Progress& progress) {
   if (IsBlenderScene(options.scene) && !motion) {
-    SceneOptions at = options;
+    SceneRequest at = options;
     at.blender.frame = frame;
-    return MakeGuidesAtRest(at, layers_for, motion, globals, progress, false);
+    return MakeGuidesAtRest(at, layers_for, motion, context, progress, false);
   }
-  SceneFrames scene(options, layers_for, motion, globals);
+  SceneFrames scene(options, layers_for, motion, context);
   SCUMBLE_RETURN_IF_ERROR(scene.Start(std::span(&frame, 1), progress));
   SCUMBLE_RETURN_IF_ERROR(scene.At(frame, progress));
   return scene.Take();
 }
 
-Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                      const Globals& globals, bool plan_only, bool warns) {
+Expected<SceneAtRest> OpenSceneAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+                                      const RunContext& context, bool plan_only, bool warns) {
   const std::string mend = ": give --frame N, or --frames for several where the verb has it";
   if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
-  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options));
   if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
   Stopwatch watch;
   SceneAtRest rest;
-  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, globals, plan_only ? nullptr : &rest.film, warns));
+  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, context, plan_only ? nullptr : &rest.film, warns));
   SCUMBLE_ASSIGN(rest.layers, layers_for(WishesOf(rest.scene.instances, rest.scene)));
   rest.load_ms = watch.Lap();
   SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, rest.layers));
-  for (const std::string& note : rest.view.notes) Say(globals, note);
+  for (const std::string& note : rest.view.notes) context.Note(note);
   return rest;
 }
 
-Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& options, const LayersFor& layers_for,
-                                  const Globals& globals, bool warns) {
+Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
+                                  const RunContext& context, bool warns) {
   if (!frame || IsBlenderScene(options.scene)) {
-    SceneOptions at = options;
+    SceneRequest at = options;
     at.blender.frame = frame;
-    return OpenSceneAtRest(at, layers_for, false, globals, false, warns);
+    return OpenSceneAtRest(at, layers_for, false, context, false, warns);
   }
-  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(options));
-  SCUMBLE_ASSIGN(const FrameRate rate, ParseFps(options.fps.empty() ? kUsualFps : options.fps));
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options));
   Stopwatch watch;
   SCUMBLE_ASSIGN(const AnimatedScene film,
                  AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
-  SceneAtRest result;
-  SCUMBLE_ASSIGN(result.scene, film.SceneAt(0.0));
-  if (warns) {
-    for (const std::string& warning : result.scene.warnings) Warn(options.scene + ": " + warning);
-  }
-  SCUMBLE_ASSIGN(result.layers, layers_for(WishesOf(film.objects(), film.rest())));
-  SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
-  for (const std::string& note : result.view.notes) Say(globals, note);
-  if (film.moves()) {
-    const std::optional<int> own = OwnCamera(result.scene, options, result.view.camera);
-    SCUMBLE_RETURN_IF_ERROR(film.MoveTo(SecondsAt(*frame, rate), result.scene));
-    if (own) result.view.camera = result.scene.cameras[static_cast<std::size_t>(*own)];
-  }
+  SCUMBLE_ASSIGN(SceneAtRest result, PoseScene(film, frame, options, layers_for, context, warns));
   result.load_ms = watch.Lap();
   return result;
 }
 
-Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                       const Globals& globals, const Progress& progress, bool plan_only) {
-  SCUMBLE_ASSIGN(SceneAtRest rest, OpenSceneAtRest(options, layers_for, motion, globals, plan_only));
+Expected<SceneAtRest> PoseScene(const AnimatedScene& film, std::optional<int> frame, const SceneRequest& options,
+                                const LayersFor& layers_for, const RunContext& context, bool warns) {
+  SceneAtRest result;
+  result.scene = film.rest();
+  if (frame) {
+    SCUMBLE_ASSIGN(result.scene, film.SceneAt(0.0));
+  }
+  if (warns) {
+    for (const std::string& warning : result.scene.warnings) context.Warn(options.scene + ": " + warning);
+  }
+  SCUMBLE_ASSIGN(result.layers, layers_for(WishesOf(film.objects(), film.rest())));
+  SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
+  for (const std::string& note : result.view.notes) context.Note(note);
+  if (frame && film.moves()) {
+    const std::optional<int> own = OwnCamera(result.scene, options, result.view.camera);
+    SCUMBLE_RETURN_IF_ERROR(film.MoveTo(SecondsAt(*frame, options.fps.value_or(FrameRate())), result.scene));
+    if (own) result.view.camera = result.scene.cameras[static_cast<std::size_t>(*own)];
+  }
+  return result;
+}
+
+Status ViewAgain(SceneAtRest& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers) {
+  rest.scene.lights.resize(lights);
+  SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, layers));
+  rest.layers = layers;
+  return Ok();
+}
+
+Expected<SceneGuides> MakeGuidesAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+                                       const RunContext& context, const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(SceneAtRest rest, OpenSceneAtRest(options, layers_for, motion, context, plan_only));
   SCUMBLE_ASSIGN(SceneGuides result,
-                 CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, globals, progress, plan_only));
-  TellRate(options, rest.film, result.guides);
+                 CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, context, progress, plan_only));
+  StoreFrameRate(options, rest.film, result.guides);
   result.times.insert(result.times.begin(), {"load", rest.load_ms});
   return result;
 }

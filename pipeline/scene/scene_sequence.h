@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "pipeline/scene/blender_scene.h"
-#include "apps/cli/app/options.h"
-#include "pipeline/run/sequence.h"
+#include "pipeline/requests.h"
+#include "pipeline/scene/scene_guides.h"
 #include "pipeline/style/style_set.h"
 #include "guidegen/load/load_scene.h"
 
@@ -23,12 +23,10 @@ using LayersFor = std::function<Expected<LayerSet>(const StyleWishes&)>;
 
 class SceneFrames {
  public:
-  // `globals` must outlive this. `motion`: whether that layer will be among those of `layers_for`.
-  SceneFrames(SceneOptions options, LayersFor layers_for, bool motion, const Globals& globals)
-      : options_(std::move(options)), layers_for_(std::move(layers_for)), motion_(motion), globals_(globals),
-        silent_(globals) {
-    silent_.quiet = true;
-  }
+  // `context` must outlive this. `motion`: whether that layer will be among those of `layers_for`.
+  SceneFrames(SceneRequest options, LayersFor layers_for, bool motion, const RunContext& context)
+      : options_(std::move(options)), layers_for_(std::move(layers_for)), motion_(motion), context_(context),
+        silent_(context.WithoutNotes()) {}
 
   // A scene that does not move is loaded and cast here, once for all frames. One that moves is loaded here, and how it
   // is seen is decided as it stands at time 0, whatever the frames: a camera that frames it and a key light stay where
@@ -58,11 +56,11 @@ class SceneFrames {
   Expected<Scene*> BlenderFrame(int frame);
   void WarnOnce(const Scene& scene);
 
-  SceneOptions options_;
+  SceneRequest options_;
   LayersFor layers_for_;
   bool motion_;
-  const Globals& globals_;
-  Globals silent_;
+  const RunContext& context_;
+  RunContext silent_;
 
   // A file that moves.
   std::optional<AnimatedScene> film_;  // none: the scene stands still, or is Blender's
@@ -89,11 +87,11 @@ class SceneFrames {
 };
 
 // Writes the frames' rate among the attributes, where the command line or the .blend names one.
-void TellRate(const SceneOptions& options, const BlenderFilm& film, GuideSet& guides);
+void StoreFrameRate(const SceneRequest& options, const BlenderFilm& film, GuideSet& guides);
 
 // One frame, as a sequence would have it.
-Expected<SceneGuides> MakeGuidesAt(int frame, const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                   const Globals& globals, const Progress& progress);
+Expected<SceneGuides> MakeGuidesAt(int frame, const SceneRequest& options, const LayersFor& layers_for, bool motion,
+                                   const RunContext& context, const Progress& progress);
 
 // A scene that stands still, at a frame or without one's number, and how it is seen.
 struct SceneAtRest {
@@ -106,16 +104,23 @@ struct SceneAtRest {
 
 // Says how it is seen, and what the scene warns of unless `warns` is false: it will be opened once more. Errors as
 // MakeGuidesAtRest has them.
-Expected<SceneAtRest> OpenSceneAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                      const Globals& globals, bool plan_only, bool warns = true);
+Expected<SceneAtRest> OpenSceneAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+                                      const RunContext& context, bool plan_only, bool warns = true);
+
+// Poses a scene that is loaded, at a frame or at rest, and decides how it is seen. Passes on its warnings if `warns`.
+Expected<SceneAtRest> PoseScene(const AnimatedScene& film, std::optional<int> frame, const SceneRequest& options,
+                                const LayersFor& layers_for, const RunContext& context, bool warns);
+
+// Decides again how a posed scene of Blender's is seen, for other layers or through another camera.
+Status ViewAgain(SceneAtRest& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers);
 
 // The same of a frame, seen as SceneFrames sees it; without a number, at rest.
-Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneOptions& options, const LayersFor& layers_for,
-                                  const Globals& globals, bool warns = true);
+Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
+                                  const RunContext& context, bool warns = true);
 
 // The scene as it stands without a frame's number, as MakeGuidesOf has it. --animation and the layer motion are usage
 // errors.
-Expected<SceneGuides> MakeGuidesAtRest(const SceneOptions& options, const LayersFor& layers_for, bool motion,
-                                       const Globals& globals, const Progress& progress, bool plan_only);
+Expected<SceneGuides> MakeGuidesAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+                                       const RunContext& context, const Progress& progress, bool plan_only);
 
 }  // namespace scumble

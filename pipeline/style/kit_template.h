@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
 

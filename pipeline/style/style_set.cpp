@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "pipeline/style/assignments.h"
-#include "apps/cli/app/command.h"
+#include "pipeline/style/style_locations.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
 
@@ -29,7 +29,7 @@ bool PaintsShadows(const Style& style) {
 
 // The place of a style in the set, which is opened if it is new.
 Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
-  SCUMBLE_ASSIGN(const std::filesystem::path found, FindStyle(name, base));
+  SCUMBLE_ASSIGN(const std::filesystem::path found, FindStyle(name, set.context, base));
   const std::string path = PathOf(found);
   if (const auto known = set.opened.find(path); known != set.opened.end()) return known->second;
   if (set.styles.size() >= std::size_t(StyleMap::kMaxStyles)) return UsageError("too many styles in one picture");
@@ -150,12 +150,12 @@ Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, cons
 namespace {
 
 // "NAME:KEY=VALUE" or "KEY=VALUE". No key holds a colon; names may.
-Expected<StyleSet::Override> ParseOverride(const std::string& text) {
+Expected<StyleSet::Override> ParseOverride(const std::string& text, const RunContext& context) {
   const std::size_t colon = text.substr(0, text.find('=')).rfind(':');
   if (colon == std::string::npos) return StyleSet::Override{"", "", text};
   StyleSet::Override one{text.substr(0, colon), "", text.substr(colon + 1)};
   if (one.style.empty()) return UsageError("--set " + text + ": expected a style's name before the colon");
-  if (const auto found = FindStyle(one.style)) one.path = PathOf(*found);
+  if (const auto found = FindStyle(one.style, context)) one.path = PathOf(*found);
   return one;
 }
 
@@ -173,11 +173,11 @@ Status CheckOverrides(const StyleSet& set) {
 
 }  // namespace
 
-Expected<StyleSet> OpenStyles(const StyleOptions& options) {
+Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context) {
   StyleSet set;
-  set.options = options;
+  set.options = options, set.context = context;
   for (const std::string& text : options.sets) {
-    SCUMBLE_ASSIGN(StyleSet::Override one, ParseOverride(text));
+    SCUMBLE_ASSIGN(StyleSet::Override one, ParseOverride(text, context));
     set.overrides.push_back(std::move(one));
   }
   SCUMBLE_RETURN_IF_ERROR(PlaceOf(set, options.style, {}));
@@ -206,7 +206,7 @@ namespace {
 void WarnOnce(StyleSet& set, const std::string& text) {
   if (std::find(set.warnings.begin(), set.warnings.end(), text) != set.warnings.end()) return;
   set.warnings.push_back(text);
-  Warn(text);
+  set.context.Warn(text);
 }
 
 }  // namespace
@@ -251,7 +251,7 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
   return map;
 }
 
-nlohmann::ordered_json SayHowAssigned(StyleSet& set) {
+std::vector<std::string> AssignmentReport(StyleSet& set) {
   std::vector<std::string> idle;
   for (const StyleSet::Assigned& one : set.assigned) {
     if (one.named && one.pixels == 0) idle.push_back(one.where);
@@ -260,7 +260,7 @@ nlohmann::ordered_json SayHowAssigned(StyleSet& set) {
     WarnOnce(set, SomeOf(idle) + (idle.size() == 1 ? " paints" : " paint") +
                       " no pixel: what is named there is not seen, or a later assignment names it too");
   }
-  return {{"warnings", set.warnings}};
+  return set.warnings;
 }
 
 }  // namespace scumble

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "apps/cli/app/options.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
 #include "guidegen/scene/scene.h"
 #include "core/image/guides.h"
 #include "core/image/style.h"
@@ -37,7 +37,8 @@ struct StyleSet {
   std::vector<Assigned> assigned;
   std::vector<Override> overrides;
   std::map<std::string, std::uint16_t> wanted;  // by what the scene says; below `assigned`
-  StyleOptions options;                         // that it was opened with
+  StyleRequest options;                         // that it was opened with
+  RunContext context;                           // likewise
   std::size_t chosen = 1;                       // so many of `styles` are the user's, the others the scene's
   std::map<std::string, std::uint16_t> opened;  // by path
   std::vector<std::string> warnings;            // said so far
@@ -67,14 +68,14 @@ Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, cons
 
 // Opens the default style and every assigned one, each once. "rendered" leaves objects as they are,
 // "catcher" shows nothing of them but the shadows on them.
-Expected<StyleSet> OpenStyles(const StyleOptions& options);
+Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context);
 
 // Which style paints which pixel, by the names in the guides, which are `file`'s; the last assignment that fits a pixel's
 // object or material wins, and any before what the scene says, an object's before its material's. Warns, once in all
 // frames, of a pattern that fits nothing; it is kInput where the guides lack the layer in which it might.
 Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file);
 
-// After the last frame: warns of assignments that have painted no pixel. Returns {"warnings": […]}, with all that were said.
-nlohmann::ordered_json SayHowAssigned(StyleSet& set);
+// After the last frame: warns of assignments that have painted no pixel. Returns all warnings about assignments.
+std::vector<std::string> AssignmentReport(StyleSet& set);
 
 }  // namespace scumble

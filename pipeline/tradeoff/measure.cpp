@@ -15,7 +15,7 @@
 #include "pipeline/machine.h"
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/memory/memory_estimate.h"
-#include "apps/cli/app/shell_quote.h"
+#include "pipeline/shell_quote.h"
 #include "pipeline/tradeoff/memory.h"
 #include "pipeline/tradeoff/peak_process.h"
 #include "pipeline/variant/variant_error.h"
@@ -61,18 +61,16 @@ void AddNote(TradeMeasure& measure, const std::string& note) {
 
 class Trade {
  public:
-  Trade(const TradeSetup& setup, const Globals& globals, ProgressBar& bar)
-      : setup_(setup), globals_(globals), progress_(bar.Part(0.0, 1.0)) {
-    silent_ = globals;
-    silent_.quiet = true;
+  Trade(const TradeSetup& setup, const RunContext& context)
+      : setup_(setup), context_(context), silent_(context.WithoutNotes()), progress_(context.StartProgress("tradeoff")) {
     asks_for_memory_ = setup.memory && !IsBlenderScene(setup.scene.scene);
   }
 
   Expected<TradeReport> Measure() {
-    SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, globals_));
+    SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, context_));
     SCUMBLE_ASSIGN(std::vector<Way> ways, ChosenWays());
-    if (setup_.exposure != "auto" && !LooksAtLight(stage_.style)) {
-      Warn("--exposure " + setup_.exposure + " changes nothing: style " + stage_.style.name +
+    if (setup_.exposure && !LooksAtLight(stage_.style)) {
+      context_.Warn(fmt::format("--exposure {}", *setup_.exposure) + " changes nothing: style " + stage_.style.name +
            " has one exemplar and no weight for light, so it does not look at it");
     }
     report_.left_out = stage_.grid.left_out;
@@ -81,7 +79,7 @@ class Trade {
       report_.left_out.push_back(
           "memory, for which Blender would export the scene for each way; export it as .glb for that");
     }
-    for (const std::string& line : report_.left_out) Say(globals_, "left out: " + line);
+    for (const std::string& line : report_.left_out) context_.Note("left out: " + line);
     SCUMBLE_RETURN_IF_ERROR(OpenStyles(ways));
     // Guides that differ only in how they are rounded take one time.
     std::map<std::string, bool> jobs;
@@ -95,8 +93,8 @@ class Trade {
     report_.style = stage_.style.name.empty() ? setup_.style.style : stage_.style.name;
     report_.frame = setup_.frame;
     report_.width = stage_.width, report_.height = stage_.height;
-    report_.machine = MachineName(globals_.threads), report_.repeats = setup_.repeats;
-    report_.lambda = EnergyOptions().lambda, report_.command = TradeCommand(setup_, globals_);
+    report_.machine = MachineName(context_.threads), report_.repeats = setup_.repeats;
+    report_.lambda = EnergyOptions().lambda, report_.command = TradeCommand(setup_, context_);
     for (std::size_t begin = 0; begin < ways.size(); begin += kTogether) {
       SCUMBLE_RETURN_IF_ERROR(MeasureTogether(ways, begin, std::min(ways.size(), begin + kTogether)));
     }
@@ -127,7 +125,7 @@ class Trade {
     std::vector<Way> left;
     for (const Way& way : ways) {
       if (SupersampleOf(way) > 1) {
-        SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, way));
+        SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, way, context_));
         const Status fits = TryWay(way, style, ways);
         if (!fits.ok() && fits.error().kind == ErrorKind::kCancelled) return fits;
         if (!fits.ok()) {
@@ -145,13 +143,14 @@ class Trade {
   Status TryWay(const Way& way, const Style& style, const std::vector<Way>& ways) {
     SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
     const int factor = SupersampleOf(way);
-    SCUMBLE_RETURN_IF_ERROR(ParseSize(fmt::format("{}x{}", stage_.width * factor, stage_.height * factor)));
+    const Size size{stage_.width * factor, stage_.height * factor};
+    SCUMBLE_RETURN_IF_ERROR(CheckSize(size, SizeToText(size)));
     SCUMBLE_ASSIGN(MemoryNeed need, NeedOfAll(ways));
     for (std::size_t i = 0; i < kTogether; ++i) memory_.AddWay(ways.front(), stage_.style, stage_.scene.layers, false, need);
     memory_.AddWay(way, style, layers, true, need);
-    SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, globals_, "take a smaller --size"));
+    SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context_, "take a smaller --size"));
     PrepareOptions options;
-    options.threads = globals_.threads;
+    options.threads = context_.threads;
     SCUMBLE_RETURN_IF_ERROR(scumble::Prepare(style, stage_.height * factor, options));
     return Ok();
   }
@@ -175,7 +174,7 @@ class Trade {
     MemoryNeed most = all, together;
     std::set<std::string> guides;
     for (std::size_t i = 0; i < ways.size(); ++i) {
-      SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, ways[i]));
+      SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, ways[i], context_));
       SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
       layers_.push_back(layers);
       if (i % kTogether == 0) {
@@ -186,7 +185,7 @@ class Trade {
       memory_.AddWay(ways[i], style, layers, guides.insert(GuidesKey(ways[i], layers, true)).second, together);
       if (together.peak() > most.peak()) most = together;
     }
-    return CheckMemory(most, globals_, "take a smaller --size, or fewer ways by --only");
+    return CheckMemory(most, context_, "take a smaller --size, or fewer ways by --only");
   }
 
   // What the others are measured against. Noise of its own: guides of as many samples would be compared with themselves, and
@@ -210,7 +209,7 @@ class Trade {
 
   Status MakeReference() {
     const Way converged = ConvergedWay();
-    SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, converged));
+    SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, converged, context_));
     SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
     SCUMBLE_ASSIGN(exact_guides_, GuidesOf(converged, layers));
     const GuideSet& guides = exact_guides_->guides;
@@ -227,9 +226,9 @@ class Trade {
                         ": the camera sees nothing, so there is nothing to measure; try --view or another "
                         "--camera");
     }
-    SCUMBLE_ASSIGN(const WayPainter painter, WayPainter::Prepare(setup_, converged, style, exact_guides_, globals_));
+    SCUMBLE_ASSIGN(const WayPainter painter, WayPainter::Prepare(setup_, converged, style, exact_guides_, context_));
     reference_.emplace(std::shared_ptr<const GuideSet>(exact_guides_, &guides), painter.prepared(), painter.exposure(),
-                       globals_.threads);
+                       context_.threads);
     return Ok();
   }
 
@@ -261,9 +260,9 @@ class Trade {
     // Most ways have the style's own guides, and it has turns with all: they are cast once.
     SCUMBLE_ASSIGN(style_guides_, GuidesOf(ways.front(), layers_.front()));
     for (std::size_t i = begin; i < end; ++i) {
-      SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, ways[i]));
+      SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup_, ways[i], context_));
       SCUMBLE_ASSIGN(auto guides, GuidesOf(ways[i], layers_[i]));
-      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways[i], style, std::move(guides), globals_));
+      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways[i], style, std::move(guides), context_));
       painters.push_back(std::move(painter));
       SCUMBLE_ASSIGN(const double ms, painters.back().Paint(true));
       first_ms.push_back(ms);
@@ -275,7 +274,7 @@ class Trade {
     if (begin == 0) style_first_ms_ = first_ms.front();
     if (begin == 0 && LooksAtLight(stage_.style)) report_.exposure = painters.front().exposure();
     if (again) {
-      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways.front(), stage_.style, style_guides_, globals_));
+      SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup_, ways.front(), stage_.style, style_guides_, context_));
       painters.push_back(std::move(painter));
       SCUMBLE_ASSIGN(const double ms, painters.back().Paint());
       first_ms.push_back(ms);
@@ -311,7 +310,7 @@ class Trade {
       if (measure.total_ms.median > kMostForMemoryMs) {
         AddNote(measure, "its memory was not measured, as it takes more than a minute");
       } else {
-        SCUMBLE_ASSIGN(measure.memory_bytes, AskForPeak(setup_, ways[i].name, globals_));
+        SCUMBLE_ASSIGN(measure.memory_bytes, AskForPeak(setup_, ways[i].name, context_));
         if (measure.memory_bytes == 0) {
           AddNote(measure, "the process that was to tell its memory failed");
         }
@@ -378,13 +377,13 @@ class Trade {
   }
 
   const TradeSetup& setup_;
-  const Globals& globals_;
-  Globals silent_;
+  const RunContext& context_;
+  RunContext silent_;
   bool asks_for_memory_ = true;  // not of a .blend, which every process would have to export again
   Progress progress_;
   double work_ = 1.0, done_ = 0.0;
   TradeStage stage_;
-  TradeMemory memory_{setup_, stage_, globals_};
+  TradeMemory memory_{setup_, stage_, context_};
   std::vector<LayerSet> layers_;  // by way
   std::map<std::string, std::weak_ptr<const WayGuides>> guides_;
   std::map<std::string, std::vector<double>> guides_ms_;
@@ -398,31 +397,31 @@ class Trade {
 
 }  // namespace
 
-Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const Globals& globals, ProgressBar& bar) {
-  return Trade(setup, globals, bar).Measure();
+Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const RunContext& context) {
+  return Trade(setup, context).Measure();
 }
 
-std::string TradeCommand(const TradeSetup& setup, const Globals& globals) {
+std::string TradeCommand(const TradeSetup& setup, const RunContext& context) {
   std::string command = "scumble";
-  for (const std::string& word : TradeArguments(setup, globals)) command += " " + Quoted(word);
+  for (const std::string& word : TradeArguments(setup, context)) command += " " + Quoted(word);
   return command;
 }
 
-Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const Globals& globals) {
-  SCUMBLE_ASSIGN(TradeStage stage, OpenTradeStage(setup, globals));
+Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const RunContext& context) {
+  SCUMBLE_ASSIGN(TradeStage stage, OpenTradeStage(setup, context));
   const auto way =
       std::find_if(stage.grid.ways.begin(), stage.grid.ways.end(), [&](const Way& one) { return one.name == name; });
   if (way == stage.grid.ways.end()) return UsageError("--peak-of " + name + ": there is no such way");
   stage.style = Style();  // the way has its own: a run of stylize has its pictures once
-  SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way));
+  SCUMBLE_ASSIGN(const Style style, StyleOfWay(setup, *way, context));
   SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
   // What opening scene and style took for a moment is the same for all ways, and may hide theirs. Memory that is given back
   // stays with the process until it is trimmed, and would count as there.
   malloc_trim(0);
   ForgetPeakMemory();
-  SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, layers, globals));
+  SCUMBLE_ASSIGN(WayGuides made, MakeWayGuides(stage.scene, setup.scene, *way, layers, context));
   auto guides = std::make_shared<const WayGuides>(std::move(made));
-  SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup, *way, style, std::move(guides), globals));
+  SCUMBLE_ASSIGN(WayPainter painter, WayPainter::Prepare(setup, *way, style, std::move(guides), context));
   SCUMBLE_RETURN_IF_ERROR(painter.Paint());
   return static_cast<std::size_t>(PeakMemory());
 }

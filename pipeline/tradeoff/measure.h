@@ -5,22 +5,21 @@
 #include <optional>
 #include <string>
 
-#include "apps/cli/app/command.h"
-#include "apps/cli/app/options.h"
-#include "apps/cli/app/progress_bar.h"
+#include "pipeline/run_context.h"
+#include "pipeline/requests.h"
 #include "measure/tradeoff/report.h"
 
 namespace scumble {
 
 struct TradeSetup {
-  SceneOptions scene;  // its size is the picture's
-  StyleOptions style;
+  SceneRequest scene;  // its size is the picture's
+  StyleRequest style;
   int repeats = 5;
   bool quick = false;
   bool memory = true;
   std::string only;
   std::optional<int> frame;       // as stylize has it
-  std::string exposure = "auto";  // likewise
+  std::optional<double> exposure;  // stops, likewise; empty: measured
   bool writes = false;            // the report is to be written too, which counts in the estimate of memory
 };
 
@@ -30,13 +29,13 @@ inline constexpr double kSlowMs = 5000.0;
 // Everything that was measured. Guides are timed first, all ways' in turn, then transfers, those of a few ways in turn, quick ones
 // before slow ones: what else the machine does then is spread over ways. Each run is one of a single picture (WayPainter::Paint).
 // Wrong options are kUsage; a scene that shows nothing is kInput; what would take more memory than there is, as CheckMemory.
-Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const Globals& globals, ProgressBar& bar);
+Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const RunContext& context);
 
 // The command line that measures all this again.
-std::string TradeCommand(const TradeSetup& setup, const Globals& globals);
+std::string TradeCommand(const TradeSetup& setup, const RunContext& context);
 
 // Makes the picture of one way, once, and returns the memory that this process has held at most, in bytes; for a process of
 // its own.
-Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const Globals& globals);
+Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const RunContext& context);
 
 }  // namespace scumble

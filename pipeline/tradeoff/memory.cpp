@@ -30,7 +30,7 @@ std::uint64_t TradeMemory::Places() const {
 
 void TradeMemory::AddReport(std::size_t ways, MemoryNeed& need) const {
   const Size size{stage_.width, stage_.height};
-  AddPicture({{&stage_.style, 1}, false, size, stage_.scene.layers, false, true, globals_.threads}, {}, need);
+  AddPicture({{&stage_.style, 1}, false, size, stage_.scene.layers, false, true, context_.threads}, {}, need);
   const std::uint64_t pictures = kPng * Pixels() * ways;
   need.Take("reference", kReference * Places());
   need.Take("pictures of all ways", pictures);
@@ -43,7 +43,7 @@ void TradeMemory::AddWay(const Way& way, const Style& style, const LayerSet& lay
   const Size size{stage_.width * super, stage_.height * super};
   if (own_guides) AddGuides(size, layers, setup_.scene, need);
   if (own_guides && up > 1) AddGuides({size.width / up, size.height / up}, layers, setup_.scene, need);
-  AddPicture({{&style, 1}, false, size, layers, false, true, globals_.threads}, {}, need);
+  AddPicture({{&style, 1}, false, size, layers, false, true, context_.threads}, {}, need);
   if (super > 1) need.Take("picture", kPaint * Pixels());  // averaged
   if (style.transfer.nearest == NearestSearch::kTable) {
     need.Take("exemplars", kCell * std::uint64_t(way.table_resolution) * std::uint64_t(way.table_resolution));

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "apps/cli/app/command.h"
+#include "pipeline/run_context.h"
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/tradeoff/stage.h"
 #include "core/image/layers.h"
@@ -15,8 +15,8 @@ namespace scumble {
 class TradeMemory {
  public:
   // All are borrowed.
-  TradeMemory(const TradeSetup& setup, const TradeStage& stage, const Globals& globals)
-      : setup_(setup), stage_(stage), globals_(globals) {}
+  TradeMemory(const TradeSetup& setup, const TradeStage& stage, const RunContext& context)
+      : setup_(setup), stage_(stage), context_(context) {}
 
   // Adds what there is whichever ways are at work: the style and what all are measured against, one more picture, made
   // without the scene's colours, and the pictures of so many ways, as files and in the page. `need` has the program, the
@@ -32,7 +32,7 @@ class TradeMemory {
 
   const TradeSetup& setup_;
   const TradeStage& stage_;
-  const Globals& globals_;
+  const RunContext& context_;
 };
 
 }  // namespace scumble

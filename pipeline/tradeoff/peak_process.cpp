@@ -2,33 +2,42 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
+#include <cstdio>
+#include <string_view>
 
 #include "pipeline/scene/blender_process.h"
+#include "pipeline/scene/scene_guides.h"
 
 namespace scumble {
 
+namespace {
+
+// What the process prints, with its number behind.
+constexpr std::string_view kPeakLine = "{\"peak_bytes\": ";
+
+}  // namespace
+
 std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup) {
-  const SceneOptions& scene = setup.scene;
+  const SceneRequest& scene = setup.scene;
   std::vector<std::pair<std::string, std::string>> given;
-  const SceneOptions usual;
+  const SceneRequest usual;
   const auto add = [&](const char* option, const std::string& value, const std::string& usual_value) {
     if (value != usual_value) given.emplace_back(option, value);
   };
   add("--camera", scene.camera, usual.camera);
-  add("--view", scene.view, usual.view);
+  if (scene.view) given.emplace_back("--view", ViewToText(*scene.view));
   add("--aa", std::to_string(scene.aa), std::to_string(usual.aa));
-  add("--normal-frame", scene.normal_frame, usual.normal_frame);
+  if (scene.normal_frame == NormalFrame::kEye) given.emplace_back("--normal-frame", "eye");
   add("--isa", scene.isa, usual.isa);
   add("--blender", scene.blender.program, usual.blender.program);
   if (setup.frame) given.emplace_back("--frame", std::to_string(*setup.frame));
-  add("--fps", scene.fps, usual.fps);
+  if (scene.fps) given.emplace_back("--fps", FrameRateToText(*scene.fps));
   add("--animation", scene.animation, usual.animation);
-  add("--exposure", setup.exposure, TradeSetup().exposure);
+  if (setup.exposure) given.emplace_back("--exposure", fmt::format("{}", *setup.exposure));
   return given;
 }
 
-std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals) {
+std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContext& context) {
   std::vector<std::string> words = {"tradeoff"};
   const auto add = [&](const std::string& option, const std::string& value) {
     words.push_back(option), words.push_back(value);
@@ -37,28 +46,28 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& 
   words.push_back(scene.starts_with("-") ? "./" + scene : scene);
   add("--style", setup.style.style);
   for (const std::string& set : setup.style.sets) add("--set", set);
-  add("--size", setup.scene.size);
+  add("--size", SizeToText(setup.scene.size));
   for (const auto& [option, value] : SceneArguments(setup)) words.push_back(option + "=" + value);
-  if (setup.scene.samples != SceneOptions().samples) add("--samples", std::to_string(setup.scene.samples));
-  if (setup.scene.max_bounces != SceneOptions().max_bounces)
+  if (setup.scene.samples != SceneRequest().samples) add("--samples", std::to_string(setup.scene.samples));
+  if (setup.scene.max_bounces != SceneRequest().max_bounces)
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   if (setup.scene.seed != 0) add("--seed", std::to_string(setup.scene.seed));
   if (!setup.only.empty()) add("--only", setup.only);
   if (setup.repeats != TradeSetup().repeats) add("--repeat", std::to_string(setup.repeats));
   if (setup.quick) words.push_back("--quick");
   if (!setup.memory) words.push_back("--no-memory");
-  if (globals.threads != 0) add("--threads", std::to_string(globals.threads));
-  if (globals.max_memory > 0) add("--max-memory", std::to_string(globals.max_memory));
+  if (context.threads != 0) add("--threads", std::to_string(context.threads));
+  if (context.max_memory > 0) add("--max-memory", std::to_string(context.max_memory));
   return words;
 }
 
-Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const Globals& globals) {
+Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const RunContext& context) {
   const ScratchFolder scratch;
   if (scratch.path().empty()) return std::size_t(0);
   std::error_code failed;
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe", failed).string()};
   if (failed) return std::size_t(0);
-  for (std::string& word : TradeArguments(setup, globals)) words.push_back(std::move(word));
+  for (std::string& word : TradeArguments(setup, context)) words.push_back(std::move(word));
   words.push_back("--peak-of=" + way);
   words.push_back("--quiet");
   const std::filesystem::path log = scratch.path() / "log";
@@ -66,8 +75,8 @@ Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way
   SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(setup.scene.scene));
   if (!end || end->code != 0) return std::size_t(0);
   for (const std::string& line : LinesOf(log)) {
-    const auto json = nlohmann::json::parse(line, nullptr, false);
-    if (json.is_object() && json.contains("peak_bytes")) return json["peak_bytes"].get<std::size_t>();
+    std::size_t bytes = 0;
+    if (line.starts_with(kPeakLine) && std::sscanf(line.c_str() + kPeakLine.size(), "%zu", &bytes) == 1) return bytes;
   }
   return std::size_t(0);
 }

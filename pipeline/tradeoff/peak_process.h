@@ -16,9 +16,9 @@ namespace scumble {
 std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup);
 
 // The verb's arguments that set this up, behind the program's name. No option of output is among them.
-std::vector<std::string> TradeArguments(const TradeSetup& setup, const Globals& globals);
+std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContext& context);
 
 // Runs this program again for one way. 0 where that fails: memory is not worth an error. kCancelled where a signal has come.
-Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const Globals& globals);
+Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const RunContext& context);
 
 }  // namespace scumble

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "pipeline/variant/quality_ladder.h"
-#include "apps/cli/app/shell_quote.h"
+#include "pipeline/shell_quote.h"
 #include "pipeline/style/style_set.h"
 #include "pipeline/tradeoff/peak_process.h"
-#include "pipeline/frame/paint_frame.h"
+#include "pipeline/frame/frame_painter.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_keyframes.h"
 
@@ -19,11 +19,12 @@ namespace {
 
 constexpr const char* kNoPaper = "transfer.paper=";
 
-Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::string>& settings) {
-  StyleOptions one = setup.style;
+Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::string>& settings,
+                              const RunContext& context) {
+  StyleRequest one = setup.style;
   one.scene_styles = false;
   one.sets.insert(one.sets.end(), settings.begin(), settings.end());
-  SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(one));
+  SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(one, context));
   Style style = std::move(styles.styles.front());
   SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, setup.frame.value_or(0)));
   return style;
@@ -34,10 +35,10 @@ std::uint64_t SeedOf(const TradeSetup& setup, const Way& way) {
 }
 
 // What --quality names, where it is not the style itself.
-Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
-  StyleOptions options = setup.style;
+Status AddQualities(const TradeSetup& setup, const RunContext& context, TradeStage& stage) {
+  StyleRequest options = setup.style;
   options.scene_styles = false;
-  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(options));
+  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(options, context));
   const int samples = stage.chance && !setup.scene.samples_given ? setup.scene.samples : 0;
   const std::pair<const char*, Quality> kNamed[] = {{"preview", Quality::kPreview}, {"draft", Quality::kDraft}};
   for (const auto& [name, quality] : kNamed) {
@@ -52,28 +53,28 @@ Status AddQualities(const TradeSetup& setup, TradeStage& stage) {
 
 }  // namespace
 
-Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way) {
+Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way, const RunContext& context) {
   std::vector<std::string> settings = way.settings;
   settings.push_back(kNoPaper);
-  return OpenStyleWith(setup, settings);
+  return OpenStyleWith(setup, settings, context);
 }
 
-Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& globals) {
-  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(setup.scene));
+Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& context) {
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(setup.scene));
   TradeStage stage;
-  SCUMBLE_ASSIGN(stage.style, OpenStyleWith(setup, {}));
+  SCUMBLE_ASSIGN(stage.style, OpenStyleWith(setup, {}, context));
   stage.has_paper = stage.style.paper.color || stage.style.paper.picture;
   stage.style.paper = {};
-  SCUMBLE_ASSIGN(const Size size, ParseSize(setup.scene.size));
+  const Size& size = setup.scene.size;
   stage.width = size.width, stage.height = size.height;
   const auto layers = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
     stage.has_wishes = !wishes.objects.empty() || !wishes.materials.empty();
     return LayersOverTime(stage.style);
   };
-  SCUMBLE_ASSIGN(stage.scene, OpenSceneAt(setup.frame, setup.scene, layers, globals));
+  SCUMBLE_ASSIGN(stage.scene, OpenSceneAt(setup.frame, setup.scene, layers, context));
   stage.chance = NeedSamples(stage.scene.scene, stage.scene.layers, setup.scene);
   stage.grid = MakeTradeGrid(stage.style, {size.width, size.height, setup.quick, stage.chance, setup.scene.samples});
-  SCUMBLE_RETURN_IF_ERROR(AddQualities(setup, stage));
+  SCUMBLE_RETURN_IF_ERROR(AddQualities(setup, context, stage));
   return stage;
 }
 
@@ -97,8 +98,8 @@ RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const 
   for (const auto& [option, value] : SceneArguments(setup)) add(option, value);
   if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
   const int samples = way.samples > 0 ? way.samples : setup.scene.samples;
-  if (stage.chance && samples != SceneOptions().samples) add("--samples", std::to_string(samples));
-  if (setup.scene.max_bounces != SceneOptions().max_bounces) {
+  if (stage.chance && samples != SceneRequest().samples) add("--samples", std::to_string(samples));
+  if (setup.scene.max_bounces != SceneRequest().max_bounces) {
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   }
   if (!way.robust) text += " --no-robust";
@@ -108,35 +109,33 @@ RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const 
 }
 
 Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way, const Style& style,
-                                         std::shared_ptr<const WayGuides> guides, const Globals& globals) {
+                                         std::shared_ptr<const WayGuides> guides, const RunContext& context) {
   WayPainter painter;
   painter.guides_ = std::move(guides);
   PrepareOptions prepare;
   prepare.table_resolution = way.table_resolution;
   prepare.cache = nullptr;  // what a table costs would not be seen where it is kept
-  prepare.threads = globals.threads;
+  prepare.threads = context.threads;
   Stopwatch watch;
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
   painter.prepare_ms_ = watch.Lap();
-  SCUMBLE_ASSIGN(std::optional<double> stops, ParseExposure(setup.exposure));
-  if (!stops) stops = MeasureExposure({&painter.prepared_, 1}, painter.guides_->ForExposure(), globals.threads);
-  painter.options_.exposure = stops.value_or(0.0);
-  PictureOptions picture;
-  picture.fps = setup.scene.fps;
-  SCUMBLE_ASSIGN(const FrameRate rate, RateFor(picture, painter.guides_->guides));
-  painter.options_.frame = setup.frame.value_or(0);
-  painter.options_.fps_numerator = rate.numerator, painter.options_.fps_denominator = rate.denominator;
-  painter.options_.seed = SeedOf(setup, way);
-  painter.options_.threads = globals.threads;
+  painter.settings_ = {SeedOf(setup, way),
+                       setup.frame.value_or(0),
+                       RateOf(setup.scene.fps, painter.guides_->guides),
+                       ExposureOf(setup.exposure, {&painter.prepared_, 1}, painter.guides_->ForExposure(), context.threads),
+                       nullptr,
+                       false};
+  painter.context_ = context;
   painter.factor_ = SupersampleOf(way);
   return painter;
 }
 
 Expected<double> WayPainter::Paint(bool keep_field) {
-  options_.keep_field = keep_field;
+  settings_.keep_field = keep_field;
   scratch_ = TransferScratch(), picture_ = Picture();  // what the run before leaves would be a sequence's
   Stopwatch watch;
-  SCUMBLE_RETURN_IF_ERROR(Transfer(prepared_, guides_->guides, options_, scratch_, picture_));
+  SCUMBLE_RETURN_IF_ERROR(
+      PaintFrame({&prepared_, 1}, nullptr, guides_->guides, settings_, context_, {}, scratch_, picture_));
   if (factor_ > 1) small_ = Averaged(picture_, factor_);
   return watch.Lap();
 }
@@ -144,11 +143,12 @@ Expected<double> WayPainter::Paint(bool keep_field) {
 Expected<Picture> WayPainter::PaintUntinted() {
   PreparedStyle untinted = prepared_;
   untinted.settings.colorize = 0.0;
-  TransferOptions options = options_;
-  options.keep_field = false;
+  FrameSettings settings = settings_;
+  settings.keep_field = false;
   TransferScratch scratch;
   Picture picture;
-  SCUMBLE_RETURN_IF_ERROR(Transfer(untinted, guides_->guides, options, scratch, picture));
+  SCUMBLE_RETURN_IF_ERROR(
+      PaintFrame({&untinted, 1}, nullptr, guides_->guides, settings, context_, {}, scratch, picture));
   return factor_ > 1 ? Averaged(picture, factor_) : picture;
 }
 

@@ -8,6 +8,7 @@
 #include "pipeline/tradeoff/grid.h"
 #include "pipeline/variant/variant_guides.h"
 #include "pipeline/tradeoff/measure.h"
+#include "pipeline/frame/frame_painter.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -22,10 +23,10 @@ struct TradeStage {
   int width = 0, height = 0;
   TradeGrid grid;
 };
-Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const Globals& globals);
+Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& context);
 
 // The style with what the way changes of it, without paper.
-Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way);
+Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way, const RunContext& context);
 
 // The options of stylize that make the way's picture again; or none, and why.
 struct RepeatOptions {
@@ -39,7 +40,7 @@ class WayPainter {
  public:
   // `guides` are those of this way, and are kept.
   static Expected<WayPainter> Prepare(const TradeSetup& setup, const Way& way, const Style& style,
-                                      std::shared_ptr<const WayGuides> guides, const Globals& globals);
+                                      std::shared_ptr<const WayGuides> guides, const RunContext& context);
 
   // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the first
   // picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
@@ -53,7 +54,7 @@ class WayPainter {
   const SourceField* field() const { return factor_ > 1 ? nullptr : &scratch_.field; }  // after keep_field
   const PreparedStyle& prepared() const { return prepared_; }
   const WayGuides& guides() const { return *guides_; }
-  double exposure() const { return options_.exposure; }
+  double exposure() const { return settings_.exposure; }
   double prepare_ms() const { return prepare_ms_; }
 
  private:
@@ -61,7 +62,8 @@ class WayPainter {
 
   std::shared_ptr<const WayGuides> guides_;
   PreparedStyle prepared_;
-  TransferOptions options_;
+  FrameSettings settings_;
+  RunContext context_;
   TransferScratch scratch_;
   double prepare_ms_ = 0.0;
   int factor_ = 1;

@@ -3,10 +3,9 @@
 #include <limits>
 #include <memory>
 
-#include "pipeline/file_cache.h"
 #include "pipeline/memory/memory_limit.h"
 #include "pipeline/variant/quality_ladder.h"
-#include "pipeline/frame/explain_frame.h"
+#include "pipeline/frame/frame_painter.h"
 #include "pipeline/variant/variant_error.h"
 #include "core/image/check.h"
 #include "core/image/stopwatch.h"
@@ -25,9 +24,9 @@ std::size_t PixelsOf(const PreparedStyle& style) {
 
 // What the energy takes beside all that this process has: 250 bytes for each place (measure/energy/energy.h), and the planes
 // that it is made of.
-bool HasMemoryFor(std::size_t places, const Globals& globals) {
+bool HasMemoryFor(std::size_t places, const RunContext& context) {
   constexpr std::uint64_t kEachPlace = 250 + 100;
-  const MemoryLimit limit = LimitFor(globals);
+  const MemoryLimit limit = LimitFor(context);
   return limit.bytes == 0 || ResidentMemory() + kEachPlace * places <= limit.bytes;
 }
 
@@ -39,18 +38,14 @@ Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample,
   if (prepared_for_ == wanted) return Ok();
   StyleSet styles = styles_;
   SCUMBLE_RETURN_IF_ERROR(ApplyWay(way, styles));
-  FileCache cache = UserCache();
-  PrepareOptions options;
-  options.cache = &cache, options.threads = globals_.threads;
   prepared_.clear();
   for (Style& style : styles.styles) {
     SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame_.value_or(0)));
     if (bare) style.paper = {}, style.transfer.colorize = 0.0;
-    SCUMBLE_ASSIGN(PreparedStyle one, scumble::Prepare(style, guides.height() * upsample, options));
+    SCUMBLE_ASSIGN(PreparedStyle one, PrepareStyle(style, guides.height() * upsample, context_));
     prepared_.push_back(std::move(one));
   }
-  SCUMBLE_ASSIGN(const std::optional<double> given, ParseExposure(picture_.exposure));
-  exposure_ = given ? *given : MeasureExposure(prepared_, guides, globals_.threads).value_or(0.0);
+  exposure_ = ExposureOf(picture_.exposure, prepared_, guides, context_.threads);
   prepared_for_ = wanted;
   return Ok();
 }
@@ -65,25 +60,19 @@ Expected<const Picture*> PaintTrial::Over(const GuideSet& guides) {
 }
 
 Status PaintTrial::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture, double& ms) {
-  std::vector<const PreparedStyle*> pointers;
-  for (const PreparedStyle& one : prepared_) pointers.push_back(&one);
   const bool needs_map = styles_.NeedsMap(guides);
   StyleMap map;
   if (needs_map) {
     SCUMBLE_ASSIGN(map, MapStyles(styles_, guides, name_));
   }
-  TransferOptions options;
-  options.seed = picture_.seed, options.exposure = exposure_, options.threads = globals_.threads;
-  options.frame = frame_.value_or(0);
-  SCUMBLE_ASSIGN(const FrameRate fps, RateFor(picture_, guides));
-  options.fps_numerator = fps.numerator, options.fps_denominator = fps.denominator;
-  options.keep_field = bare || KeepsField(picture_, globals_);
+  FrameSettings settings{picture_.seed, frame_.value_or(0), RateOf(picture_.fps, guides), exposure_, nullptr,
+                         bare || picture_.KeepsField()};
   if (!bare) {
-    SCUMBLE_ASSIGN(options.over, Over(guides));
+    SCUMBLE_ASSIGN(settings.over, Over(guides));
   }
   Stopwatch watch;
-  SCUMBLE_RETURN_IF_ERROR(needs_map ? scumble::Transfer(pointers, map, guides, options, scratch, picture)
-                                    : scumble::Transfer(prepared_.front(), guides, options, scratch, picture));
+  SCUMBLE_RETURN_IF_ERROR(PaintFrame(prepared_, needs_map ? &map : nullptr, guides, settings, context_, {}, scratch,
+                                     picture));
   ms += watch.Lap();
   return Ok();
 }
@@ -94,7 +83,7 @@ Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
   Stopwatch watch;
   std::optional<GuideSet> larger;
   if (upsample > 1) {
-    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, globals_.threads));
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, context_.threads));
   }
   double ms = watch.Lap();
   TransferScratch scratch;
@@ -110,12 +99,12 @@ Expected<double> PaintTrial::Judge(const Way& way, const GuideSet& given) {
   const int upsample = picture_.upsample;
   std::optional<GuideSet> larger;
   if (upsample > 1) {
-    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, globals_.threads));
+    SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, context_.threads));
   }
   const GuideSet& guides = larger ? *larger : given;
   SCUMBLE_RETURN_IF_ERROR(Prepare(Way(), given, upsample, true));
   const PreparedStyle exact = prepared_.front();
-  if (!HasMemoryFor(guides.pixel_count() + PixelsOf(exact), globals_)) return kNotKnown;
+  if (!HasMemoryFor(guides.pixel_count() + PixelsOf(exact), context_)) return kNotKnown;
   const double exposure = exposure_;
   SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample, true));
   TransferScratch scratch;
@@ -124,7 +113,7 @@ Expected<double> PaintTrial::Judge(const Way& way, const GuideSet& given) {
   SCUMBLE_RETURN_IF_ERROR(Transfer(guides, true, scratch, picture, ms));
   // The guides are the caller's and outlive it.
   const TradeReference reference(std::shared_ptr<const GuideSet>(std::shared_ptr<void>(), &guides), exact, exposure,
-                                 globals_.threads);
+                                 context_.threads);
   EnergyOptions options;
   options.samples = kJudgedPatches;
   TradeMeasure measure;

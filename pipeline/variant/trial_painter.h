@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/app/command.h"
+#include "pipeline/run_context.h"
 #include "pipeline/style/style_set.h"
-#include "pipeline/frame/paint_frame.h"
+#include "pipeline/requests.h"
 #include "pipeline/variant/variant.h"
 #include "core/image/guides.h"
 #include "core/image/status.h"
@@ -20,9 +20,9 @@ class PaintTrial {
  public:
   // All are borrowed. `styles` as the user has them, without any way. `frame`: whose guides are painted, for what changes over
   // time. `name`: of the guides' file or scene. `over`: the file of the picture underneath; empty: none.
-  PaintTrial(StyleSet& styles, const PictureOptions& picture, std::optional<int> frame, const std::string& name,
-             const std::string& over, const Globals& globals)
-      : styles_(styles), picture_(picture), frame_(frame), name_(name), over_file_(over), globals_(globals) {}
+  PaintTrial(StyleSet& styles, const PictureRequest& picture, std::optional<int> frame, const std::string& name,
+             const std::string& over, const RunContext& context)
+      : styles_(styles), picture_(picture), frame_(frame), name_(name), over_file_(over), context_(context) {}
 
   // Upsamples the guides, if the way or the picture's options say so, and paints with memory that is new, as the first
   // picture of a run is. What is underneath is read once and not counted; one of another size is left out, the run will
@@ -45,11 +45,11 @@ class PaintTrial {
   Expected<const Picture*> Over(const GuideSet& guides);
 
   StyleSet& styles_;
-  const PictureOptions& picture_;
+  const PictureRequest& picture_;
   const std::optional<int> frame_;
   const std::string& name_;
   const std::string& over_file_;
-  const Globals& globals_;
+  const RunContext& context_;
   std::string prepared_for_;  // that way's name, and what else
   std::vector<PreparedStyle> prepared_;
   double exposure_ = 0.0;

@@ -13,7 +13,7 @@
 
 namespace scumble {
 
-bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneOptions& options) {
+bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneRequest& options) {
   const PathSupply supply = SupplyOf(scene);
   if (!supply.light) return false;
   if (supply.may_be_met && (layers.Has(Layer::kLuminance) || layers.Has(Layer::kShadow))) return true;
@@ -21,28 +21,28 @@ bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneOptions&
   return !follower.empty() && follower.NeedsSamples();
 }
 
-Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
-                                  const LayerSet& layers, const Globals& globals) {
-  SCUMBLE_ASSIGN(const Size size, ParseSize(options.size));
-  SceneOptions one = options;
+Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneRequest& options, const Way& way,
+                                  const LayerSet& layers, const RunContext& context) {
+  const Size& size = options.size;
+  SceneRequest one = options;
   const int up = UpsampleOf(way), super = SupersampleOf(way);
-  one.size = fmt::format("{}x{}", size.width * super / up, size.height * super / up);
+  one.size = {size.width * super / up, size.height * super / up};
   one.robust = way.robust;
   one.seed += static_cast<std::uint64_t>(way.more_seed);
   if (way.samples > 0) one.samples = way.samples;
-  SCUMBLE_ASSIGN(SceneGuides made, CastScene(scene.scene, scene.view.camera, nullptr, one, layers, globals, {}, false));
+  SCUMBLE_ASSIGN(SceneGuides made, CastScene(scene.scene, scene.view.camera, nullptr, one, layers, context, {}, false));
   WayGuides result;
   for (const auto& [step, ms] : made.times) {
     if (step != "textures") result.ms += ms;  // decoded once, whatever is cast first
   }
-  TellRate(options, scene.film, made.guides);
+  StoreFrameRate(options, scene.film, made.guides);
   RoundGuides(way.precision, made.guides);
   if (up == 1) {
     result.guides = std::move(made.guides);
     return result;
   }
   Stopwatch watch;
-  SCUMBLE_ASSIGN(result.guides, UpsampleGuides(made.guides, up, globals.threads));
+  SCUMBLE_ASSIGN(result.guides, UpsampleGuides(made.guides, up, context.threads));
   result.ms += watch.Lap();
   result.given = std::move(made.guides);
   return result;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/cli/app/options.h"
+#include "pipeline/requests.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/variant/variant.h"
 #include "core/image/guides.h"
@@ -11,7 +11,7 @@
 namespace scumble {
 
 // Whether guides of these layers need chance there, so that their samples matter.
-bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneOptions& options);
+bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneRequest& options);
 
 struct WayGuides {
   GuideSet guides;  // as the transfer reads them
@@ -22,8 +22,8 @@ struct WayGuides {
 };
 
 // `options.size` is the picture's.
-Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneOptions& options, const Way& way,
-                                  const LayerSet& layers, const Globals& globals);
+Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneRequest& options, const Way& way,
+                                  const LayerSet& layers, const RunContext& context);
 
 // Guides of 1/factor the sides, to be compared with guides of that size: of every block of factor × factor pixels the
 // mean coverage, and of its covered pixels the mean light and colours and the mean normal, at unit length again.

@@ -2,7 +2,6 @@
 #include "pipeline/tradeoff/grid.h"
 
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -270,48 +269,6 @@ TEST(RoundGuides, LeavesTheBackgroundAsItIs) {
   RoundGuides(GuidePrecision::kEightBits, guides);
   EXPECT_EQ(guides.Plane(Layer::kNormal, 0)[0], 0.0f) << "not the 1/255 that 0 is packed to";
   EXPECT_EQ(guides.Plane(Layer::kLuminance)[0], 0.3f);
-}
-
-// A scratch that is used again keeps from its second frame on which seeds pixels are near to, at the least one map of a tile, and
-// later frames are quicker for it. A painter's second picture takes no more than its first: it is a first one again.
-TEST(WayPainter, NothingIsKeptForTheNextRun) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "their allocators do not tell";
-#endif
-  const auto in_use = [] {
-    const auto now = ::mallinfo2();
-    return static_cast<std::int64_t>(now.uordblks + now.hblkhd);
-  };
-  constexpr auto kTile = static_cast<std::int64_t>(sizeof(internal::TileMap));
-  constexpr int kSize = 64;
-  Style style = SphereStyle();
-  style.exemplars[0].picture = Picture(kSize, kSize);
-  style.transfer.reference_height = 0, style.transfer.levels = 4;
-  SphereOptions sphere;
-  sphere.size = kSize;
-  auto made = RenderSphereGuides(sphere);
-  ASSERT_TRUE(made.ok());
-  WayGuides way_guides;
-  way_guides.guides = std::move(made->guides);
-  const auto guides = std::make_shared<const WayGuides>(std::move(way_guides));
-  Globals globals;
-  globals.threads = 1;
-  const TradeSetup setup;
-  auto painter = WayPainter::Prepare(setup, {}, style, guides, globals);
-  ASSERT_TRUE(painter.ok()) << painter.error().message;
-  ASSERT_TRUE(painter->Paint().ok());
-  const std::int64_t first = in_use();
-  ASSERT_TRUE(painter->Paint().ok());
-  EXPECT_LT(in_use() - first, kTile);
-
-  TransferOptions options;
-  options.threads = 1;
-  TransferScratch scratch;
-  Picture picture;
-  ASSERT_TRUE(Transfer(painter->prepared(), guides->guides, options, scratch, picture).ok());
-  const std::int64_t sequence = in_use();
-  ASSERT_TRUE(Transfer(painter->prepared(), guides->guides, options, scratch, picture).ok());
-  EXPECT_GE(in_use() - sequence, kTile) << "or what is above shows nothing";
 }
 
 TEST(Averaged, WeighsColoursByTheirAlpha) {

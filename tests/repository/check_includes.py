@@ -14,15 +14,17 @@ import sys
 # Each library: its folder, the libraries that it may include, and its stages in order. A stage's own stages follow as
 # "parent/child".
 LIBRARIES = {
-    "image": ("core/image", set(), []),
-    "io": ("core/io", {"image"}, []),
-    "filter": ("core/filter", {"image"}, []),
-    "guidegen": ("guidegen", {"image", "io"}, []),
-    "style": ("core/style", {"image", "io"}, []),
-    "transfer": ("transfer", {"image", "filter"}, []),
-    "measure": ("measure", {"image", "io", "filter"}, []),
-    "pipeline": ("pipeline", {"image", "io", "filter", "guidegen", "style", "transfer", "measure", "cli"}, []),
-    "cli": ("apps/cli", {"image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"}, []),
+    "public": ("include/scumble", set(), []),
+    "image": ("core/image", {"public"}, []),
+    "io": ("core/io", {"public", "image"}, []),
+    "filter": ("core/filter", {"public", "image"}, []),
+    "guidegen": ("guidegen", {"public", "image", "io"}, []),
+    "style": ("core/style", {"public", "image", "io"}, []),
+    "transfer": ("transfer", {"public", "image", "filter"}, []),
+    "measure": ("measure", {"public", "image", "io", "filter"}, []),
+    "pipeline": ("pipeline", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure"},
+                 ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff"]),
+    "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"}, ["app", "verbs"]),
 }
 
 # Third parties by the start of the included path, and the libraries that may name them.
@@ -47,14 +49,19 @@ THIRD_PARTY = {
     "toml++/": {"style"},
     "apriltag/": {"style"},
     "fmt/": {"measure", "cli", "pipeline"},
-    "nlohmann/": {"measure", "cli", "pipeline"},
-    "CLI/": {"cli", "pipeline"},
+    "nlohmann/": {"measure", "cli"},
+    "CLI/": {"cli"},
 }
 
 # What C, C++ and POSIX bring along.
 STANDARD = re.compile(r"[a-z0-9_]+(\.h)?|sys/[a-z]+\.h")
 
 INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
+
+
+def where(quoted):
+    """The path of an included file from the repository's root: the public headers are included as users include them."""
+    return "include/" + quoted if quoted.startswith("scumble/") else quoted
 
 
 def library_of(path):
@@ -95,9 +102,9 @@ def offence(name, quoted, bracketed, root):
     if quoted:
         if "/" not in quoted:
             return "is not written from the repository's root"
-        if not (root / quoted).is_file():
+        if not (root / where(quoted)).is_file():
             return "is no file of this repository; third parties go into angle brackets"
-        owner, rest = library_of(quoted)
+        owner, rest = library_of(where(quoted))
         if owner == library:
             return stage_offence(library, stage_of(inside), stage_of(rest))
         if owner not in allowed:

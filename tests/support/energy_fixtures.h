@@ -13,7 +13,7 @@
 
 #include "core/image/guides.h"
 #include "core/image/hash.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "measure/energy/energy.h"
 
 namespace scumble::testing {

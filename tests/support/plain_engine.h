@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/style.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/seeds/seeds.h"

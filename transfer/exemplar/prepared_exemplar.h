@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
 #include "transfer/field/source.h"

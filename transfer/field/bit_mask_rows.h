@@ -7,6 +7,12 @@
 
 namespace scumble::internal {
 
+// The rows and words of a mask; both may reach beyond the picture.
+struct MarkedTile {
+  int first_row = 0, rows = 0;
+  int first_word = 0, words = 0;
+};
+
 // Marks of rows [first_row, first_row + rows) and of `words` words from `first_word` on, which may be -1: bit i of word
 // w is column 64·w + i of the picture. One word more stands on either side, so that every word has neighbours.
 class BitRows {
@@ -17,6 +23,9 @@ class BitRows {
   void Reset(int first_row, int rows, int first_word, int words, std::uint64_t fill) {
     first_row_ = first_row, first_word_ = first_word - 1, stride_ = words + 2;
     bits_.assign(std::size_t(rows) * stride_, fill);
+  }
+  void Reset(const MarkedTile& tile, std::uint64_t fill) {
+    Reset(tile.first_row, tile.rows, tile.first_word, tile.words, fill);
   }
   // Words from `first_word` on.
   std::uint64_t* Row(int row) { return bits_.data() + Offset(row) + 1; }
@@ -29,6 +38,8 @@ class BitRows {
     if (dx == 0) return *at;
     return dx > 0 ? at[0] >> dx | at[1] << (64 - dx) : at[0] << -dx | at[-1] >> (64 + dx);
   }
+  // Bit i: the mark of column `column` + i. The columns must be within the words, and one word more on either side.
+  std::uint64_t From(int row, int column) const { return Shifted(row, column >> 6, column & 63); }
 
  private:
   std::size_t Offset(int row) const { return std::size_t(row - first_row_) * stride_; }

@@ -62,7 +62,8 @@ class RowShares {
 struct SharedStyle {
   const BandStyle& style;
   ExemplarRows exemplar;
-  SmallVotes votes;
+  SmallVotes small_votes;
+  std::optional<WideVotes> wide_votes;  // for radii above kSmallRadius
 };
 
 // One thread's share.
@@ -165,7 +166,6 @@ class Band {
   }
 
   void Match(int s, int begin, std::span<const std::uint8_t> active) {
-    SeedMap* const map = styles_[static_cast<std::size_t>(s)].style.match.seed_map;
     const std::vector<Region>& pieces = PiecesOf(s);
     // New ones come last, from the left to the right.
     auto piece = std::ranges::find_if(pieces, [&](const Region& one) { return one.y1 > begin; });
@@ -173,18 +173,15 @@ class Band {
       const int x0 = piece->x0, end = (x0 / kTileWidth + 1) * kTileWidth;
       int x1 = x0;
       for (; piece != pieces.end() && piece->x0 < end; ++piece) x1 = piece->x1;
-      // Rows that another thread matches too are not looked up: both might write what they learn.
-      MatchRows(s, {x0, begin, x1, std::min(end_, own_.y0)}, active, nullptr);
-      MatchRows(s, {x0, std::max(begin, own_.y0), x1, std::min(end_, own_.y1)}, active, map);
-      MatchRows(s, {x0, std::max(begin, own_.y1), x1, end_}, active, nullptr);
+      MatchRows(s, {x0, begin, x1, end_}, active);
     }
   }
 
-  void MatchRows(int s, const Region& part, std::span<const std::uint8_t> active, SeedMap* map) {
+  void MatchRows(int s, const Region& part, std::span<const std::uint8_t> active) {
     if (part.empty()) return;
     const SharedStyle& shared = styles_[static_cast<std::size_t>(s)];
     const int column = part.x0 / kTileWidth;
-    MatchTile({shared.style.match, shared.exemplar, column, part.x0, part.x1, part.y0, part.y1, map, active,
+    MatchTile({shared.style.match, shared.exemplar, column, part.x0, part.x1, part.y0, part.y1, active,
                memory_.seeds[static_cast<std::size_t>(s) * columns_ + column], field_});
   }
 
@@ -202,7 +199,13 @@ class Band {
       while (next != words.end() && next - to <= kGap) to = next + 1, next = std::find(to, words.end(), 1);
       votes.region.x0 = std::max(painted.x0, 64 * static_cast<int>(from - words.begin()));
       votes.region.x1 = std::min(painted.x1, 64 * static_cast<int>(to - words.begin()));
-      if (!votes.region.empty()) shared.votes.Vote(votes, out_);
+      if (!votes.region.empty()) {
+        if (shared.wide_votes) {
+          shared.wide_votes->Vote(votes, memory_.votes, out_);
+        } else {
+          shared.small_votes.Vote(votes, out_);
+        }
+      }
       from = next;
     }
     std::ranges::fill(words, 0);
@@ -231,7 +234,8 @@ BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styl
   std::vector<SharedStyle> shared;
   shared.reserve(styles.size());
   for (const BandStyle& style : styles) {
-    shared.push_back({style, style.match.exemplar.Rows(), SmallVotes(style.match.exemplar, style.radius)});
+    shared.push_back({style, style.match.exemplar.Rows(), SmallVotes(style.match.exemplar), std::nullopt});
+    if (style.radius > kSmallRadius) shared.back().wide_votes.emplace(style.match.exemplar);
   }
   const int workers = tbb::this_task_arena::max_concurrency();
   RowShares shares(frame.region.y0, std::max(frame.region.y0, frame.region.y1), workers);

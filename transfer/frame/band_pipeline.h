@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "transfer/tint/colorize.h"
 #include "core/filter/edge_test.h"
 #include "transfer/frame/frame_setup.h"
@@ -21,6 +21,7 @@
 #include "core/filter/parallel.h"
 #include "transfer/vote/small_vote.h"
 #include "transfer/match/styleblit_simd.h"
+#include "transfer/vote/wide/wide_vote.h"
 
 namespace scumble::internal {
 
@@ -28,10 +29,13 @@ namespace scumble::internal {
 inline constexpr std::size_t kBandSeedBytes = 100'000;
 inline constexpr std::size_t kMostBandStyles = 16;
 
+// Larger windows need so many rows above and below a band that a field of the whole picture costs less.
+inline constexpr int kMostBandRadius = 3;
+
 // How one style is matched by StyleBlit and voted on.
 struct BandStyle {
   MatchInput match;  // with `covered` instead of `active`, and the frame's region grown by the radius; without a GuideSpace
-  int radius = 0;    // at most kSmallRadius
+  int radius = 0;    // at most kMostBandRadius
   std::optional<EdgeRules> edges;  // without `covered`; none: plain voting
   Tint tint;
 };
@@ -56,6 +60,7 @@ struct BandMemory {
   std::vector<std::vector<Region>> pieces;  // by style, where the rows at hand have pixels of it
   std::vector<std::uint8_t> words;          // 64 columns each: whether the style at work is there
   std::vector<TileScratch> seeds;           // by style and column of tiles
+  WideScratch votes;
 };
 
 // StartFrame, MatchStyleBlit, Vote and ColorizeRow for all styles, with the same bytes in the frame's region of `out`. The

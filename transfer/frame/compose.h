@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/style.h"
 #include "core/filter/parallel.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/filter/region.h"
 #include "transfer/field/source_field.h"
 #include "transfer/frame/style_map.h"

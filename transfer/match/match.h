@@ -11,7 +11,6 @@
 #include "transfer/exemplar/illumination.h"
 #include "core/filter/parallel.h"
 #include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/seeds/nearest_seed_cache.h"
 #include "transfer/seeds/seeds.h"
 #include "transfer/field/source_field.h"
 
@@ -43,7 +42,6 @@ struct MatchInput {
   int least_level = 1;  // finer grids of seeds are left out
   const GuideSpace* space = nullptr;  // null: normals alone are matched by, each counting 1
   float brightness = 1.0f;            // of the scene's radiance in that space
-  SeedMap* seed_map = nullptr;        // of these seeds and the picture's size; null: nothing is kept
   // Pixels of coverage above 0 that this style paints; without painters it paints all.
   struct Covered {
     std::span<const float> coverage;

@@ -8,10 +8,17 @@
 
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/match/match.h"
-#include "transfer/seeds/nearest_seed_cache.h"
 #include "transfer/match/seed_offer.h"
 
 namespace scumble::internal {
+
+// Tiles that the fast match works by (styleblit_tiles.h); the first begins at the picture's corner. Wide enough that seeds
+// of coarse levels are shared by many pixels, small enough that threads have enough to share.
+inline constexpr int kTileWidth = 512, kTileHeight = 128;
+inline constexpr int kBlock = 16;  // pixels of a row that are matched at once
+static_assert(kTileWidth % kBlock == 0);
+// Up to this level, where a row has many seeds, nearest ones are found pixel by pixel.
+inline constexpr int kMaxSpreadLevel = 6;
 
 // What a seed at q offers: a pixel p may take `offset` + p of an exemplar.
 struct TileOffer {

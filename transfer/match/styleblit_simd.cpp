@@ -99,7 +99,6 @@ class TileMatcher {
       : input_(job.input),
         rows_(job.exemplar),
         wanted_(job.wanted.data()),
-        map_(job.map),
         tile_x_(job.tile_x),
         scratch_(job.scratch),
         levels_(job.scratch.levels),
@@ -232,10 +231,6 @@ class TileMatcher {
   }
 
   void GroupBySpread(TileSeeds& seeds, int open) {
-    if (map_) {
-      GroupByMap(seeds, map_->Of(tile_x_, row_.y / kTileHeight, seeds.level()), open);
-      return;
-    }
     constexpr bool kPairs = hn::MaxLanes(kPairWords) == 2 * kBlock;
     for (int k = 0; k < open; ++k) {
       const int from = open_[k] * kBlock, x = row_.x + from;
@@ -260,7 +255,7 @@ class TileMatcher {
     }
   }
 
-  // TileMap::Block's `ends`.
+  // Bit i: pixel i + 1 is near to another seed than pixel i, or there is none.
   HWY_INLINE std::uint32_t EndsOf(int block) const {
     const std::uint16_t* const nearest = row_.nearest + block * kBlock;
     std::uint32_t ends = 0;
@@ -277,39 +272,6 @@ class TileMatcher {
       const std::uint32_t end = ends & (~0u << first), same = end ^ (end - 1);  // up to the first end
       AddGroup(block, left & same, seed_of(first));
       left &= ~same;
-    }
-  }
-
-  void GroupByMap(TileSeeds& seeds, TileMap& map, int open) {
-    const int level = seeds.level(), cell_row = row_.y >> level, y = row_.y % kTileHeight;
-    const int above[] = {seeds.FirstOf(cell_row - 1), seeds.FirstOf(cell_row), seeds.FirstOf(cell_row + 1)};
-    int seed_of_cell[9];
-    for (int cell = 0; cell < 9; ++cell) seed_of_cell[cell] = above[cell / 3] + cell % 3 - 1;
-    for (int k = 0; k < open; ++k) {
-      const int block = open_[k], from = row_.x + block * kBlock - seeds.left();
-      seeds.NeedOffers(cell_row, row_.x + block * kBlock, kBlock);
-      TileMap::Block& found = map.blocks[static_cast<std::size_t>(y)][static_cast<std::size_t>(block)];
-      __builtin_prefetch(&found + 2 * (kTileWidth / kBlock));  // two rows on; a tile's rows are too short to be foreseen
-      if (!(map.known[static_cast<std::size_t>(y)] >> block & 1)) {
-        Learn(seeds, block, found);
-        map.known[static_cast<std::size_t>(y)] |= 1u << block;
-      }
-      GroupBlock(block, found.ends, [&](int lane) {
-        return seed_of_cell[found.cell[static_cast<std::size_t>(lane)]] + ((from + lane) >> level);
-      });
-    }
-  }
-
-  HWY_NOINLINE void Learn(TileSeeds& seeds, int block, TileMap::Block& found) {
-    const int level = seeds.level(), cell_row = row_.y >> level, from = row_.x + block * kBlock - seeds.left();
-    seeds.Need(cell_row, row_.x + block * kBlock, kBlock);
-    FindNearestOfBlock(seeds, block);
-    found.ends = static_cast<std::uint16_t>(EndsOf(block));
-    for (int lane = 0; lane < kBlock; ++lane) {
-      const int seed = row_.nearest[block * kBlock + lane], column = (from + lane) >> level;
-      int cell = 0;
-      while (seed != seeds.FirstOf(cell_row + cell / 3 - 1) + column + cell % 3 - 1) ++cell;
-      found.cell[static_cast<std::size_t>(lane)] = static_cast<std::uint8_t>(cell);
     }
   }
 
@@ -525,7 +487,6 @@ class TileMatcher {
   const MatchInput& input_;
   const ExemplarRows rows_;
   const std::uint8_t* const wanted_;
-  SeedMap* const map_;
   const int tile_x_;
   Region tile_;  // what of it is matched
   TileScratch& scratch_;
@@ -582,7 +543,7 @@ bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgres
       scratch.begun = false;
       const int column = first_column + t % columns;
       MatchTile({input, exemplar, column, column * kTileWidth, (column + 1) * kTileWidth, row * kTileHeight,
-                 (row + 1) * kTileHeight, input.seed_map, wanted, scratch, field});
+                 (row + 1) * kTileHeight, wanted, scratch, field});
       if (t % columns != 0) continue;
       progress.Finished(std::min(region.y1, (row + 1) * kTileHeight) - std::max(region.y0, row * kTileHeight));
     }

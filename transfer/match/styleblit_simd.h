@@ -21,7 +21,6 @@ struct TileJob {
   int tile_x;            // pixels from tile_x · kTileWidth on
   int x0, x1;            // columns of the tile that are looked at
   int y0, y1;            // rows, none above those that `scratch` was used for
-  SeedMap* map;          // null: nothing is looked up or kept
   std::span<const std::uint8_t> wanted;  // by the field's index, 1: pixels to be matched
   TileScratch& scratch;
   SourceField& field;

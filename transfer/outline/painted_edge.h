@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "transfer/tint/colorize.h"
 #include "core/filter/parallel.h"
 #include "core/filter/region.h"

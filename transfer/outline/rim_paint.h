@@ -1,7 +1,7 @@
 // What an exemplar shows round its rim.
 #pragma once
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/filter/parallel.h"
 #include "core/filter/region.h"
 #include "transfer/seeds/seeds.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/bare_paper.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 

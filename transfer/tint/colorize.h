@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/style.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 

@@ -154,26 +154,36 @@ namespace scumble::internal {
 HWY_EXPORT(ActiveRow);
 HWY_EXPORT(LinkRow);
 
+namespace {
+
+// Without an exemplar what LinkRow reads of it is not there.
+ChunkRow RowAt(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar* exemplar,
+               int radius, int y) {
+  const std::size_t begin = field.Index(0, y);
+  ChunkRow row{field.x.data() + begin, field.y.data() + begin,  nullptr, active.data() + begin, field.width,
+               y + 1 == field.height,  std::int64_t(active.size() - begin), 0, radius, 0};
+  if (!exemplar) return row;
+  if (exemplar->count() > 1) row.exemplar = field.exemplar.data() + begin;
+  if (exemplar->is_sphere()) row.size = exemplar->size(), row.limit = exemplar->usable_limit();
+  return row;
+}
+
+}  // namespace
+
+void MarkActive(const SourceField& field, std::span<const std::uint8_t> active, const MarkedTile& tile,
+                BitRows& marks) {
+  marks.Reset(tile, 0);
+  const int first = std::max(0, tile.first_row), end = std::min(field.height, tile.first_row + tile.rows);
+  for (int y = first; y < end; ++y) {
+    HWY_DYNAMIC_DISPATCH(ActiveRow)
+    (RowAt(field, active, nullptr, 0, y), tile.first_word, tile.words, marks.Row(y));
+  }
+}
+
 bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
                 int radius, const MarkedTile& tile, ChunkMarks& marks) {
-  marks.active.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
-  const auto row_at = [&](int y) {
-    const std::size_t begin = field.Index(0, y);
-    return ChunkRow{field.x.data() + begin,
-                    field.y.data() + begin,
-                    exemplar.count() > 1 ? field.exemplar.data() + begin : nullptr,
-                    active.data() + begin,
-                    field.width,
-                    y + 1 == field.height,
-                    static_cast<std::int64_t>(active.size() - begin),
-                    exemplar.is_sphere() ? exemplar.size() : 0,
-                    radius,
-                    exemplar.usable_limit()};
-  };
+  MarkActive(field, active, tile, marks.active);
   const int first = std::max(0, tile.first_row), last = std::min(field.height, tile.first_row + tile.rows) - 1;
-  for (int y = first; y <= last; ++y) {
-    HWY_DYNAMIC_DISPATCH(ActiveRow)(row_at(y), tile.first_word, tile.words, marks.active.Row(y));
-  }
   const auto any = [&](int y) {
     const std::uint64_t* row = marks.active.Row(y);
     return std::any_of(row, row + tile.words, [](std::uint64_t bits) { return bits != 0; });
@@ -181,11 +191,11 @@ bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
   bool some = false;
   for (int y = first; y <= last && !some; ++y) some = any(y);
   if (!some) return false;
-  marks.right.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, BitRows::kAll);
-  marks.below.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, BitRows::kAll);
-  marks.deep.Reset(tile.first_row, tile.rows, tile.first_word, tile.words, 0);
+  marks.right.Reset(tile, BitRows::kAll);
+  marks.below.Reset(tile, BitRows::kAll);
+  marks.deep.Reset(tile, 0);
   for (int y = first; y <= last; ++y) {
-    ChunkRow row = row_at(y);
+    ChunkRow row = RowAt(field, active, &exemplar, radius, y);
     const std::uint64_t* below = nullptr;
     if (y < last) {
       below = marks.active.Row(y + 1);

@@ -10,12 +10,6 @@
 
 namespace scumble::internal {
 
-// The rows and words that marks are wanted of; both may reach beyond the picture.
-struct MarkedTile {
-  int first_row = 0, rows = 0;
-  int first_word = 0, words = 0;
-};
-
 // Two active pixels are of one chunk where they have one exemplar and sources that differ as they do. Beyond the
 // picture nothing is active, and all links stand, so that a window which reaches out is judged by what is inside.
 struct ChunkMarks {
@@ -25,7 +19,11 @@ struct ChunkMarks {
   BitRows deep;  // active, and every texel within `radius` (in x and y) of its source is usable; in scenes none is told
 };
 
-// Fills the marks of a tile. False: nothing is active there, and no marks are made. O(pixels of the tile). Touches the field only where pixels are active.
+// Resets `marks` to the tile and fills it with the active pixels. O(pixels of the tile).
+void MarkActive(const SourceField& field, std::span<const std::uint8_t> active, const MarkedTile& tile, BitRows& marks);
+
+// Fills the marks of a tile. False: nothing is active there, and no marks are made. O(pixels of the
+// tile). Touches the field only where pixels are active.
 bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
                 int radius, const MarkedTile& tile, ChunkMarks& marks);
 

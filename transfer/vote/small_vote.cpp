@@ -5,8 +5,7 @@
 
 #include "transfer/vote/vote_sum.h"
 #include "transfer/vote/chunk_masks.h"
-#include "transfer/vote/edge/edge_masks.h"
-#include "transfer/vote/edge/window_paths.h"
+#include "transfer/vote/edge/open_steps.h"
 #include "transfer/vote/vote_kernels.h"
 
 namespace scumble::internal {
@@ -16,13 +15,12 @@ constexpr int kTileRows = 32;    // so that what a tile's neighbours make once m
 constexpr int kStripWords = 16;  // of a tile are voted on together, so that their texels stay in the nearer caches
 constexpr int kTileWords = 32;   // so that all marks of a tile stay in the caches
 
-// One part of the picture: marks of its chunks, then of its edges, then its votes row by row.
+// One part of the picture: masks of its chunks, then of its open steps, then its votes row by row.
 class VoteTile {
  public:
-  VoteTile(const VoteInput& input, const TexelPlanes& texels, const JoinedWays& ways, const Region& region)
+  VoteTile(const VoteInput& input, const TexelPlanes& texels, const Region& region)
       : input_(input),
         texels_(texels),
-        ways_(ways),
         region_(region),
         first_word_(region.x0 / 64),
         words_((region.x1 + 63) / 64 - first_word_) {
@@ -32,8 +30,8 @@ class VoteTile {
 
   void Run(Picture& out) {
     if (!MarkChunks(input_.field, input_.active, input_.exemplar, input_.radius, tile_, marks_) || !Split()) return;
-    const bool edges = input_.edges && mixed_any_;
-    if (edges) MarkEdges(*input_.edges, input_.radius, tile_, mixed_, marked_edges_);
+    const bool edges = input_.edges && input_.radius > 0 && mixed_any_;
+    if (edges) MarkSteps();
     for (int word = first_word_; word < first_word_ + words_; word += kStripWords) {
       VoteStrip(word, std::min(kStripWords, first_word_ + words_ - word), edges, out);
     }
@@ -42,7 +40,7 @@ class VoteTile {
  private:
   void VoteStrip(int first_word, int words, bool edges, Picture& out) {
     std::array<std::uint64_t, kStripWords> copied{}, linked{}, whole{}, parts{};
-    joined_.assign(std::size_t(ways_.count()) * words, BitRows::kAll);
+    joined_.assign(std::size_t(kNeighbourCount) * words, BitRows::kAll);
     votes_.assign(joined_.size(), 0);
     const int radius = input_.radius, first = std::max(0, 64 * first_word - radius);
     const int end = std::min(input_.field.width, 64 * (first_word + words) + radius);
@@ -59,13 +57,8 @@ class VoteTile {
         linked[w] = marks_.right.At(y, word);
         whole[w] = mixed ? mixed & WholeWindows(y, word) : 0;
         if (edges && mixed) {
-          const std::span<std::uint64_t> joined = JoinedAt(w);
-          if (mixed & ~SureWindows(y, word)) {
-            ways_.Join(marked_edges_.same, y, word, joined);
-            for (const std::uint64_t bits : joined) whole[w] &= bits;
-          } else {
-            std::fill(joined.begin(), joined.end(), BitRows::kAll);
-          }
+          Join(y, word, JoinedAt(w));
+          for (const std::uint64_t bits : JoinedAt(w)) whole[w] &= bits;
         }
         parts[w] = mixed & ~whole[w];
         if (parts[w]) parts[w] = SureParts(y, word, parts[w], w);
@@ -77,7 +70,7 @@ class VoteTile {
           copied[w] = mixed_.At(y, first_word + w) & ~whole[w] & ~parts[w];  // one by one
         }
         if (any_whole) MeanOfMarked(row, sources, whole);
-        if (any_parts) MeanOfParts(row, sources, ways_.ways, votes_, parts);
+        if (any_parts) MeanOfParts(row, sources, votes_, parts);
         for (int w = 0; w < words; ++w) {
           VoteOneByOne(y, first_word + w, JoinedAt(w), copied[w] | whole[w] | parts[w], out);
         }
@@ -90,7 +83,7 @@ class VoteTile {
 
   std::uint64_t Inside(int word) const { return BitRange(region_.x0 - 64 * word, region_.x1 - 64 * word); }
   std::span<std::uint64_t> JoinedAt(int w) {
-    return {joined_.data() + std::size_t(w) * ways_.count(), std::size_t(ways_.count())};
+    return {joined_.data() + std::size_t(w) * kNeighbourCount, std::size_t(kNeighbourCount)};
   }
 
   // Marks the pixels of the region whose windows are not of one chunk. False: nothing is active.
@@ -130,15 +123,31 @@ class VoteTile {
     return whole;
   }
 
-  // Pixels that are joined to all of their windows, as far as is known without looking at every way. Ways end in the
-  // last row of the window, and have no step within it.
-  std::uint64_t SureWindows(int y, int word) const {
-    const int r = input_.radius;
-    std::uint64_t sure = BitRows::kAll;
-    for (int v = y - r; v < y + r; ++v) {
-      for (int dx = -r; dx <= r; ++dx) sure &= marked_edges_.sure.Shifted(v, word, dx);
+  // The steps that the support regions of the mixed pixels depend on: of three rows, from the pixel on the left.
+  void MarkSteps() {
+    BitRows wanted;
+    wanted.Reset(tile_, 0);
+    for (int y = region_.y0; y < region_.y1; ++y) {
+      const std::uint64_t* row = mixed_.Row(y);
+      for (int w = 0; w < tile_.words; ++w) {
+        const std::uint64_t bits = row[w] | row[w] >> 1 | row[w + 1] << 63;
+        for (int v = y - 1; v <= y + 1; ++v) wanted.Row(v)[w] |= bits;
+      }
     }
-    return sure;
+    MarkOpenSteps(*input_.edges, tile_, marks_.active, wanted, steps_);
+  }
+
+  // Bit i of joined[k]: whether kNeighbours[k] is in the support region of the pixel 64·word + i. At radius 1 an arm is
+  // an open step.
+  void Join(int y, int word, std::span<std::uint64_t> joined) const {
+    for (int k = 0; k < kNeighbourCount; ++k) {
+      const auto [dx, dy] = kNeighbours[k];
+      const std::uint64_t column = dy == 0 ? BitRows::kAll : steps_.down.At(dy < 0 ? y - 1 : y, word);
+      const std::uint64_t row = dx == 0   ? BitRows::kAll
+                                : dx < 0 ? steps_.right.Shifted(y + dy, word, -1)
+                                         : steps_.right.At(y + dy, word);
+      joined[std::size_t(k)] = column & row;
+    }
   }
 
   // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the
@@ -148,7 +157,7 @@ class VoteTile {
     std::uint64_t* votes = votes_.data() + std::size_t(w) * joined.size();
     pixels &= marks_.deep.At(y, word);
     for (std::size_t k = 0; k < joined.size(); ++k) {
-      const PixelStep way = ways_.ways[k];
+      const PixelStep way = kNeighbours[k];
       const std::uint64_t deep = marks_.deep.Shifted(y + way.dy, word, way.dx);
       pixels &= ~(joined[k] & marks_.active.Shifted(y + way.dy, word, way.dx) & ~deep);
       votes[k] = joined[k] & deep;
@@ -170,7 +179,7 @@ class VoteTile {
       add(x, y);
       for (std::size_t k = 0; k < joined.size(); ++k) {
         if (!(joined[k] >> i & 1)) continue;
-        const int u = x + ways_.ways[k].dx, v = y + ways_.ways[k].dy;
+        const int u = x + kNeighbours[k].dx, v = y + kNeighbours[k].dy;
         if (u < 0 || v < 0 || u >= field.width || v >= field.height || !input_.active[field.Index(u, v)]) continue;
         add(u, v);
       }
@@ -180,15 +189,14 @@ class VoteTile {
 
   const VoteInput& input_;
   const TexelPlanes& texels_;
-  const JoinedWays& ways_;
   Region region_;
   int first_word_, words_;
   MarkedTile tile_;
   ChunkMarks marks_;
   BitRows mixed_;
   bool mixed_any_ = false;
-  EdgeMarks marked_edges_;
-  std::vector<std::uint64_t> joined_, votes_;  // by word and way
+  OpenSteps steps_;
+  std::vector<std::uint64_t> joined_, votes_;  // by word and neighbour
 };
 
 }  // namespace
@@ -197,14 +205,14 @@ void SmallVotes::Vote(const VoteInput& input, Picture& out) const {
   const Region& region = input.region;
   for (int x0 = region.x0, x1; x0 < region.x1; x0 = x1) {
     x1 = std::min(region.x1, 64 * (x0 / 64 + kTileWords));
-    VoteTile(input, texels_, ways_, {x0, region.y0, x1, region.y1}).Run(out);
+    VoteTile(input, texels_, {x0, region.y0, x1, region.y1}).Run(out);
   }
 }
 
 bool VoteSmall(const VoteInput& input, Picture& out, RowProgress& progress) {
   const Region& region = input.region;
   if (region.empty()) return !progress.cancelled();
-  const SmallVotes votes(input.exemplar, input.radius);
+  const SmallVotes votes(input.exemplar);
   tbb::parallel_for(tbb::blocked_range<int>(0, (region.y1 - region.y0 + kTileRows - 1) / kTileRows),
                     [&](const auto& bands) {
                       for (int band = bands.begin(); band != bands.end(); ++band) {

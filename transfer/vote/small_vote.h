@@ -1,29 +1,27 @@
-// Votes in small windows, most of which are of one chunk or whole.
+// Votes in windows of 3 × 3 pixels, most of which are of one chunk or whole.
 #pragma once
 
-#include "transfer/vote/edge/edge_masks.h"
-#include "transfer/vote/edge/window_paths.h"
 #include "transfer/vote/vote.h"
 #include "transfer/vote/vote_kernels.h"
 
 namespace scumble::internal {
 
-constexpr int kSmallRadius = 3;
+// Larger windows are counted chunk by chunk in less time (wide_vote.h).
+inline constexpr int kSmallRadius = 1;
 
-// What all threads share that vote with one exemplar and radius, which must outlive it.
+// What all threads share that vote with one exemplar, which must outlive it.
 class SmallVotes {
  public:
-  SmallVotes(const PreparedExemplar& exemplar, int radius) : texels_(exemplar), ways_(radius) {}
-  // Votes on the input's region in this thread. The input's exemplar and radius are these; its field and `active` need only
-  // hold the rows of the region and those up to the radius above and below.
+  explicit SmallVotes(const PreparedExemplar& exemplar) : texels_(exemplar) {}
+  // Votes on the input's region in this thread. The input's exemplar is this one, its radius 0 or 1; its field and
+  // `active` need only hold the rows of the region and those up to the radius above and below.
   void Vote(const VoteInput& input, Picture& out) const;
 
  private:
   TexelPlanes texels_;
-  JoinedWays ways_;
 };
 
-// Vote of vote.h, to the bit, for radii 0 … kSmallRadius.
+// Vote of vote.h, to the bit, for the radii 0 and 1.
 bool VoteSmall(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

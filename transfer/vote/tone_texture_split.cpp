@@ -81,16 +81,15 @@ void Store(const Color& color, std::uint16_t* out) {
 bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress) {
   const VoteInput& votes = input.votes;
   const PreparedExemplar& exemplar = votes.exemplar;
-  std::optional<EdgeWindows> edges;
-  if (votes.edges) edges.emplace(*votes.edges, votes.radius, votes.region);
-  const JoinedWindow* joined = edges ? &edges->joined : nullptr;
+  std::optional<SupportRegions> regions;
+  if (votes.edges) regions.emplace(*votes.edges, votes.active, votes.radius, votes.region);
   return ForEachRow(votes.region, progress, [&](int y) {
     for (int x = votes.region.x0; x < votes.region.x1; ++x) {
       const std::size_t p = votes.field.Index(x, y);
       if (!votes.active[p]) continue;
       Color texture{};
       std::int64_t count = 0;
-      ForEachVote(votes, joined, x, y, [&](int from, Source at) {
+      ForEachVote(votes, regions ? &*regions : nullptr, x, y, [&](int from, Source at) {
         const std::uint16_t* paint = exemplar.picture(from).At(at.x, at.y);
         const std::uint16_t* tone = input.tones[std::size_t(from)].At(at.x, at.y);
         for (int c = 0; c < 4; ++c) texture[c] += std::int64_t(Premultiplied(paint, c)) - tone[c];

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/style.h"
 #include "transfer/exemplar/guide_space.h"
 #include "transfer/exemplar/illumination.h"

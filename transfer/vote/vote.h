@@ -7,11 +7,12 @@
 #include <span>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/filter/edge_test.h"
 #include "core/filter/parallel.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/field/source_field.h"
+#include "transfer/vote/edge/support_regions.h"
 
 namespace scumble::internal {
 
@@ -27,19 +28,19 @@ struct VoteInput {
   std::function<void(int y, int x0, int x1)> finished = {};
 };
 
-// Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every pixel q of the (2·radius + 1)²
-// window the texel S(q) + (p - q), where it is usable and, with `joined`, which is of that radius and region, where q is joined to p.
-// The pixel's own vote is always among them.
+// Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every active pixel q of the
+// (2·radius + 1)² window, or of its support region if `regions` is given, the texel S(q) + (p - q) where that is
+// usable. `regions` must be of the input's radius and hold (x, y). The pixel's own vote is always among them.
 template <class Visit>
-void ForEachVote(const VoteInput& input, const JoinedWindow* joined, int x, int y, const Visit& visit) {
+void ForEachVote(const VoteInput& input, const SupportRegions* regions, int x, int y, const Visit& visit) {
   const SourceField& field = input.field;
   const auto offer = [&](std::size_t q, int dx, int dy) {
     if (!input.active[q]) return;
     const Source source{field.x[q] - dx, field.y[q] - dy};
     if (input.exemplar.Usable(source.x, source.y)) visit(int(field.exemplar[q]), source);
   };
-  if (joined) {
-    joined->ForEach(x, y, offer);
+  if (regions) {
+    regions->ForEach(x, y, offer);
     return;
   }
   const int x0 = std::max(0, x - input.radius), x1 = std::min(field.width - 1, x + input.radius);

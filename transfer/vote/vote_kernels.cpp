@@ -20,9 +20,9 @@
 namespace scumble::internal {
 
 // For n votes, floor(2^32 / 2n) + 1: for MeanTexel.
-constexpr std::array<std::uint32_t, 50> kMeanReciprocals = [] {
-  std::array<std::uint32_t, 50> reciprocals{};
-  for (std::uint32_t n = 1; n < 50; ++n) {
+constexpr std::array<std::uint32_t, 10> kMeanReciprocals = [] {
+  std::array<std::uint32_t, 10> reciprocals{};
+  for (std::uint32_t n = 1; n < 10; ++n) {
     reciprocals[n] = static_cast<std::uint32_t>((std::uint64_t{1} << 32) / (2 * n) + 1);
   }
   return reciprocals;
@@ -100,15 +100,15 @@ void PlaceRow(const std::int16_t* x, const std::int16_t* y, int width, int count
 
 // The sum of the texels that the window around pixel p votes for: texels[dy] is the first picture moved up by dy rows,
 // places[dy] the sources of the row dy further down, from p on.
-template <int kRadius, bool kOne, class D>
+template <bool kOne, class D>
 HWY_INLINE hn::Vec<D> SumOfWindow(D d, const VoteRow& row, const std::uint16_t* const* texels,
                                   const std::int32_t* const* places, std::size_t p) {
   const hn::Rebind<std::uint16_t, D> narrow;
   auto sum = hn::Zero(d);
-#pragma GCC unroll 7
-  for (int dy = -kRadius; dy <= kRadius; ++dy) {
-#pragma GCC unroll 7
-    for (int dx = -kRadius; dx <= kRadius; ++dx) {
+#pragma GCC unroll 3
+  for (int dy = -1; dy <= 1; ++dy) {
+#pragma GCC unroll 3
+    for (int dx = -1; dx <= 1; ++dx) {
       const std::ptrdiff_t place = std::ptrdiff_t(places[dy][dx]) - dx;
       if constexpr (kOne) {
         sum = hn::Add(sum, hn::PromoteTo(d, hn::LoadU(narrow, texels[dy] + 4 * place)));
@@ -124,7 +124,7 @@ HWY_INLINE hn::Vec<D> SumOfWindow(D d, const VoteRow& row, const std::uint16_t* 
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// The mean of n votes, n at most 49. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32
+// The mean of n votes, n at most 9. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32
 // at most, which is less than 1 / 2n. `rounding` is n in all lanes, `reciprocal` is m.
 template <class V>
 HWY_INLINE void MeanTexel(V sum, V rounding, V reciprocal, std::uint16_t* out) {
@@ -139,28 +139,27 @@ HWY_INLINE void MeanTexel(V sum, V rounding, V reciprocal, std::uint16_t* out) {
 }
 #endif
 
-template <int kRadius, bool kOne>
+template <bool kOne>
 void MeanRowOf(const VoteRow& row, const SourceRows& sources, std::uint64_t* marked) {
 #if HWY_TARGET != HWY_SCALAR
-  constexpr std::uint32_t kVotes = (2 * kRadius + 1) * (2 * kRadius + 1);
+  constexpr std::uint32_t kVotes = 9;
   const hn::FixedTag<std::uint32_t, 4> d;
   const auto reciprocal = hn::Set(d, kMeanReciprocals[kVotes]);
   const auto rounding = hn::Set(d, kVotes);
-  const std::int32_t* rows[2 * kRadius + 1];
-  const std::uint16_t* texels[2 * kRadius + 1];
-  for (int dy = -kRadius; dy <= kRadius; ++dy) {
-    rows[dy + kRadius] = sources.Row(row.y + dy);
-    texels[dy + kRadius] = row.texels.picture[0] - 4 * dy * std::ptrdiff_t(row.texels.width);
+  const std::int32_t* rows[3];
+  const std::uint16_t* texels[3];
+  for (int dy = -1; dy <= 1; ++dy) {
+    rows[dy + 1] = sources.Row(row.y + dy);
+    texels[dy + 1] = row.texels.picture[0] - 4 * dy * std::ptrdiff_t(row.texels.width);
   }
   for (int w = 0; w < row.words; ++w) {
     std::uint64_t left = marked[w], refused = 0;
     const int first = 64 * (row.first_word + w);
     for (; left; left &= left - 1) {
       const int p = first + std::countr_zero(left);
-      const std::int32_t* places[2 * kRadius + 1];
-      for (int k = 0; k <= 2 * kRadius; ++k) places[k] = rows[k] + (p - sources.begin());
-      const auto sum =
-          SumOfWindow<kRadius, kOne>(d, row, texels + kRadius, places + kRadius, row.field.Index(p, row.y));
+      const std::int32_t* places[3];
+      for (int k = 0; k < 3; ++k) places[k] = rows[k] + (p - sources.begin());
+      const auto sum = SumOfWindow<kOne>(d, row, texels + 1, places + 1, row.field.Index(p, row.y));
       MeanTexel(sum, rounding, reciprocal, row.out + 4 * std::size_t(p));
       // All are opaque only where the mean of the alphas is and nothing was rounded away.
       refused |= hn::ExtractLane(sum, 3) == kVotes * 65535 ? 0 : left & (0 - left);
@@ -173,37 +172,28 @@ void MeanRowOf(const VoteRow& row, const SourceRows& sources, std::uint64_t* mar
 }
 
 void MeanRow(const VoteRow& row, const SourceRows& sources, std::uint64_t* marked) {
-  const bool one = row.texels.count == 1;
-  switch (sources.radius()) {
-    case 1:
-      return one ? MeanRowOf<1, true>(row, sources, marked) : MeanRowOf<1, false>(row, sources, marked);
-    case 2:
-      return one ? MeanRowOf<2, true>(row, sources, marked) : MeanRowOf<2, false>(row, sources, marked);
-    case 3:
-      return one ? MeanRowOf<3, true>(row, sources, marked) : MeanRowOf<3, false>(row, sources, marked);
-  }
+  row.texels.count == 1 ? MeanRowOf<true>(row, sources, marked) : MeanRowOf<false>(row, sources, marked);
 }
 
-void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const PixelStep> ways, const std::uint64_t* votes,
-             std::uint64_t* marked) {
+void PartRow(const VoteRow& row, const SourceRows& sources, const std::uint64_t* votes, std::uint64_t* marked) {
 #if HWY_TARGET != HWY_SCALAR
   const hn::FixedTag<std::uint32_t, 4> d;
   const hn::Rebind<std::uint16_t, decltype(d)> narrow;
-  const std::int32_t* places[48];  // of each way, from the pixel at column `begin` on
-  std::ptrdiff_t steps[48];        // of each way, in the exemplar
-  for (std::size_t k = 0; k < ways.size(); ++k) {
-    places[k] = sources.Row(row.y + ways[k].dy) + ways[k].dx;
-    steps[k] = ways[k].dy * std::ptrdiff_t(row.texels.width) + ways[k].dx;
+  const std::int32_t* places[kNeighbourCount];  // of each neighbour, from the pixel at column `begin` on
+  std::ptrdiff_t steps[kNeighbourCount];        // of each neighbour, in the exemplar
+  for (int k = 0; k < kNeighbourCount; ++k) {
+    places[k] = sources.Row(row.y + kNeighbours[k].dy) + kNeighbours[k].dx;
+    steps[k] = kNeighbours[k].dy * std::ptrdiff_t(row.texels.width) + kNeighbours[k].dx;
   }
   const std::int32_t* own = sources.Row(row.y);
   const bool one = row.texels.count == 1;
-  for (int w = 0; w < row.words; ++w, votes += ways.size()) {
+  for (int w = 0; w < row.words; ++w, votes += kNeighbourCount) {
     std::uint64_t refused = 0;
     for (std::uint64_t left = marked[w]; left; left &= left - 1) {
       const int i = std::countr_zero(left), p = 64 * (row.first_word + w) + i, column = p - sources.begin();
       const std::size_t q = row.field.Index(p, row.y);
       std::uint64_t voting = 0;
-      for (std::size_t k = 0; k < ways.size(); ++k) voting |= (votes[k] >> i & 1) << k;
+      for (int k = 0; k < kNeighbourCount; ++k) voting |= (votes[k] >> i & 1) << k;
       const auto texel = [&](std::size_t from, std::ptrdiff_t place) HWY_ATTR {
         const std::uint16_t* picture = one ? row.texels.picture[0] : row.texels.picture[row.field.exemplar[from]];
         return hn::PromoteTo(d, hn::LoadU(narrow, picture + 4 * place));
@@ -212,7 +202,8 @@ void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const Pixe
       auto sum = texel(q, own[column]);
       for (; voting; voting &= voting - 1) {
         const int k = std::countr_zero(voting);
-        const std::ptrdiff_t from = std::ptrdiff_t(q) + ways[k].dy * std::ptrdiff_t(row.field.width) + ways[k].dx;
+        const auto [dx, dy] = kNeighbours[k];
+        const std::ptrdiff_t from = std::ptrdiff_t(q) + dy * std::ptrdiff_t(row.field.width) + dx;
         sum = hn::Add(sum, texel(std::size_t(from), places[k][column] - steps[k]));
       }
       MeanTexel(sum, hn::Set(d, count), hn::Set(d, kMeanReciprocals[count]), row.out + 4 * std::size_t(p));
@@ -221,7 +212,7 @@ void PartRow(const VoteRow& row, const SourceRows& sources, std::span<const Pixe
     marked[w] = refused;
   }
 #else
-  (void)row, (void)sources, (void)ways, (void)votes, (void)marked;
+  (void)row, (void)sources, (void)votes, (void)marked;
 #endif
 }
 
@@ -254,14 +245,14 @@ void SourceRows::Add(const SourceField& field, const TexelPlanes& texels, int y)
 }
 
 void MeanOfMarked(const VoteRow& row, const SourceRows& sources, std::span<std::uint64_t> marked) {
-  SCUMBLE_DCHECK(sources.radius() >= 1 && sources.radius() <= 3);
+  SCUMBLE_DCHECK(sources.radius() == 1);
   HWY_DYNAMIC_DISPATCH(MeanRow)(row, sources, marked.data());
 }
 
-void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const PixelStep> ways,
-                 std::span<const std::uint64_t> votes, std::span<std::uint64_t> marked) {
-  SCUMBLE_DCHECK(ways.size() <= 48);
-  HWY_DYNAMIC_DISPATCH(PartRow)(row, sources, ways, votes.data(), marked.data());
+void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const std::uint64_t> votes,
+                 std::span<std::uint64_t> marked) {
+  SCUMBLE_DCHECK(sources.radius() == 1);
+  HWY_DYNAMIC_DISPATCH(PartRow)(row, sources, votes.data(), marked.data());
 }
 
 }  // namespace scumble::internal

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "core/filter/edge_test.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/field/source_field.h"
 
@@ -18,6 +17,10 @@ struct TexelPlanes {
   int count = 0, width = 0, height = 0;
 
   explicit TexelPlanes(const PreparedExemplar& exemplar);
+};
+
+struct PixelStep {
+  int dx = 0, dy = 0;
 };
 
 // Where a row's votes come from and go to.
@@ -53,9 +56,9 @@ class SourceRows {
 // 64·(first_word + w) + i and the one to its right are of one chunk.
 void CopyMarked(const VoteRow& row, std::span<const std::uint64_t> marked, std::span<const std::uint64_t> linked);
 
-// Every marked pixel becomes the mean of the votes of its whole window: the window is in the picture and active, and
-// all texels that it votes for are usable. Only where all of these are opaque; the marks of other pixels are left,
-// those of pixels that are done are cleared. `sources` has the rows of the windows, of radius 1 … 3.
+// Every marked pixel becomes the mean of the nine votes of its whole window: the window is in the picture and active,
+// and all texels that it votes for are usable. Only where all of these are opaque; the marks of other pixels are left,
+// those of pixels that are done are cleared. `sources` has the rows of the windows, of radius 1.
 //
 // With opaque paint the mean weighted by alpha is the plain one, rounded alike. Ballot has floor((aS + floor(an/2)) /
 // (an)), a = 65535, for n votes of sum S. Without the inner floor that is floor((2S + n) / (2n)). Where an is odd, aS +
@@ -63,9 +66,13 @@ void CopyMarked(const VoteRow& row, std::span<const std::uint64_t> marked, std::
 // have one floor.
 void MeanOfMarked(const VoteRow& row, const SourceRows& sources, std::span<std::uint64_t> marked);
 
-// The same for windows of which a part votes: the pixel itself, and the one `ways[k]` from it where its bit of votes[w ·
-// ways + k] is set; such pixels are in the picture, and the texels that they vote for are usable. At most 48 ways.
-void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const PixelStep> ways,
-                 std::span<const std::uint64_t> votes, std::span<std::uint64_t> marked);
+// The pixels beside another, row by row.
+inline constexpr PixelStep kNeighbours[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
+inline constexpr int kNeighbourCount = 8;
+
+// The same for windows of which a part votes: the pixel itself, and kNeighbours[k] where its bit of votes[w ·
+// kNeighbourCount + k] is set; such pixels are in the picture, and the texels that they vote for are usable.
+void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const std::uint64_t> votes,
+                 std::span<std::uint64_t> marked);
 
 }  // namespace scumble::internal

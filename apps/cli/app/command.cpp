@@ -1,6 +1,12 @@
 #include "apps/cli/app/command.h"
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "apps/cli/app/progress_bar.h"
 
 namespace scumble {
 
@@ -21,10 +27,46 @@ ExitCode ExitCodeFor(ErrorKind kind) {
   return ExitCode::kInternal;
 }
 
-void Say(const Globals& globals, const std::string& line) {
-  if (!globals.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+namespace {
+
+namespace fs = std::filesystem;
+
+// $XDG_CACHE_HOME/scumble, or ~/.cache/scumble; empty where neither is known. Relative paths in XDG_CACHE_HOME are
+// ignored, as its specification says.
+fs::path CacheFolder() {
+  if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && fs::path(folder).is_absolute()) {
+    return fs::path(folder) / "scumble";
+  }
+  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "scumble";
+  return {};
 }
-void Warn(const std::string& line) { std::fprintf(stderr, "scumble: warning: %s\n", line.c_str()); }
-void Print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+// Beside the build, and where `install` puts the program's files.
+std::vector<fs::path> DataRoots() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  if (failed) return {};
+  const fs::path above = program.parent_path().parent_path();
+  return {above, above / "share" / "scumble"};
+}
+
+}  // namespace
+
+void ConnectToTerminal(Globals& globals) {
+  globals.cache_folder = CacheFolder();
+  globals.data_roots = DataRoots();
+  globals.on_message = [&globals](const Message& message) {
+    if (message.kind == Message::Kind::kNote && globals.quiet) return;
+    ClearProgress();
+    const char* const before = message.kind == Message::Kind::kWarning ? "scumble: warning: " : "";
+    std::fprintf(stderr, "%s%s\n", before, message.text.c_str());
+  };
+  globals.on_progress = [&globals](const std::string& label) { return ShowProgress(label, globals.quiet); };
+}
+
+void Print(const std::string& text) {
+  ClearProgress();
+  std::fputs(text.c_str(), stdout);
+}
 
 }  // namespace scumble

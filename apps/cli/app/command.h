@@ -1,13 +1,15 @@
-// What all verbs share: exit codes, global options, how results and talk are printed.
+// What all commands share: exit codes, global options, how results and messages are printed.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 
 #include "core/image/status.h"
+#include "pipeline/run_context.h"
+
+namespace CLI {
+class App;
+}
 
 namespace scumble {
 
@@ -22,16 +24,15 @@ enum class ExitCode {
   kInternal = 6,
 };
 
-class Timing;
-
-// Options that every verb takes.
-struct Globals {
+// Options that every command takes, and the context that they make for the pipeline.
+struct Globals : RunContext {
   bool quiet = false;
   bool json = false;
-  int threads = 0;
-  std::uint64_t max_memory = 0;    // bytes, of --max-memory; 0: what the machine has
-  std::shared_ptr<Timing> timing;  // null unless --timing was given, which not every verb takes
 };
+
+// Fills in where this program keeps and finds its files, and prints messages and progress to stderr. `globals` must
+// outlive what it is passed to.
+void ConnectToTerminal(Globals& globals);
 
 // A verb's work: returns the exit code, or the error that decides it.
 using Action = std::function<Expected<ExitCode>()>;
@@ -49,10 +50,6 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen);
 
 ExitCode ExitCodeFor(ErrorKind kind);
 
-// Talk, to stderr: silent under --quiet.
-void Say(const Globals& globals, const std::string& line);
-// Warnings, to stderr, always.
-void Warn(const std::string& line);
 // Results, to stdout; the error of a closed or full stdout is looked at once, when the program ends.
 void Print(const std::string& text);
 

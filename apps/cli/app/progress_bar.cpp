@@ -3,42 +3,45 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 namespace scumble {
 
-ProgressBar::ProgressBar(std::string label, bool quiet)
-    : label_(std::move(label)),
-      enabled_(!quiet && ::isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()),
-      last_draw_(start_) {}
+namespace {
 
-ProgressBar::~ProgressBar() { Clear(); }
+class Bar {
+ public:
+  explicit Bar(std::string label) : label_(std::move(label)), start_(std::chrono::steady_clock::now()) {}
+  ~Bar();
 
-void ProgressBar::Clear() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
+  void Update(double share);
+  // The caller holds `mutex`.
+  void Clear() {
+    if (drawn_) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  std::string label_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point start_, last_draw_ = start_;
+};
+
+std::mutex mutex;           // of what follows, and of the terminal's line
+Bar* current = nullptr;  // the bar that was begun last
+
+Bar::~Bar() {
+  const std::lock_guard lock(mutex);
+  Clear();
+  if (current == this) current = nullptr;
 }
 
-Progress ProgressBar::Part(double from, double to) {
-  if (!enabled_) return {};
-  return [this, from, to](double share) {
-    Update(from + (to - from) * share);
-    return true;
-  };
-}
-
-std::string TimeLeft(double elapsed_seconds, double share) {
-  constexpr double kEnoughSeconds = 1.0, kEnoughShare = 0.02;
-  if (elapsed_seconds < kEnoughSeconds || share < kEnoughShare) return "";
-  const int left = static_cast<int>(std::ceil(elapsed_seconds / share - elapsed_seconds));
-  char text[32];
-  std::snprintf(text, sizeof text, "  %d:%02d left", left / 60, left % 60);
-  return text;
-}
-
-void ProgressBar::Update(double share) {
+void Bar::Update(double share) {
+  const std::lock_guard lock(mutex);
   constexpr double kWorthShowingSeconds = 2.0;
   constexpr int kWidth = 30;
   const auto now = std::chrono::steady_clock::now();
@@ -52,6 +55,35 @@ void ProgressBar::Update(double share) {
   std::fprintf(stderr, "\r\033[K%s [%s%s] %3.0f%%%s", label_.c_str(), std::string(filled, '#').c_str(),
                std::string(kWidth - filled, '.').c_str(), share * 100.0, TimeLeft(elapsed, share).c_str());
   std::fflush(stderr);
+}
+
+}  // namespace
+
+std::string TimeLeft(double elapsed_seconds, double share) {
+  constexpr double kEnoughSeconds = 1.0, kEnoughShare = 0.02;
+  if (elapsed_seconds < kEnoughSeconds || share < kEnoughShare) return "";
+  const int left = static_cast<int>(std::ceil(elapsed_seconds / share - elapsed_seconds));
+  char text[32];
+  std::snprintf(text, sizeof text, "  %d:%02d left", left / 60, left % 60);
+  return text;
+}
+
+Progress ShowProgress(const std::string& label, bool quiet) {
+  if (quiet || ::isatty(STDERR_FILENO) != 1) return {};
+  const auto bar = std::make_shared<Bar>(label);
+  {
+    const std::lock_guard lock(mutex);
+    current = bar.get();
+  }
+  return [bar](double share) {
+    bar->Update(share);
+    return true;
+  };
+}
+
+void ClearProgress() {
+  const std::lock_guard lock(mutex);
+  if (current) current->Clear();
 }
 
 }  // namespace scumble

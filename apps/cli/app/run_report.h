@@ -1,17 +1,34 @@
-// What a run took, counted, for its report.
+// Parts of reports as text and as JSON: work, plan, memory, time.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
-#include "apps/cli/app/options.h"
+#include "guidegen/guidegen.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/scene/scene_guides.h"
+#include "pipeline/stage_clock.h"
 
 namespace scumble {
 
-// Adds "rays" and "work": how many of each kind were cast, how often materials, textures and lights were asked, what was
-// decoded and allocated, and whether OpenImageIO had to be loaded so far. docs/required.md says what each of them counts.
+// Adds "rays" and "work": rays cast by kind, how often materials, textures and lights were evaluated, what was decoded
+// and allocated, and whether OpenImageIO had to be loaded so far. docs/required.md explains each counter.
 void CostToJson(const SceneCost& cost, nlohmann::ordered_json& json);
 // The same in one line.
 std::string CostToText(const SceneCost& cost);
+
+// A table: layer, why, cost.
+std::string PlanToText(const std::vector<PlanItem>& plan);
+nlohmann::ordered_json PlanToJson(const std::vector<PlanItem>& plan);
+
+// "memory  up to 1.2 GiB: guides 0.4 GiB, …", a line for --explain.
+std::string MemoryToText(const MemoryNeed& need);
+// {"estimated_peak_bytes": …, "parts": {"guides": …}}
+nlohmann::ordered_json MemoryToJson(const MemoryNeed& need);
+
+// A table: stage, wall and processor time.
+std::string ClockToText(const StageClock& clock);
+nlohmann::ordered_json ClockToJson(const StageClock& clock);  // [{"stage": "start", "wall_ms": 4.2, "cpu_ms": 4.1}, …]
 
 }  // namespace scumble

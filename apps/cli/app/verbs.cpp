@@ -1,5 +1,6 @@
 #include "apps/cli/app/verbs.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
 #include <memory>

@@ -36,7 +36,7 @@ Expected<ExitCode> CompareByFlicker(const CompareVerb& verb, const Globals& glob
   if (!verb.heat_map.empty()) {
     const Picture map = ValueHeatMap(report.changes, guides.width(), guides.height(), kMostFlicker);
     SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map));
-    Say(globals, fmt::format("{}: yellow is a change of {:.0f} of 255", verb.heat_map, kMostFlicker));
+    globals.Note(fmt::format("{}: yellow is a change of {:.0f} of 255", verb.heat_map, kMostFlicker));
   }
   const nlohmann::ordered_json json = {{"a", verb.a},
                                        {"b", verb.b},

@@ -68,7 +68,7 @@ Expected<FlipReport> OfLayer(const CompareVerb& verb, const std::string& layer, 
   SCUMBLE_ASSIGN(const LinearColors first, LightOf(a, layer, clamped));
   SCUMBLE_ASSIGN(const LinearColors second, LightOf(b, layer, clamped));
   if (clamped > 0) {
-    Say(globals, fmt::format("{} values of {} lie outside of 0 … 1 and count as its ends, or are no numbers and count as 0",
+    globals.Note(fmt::format("{} values of {} lie outside of 0 … 1 and count as its ends, or are no numbers and count as 0",
                              clamped, layer));
   }
   return MeasureFlip(first, second, options);
@@ -95,7 +95,7 @@ Expected<ExitCode> CompareByFlip(const CompareVerb& verb, const Globals& globals
   if (!verb.heat_map.empty()) {
     const Picture map = ValueHeatMap(report.map, report.width, report.height, 1.0);
     SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map));
-    Say(globals, verb.heat_map + ": yellow is a FLIP of 1");
+    globals.Note(verb.heat_map + ": yellow is a FLIP of 1");
   }
   const bool fails = verb.flip_fail && !(report.mean <= *verb.flip_fail);
   nlohmann::ordered_json json = {{"a", verb.a},         {"b", verb.b},

@@ -1,6 +1,7 @@
 // scumble compare.
 #include "measure/compare/compare.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <memory>
@@ -9,7 +10,7 @@
 
 #include "apps/cli/verbs/compare_verb.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/run/run_inputs.h"
+#include "pipeline/scene/run_inputs.h"
 #include "core/io/channel_file.h"
 #include "core/io/picture_file.h"
 #include "measure/compare/heat_map.h"
@@ -37,7 +38,7 @@ Expected<ExitCode> RunCompareVerb(const CompareVerb& verb, const Globals& global
   if (!verb.heat_map.empty()) {
     SCUMBLE_ASSIGN(const HeatMap map, DifferenceHeatMap(a, b, {0.0, verb.options.layers}));
     SCUMBLE_RETURN_IF_ERROR(WritePicture(verb.heat_map, map.picture));
-    Say(globals, map.full_scale > 0.0
+    globals.Note(map.full_scale > 0.0
                      ? fmt::format("{}: yellow is a difference of {:.3g}", verb.heat_map, map.full_scale)
                      : verb.heat_map + ": nothing differs");
   }

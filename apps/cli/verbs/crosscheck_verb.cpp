@@ -1,6 +1,7 @@
 // scumble crosscheck: our guides against those that Blender's Cycles renders of the same view.
 #include "measure/crosscheck/crosscheck.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,9 +14,9 @@
 #include "apps/cli/app/command.h"
 #include "pipeline/scene/cycles_reference.h"
 #include "apps/cli/app/options.h"
-#include "apps/cli/app/progress_bar.h"
-#include "pipeline/run/run_inputs.h"
-#include "apps/cli/app/shell_quote.h"
+#include "pipeline/scene/scene_guides.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/shell_quote.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/scene/pure_materials.h"
 #include "core/io/file/atomic_file.h"
@@ -74,17 +75,17 @@ std::string Listed(const std::vector<std::string>& names) { return fmt::format("
 
 // Our guides: data as authored, light with pure materials.
 Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::vector<int>& counts,
-                const Globals& globals, ProgressBar& bar, BothSides& sides) {
-  SceneOptions options;
+                const Globals& globals, const Progress& progress, BothSides& sides) {
+  SceneRequest options;
   options.scene = path;
-  options.size = verb.size;
+  SCUMBLE_ASSIGN(options.size, ParseSize(verb.size));
   options.camera = verb.camera;
   options.key_light = false;  // Blender would not let one shine
   if (IsBlenderScene(path)) options.blender = {verb.blender, verb.frame};
   SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
   sides.unsupported = scene.warnings;
   SCUMBLE_ASSIGN(SceneGuides data,
-                 MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, globals, bar.Part(0.0, 0.02), false));
+                 MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, globals, Within(progress, 0.0, 0.02), false));
   sides.ours = std::move(data.guides);
   if (counts.empty()) return Ok();
   if (const std::vector<std::string> replaced = UsePureMaterials(scene); !replaced.empty()) {
@@ -92,15 +93,14 @@ Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::
         "light is compared with pure materials on both sides, Lambert or GGX without Fresnel, instead of: " +
         Listed(replaced));
   }
-  Globals silent = globals;
-  silent.quiet = true;  // the camera has been said
+  const RunContext silent = globals.WithoutNotes();  // the camera has been noted
   double begin = 0.02;
   constexpr double kOursEnd = 0.3;
   for (const int count : counts) {
     options.samples = count;
     options.max_bounces = verb.max_bounces;
     const double end = count == counts.back() ? kOursEnd : begin + 0.03;
-    SCUMBLE_ASSIGN(SceneGuides light, MakeGuidesOf(scene, options, PathLayers(), silent, bar.Part(begin, end), false));
+    SCUMBLE_ASSIGN(SceneGuides light, MakeGuidesOf(scene, options, PathLayers(), silent, Within(progress, begin, end), false));
     sides.ours_light.push_back(std::move(light.guides));
     begin = end;
   }
@@ -111,11 +111,11 @@ Expected<BothSides> MakeBothSides(const CrosscheckVerb& verb, const std::string&
                                   const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.size));
   BothSides sides;
-  ProgressBar bar("crosscheck", globals.quiet);
-  SCUMBLE_RETURN_IF_ERROR(MakeOurs(verb, path, counts, globals, bar, sides));
+  const Progress progress = globals.StartProgress("crosscheck");
+  SCUMBLE_RETURN_IF_ERROR(MakeOurs(verb, path, counts, globals, progress, sides));
   ReferenceOptions options{verb.blender, path,       size.width, size.height,
                            verb.camera,  verb.frame, counts,     verb.max_bounces};
-  SCUMBLE_ASSIGN(sides.reference, RenderReference(options, globals, bar.Part(counts.empty() ? 0.02 : 0.3, 1.0)));
+  SCUMBLE_ASSIGN(sides.reference, RenderReference(options, globals, Within(progress, counts.empty() ? 0.02 : 0.3, 1.0)));
   for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.unsupported);
   return sides;
 }
@@ -144,7 +144,7 @@ Status KeepGuides(const CrosscheckVerb& verb, const std::string& scene, const Gu
   if (verb.fast_io) write.compression = kFastCompression;
   SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".cycles.exr", theirs_whole, write));
   SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".ours.exr", ours_whole, write));
-  Say(globals, stem + ".cycles.exr, " + stem + ".ours.exr: the guides of both sides");
+  globals.Note(stem + ".cycles.exr, " + stem + ".ours.exr: the guides of both sides");
   return Ok();
 }
 
@@ -229,7 +229,7 @@ CrosscheckSetup SetupOf(const CrosscheckVerb& verb, const Size& size) {
 }
 
 // A scene that the baseline cannot judge is an error, unless this run is about to measure it anew.
-Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline) {
+Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline, const Globals& globals) {
   SCUMBLE_ASSIGN(const Size size, ParseSize(verb.size));
   const CrosscheckSetup setup = SetupOf(verb, size);
   std::set<std::string> unchecked;
@@ -239,10 +239,10 @@ Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline) {
     const std::string mismatch = BaselineMismatch(baseline, NameInBaseline(scene), setup);
     if (mismatch.empty()) continue;
     if (verb.write_baseline.empty()) return InputError(verb.baseline + ": " + mismatch);
-    Warn(verb.baseline + ": " + mismatch + "; " + scene + " is judged by the built-in limits alone");
+    globals.Warn(verb.baseline + ": " + mismatch + "; " + scene + " is judged by the built-in limits alone");
   }
   if (!unchecked.empty()) {
-    Warn(verb.baseline + ": this run does not check " + Listed({unchecked.begin(), unchecked.end()}));
+    globals.Warn(verb.baseline + ": this run does not check " + Listed({unchecked.begin(), unchecked.end()}));
   }
   return Ok();
 }
@@ -267,7 +267,7 @@ Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckRep
                      const Globals& globals) {
   for (const CrosscheckReport& report : reports) {
     if (!report.KeepsBuiltInLimits()) {
-      Warn(verb.write_baseline + " is not written: " + report.scene +
+      globals.Warn(verb.write_baseline + " is not written: " + report.scene +
            (report.failure.empty() ? " does not keep the built-in limits" : " could not be compared"));
       return Ok();
     }
@@ -275,7 +275,7 @@ Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckRep
     RecordInBaseline(report, NameInBaseline(report.scene), baseline);
   }
   SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(verb.write_baseline, BaselineToJson(baseline)));
-  Say(globals, verb.write_baseline + ": the baseline");
+  globals.Note(verb.write_baseline + ": the baseline");
   return Ok();
 }
 
@@ -286,14 +286,15 @@ struct CheckedScenes {
   std::string blender_version;
 };
 
-void JudgeByBaseline(const std::string& file, const Baseline& baseline, CrosscheckReport& report) {
+void JudgeByBaseline(const std::string& file, const Baseline& baseline, const Globals& globals,
+                     CrosscheckReport& report) {
   const std::string name = NameInBaseline(report.scene);
   if (!baseline.blender.empty() && baseline.blender != report.blender_version) {
-    Warn(file + " was measured with Blender " + baseline.blender + ", this is " + report.blender_version);
+    globals.Warn(file + " was measured with Blender " + baseline.blender + ", this is " + report.blender_version);
   }
   report.baseline_mismatch = BaselineMismatch(baseline, name, report.setup);
   if (!report.baseline_mismatch.empty()) return;
-  for (const std::string& note : ApplyBaseline(baseline, name, report)) Warn(file + ": " + note);
+  for (const std::string& note : ApplyBaseline(baseline, name, report)) globals.Warn(file + ": " + note);
 }
 
 // An error is what would stop every other scene too: no Blender.
@@ -306,7 +307,7 @@ Expected<CheckedScenes> CheckAllScenes(const CrosscheckVerb& verb, const Baselin
     if (made) {
       report = std::move(*made);
       checked.blender_version = report.blender_version;
-      if (!verb.baseline.empty()) JudgeByBaseline(verb.baseline, baseline, report);
+      if (!verb.baseline.empty()) JudgeByBaseline(verb.baseline, baseline, globals, report);
     } else {
       if (made.error().kind == ErrorKind::kUnavailable && checked.reports.empty()) return made.error();
       report.scene = scene, report.failure = made.error().message, report.setup = SetupOf(verb, size);
@@ -341,7 +342,7 @@ Expected<ExitCode> RunCrosscheckVerb(const CrosscheckVerb& verb, const Globals& 
   Baseline baseline;
   if (!verb.baseline.empty()) {
     SCUMBLE_ASSIGN(baseline, ReadBaseline(verb.baseline));
-    SCUMBLE_RETURN_IF_ERROR(CheckBaselineFits(verb, baseline));
+    SCUMBLE_RETURN_IF_ERROR(CheckBaselineFits(verb, baseline, globals));
   }
   SCUMBLE_ASSIGN(const CheckedScenes checked, CheckAllScenes(verb, baseline, globals));
   if (globals.json) Print(CrosscheckToJson(checked.reports));
@@ -349,7 +350,7 @@ Expected<ExitCode> RunCrosscheckVerb(const CrosscheckVerb& verb, const Globals& 
     const CrosscheckRun run{"Cycles, Blender " + checked.blender_version, RepeatCommand(verb), verb.baseline};
     SCUMBLE_ASSIGN(const std::string html, CrosscheckToHtml(checked.reports, run));
     SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(verb.html, html));
-    Say(globals, verb.html + ": the report");
+    globals.Note(verb.html + ": the report");
   }
   if (!verb.write_baseline.empty()) {
     SCUMBLE_RETURN_IF_ERROR(WriteBaseline(verb, checked.reports, std::move(baseline), globals));

@@ -1,4 +1,5 @@
 // scumble info: what is in a guide file, a scene or a style.
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,11 +7,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "pipeline/style/style_locations.h"
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
 #include "pipeline/style/style_set.h"
-#include "pipeline/frame/paint_frame.h"
+#include "pipeline/frame/paint_picture.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
 #include "core/io/guide_file.h"
@@ -91,7 +93,7 @@ Expected<Json> DescribeSceneFile(const std::string& path) {
   return json;
 }
 
-Expected<Json> DescribeBlenderScene(const std::string& path, const BlenderOptions& blender, const Globals& globals) {
+Expected<Json> DescribeBlenderScene(const std::string& path, const BlenderRequest& blender, const Globals& globals) {
   SCUMBLE_ASSIGN(Scene scene, LoadBlenderScene(path, blender, globals));
   SCUMBLE_RETURN_IF_ERROR(DecodeAllTextures(scene));
   Json json = DescribeScene(scene);
@@ -101,11 +103,11 @@ Expected<Json> DescribeBlenderScene(const std::string& path, const BlenderOption
 
 struct InfoVerb {
   std::string path;
-  BlenderOptions blender;
+  BlenderRequest blender;
 };
 
-Expected<Json> DescribeStyle(const std::string& path) {
-  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}));
+Expected<Json> DescribeStyle(const std::string& path, const Globals& globals) {
+  SCUMBLE_ASSIGN(const Style style, OpenStyle({path, {}, {}}, globals));
   constexpr const char* kMethods[] = {"litsphere", "styleblit", "bruteforce"};
   Json json{{"kind", "style"}, {"name", style.name}, {"licence", style.licence}};
   json["method"] = kMethods[static_cast<int>(style.transfer.method)];
@@ -116,7 +118,7 @@ Expected<Json> DescribeStyle(const std::string& path) {
   json["scale"] = style.transfer.scale;
   for (const Exemplar& exemplar : style.exemplars) {
     std::string text = fmt::format("{} {}×{}", exemplar.name, exemplar.picture.width, exemplar.picture.height);
-    if (style.exemplars.size() > 1) text += ", " + LightInWords(exemplar, style.transfer.rim);
+    if (style.exemplars.size() > 1) text += ", " + DescribeLuminance(exemplar, style.transfer.rim);
     json["exemplars"].push_back(std::move(text));
   }
   return json;
@@ -153,7 +155,7 @@ Expected<Json> Describe(const InfoVerb& verb, const Globals& globals) {
   if (ending == ".blend") return DescribeBlenderScene(path, verb.blender, globals);
   if (!verb.blender.program.empty()) return UsageError("--blender is for .blend scenes; leave it out for " + path);
   if (ending == ".glb" || ending == ".gltf" || ending == ".obj" || ending == ".ply") return DescribeSceneFile(path);
-  return DescribeStyle(path);
+  return DescribeStyle(path, globals);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "apps/cli/verbs/rectify_verb.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/run/run_inputs.h"
+#include "pipeline/scene/run_inputs.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/fiducials.h"
@@ -170,10 +171,10 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   write.bits = header.bits > 8 && PictureBits(request.output, {.bits = 16}) == 16 ? 16 : 8;
   SCUMBLE_RETURN_IF_ERROR(WritePicture(request.output, rectified.picture, write));
   if (kit && *kit != options.size) {
-    Warn(fmt::format("{} has {} pixels and the kit's {} {}: the style there will refuse it; take --size {}",
+    globals.Warn(fmt::format("{} has {} pixels and the kit's {} {}: the style there will refuse it; take --size {}",
                      request.output, options.size, guides->string(), *kit, *kit));
   }
-  for (const std::string& warning : rectified.report.warnings) Warn(request.scan + ": " + warning);
+  for (const std::string& warning : rectified.report.warnings) globals.Warn(request.scan + ": " + warning);
   if (globals.json) {
     Print(JsonText(ReportJson(rectified.report, request.output, options.size, options.white_balance)));
   } else {

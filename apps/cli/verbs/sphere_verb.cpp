@@ -1,4 +1,5 @@
 // scumble sphere: the artist's kit.
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "core/image/direction.h"
 #include "core/style/kit/fiducials.h"
 #include "core/style/kit/sphere_kit.h"
+#include "apps/cli/app/run_report.h"
 
 namespace scumble {
 namespace {
@@ -120,9 +122,9 @@ Expected<KitOptions> ReadKitOptions(const SphereVerb& verb) {
 }
 
 // Paper asked for that cannot be had, and paper that is of little use.
-Status CheckPaper(const SphereVerb& verb, const KitOptions& options) {
+Status CheckPaper(const SphereVerb& verb, const KitOptions& options, const Globals& globals) {
   if (!options.pdf) {
-    if (verb.page_given) Warn("--page is the paper of the PDF, which --only leaves out: it changes nothing");
+    if (verb.page_given) globals.Warn("--page is the paper of the PDF, which --only leaves out: it changes nothing");
     return Ok();
   }
   if (!options.png && !options.ora && !FiducialsFit(verb.size)) {
@@ -133,7 +135,7 @@ Status CheckPaper(const SphereVerb& verb, const KitOptions& options) {
   constexpr double kLeastMm = 20;
   const double across = MillimetresOf(verb.size, verb.dpi);
   if (FiducialsFit(verb.size) && across < kLeastMm) {
-    Warn(fmt::format("the printed sphere is {:.1f} mm across, small for a brush, and must be scanned at {} dpi or more: "
+    globals.Warn(fmt::format("the printed sphere is {:.1f} mm across, small for a brush, and must be scanned at {} dpi or more: "
                      "take a larger --size, or --print-size",
                      across, ScanDpi(verb.size, verb.dpi)));
   }
@@ -149,10 +151,9 @@ void SayWhatNext(const SphereVerb& verb, const KitOptions& options, const std::o
   if (options.ora) files = stem + ".ora (layers: Krita, GIMP, MyPaint)";
   if (options.png) files += std::string(files.empty() ? "" : " or ") + stem + ".png";
   if (!files.empty())
-    Say(globals, "paint over " + files + ", save it as " + painting + " in the same folder; HOWTO.txt says how");
+    globals.Note("paint over " + files + ", save it as " + painting + " in the same folder; HOWTO.txt says how");
   if (page) {
-    Say(globals,
-        fmt::format("print {}.pdf at 100%: a sphere of {:.1f} mm on {}", stem, MillimetresOf(verb.size, verb.dpi),
+    globals.Note(fmt::format("print {}.pdf at 100%: a sphere of {:.1f} mm on {}", stem, MillimetresOf(verb.size, verb.dpi),
                     page->name == "fit" ? fmt::format("a page of {:.0f} x {:.0f} mm", page->width_mm, page->height_mm)
                                         : page->name));
   }
@@ -163,7 +164,7 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
     SCUMBLE_ASSIGN(verb.size, PrintedSize(verb.print_size, verb.dpi));
   }
   SCUMBLE_ASSIGN(const KitOptions options, ReadKitOptions(verb));
-  SCUMBLE_RETURN_IF_ERROR(CheckPaper(verb, options));
+  SCUMBLE_RETURN_IF_ERROR(CheckPaper(verb, options, globals));
   std::optional<PrintPage> page;
   // A large sphere takes a while to render: what does not fit the paper is said before.
   if (options.pdf) {

@@ -12,12 +12,13 @@
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/paint_report.h"
-#include "pipeline/frame/paint_frame.h"
+#include "pipeline/frame/paint_picture.h"
 #include "measure/painting/paint_faults.h"
 #include "measure/painting/paint_traits.h"
 #include "core/style/kit/sphere_kit.h"
 #include "transfer/exemplar/ambiguity.h"
 #include "transfer/transfer.h"
+#include "pipeline/style/style_locations.h"
 
 namespace scumble {
 namespace {
@@ -141,7 +142,7 @@ void FindFaults(CheckedStyle& checked) {
     for (PaintFault& fault : faults) checked.faults.push_back({exemplar.name, std::move(fault)});
   }
   for (EqualLight& equal : EqualLights(style, checked.prepared)) {
-    checked.faults.push_back({equal.image, {"equal-light", Weight::kMistake, "it " + equal.what, equal.mend, std::nullopt}});
+    checked.faults.push_back({equal.image, {"equal-light", Weight::kMistake, "it " + equal.what, equal.fix, std::nullopt}});
   }
   for (PaintFault& fault : AmbiguityFaults(checked.directions)) checked.faults.push_back({style.exemplars.front().name, std::move(fault)});
 }
@@ -149,8 +150,8 @@ void FindFaults(CheckedStyle& checked) {
 // Loads and prepares the style as a transfer would, and looks for what a painter overlooks.
 Expected<CheckedStyle> Check(const std::string& path, const Globals& globals) {
   CheckedStyle checked;
-  SCUMBLE_ASSIGN(checked.style, OpenStyle({path, {}, {}}));
-  FileCache cache = UserCache();
+  SCUMBLE_ASSIGN(checked.style, OpenStyle({path, {}, {}}, globals));
+  FileCache cache(globals.cache_folder);
   PrepareOptions options;
   options.cache = &cache;
   options.threads = globals.threads;
@@ -186,7 +187,7 @@ nlohmann::ordered_json ToJson(const CheckedStyle& checked) {
   for (std::size_t k = 0; k < style.exemplars.size(); ++k) {
     const Exemplar& exemplar = style.exemplars[k];
     nlohmann::ordered_json entry{{"image", exemplar.name}};
-    if (several) entry["light"] = LightInWords(exemplar, style.transfer.rim);
+    if (several) entry["light"] = DescribeLuminance(exemplar, style.transfer.rim);
     entry.update(TraitsToJson(checked.traits[k], exemplar.margin));
     json["exemplars"].push_back(std::move(entry));
   }
@@ -222,7 +223,7 @@ std::string ToText(const CheckedStyle& checked) {
                                  first.alpha.transparent_percent, VerdictOf(checked));
   for (std::size_t k = 0; k < style.exemplars.size(); ++k) {
     const Exemplar& one = style.exemplars[k];
-    text += style.exemplars.size() > 1 ? fmt::format("{}: {}\n", one.name, LightInWords(one, style.transfer.rim))
+    text += style.exemplars.size() > 1 ? fmt::format("{}: {}\n", one.name, DescribeLuminance(one, style.transfer.rim))
                                        : one.name + "\n";
     text += TraitsToText(checked.traits[k]);
   }
@@ -247,14 +248,14 @@ Expected<ExitCode> CheckStyles(const StylesCheck& check, const Globals& globals)
     const Expected<CheckedStyle> checked = Check(path, globals);
     if (!checked && check.styles.size() == 1) return checked.error();
     if (!checked) {
-      Warn(fmt::format("{} cannot be used: {}", path, checked.error().message));
+      globals.Warn(fmt::format("{} cannot be used: {}", path, checked.error().message));
       json.push_back({{"path", path}, {"error", checked.error().message}});
       code = ExitCodeFor(checked.error().kind);
       ++unreadable;
       continue;
     }
     for (const auto& [image, fault] : checked->faults) {
-      if (fault.weight == Weight::kMistake) Warn(FaultToText(image, fault));
+      if (fault.weight == Weight::kMistake) globals.Warn(FaultToText(image, fault));
     }
     const std::size_t count = checked->Count(Weight::kMistake);
     mistakes += count, at_fault += count > 0;

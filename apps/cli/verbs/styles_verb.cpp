@@ -1,4 +1,5 @@
 // scumble styles.
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <memory>
 #include <system_error>
 
+#include "pipeline/style/style_locations.h"
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
@@ -25,11 +27,11 @@ Expected<ExitCode> ListStyles(const Globals& globals) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::string text;
   ExitCode code = ExitCode::kOk;
-  for (const auto& root : StyleRoots()) {
+  for (const auto& root : StyleFolders(globals)) {
     for (const auto& folder : FindStyles(root)) {
       const Expected<Style> style = LoadStyle(folder);
       if (!style) {  // one broken style does not hide the others
-        Warn("style " + folder.filename().string() + " is left out: " + style.error().message);
+        globals.Warn("style " + folder.filename().string() + " is left out: " + style.error().message);
         code = ExitCodeFor(style.error().kind);
         continue;
       }

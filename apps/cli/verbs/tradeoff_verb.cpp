@@ -16,16 +16,17 @@
 #include <utility>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
 #include "pipeline/memory/memory_limit.h"
 #include "apps/cli/app/options.h"
-#include "apps/cli/app/progress_bar.h"
-#include "pipeline/run/run_inputs.h"
+#include "pipeline/scene/run_inputs.h"
 #include "pipeline/run/sequence.h"
 #include "pipeline/style/style_set.h"
 #include "pipeline/tradeoff/measure.h"
-#include "pipeline/frame/paint_frame.h"
+#include "pipeline/frame/paint_picture.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/file/pending_temporaries.h"
 #include "measure/tradeoff/report.h"
@@ -37,6 +38,8 @@ namespace fs = std::filesystem;
 
 struct TradeoffVerb {
   TradeSetup setup;
+  SceneOptions scene;              // becomes setup.scene
+  std::string exposure = "auto";  // becomes setup.exposure
   std::string folder;
   std::string peak_of;  // a way's name: its memory alone, for the process that AskForPeak starts
 };
@@ -66,7 +69,7 @@ class MadeFolders {
 };
 
 // Told before minutes of work: whether the folder is there and can be written to, and takes the place of nothing that is read.
-Status CheckFolder(const TradeoffVerb& verb) {
+Status CheckFolder(const TradeoffVerb& verb, const Globals& globals) {
   const fs::path pictures = fs::path(verb.folder) / kPictures;
   std::error_code failed;
   if (!fs::is_directory(fs::status(pictures, failed))) {
@@ -75,9 +78,9 @@ Status CheckFolder(const TradeoffVerb& verb) {
   }
   RunFiles files;
   files.ReadsScene(verb.setup.scene.scene);
-  StyleOptions style = verb.setup.style;
+  StyleRequest style = verb.setup.style;
   style.scene_styles = false;
-  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style));
+  SCUMBLE_ASSIGN(const StyleSet styles, OpenStyles(style, globals));
   files.ReadsStyles(styles);
   for (const char* name : {kPage, "tradeoff.csv", kJson, "chart.svg"}) {
     SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
@@ -167,8 +170,11 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
 }
 
 Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
-  SCUMBLE_RETURN_IF_ERROR(CheckSceneOptions(verb.setup.scene));
-  SCUMBLE_RETURN_IF_ERROR(ParseExposure(verb.setup.exposure));
+  const std::uint64_t seed = verb.setup.scene.seed;
+  SCUMBLE_ASSIGN(verb.setup.scene, ToRequest(verb.scene));
+  verb.setup.scene.seed = seed;
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(verb.setup.scene));
+  SCUMBLE_ASSIGN(verb.setup.exposure, ParseExposure(verb.exposure));
   verb.setup.writes = !verb.folder.empty();
   if (!verb.peak_of.empty()) {
     SCUMBLE_ASSIGN(const std::size_t bytes, PeakOfWay(verb.setup, verb.peak_of, globals));
@@ -177,11 +183,9 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   }
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) / kPictures);  // gone again while minutes of work may be interrupted
-    SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb));
+    SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb, globals));
   }
-  ProgressBar bar("tradeoff", globals.quiet);
-  SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals, bar));
-  bar.Clear();
+  SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals));
   Status written = Ok();
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) / kPictures);
@@ -190,7 +194,7 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   Print(globals.json ? TradeJson(report) : TradeTable(report));  // in any case: minutes of work are not lost where writing fails
   SCUMBLE_RETURN_IF_ERROR(written);
   if (!verb.folder.empty()) {
-    Say(globals, (fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");
+    globals.Note((fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");
   }
   return ExitCode::kOk;
 }
@@ -209,22 +213,22 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       "makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
       "says; colorized styles are measured before the scene's colours are on them. Blending mostly scores better: it takes\n"
       "seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each way.\n");
-  AddViewOptions(*sub, verb->setup.scene);
+  AddViewOptions(*sub, verb->scene);
   sub->add_option("--frame", verb->setup.frame,
                   "the scene and the style at this frame of theirs; left out: as they stand, of a .blend the frame that it was "
                   "saved at")
       ->type_name("N");
-  AddFpsOption(*sub, verb->setup.scene.fps,
+  AddFpsOption(*sub, verb->scene.fps,
                "frames a second, with --frame: of a glTF animation frame N is at N / RATE s; left out: of a .blend its own, "
                "otherwise 24");
-  AddAnimationOption(*sub, verb->setup.scene);
-  sub->add_option("--exposure", verb->setup.exposure,
+  AddAnimationOption(*sub, verb->scene);
+  sub->add_option("--exposure", verb->exposure,
                   "stops by which the scene's light is brightened, as stylize has it; auto fits it to this frame, a sequence to "
                   "its first")
       ->type_name("auto|STOPS")
       ->capture_default_str();
-  AddCastOptions(*sub, verb->setup.scene);
-  AddSampleOptions(*sub, verb->setup.scene);
+  AddCastOptions(*sub, verb->scene);
+  AddSampleOptions(*sub, verb->scene);
   AddOneStyleOptions(*sub, verb->setup.style, true);
   sub->add_option("--only", verb->setup.only,
                   "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/io/format_dispatch.h"
 
 namespace scumble::internal {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -3,7 +3,7 @@
 // formula, so that they are as sharp at any size.
 #pragma once
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/style/kit/sphere_template.h"
 
 namespace scumble {

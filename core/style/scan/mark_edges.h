@@ -3,7 +3,7 @@
 // the template lies up to eighteen times as far off (five times, in the middle), and marks on one side only do not hold it.
 #pragma once
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/style/scan/marker_detection.h"
 
 namespace scumble {

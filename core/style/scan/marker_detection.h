@@ -6,7 +6,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/style/kit/fiducials.h"
 
 namespace scumble {

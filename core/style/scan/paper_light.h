@@ -4,7 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/style/scan/template_fit.h"
 
 namespace scumble {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/style/scan/template_fit.h"
 

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 
 struct MyPaintFixedTiledSurface;
 struct MyPaintSurface;

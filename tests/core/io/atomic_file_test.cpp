@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"

@@ -1,17 +1,13 @@
 // Many pixels at once are tinted as each by itself is, to the last bit.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <tuple>
 #include <vector>
 
-#include "core/image/color.h"
 #include "tests/support/every_instruction_set.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/tint/colorize.h"
-#include "transfer/tint/multiply.h"
-#include "transfer/tint/oklab.h"
+#include "transfer/tint/tint_row.h"
 
 namespace scumble {
 namespace {
@@ -68,8 +64,7 @@ void ExpectPlain(const Pixels& pixels, const internal::Tint& tint) {
     tint.Apply({pixels.albedo[0][i], pixels.albedo[1][i], pixels.albedo[2][i]}, &expected[4 * i]);
   }
   const float* const albedo[3] = {pixels.albedo[0].data(), pixels.albedo[1].data(), pixels.albedo[2].data()};
-  if (tint.mode == ColorizeMode::kMultiply) internal::MultiplyTint(albedo, pixels.count(), tint.weight, found.data());
-  else internal::OklabTint(albedo, pixels.count(), tint, found.data());
+  internal::TintRow(tint, albedo, pixels.count(), found.data());
   const auto [a, b] = std::mismatch(expected.begin(), expected.end(), found.begin());
   if (a == expected.end()) return;
   const auto at = static_cast<std::size_t>(a - expected.begin());
@@ -130,6 +125,20 @@ TEST(FastTint, EveryLengthAndPlace) {
   });
 }
 
+// White things keep the paint's very codes when it is multiplied, whatever the weight.
+TEST(FastTint, WhiteMultipliesToTheSame) {
+  OnEveryInstructionSet([] {
+    Pixels pixels = AnyPixels(65536, 0);
+    for (auto& plane : pixels.albedo) std::fill(plane.begin(), plane.end(), 1.0f);
+    const float* const albedo[3] = {pixels.albedo[0].data(), pixels.albedo[1].data(), pixels.albedo[2].data()};
+    for (const float weight : {1.0f, 0.5f, 0.25f}) {
+      std::vector<std::uint16_t> found = pixels.texels;
+      internal::TintRow(Multiplied(weight), albedo, pixels.count(), found.data());
+      ASSERT_EQ(found, pixels.texels) << weight;
+    }
+  });
+}
+
 // The pixels around a run keep their bytes, whatever lies in between.
 TEST(FastTint, OnlyActivePixelsOfTheRegionChange) {
   constexpr int kWidth = 83, kHeight = 9;
@@ -159,39 +168,6 @@ TEST(FastTint, OnlyActivePixelsOfTheRegionChange) {
         ASSERT_TRUE(found.rgba == expected.rgba) << "one in " << dense;
       }
     }
-  }
-}
-
-// The code of a value by the definition: the last that begins at or below it.
-TEST(FastTint, EncodingFindsTheCodeOfEveryValue) {
-  std::vector<float> borders{0.0f};  // where each code begins, found by halving the floats
-  for (int code = 1; code < 65536; ++code) {
-    float low = borders.back(), high = 1.0f;
-    while (std::nextafter(low, 2.0f) < high) {
-      std::uint32_t a, b;
-      std::memcpy(&a, &low, 4), std::memcpy(&b, &high, 4);
-      const std::uint32_t middle = a + (b - a) / 2;
-      float value;
-      std::memcpy(&value, &middle, 4);
-      (Srgb16FromLinear(value) >= code ? high : low) = value;
-    }
-    borders.push_back(high);
-  }
-  for (int code = 1; code < 65536; ++code) {
-    const float border = borders[std::size_t(code)], before = std::nextafter(border, 0.0f);
-    ASSERT_EQ(Srgb16FromLinear(border), code);
-    ASSERT_EQ(Srgb16FromLinear(before), code - 1);
-    const double exact = (code - 0.5) / 65535.0;
-    const double linear = exact <= 0.04045 ? exact / 12.92 : std::pow((exact + 0.055) / 1.055, 2.4);
-    ASSERT_NEAR(border, linear, 1e-7 * linear) << "the standard's curve";
-    for (const int guess : {0, code - 2, code - 1, code, code + 1, 65535}) {
-      const auto from = static_cast<std::uint16_t>(std::clamp(guess, 0, 65535));
-      ASSERT_EQ(Srgb16().Encode(border, from), code);
-      ASSERT_EQ(Srgb16().Encode(before, from), code - 1);
-    }
-  }
-  for (const float value : {-1.0f, kNan, -kInfinity, kInfinity, 2.0f, 0.0f, 1e-38f, 1e-45f, 4e-7f}) {
-    for (const std::uint16_t guess : {0, 1, 65535}) ASSERT_EQ(Srgb16().Encode(value, guess), Srgb16FromLinear(value));
   }
 }
 

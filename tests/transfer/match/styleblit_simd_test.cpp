@@ -59,9 +59,8 @@ class Matches {
   std::vector<std::uint8_t>& wanted() { return wanted_; }
 
   // Both forms, the fast one on some threads.
-  // Three frames: one by itself, one that learns the seeds and one that knows them, unless `map` does already. Returns what
-  // the plain form finds.
-  SourceField ExpectEqual(const Case& c, const std::string& what, int threads = 2, internal::SeedMap* map = nullptr) const {
+  // Returns what the plain form finds.
+  SourceField ExpectEqual(const Case& c, const std::string& what, int threads = 2) const {
     const Region whole{0, 0, guides_.width(), guides_.height()};
     const SeedRules rules{c.seed, c.step, c.jitter, c.level_offset};
     internal::MatchInput input{guides_,  active_,  exemplar_, illumination_,           luminance_, GuideTest(c.threshold, c.metric),
@@ -76,16 +75,6 @@ class Matches {
       ASSERT_TRUE(internal::MatchStyleBlitTiles(input, fast, progress));
     });
     ExpectSame(plain, fast, what);
-    internal::SeedMap own(guides_.width(), guides_.height());
-    input.seed_map = map ? map : &own;
-    for (const char* const frame : {", learning", ", knowing"}) {
-      SourceField again = Empty(guides_, c.keep_moved);
-      tbb::task_arena(threads).execute([&] {
-        internal::RowProgress progress(unheard, 0.0, 1.0, 1);
-        ASSERT_TRUE(internal::MatchStyleBlitTiles(input, again, progress));
-      });
-      ExpectSame(plain, again, what + frame);
-    }
     return plain;
   }
 
@@ -242,39 +231,6 @@ TEST(TransferTiles, EverySizeAndRegion) {
   const Matches matches(guides, exemplar);
   for (const Region& region : {Region{0, 0, 640, 1}, Region{639, 299, 640, 300}, Region{13, 20, 29, 270}, Region{100, 50, 633, 199}, Region{40, 40, 40, 40}}) {
     matches.ExpectEqual({.region = region}, "region from " + std::to_string(region.x0));
-  }
-}
-
-// What one frame, style or region learned of the seeds holds for all that have the same.
-TEST(TransferTiles, SeedsAreKeptWhereTheyStay) {
-  internal::SeedMaps maps;
-  const SeedRules rules{1, 2, 1.0f, 0};
-  maps.BeginFrame();
-  EXPECT_EQ(maps.For(rules, 700, 300), nullptr) << "a single picture keeps nothing";
-  EXPECT_EQ(maps.For(rules, 700, 300), nullptr) << "nor does its second style";
-  maps.BeginFrame();
-  internal::SeedMap* const map = maps.For(rules, 700, 300);
-  ASSERT_NE(map, nullptr);
-  EXPECT_EQ(maps.For(rules, 701, 300), nullptr);
-  maps.BeginFrame();
-  EXPECT_EQ(maps.For(rules, 700, 300), map);
-  EXPECT_NE(maps.For(rules, 701, 300), nullptr);
-  SeedRules later = rules;
-  for (int step = 3; step < 8; ++step) {
-    maps.BeginFrame();
-    later.time_step = step;
-    EXPECT_EQ(maps.For(later, 700, 300), nullptr) << "renewed jitter";
-  }
-  EXPECT_EQ(maps.For(rules, 700, 300), nullptr) << "what nobody asked for is gone";
-
-  const GuideSet hills = HillGuides(700, 300), mixed = MixedGuides(700, 300, 8);
-  const PreparedExemplar exemplar(NoisePicture(64), 2.0, 128);
-  internal::SeedMap shared(700, 300);
-  for (const GuideSet* guides : {&hills, &mixed}) {
-    for (const Region& region : {Region{37, 11, 601, 240}, Region{0, 0, 700, 300}}) {
-      Matches matches(*guides, exemplar);
-      matches.ExpectEqual({.region = region}, "shared", 2, &shared);
-    }
   }
 }
 

@@ -180,7 +180,7 @@ TEST(SmallVote, RegionsAndThreadsMakeNoDifference) {
   for (const Region& region :
        {Region{0, 0, 2200, 75}, Region{13, 21, 57, 44}, Region{64, 32, 128, 64}, Region{63, 31, 2111, 65},
         Region{2047, 0, 2050, 75}, Region{2199, 74, 2200, 75}, Region{}}) {
-    for (const int radius : {0, 1, 2, 3}) {
+    for (const int radius : {0, 1}) {
       for (const int threads : {1, 2, 3}) {
         ExpectPlain(given, {radius, radius > 0, false, 60.0, 0.002, region, threads},
                     "threads " + std::to_string(threads));
@@ -194,8 +194,7 @@ TEST(SmallVote, RegionsAndThreadsMakeNoDifference) {
 TEST(SmallVote, MeansAreRoundedAsWeighedOnesAre) {
   const Case given = MakeCase(300, 200, 120, Paint::kExtreme, Cover::kAll, 1, 11);
   OnEveryTarget([&](const std::string& target) {
-    for (const int radius : {1, 2, 3})
-      ExpectPlain(given, {radius, false, false, 60.0, 0.002, {0, 0, 300, 200}, 1}, target);
+    ExpectPlain(given, {1, false, false, 60.0, 0.002, {0, 0, 300, 200}, 1}, target);
   });
 }
 

@@ -13,6 +13,9 @@ namespace scumble::internal {
 // A tile is one machine word wide, so that a row of it is one word of bits.
 inline constexpr int kTileSide = 64;
 
+// Up to this radius the sums of a window's votes fit.
+inline constexpr int kWidestRadius = 127;
+
 // Pixels [begin, end) of one row, all of one chunk. Columns and rows count from the tile's corner; those of the
 // surroundings may be negative.
 struct ChunkRun {
@@ -39,10 +42,6 @@ class WideTile {
   const std::vector<Chunk>& chunks() const { return chunks_; }
   const std::vector<ChunkRun>& runs() const { return runs_; }
 
-  // Bits of one row of the surroundings, the lowest its first column: pixels that vote, and pixels that begin a run or
-  // follow the end of one. Two words more than the columns need, both 0.
-  const std::uint64_t* Votes(int row) const { return votes_.data() + std::size_t(row) * words_; }
-  const std::uint64_t* Changes(int row) const { return changes_.data() + std::size_t(row) * words_; }
   // The active pixels of a row of the tile.
   std::uint64_t ActiveWord(int y) const {
     const int left = area_.x0 - surround_.x0, width = area_.x1 - area_.x0;
@@ -57,6 +56,10 @@ class WideTile {
   }
 
  private:
+  // Bits of one row of the surroundings, the lowest its first column: pixels that vote, and pixels that begin a run or
+  // follow the end of one. Two words more than the columns need, both 0.
+  const std::uint64_t* Votes(int row) const { return votes_.data() + std::size_t(row) * words_; }
+  const std::uint64_t* Changes(int row) const { return changes_.data() + std::size_t(row) * words_; }
   struct FoundRun {
     ChunkRun run;
     std::uint32_t chunk;

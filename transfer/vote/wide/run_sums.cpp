@@ -26,24 +26,51 @@ struct Group {
   int x0, x1, y0, y1;  // the part of the tile that they reach
 };
 
-// Adds to counts[0 …] how many pixels of the run are within `radius` columns of x0, x0 + 1, …: rises by one a pixel,
-// stays, and falls. Takes it away for `sign` -1. Counts are kept modulo 65536, sums of all runs fit.
-HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, int radius, int x0, int x1, bool remove, std::uint16_t* counts) {
+// Adds to counts[x] how many pixels of the run are on the horizontal arm of column x, for columns [x0, x1) and up to a
+// vector more. Counts are kept modulo 65536, sums of all runs fit.
+HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, const WideArms& arms, int x0, int x1, std::uint16_t* counts) {
   const I16 d;
   const D16 u;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto most = hn::Set(d, static_cast<std::int16_t>(std::min(run.end - run.begin, 2 * radius + 1)));
-  const auto zero = hn::Zero(d);
-  auto rising = hn::Iota(d, static_cast<std::int16_t>(x0 - run.begin + radius + 1));
-  auto falling = hn::Sub(hn::Set(d, static_cast<std::int16_t>(run.end - run.begin + 2 * radius + 1)), rising);
-  const auto step = hn::Set(d, static_cast<std::int16_t>(lanes));
-  for (int x = x0; x < x1; x += lanes) {
-    const auto count = hn::BitCast(u, hn::Max(zero, hn::Min(most, hn::Min(rising, falling))));
-    const auto before = hn::LoadU(u, counts + (x - x0));
-    hn::StoreU(remove ? hn::Sub(before, count) : hn::Add(before, count), u, counts + (x - x0));
-    rising = hn::Add(rising, step), falling = hn::Sub(falling, step);
+  const auto zero = hn::Zero(d), begin = hn::Set(d, run.begin), end = hn::Set(d, run.end);
+  const std::int16_t *low = arms.Low(run.row), *high = arms.High(run.row);
+  for (int x = x0; x < x1; x += static_cast<int>(hn::Lanes(d))) {
+    const auto first = hn::Max(begin, hn::LoadU(d, low + x)), last = hn::Min(end, hn::LoadU(d, high + x));
+    const auto met = hn::BitCast(u, hn::Max(zero, hn::Sub(last, first)));
+    hn::StoreU(hn::Add(hn::LoadU(u, counts + x), met), u, counts + x);
   }
 }
+
+// Counts of a group's runs, from its first row down to each row: what is between two rows is the difference of theirs.
+// Rows without a run share the counts of the row above.
+class PrefixRows {
+ public:
+  // For columns [x0, x1) of the tile and its rows [y0, y1); `storage` holds WideSums::CountedSize(radius).
+  HWY_ATTR PrefixRows(const Group& group, const WideArms& arms, std::uint16_t* storage)
+      : first_(group.y0 - arms.radius() - 1) {
+    const int radius = arms.radius(), rows = group.y1 - group.y0 + 2 * radius + 1;
+    std::uint16_t* counts = storage;
+    std::fill(counts + group.x0, counts + group.x1, std::uint16_t{0});
+    const ChunkRun* run = group.first;
+    while (run != group.last && run->row <= first_) ++run;  // too far above for every row
+    for (int k = 0; k < rows; ++k) {
+      if (run != group.last && run->row == first_ + k) {
+        std::copy(counts + group.x0, counts + group.x1, counts + WideSums::kCountedStride + group.x0);
+        counts += WideSums::kCountedStride;
+      }
+      for (; run != group.last && run->row == first_ + k; ++run) {
+        const int x0 = std::max(group.x0, run->begin - radius), x1 = std::min(group.x1, run->end + radius);
+        CountRun(*run, arms, x0, x1, counts);
+      }
+      rows_[k] = counts;
+    }
+  }
+  // Down to a row of the tile, or of what is at most the radius above or below.
+  const std::uint16_t* At(int row) const { return rows_[row - first_]; }
+
+ private:
+  int first_;
+  const std::uint16_t* rows_[kTileSide + 2 * kWidestRadius + 2];
+};
 
 // Adds `n` texels times their counts to sums; up to four more may be read, before `end`, and have no weight. Clears
 // bits of `all`, by 32-bit lane of four pixels, that a texel lacks.
@@ -84,6 +111,7 @@ HWY_ATTR HWY_INLINE void AddTexels(const std::uint16_t* counts, const std::uint1
     for (; left >= 4; left -= 4, count += 4, texel += 16, sum += 16) {
       std::uint64_t four;
       std::memcpy(&four, count, 8);
+      if (four == 0) continue;  // the texel need not be read
       const auto weight = hn::BitCast(d, hn::TableLookupBytesOr0(hn::BitCast(d8, hn::Set(d64, four)), index));
       const auto color = hn::PromoteTo(d, hn::LoadU(half, texel));
       common = hn::And(common, color);
@@ -135,7 +163,7 @@ HWY_ATTR void AddWeighted(const std::uint16_t* counts, const std::uint16_t* texe
 
 template <bool kOpaque>
 HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group, std::uint32_t* all) {
-  HWY_ALIGN std::uint16_t counts[kTileSide + 64] = {};
+  HWY_ALIGN std::uint16_t counts[WideSums::kCountedStride];
   const int radius = work.tile.radius();
   const Picture& picture = work.exemplar.picture(chunk.exemplar);
   const std::uint16_t* texels_end = picture.rgba.data() + picture.rgba.size();
@@ -145,19 +173,32 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
     const std::uint16_t* texels = picture.At(x0 + chunk.shift_x, y + chunk.shift_y);
     const std::size_t at = std::size_t(y) * WideSums::kStride + x0;
     if constexpr (kOpaque) {
-      AddTexels(counts + (x0 - group.x0), texels, texels_end, x1 - x0, work.sums + 4 * at, all);
+      AddTexels(counts + x0, texels, texels_end, x1 - x0, work.sums + 4 * at, all);
     } else {
-      AddWeighted(counts + (x0 - group.x0), texels, x1 - x0, work.weighted + 4 * at, work.votes + at, all);
+      AddWeighted(counts + x0, texels, x1 - x0, work.weighted + 4 * at, work.votes + at, all);
     }
   };
-  const ChunkRun *enter = group.first, *leave = group.first;
+  const PrefixRows prefix(group, work.arms, work.counted);
+  const std::uint64_t columns = BitRange(group.x0, group.x1);
+  const D16 d;
   for (int y = group.y0; y < group.y1; ++y) {
-    for (; enter != group.last && enter->row <= y + radius; ++enter) {
-      CountRun(*enter, radius, group.x0, group.x1, false, counts);
+    const std::uint16_t *above = prefix.At(y - radius - 1), *below = prefix.At(y + radius);
+    if (above == below) continue;
+    std::uint64_t met = 0;  // columns whose window holds pixels of the chunk
+    for (int x = group.x0; x < group.x1; x += static_cast<int>(hn::Lanes(d))) {
+      const auto count = hn::Sub(hn::LoadU(d, below + x), hn::LoadU(d, above + x));
+      hn::StoreU(count, d, counts + x);
+      std::uint8_t bytes[8] = {};
+      hn::StoreMaskBits(d, hn::Ne(count, hn::Zero(d)), bytes);
+      std::uint64_t bits;
+      std::memcpy(&bits, bytes, 8);
+      met |= bits << x;
     }
-    for (; leave != enter && leave->row < y - radius; ++leave)
-      CountRun(*leave, radius, group.x0, group.x1, true, counts);
-    if (leave == enter) continue;
+    for (std::uint64_t cut = work.arms.Short(y) & columns & met; cut; cut &= cut - 1) {
+      const int x = std::countr_zero(cut);
+      counts[x] = static_cast<std::uint16_t>(prefix.At(y + work.arms.Down(x, y))[x] -
+                                             prefix.At(y - work.arms.Up(x, y) - 1)[x]);
+    }
     if (y + kAhead < group.y1) AskFor(picture, chunk, group.x0, group.x1, y + kAhead);
     if (inside) {
       add(y, group.x0, group.x1);
@@ -275,19 +316,23 @@ HWY_EXPORT(SumOpaque);
 HWY_EXPORT(SumWeighted);
 HWY_EXPORT(WriteRow);
 
-void WideSums::Sum(const WideTile& tile, const PreparedExemplar& exemplar, const UsableRows& usable) {
+void WideSums::Sum(const WideTile& tile, const WideArms& arms, const PreparedExemplar& exemplar,
+                   const UsableRows& usable) {
   constexpr std::size_t kPixels = std::size_t(kStride) * kTileSide;
+  counted_.resize(CountedSize(tile.radius()));
   if (opaque_) {
     if (!sums_) sums_ = hwy::AllocateAligned<std::uint32_t>(4 * kPixels);
     std::fill_n(sums_.get(), 4 * kPixels, 0u);
-    opaque_ = HWY_DYNAMIC_DISPATCH(SumOpaque)({tile, exemplar, usable, sums_.get(), nullptr, nullptr});
+    opaque_ = HWY_DYNAMIC_DISPATCH(SumOpaque)
+    ({tile, arms, exemplar, usable, counted_.data(), sums_.get(), nullptr, nullptr});
     weights_count_ = !opaque_;
     if (opaque_) return;
   }
   // The next tile starts as this one should have.
   weights_count_ = true;
   weighted_.assign(4 * kPixels, 0), votes_.assign(kPixels, 0);
-  opaque_ = HWY_DYNAMIC_DISPATCH(SumWeighted)({tile, exemplar, usable, nullptr, weighted_.data(), votes_.data()});
+  opaque_ = HWY_DYNAMIC_DISPATCH(SumWeighted)
+  ({tile, arms, exemplar, usable, counted_.data(), nullptr, weighted_.data(), votes_.data()});
 }
 
 void WideSums::Write(const WideTile& tile, Picture& out) {

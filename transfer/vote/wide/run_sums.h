@@ -1,5 +1,9 @@
-// Sums of the votes of a tile: of each chunk, how many of its pixels are in a pixel's window, times the chunk's texel
-// there.
+// Sums of the votes of a tile: of each chunk, how many of its pixels are in a pixel's support region (or, for plain
+// voting, in its window), times the chunk's texel there.
+//
+// In a chunk the texel moves along with the pixel that it is offered to, so all of a chunk's votes on a pixel are for
+// one texel. They are counted as in Zhang, Lu, Lafruit (2009): along rows the pixels of the chunk on each horizontal
+// arm, then sums of these down each column, of which a vertical arm takes the difference of two.
 #pragma once
 
 #include <hwy/aligned_allocator.h>
@@ -7,9 +11,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/exemplar/usable_rows.h"
+#include "transfer/vote/wide/wide_arms.h"
 #include "transfer/vote/wide/chunk_runs.h"
 
 namespace scumble::internal {
@@ -17,8 +22,10 @@ namespace scumble::internal {
 // A tile and where its sums go; those for opaque paint or the others.
 struct Work {
   const WideTile& tile;
+  const WideArms& arms;
   const PreparedExemplar& exemplar;
   const UsableRows& usable;
+  std::uint16_t* counted;  // see WideSums
   std::uint32_t* sums;
   std::uint64_t* weighted;
   std::uint32_t* votes;
@@ -29,21 +36,14 @@ class WideSums {
  public:
   static constexpr int kStride = kTileSide + 4;  // rows are written four pixels at a time
 
-  // All votes of the tile's chunks; texels that are not usable have none.
-  void Sum(const WideTile& tile, const PreparedExemplar& exemplar, const UsableRows& usable);
-
-  // Takes `count` votes of the pixel (x, y) of the tile for `texel` back.
-  void Withdraw(int x, int y, const std::uint16_t* texel, std::uint32_t count) {
-    const std::size_t i = std::size_t(y) * kStride + x;
-    if (!weights_count_) {
-      for (int c = 0; c < 4; ++c) sums_[4 * i + c] -= count * texel[c];
-      return;
-    }
-    const std::uint64_t weight = std::uint64_t{count} * texel[3];
-    for (int c = 0; c < 3; ++c) weighted_[4 * i + c] -= weight * texel[c];
-    weighted_[4 * i + 3] -= weight;
-    votes_[i] -= count;
+  // Counts of a row, with a vector more on either side; and of all rows that a chunk may have.
+  static constexpr int kCountedStride = kTileSide + 64;
+  static std::size_t CountedSize(int radius) {
+    return std::size_t(kCountedStride) * std::size_t(kTileSide + 2 * radius + 2) + 64;
   }
+
+  // All votes of the tile's chunks; texels that are not usable have none.
+  void Sum(const WideTile& tile, const WideArms& arms, const PreparedExemplar& exemplar, const UsableRows& usable);
 
   // The mean of the votes for every active pixel of the tile, straight alpha.
   void Write(const WideTile& tile, Picture& out);
@@ -51,6 +51,8 @@ class WideSums {
  private:
   void WriteWeighted(std::uint64_t active, std::size_t first, std::uint16_t* out) const;
 
+  // By row of a chunk, how many of its pixels so far are on the columns' horizontal arms; see PrefixRows.
+  std::vector<std::uint16_t> counted_;
   // Where all texels are opaque: Σ count · texel in four channels, of which alpha is 65535 times the votes.
   hwy::AlignedFreeUniquePtr<std::uint32_t[]> sums_;
   // Where they are not: Σ count · alpha · colour, and Σ count · alpha; Σ count.

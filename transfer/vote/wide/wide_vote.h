@@ -1,16 +1,37 @@
 // Voting in large windows (Sýkora et al. 2019, section 3.3): not pixel by pixel, but chunk by chunk.
 #pragma once
 
-#include "core/image/picture.h"
+#include "scumble/picture.h"
 #include "core/filter/parallel.h"
+#include "transfer/exemplar/usable_rows.h"
 #include "transfer/vote/vote.h"
+#include "transfer/vote/wide/wide_arms.h"
+#include "transfer/vote/wide/run_sums.h"
+#include "transfer/vote/wide/chunk_runs.h"
 
 namespace scumble::internal {
 
-// From this radius on it is quicker than visiting every pixel of the window; up to kWidestRadius the sums fit.
-inline constexpr int kWideRadius = 4, kWidestRadius = 127;
+// What one thread works in; kept from call to call.
+struct WideScratch {
+  WideTile tile;
+  WideArms arms;
+  WideSums sums;
+};
 
-// The same picture as Vote's to the bit, for radii of kWideRadius … kWidestRadius.
+// What all threads share that vote with one exemplar, which must outlive it.
+class WideVotes {
+ public:
+  explicit WideVotes(const PreparedExemplar& exemplar) : exemplar_(exemplar), usable_(exemplar) {}
+  // Votes on the input's region in this thread. The input's exemplar is this one, its radius at most kWidestRadius; its
+  // field and `active` need only hold the rows of the region and those up to the radius above and below.
+  void Vote(const VoteInput& input, WideScratch& scratch, Picture& out) const;
+
+ private:
+  const PreparedExemplar& exemplar_;
+  UsableRows usable_;
+};
+
+// The same picture as Vote's to the bit, for radii of 0 … kWidestRadius.
 bool WideVote(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -1,0 +1,40 @@
+// Options of commands that paint: the picture, its frames, and how much time it may take.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/cli/app/options.h"
+#include "pipeline/quality/budget_choice.h"
+#include "pipeline/requests.h"
+
+namespace scumble {
+
+struct PictureOptions {
+  PictureRequest request;
+  std::string fps;
+  std::string exposure = "auto";
+  std::string show;
+};
+// `needed`: the command does nothing without an output.
+void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed);
+// Chunks are measured where the report is JSON, which has room for them.
+Expected<PictureRequest> ToRequest(const PictureOptions& options, const Globals& globals);
+
+struct SequenceOptions {
+  std::string frames;  // as ParseFrames takes them; empty: one picture, no sequence
+  bool resume = false;
+};
+void AddSequenceOptions(CLI::App& verb, SequenceOptions& options);
+Expected<SequenceRequest> ToRequest(const SequenceOptions& options);
+
+struct BudgetOptions {
+  BudgetRequest request;
+  std::string quality;
+};
+// `casts`: the command makes its guides itself. To be called after AddPictureOptions.
+void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts);
+// Looks at which options were given; a usage error where they exclude each other.
+Expected<BudgetRequest> ToRequest(const CLI::App& verb, const BudgetOptions& options);
+
+}  // namespace scumble

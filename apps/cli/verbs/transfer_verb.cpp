@@ -1,0 +1,63 @@
+// scumble transfer.
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <utility>
+
+#include "apps/cli/app/command.h"
+#include "apps/cli/app/frame_report.h"
+#include "apps/cli/app/options.h"
+#include "apps/cli/app/picture_options.h"
+#include "pipeline/run/run_requests.h"
+#include "pipeline/scene/scene_guides.h"
+
+namespace scumble {
+namespace {
+
+struct TransferVerb {
+  std::string guides, view_layer, camera;
+  StyleRequest style;
+  PictureOptions picture;
+  BudgetOptions budget;
+  SequenceOptions sequence;
+};
+
+Expected<TransferRequest> ToRequest(const CLI::App& sub, const TransferVerb& verb, const Globals& globals) {
+  if (IsScene(verb.guides)) {
+    return InputError(verb.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
+  }
+  TransferRequest request{verb.guides, verb.view_layer, verb.camera, verb.style, {}, {}, {}};
+  SCUMBLE_ASSIGN(request.picture, ToRequest(verb.picture, globals));
+  SCUMBLE_ASSIGN(request.budget, ToRequest(sub, verb.budget));
+  SCUMBLE_ASSIGN(request.sequence, ToRequest(verb.sequence));
+  return request;
+}
+
+Expected<ExitCode> RunTransferVerb(const CLI::App& sub, const TransferVerb& verb, const Globals& globals) {
+  SCUMBLE_ASSIGN(TransferRequest request, ToRequest(sub, verb, globals));
+  SequencePrinter printer(globals);
+  SCUMBLE_ASSIGN(const RunReport report, RunTransfer(std::move(request), printer.Listener(), globals));
+  return PrintRun(report, globals, printer);
+}
+
+}  // namespace
+
+void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
+  auto verb = std::make_shared<TransferVerb>();
+  CLI::App* sub = app.add_subcommand("transfer", "guides + style -> picture, from a guide file of guidegen or a Blender render");
+  sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
+  sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file")->type_name("NAME");
+  sub->add_option("--camera", verb->camera, "the .camera file of a Blender render; left out: found from its Position pass")
+      ->type_name("FILE");
+  AddStyleOptions(*sub, verb->style, true);
+  AddPictureOptions(*sub, verb->picture, true);
+  AddBudgetOptions(*sub, verb->budget, false);
+  AddSequenceOptions(*sub, verb->sequence);
+  AddTimingOption(*sub, globals);
+  AddMemoryOption(*sub, globals);
+  AddGlobalOptions(*sub, globals);
+  sub->callback([verb, sub, &globals, &chosen] {
+    chosen = [verb, sub, &globals] { return RunTransferVerb(*sub, *verb, globals); };
+  });
+}
+
+}  // namespace scumble

@@ -1,0 +1,29 @@
+// Which scene is drawn, and how it is seen.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace scumble {
+
+// A view without a camera: at the scene's centre, from a direction.
+struct SceneView {
+  double azimuth = 35.0;    // degrees, from +Z towards +X
+  double elevation = 20.0;  // degrees above the horizon, -90 … 90
+  double distance = 0.0;    // metres; 0: the scene is framed
+};
+
+struct SceneSettings {
+  std::string file;  // .glb, .gltf, .obj, .ply; .blend where Blender is installed
+  int width = 1280, height = 720;  // pixels
+  std::string camera;              // by name; empty: the scene's first, or a view that frames it
+  std::optional<SceneView> view;   // instead of a camera
+  std::optional<int> frame;        // of an animation; empty: at rest
+  std::string animation;           // by name, where a file has several; "*": all; empty: the first
+  double frames_per_second = 0.0;  // 0: a .blend's own, otherwise 24
+  int coverage_samples = 1;        // N × N samples of the silhouette, 1 … 16
+  int light_samples = 64;          // of each pixel, where light is sampled
+  std::string instruction_set;     // "sse2", "sse4.2", "avx", "avx2", "avx512"; empty: the best of this machine
+};
+
+}  // namespace scumble

@@ -1,0 +1,65 @@
+// Errors as values: a user's mistake or a failing disk returns an Error inside Expected<T>. Nothing here throws on purpose;
+// what the standard library throws (std::bad_alloc) passes through.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace scumble {
+
+// What kind of failure it was. The command line turns the kind into an exit code; libraries never exit.
+enum class ErrorKind {
+  kUsage,        // the caller asked for something that makes no sense
+  kInput,        // a file or value is unreadable or invalid
+  kOutput,       // something could not be written
+  kUnavailable,  // understood, but not built into this version
+  kCancelled,    // the caller's progress callback asked to stop
+  kMemory,       // the machine, or a limit such as ulimit's, gives no more memory or threads
+};
+
+// `message` is one sentence or two: the file, what was found, what was expected, and how to fix it.
+struct Error {
+  ErrorKind kind = ErrorKind::kInput;
+  std::string message;
+};
+
+inline Error UsageError(std::string message) { return {ErrorKind::kUsage, std::move(message)}; }
+inline Error InputError(std::string message) { return {ErrorKind::kInput, std::move(message)}; }
+inline Error OutputError(std::string message) { return {ErrorKind::kOutput, std::move(message)}; }
+inline Error UnavailableError(std::string message) { return {ErrorKind::kUnavailable, std::move(message)}; }
+inline Error MemoryError(std::string message) { return {ErrorKind::kMemory, std::move(message)}; }
+inline Error CancelledError() { return {ErrorKind::kCancelled, "cancelled"}; }
+
+// Either a value or an Error. Test it with `if (!result)` before taking the value.
+template <class T>
+class [[nodiscard]] Expected {
+ public:
+  Expected(T value) : state_(std::in_place_index<0>, std::move(value)) {}
+  Expected(Error error) : state_(std::in_place_index<1>, std::move(error)) {}
+
+  bool ok() const { return state_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+
+  T& value() & { return std::get<0>(state_); }
+  const T& value() const& { return std::get<0>(state_); }
+  T&& value() && { return std::get<0>(std::move(state_)); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+
+  const Error& error() const& { return std::get<1>(state_); }
+  Error&& error() && { return std::get<1>(std::move(state_)); }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+// Success without a value.
+struct Done {};
+using Status = Expected<Done>;
+inline Status Ok() { return Done{}; }
+
+}  // namespace scumble

@@ -1,0 +1,74 @@
+// Scene and style to picture. A Stylizer keeps what it has loaded, cast and prepared, and makes again only what a changed
+// request makes stale: a changed key of the style casts no ray, a changed camera loads no file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "scumble/guides.h"
+#include "scumble/picture.h"
+#include "scumble/progress.h"
+#include "scumble/scene.h"
+#include "scumble/status.h"
+#include "scumble/style.h"
+
+// The folder of bundled styles and of the scripts for Blender; the installed package defines it.
+#ifndef SCUMBLE_DATA_FOLDER
+#define SCUMBLE_DATA_FOLDER ""
+#endif
+
+namespace scumble {
+
+struct StylizerOptions {
+  int threads = 0;                // 0: all
+  std::uint64_t max_memory = 0;   // bytes; what needs more is refused with kMemory or kUsage. 0: what the machine has
+  std::string data_folder = SCUMBLE_DATA_FOLDER;  // share/scumble; empty: no bundled styles
+  std::string cache_folder;                       // for look-up tables; empty: they are not kept
+  std::function<void(const std::string& line, bool is_warning)> message;  // on the calling thread; null: dropped
+  Progress progress;  // of each call, 0 … 1; returning false cancels it
+};
+
+struct PaintSettings {
+  std::uint64_t seed = 0;          // another seed, another pattern; the same seed, the same bytes
+  std::optional<double> exposure;  // stops, for styles that look at light; empty: fitted to the brightest exemplar
+  int upsample = 1;                // guides are so many times smaller than the picture
+};
+
+// How often each kind of work was done so far.
+struct StylizerCounters {
+  std::size_t scenes_loaded = 0;    // from files
+  std::size_t guides_cast = 0;      // rays were cast
+  std::size_t styles_loaded = 0;    // from files
+  std::size_t styles_prepared = 0;  // exemplars were resized, tables built
+  std::size_t frames_painted = 0;
+};
+
+class Stylizer {
+ public:
+  explicit Stylizer(StylizerOptions options = {});
+  ~Stylizer();
+  Stylizer(Stylizer&&) noexcept;
+  Stylizer& operator=(Stylizer&&) noexcept;
+
+  // Paints a picture: the bytes that `scumble stylize` would write. One call at a time. Errors: kUsage for settings that
+  // make no sense, kInput for files, kUnavailable where Blender is missing, kMemory, kCancelled.
+  Expected<Picture> Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint = {});
+
+  // The guides of a scene: A, normal, depth, object, material, and the layers asked for.
+  Expected<GuideLayers> Guides(const SceneSettings& scene, const LayerSet& layers = {});
+
+  // Ends the call at work, which returns kCancelled. From any thread, any number of times.
+  void Cancel();
+
+  StylizerCounters counters() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace scumble

@@ -1,0 +1,47 @@
+#include "pipeline/frame/frame_painter.h"
+
+#include "pipeline/file_cache.h"
+
+namespace scumble {
+
+Expected<PreparedStyle> PrepareStyle(const Style& style, int height, const RunContext& context) {
+  FileCache cache(context.cache_folder);
+  PrepareOptions options;
+  options.cache = &cache;
+  options.threads = context.threads;
+  return Prepare(style, height, options);
+}
+
+double ExposureOf(std::optional<double> given, std::span<const PreparedStyle> prepared, const GuideSet& guides,
+                  int threads) {
+  return given ? *given : MeasureExposure(prepared, guides, threads).value_or(0.0);
+}
+
+FrameRate RateOf(std::optional<FrameRate> given, const GuideSet& guides) {
+  if (given) return *given;
+  const auto told = guides.attributes.find("scumble:fps");
+  if (told != guides.attributes.end()) {
+    if (const auto rate = ParseFrameRate(told->second)) return *rate;  // guides may come from anywhere
+  }
+  return FrameRate();
+}
+
+Status PaintFrame(std::span<const PreparedStyle> prepared, const StyleMap* map, const GuideSet& guides,
+                  const FrameSettings& settings, const RunContext& context, const Progress& progress,
+                  TransferScratch& scratch, Picture& picture) {
+  TransferOptions options;
+  options.seed = settings.seed;
+  options.frame = settings.frame;
+  options.fps_numerator = settings.fps.numerator, options.fps_denominator = settings.fps.denominator;
+  options.exposure = settings.exposure;
+  options.threads = context.threads;
+  options.over = settings.over;
+  options.keep_field = settings.keep_field;
+  options.progress = progress;
+  if (!map) return Transfer(prepared.front(), guides, options, scratch, picture);
+  std::vector<const PreparedStyle*> pointers;
+  for (const PreparedStyle& one : prepared) pointers.push_back(&one);
+  return Transfer(pointers, *map, guides, options, scratch, picture);
+}
+
+}  // namespace scumble

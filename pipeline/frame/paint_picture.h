@@ -1,0 +1,98 @@
+// Guides and styles in, a picture file and its report out: what `transfer` and `stylize` have in common.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image/guides.h"
+#include "core/image/progress.h"
+#include "core/io/picture_file.h"
+#include "pipeline/frame/frame_painter.h"
+#include "pipeline/frame/frame_report.h"
+#include "pipeline/frame/provenance.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
+#include "pipeline/style/style_set.h"
+#include "transfer/transfer.h"
+
+namespace scumble {
+
+// Settings that --resume compares, of styles that are at the picture's frame. Rate, exposure and the samples of the
+// guides' light where they are known already.
+PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
+                           std::optional<int> samples);
+
+// The value of the attribute kSamplesKey; empty where guides do not have it.
+std::optional<int> SamplesAsked(const std::map<std::string, std::string>& attributes);
+
+// Where the guides come from.
+struct GuideSource {
+  std::string name;                    // the file, for messages
+  StepTimes times;                     // of the steps that led to them
+  std::vector<PlanItem> plan;          // reported unless it is empty
+  std::optional<SceneCost> cost = {};  // of casting them, where they were cast
+  MemoryNeed memory = {};              // of the whole run
+};
+
+// What a sequence keeps from frame to frame.
+struct PictureState {
+  std::vector<PreparedStyle> prepared;  // by style; empty: not yet
+  std::optional<double> exposure;       // stops, once given or measured
+  TransferScratch scratch;
+  ExemplarHashes hashes;
+  std::string over_file;        // that `over` is from
+  std::optional<Picture> over;  // one picture underneath all frames is read once
+  int width = 0, height = 0;    // of the first frame's guides
+  bool warned = false;          // of options that change nothing
+  bool warned_of_size = false;
+};
+
+// Reads PictureRequest::over, unless `state` has it already.
+Status ReadOver(const std::string& file, PictureState& state);
+
+// Of two lighting conditions with one luminance only the first is ever chosen: the others, with what is wrong
+// and how to fix it.
+struct EqualLight {
+  std::string image, what, fix;
+};
+std::vector<EqualLight> EqualLights(const Style& style, const PreparedStyle& prepared);
+
+// "luminance 0.8, given" or where it is measured. `rim` is the style's.
+std::string DescribeLuminance(const Exemplar& exemplar, double rim);
+
+// Brings the styles to the request's frame and prepares what has changed since the last call; finds the exposure if it
+// is not known yet. PaintPicture calls it.
+Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureRequest& request, const RunContext& context,
+                    PictureState& state);
+
+// A frame that is made, and has still to be encoded and written: does that once, on any thread, and needs nothing that
+// the next frame changes.
+using FrameWrite = std::function<Expected<FrameReport>()>;
+
+// A picture in memory, how its file is to be written, and its report without the step of writing.
+struct PaintedPicture {
+  Picture picture;
+  PictureWriteOptions write;
+  FrameReport report;
+};
+
+// Prepares, transfers `repeat` times and makes the picture, or the explanation that was asked for.
+Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+                                       const PictureRequest& request, const RunContext& context,
+                                       const Progress& progress, PictureState& state);
+
+// As PaintInMemory; the returned function writes the picture to request.output and reports.
+Expected<FrameWrite> PaintPicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+                                  const PictureRequest& request, const RunContext& context, const Progress& progress,
+                                  PictureState& state);
+
+// Settings of the transfer that are read frame by frame: where only these change, exemplars stay prepared.
+bool IsReadEachFrame(const std::string& key);
+
+// Whether the exposure is measured, and by some style is looked at.
+bool MeasuresExposure(const StyleSet& styles, const PictureRequest& request);
+
+}  // namespace scumble

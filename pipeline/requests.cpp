@@ -1,0 +1,34 @@
+#include "pipeline/requests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "core/image/guides.h"
+#include "core/io/picture_file.h"
+
+namespace scumble {
+
+std::string SizeToText(const Size& size) { return fmt::format("{}x{}", size.width, size.height); }
+
+Status CheckSize(const Size& size, const std::string& text) {
+  if (size.width < 1 || size.height < 1 || size.width > kMaxImageSide || size.height > kMaxImageSide) {
+    return UsageError("--size " + text + ": expected WIDTHxHEIGHT, as in 1920x1080, each 1 to " +
+                      std::to_string(kMaxImageSide));
+  }
+  if (std::int64_t(size.width) * size.height > kMaxPicturePixels) {
+    return UsageError("--size " + text + ": expected at most " + std::to_string(kMaxPicturePixels) +
+                      " pixels in all, as in 16384x16384");
+  }
+  return Ok();
+}
+
+bool HasEnding(const std::string& path, std::initializer_list<const char*> endings) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+}  // namespace scumble

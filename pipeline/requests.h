@@ -1,0 +1,108 @@
+// What can be asked of the pipeline: typed values with defaults. Applications parse text into them once
+// (apps/cli/app/options.h does for the command line); nothing below reads a number out of text again.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image/layers.h"
+#include "core/image/status.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "measure/mosaic/explain.h"
+#include "pipeline/frame_rate.h"
+
+namespace scumble {
+
+class MemoryNeed;
+
+// Pixels.
+struct Size {
+  int width = 0;
+  int height = 0;
+
+  bool operator==(const Size&) const = default;
+};
+
+// "1920x1080".
+std::string SizeToText(const Size& size);
+
+// Ok, or a kUsage error where a picture of this size cannot be made; `text` is what the user wrote.
+Status CheckSize(const Size& size, const std::string& text);
+
+// Whether a path has one of these endings (".exr"), in letters of either case.
+bool HasEnding(const std::string& path, std::initializer_list<const char*> endings);
+
+// How Blender is run for .blend scenes.
+struct BlenderRequest {
+  std::string program;       // a path, or a name looked up in PATH; empty: "blender"
+  std::optional<int> frame;  // empty: the one that the file was saved at
+  bool wants_start = false;  // BlenderAnimation::start in any case
+};
+
+// Everything that turns a scene into guides.
+struct SceneRequest {
+  std::string scene;  // .glb .gltf .obj .ply .blend
+  Size size{1280, 720};
+  std::string camera;              // a name; empty: the scene's first
+  std::optional<ViewAngles> view;  // instead of a camera
+  int aa = 1;                      // N × N subsamples of the coverage, 1 … 16
+  NormalFrame normal_frame = NormalFrame::kCamera;
+  std::string isa;  // as GuidegenOptions::isa
+  bool robust = true;
+  bool half = false;        // colour layers as half floats
+  BlenderRequest blender;   // for .blend scenes
+  std::string animation;    // of a glTF file with several, as AnimationOptions has it
+  std::optional<FrameRate> fps;  // empty: a .blend's own, otherwise FrameRate()
+  // Light-path layers, as in GuidegenOptions.
+  int samples = GuidegenOptions().samples;
+  bool samples_given = false;  // then they are the most that noise or a time budget may take
+  int max_bounces = GuidegenOptions().max_bounces;
+  double noise = 0.0;
+  double time_budget_seconds = 0.0;
+  std::uint64_t seed = 0;
+  // Adds the memory that the run needs besides the guides, before any is allocated; null: nothing.
+  std::function<void(const Size& size, const LayerSet& layers, MemoryNeed& need)> more_memory;
+  bool key_light = true;  // let one shine where the file has no light and a layer needs some
+};
+
+// A style and what a run changes of it.
+struct StyleRequest {
+  std::string style;                  // a folder, a style.toml, a picture of a sphere, or a bundled style's name
+  std::vector<std::string> sets;      // "[NAME:]KEY=VALUE", the later wins
+  std::vector<std::string> assigned;  // "NAME=STYLE", or "@FILE" of such lines
+  bool scene_styles = true;           // follow the property scumble_style of objects and materials
+  std::function<Status(std::uint64_t bytes)> room = {};  // as LoadStyle takes it
+};
+
+// What becomes of the paint: a picture file.
+struct PictureRequest {
+  std::string output;  // .png .tif .exr .jpg
+  std::string over;    // a picture underneath, of the same size; empty: none
+  int bits = 8;
+  int png_level = 6;
+  bool fast_io = false;
+  std::optional<int> frame;
+  std::optional<FrameRate> fps;     // empty: what the guides say, or FrameRate()
+  std::optional<double> exposure;   // stops; empty: measured
+  std::uint64_t seed = 0;
+  int repeat = 1;    // times to run the transfer, for the spread of its times
+  int upsample = 1;  // the picture is so many times as wide and high as the guides
+  std::optional<Explanation> show;  // this explanation instead of the picture
+  bool measure_chunks = false;      // report coherence and chunks, for which the source field is kept
+
+  // Whether the source field outlives the transfer, which takes more time.
+  bool KeepsField() const { return measure_chunks || show.has_value(); }
+};
+
+// A range of frames.
+struct SequenceRequest {
+  std::vector<int> frames;  // empty: one picture, no sequence
+  bool resume = false;
+};
+
+}  // namespace scumble

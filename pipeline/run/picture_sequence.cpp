@@ -1,0 +1,121 @@
+#include "pipeline/run/picture_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/io/file/existing_output.h"
+#include "core/io/picture_file.h"
+#include "core/style/style_keyframes.h"
+
+namespace scumble {
+namespace {
+
+// The request of one frame of a sequence: its own names, its own number.
+Expected<PictureRequest> RequestAt(const PictureRequest& request, int frame, const std::string& output) {
+  PictureRequest one = request;
+  one.frame = frame, one.output = output;
+  SCUMBLE_ASSIGN(const FrameName over, FrameName::Parse(request.over));
+  one.over = over.At(frame);
+  return one;
+}
+
+}  // namespace
+
+Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress) {
+  SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
+  if (!MustLookAhead(sequence)) return Ok();
+  const int first = sequence.frames.front();
+  const Expected<FrameGuides> found = guides_at(first, progress);
+  if (!found) {
+    return Error{found.error().kind, found.error().message + "; frame " + std::to_string(first) +
+                                         " is the one that --exposure auto is measured on: give --exposure STOPS"};
+  }
+  SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, first, request_.output));
+  SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, context_, state_));
+  context_.Warn(fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
+                   "give each --exposure {:.2f}",
+                   first, *state_.exposure));
+  return Ok();
+}
+
+Status PictureSequence::ReadOverOfAll(int width, int height) {
+  SCUMBLE_ASSIGN(const FrameName over, FrameName::Parse(request_.over));
+  if (request_.over.empty() || over.has_place()) return Ok();
+  SCUMBLE_RETURN_IF_ERROR(ReadOver(request_.over, state_));
+  if (width == 0 || (state_.over->width == width && state_.over->height == height)) return Ok();
+  return InputError(fmt::format("--over {} is {}×{}, the frames are {}×{}: render both at one size", request_.over,
+                                state_.over->width, state_.over->height, width, height));
+}
+
+
+Status PictureSequence::Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
+             std::optional<int> samples) {
+  for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
+  const std::optional<double> exposure = request_.exposure;
+  PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {request_.bits}), {}};
+  PictureSettings settings = SettingsOf(request_, fps, exposure, samples);
+  if (exposure) settings.measured.reset();  // stops that were measured may be given to go on with
+  shape.settings = SettingsText(styles_, settings, state_.hashes);
+  return CheckWholePicture(output, shape);
+}
+
+bool PictureSequence::MustLookAhead(const Sequence& sequence) const {
+  return sequence.frames.size() > 1 && MeasuresExposure(styles_, request_);
+}
+
+
+Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
+                           const Progress& progress) {
+  SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, frame, output));
+  SCUMBLE_ASSIGN(const FrameGuides found, guides_at(frame, Within(progress, 0.0, guides_share)));
+  return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0),
+                       state_);
+}
+
+
+Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+                                  const PictureRequest& request, const RunContext& context, const Progress& progress) {
+  PictureState state;
+  SCUMBLE_ASSIGN(const FrameWrite write, PaintPicture(styles, guides, source, request, context, progress, state));
+  RunReport report;
+  SCUMBLE_ASSIGN(report.frame, write());
+  report.paints = true;
+  context.EndStage("write");
+  report.warnings = AssignmentReport(styles);
+  return report;
+}
+
+PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const Size& guides, const LayerSet& layers,
+                   bool is_sequence, const RunContext& context) {
+  const bool has_map = styles.styles.size() > 1 || !styles.assigned.empty();
+  return {styles.styles, has_map, guides, layers, is_sequence, picture.KeepsField(), context.threads};
+}
+
+Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+                  const StyleSet& styles) {
+  SCUMBLE_ASSIGN(const auto overs, NamesOf(picture.over, sequence));
+  for (const std::string& over : overs) files.Reads("the picture of --over", over);
+  files.ReadsStyles(styles);
+  SCUMBLE_ASSIGN(const auto outputs, NamesOf(picture.output, sequence));
+  return files.CheckOutputs(outputs);
+}
+
+FilesCheck CheckOfSceneStyles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+                         const StyleSet& styles) {
+  return [&] { return files.KnowsStyles(styles) ? Ok() : CheckFiles(files, picture, sequence, styles); };
+}
+
+Expected<std::string> OverOnTrial(const PictureRequest& picture, const std::optional<Sequence>& sequence) {
+  SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(picture.over));
+  if (sequence) return name.At(sequence->frames.front());
+  return name.must_have_frame() ? std::string() : picture.over;
+}
+
+Status NameOne(PictureRequest& picture) {
+  SCUMBLE_ASSIGN(picture.output, NameOfOne(picture.output, picture.frame));
+  SCUMBLE_ASSIGN(picture.over, NameOfOne(picture.over, picture.frame));
+  return Ok();
+}
+
+}  // namespace scumble

@@ -1,0 +1,79 @@
+// A sequence of pictures whose guides come from files or from a scene, and the checks that both kinds of run share.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/image/guides.h"
+#include "pipeline/frame/paint_picture.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/requests.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/run/run_requests.h"
+#include "pipeline/run/sequence.h"
+#include "pipeline/run_context.h"
+#include "pipeline/style/style_set.h"
+
+namespace scumble {
+
+// Where the frames of a sequence get their guides from.
+struct FrameGuides {
+  const GuideSet* guides = nullptr;  // valid until the next call
+  GuideSource source;
+};
+using GuidesAt = std::function<Expected<FrameGuides>(int frame, const Progress& progress)>;
+
+// The styles, the request and the state of a sequence of pictures. Styles, request and context are borrowed.
+class PictureSequence {
+ public:
+  PictureSequence(StyleSet& styles, const PictureRequest& request, const RunContext& context)
+      : styles_(styles), request_(request), context_(context) {}
+
+  // A measured exposure is measured on the first frame of the range, even where that one is kept: a sequence that is
+  // resumed goes on as it began. One picture underneath all frames must be there, and have the size of the first that
+  // is known.
+  Status Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress);
+  Status ReadOverOfAll(int width, int height);
+
+  // Whether a picture that is there is one that Make would make, as far as can be told without its guides. `samples`:
+  // of its guides' light, where that is known.
+  Status Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
+               std::optional<int> samples);
+  bool MustLookAhead(const Sequence& sequence) const;
+
+  Expected<FrameWrite> Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
+                            const Progress& progress);
+
+ private:
+  StyleSet& styles_;
+  const PictureRequest& request_;
+  const RunContext& context_;
+  PictureState state_;
+};
+
+// One picture: painted, written and reported.
+Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
+                                  const PictureRequest& request, const RunContext& context, const Progress& progress);
+
+// The memory that painting a frame needs besides its guides.
+PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const Size& guides, const LayerSet& layers,
+                   bool is_sequence, const RunContext& context);
+
+// Registers the inputs of styles and picture, and checks the outputs against all inputs.
+Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+                  const StyleSet& styles);
+
+// CheckFiles once more, where scene or guides have asked for styles that were not open then. All are borrowed.
+using FilesCheck = std::function<Status()>;
+FilesCheck CheckOfSceneStyles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+                              const StyleSet& styles);
+
+// The picture underneath that trials of a budget paint over: a sequence's first. A plan alone may leave open which frame
+// it is of, and then nothing is underneath.
+Expected<std::string> OverOnTrial(const PictureRequest& picture, const std::optional<Sequence>& sequence);
+
+// Fills places for a frame's number in the names of a single picture.
+Status NameOne(PictureRequest& picture);
+
+}  // namespace scumble

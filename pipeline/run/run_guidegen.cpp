@@ -1,0 +1,148 @@
+// A scene to guide files: one, or a range of frames.
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/image/stopwatch.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/file/existing_output.h"
+#include "core/io/guide_file.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/run/run_requests.h"
+#include "pipeline/scene/scene_sequence.h"
+#include "pipeline/style/style_set.h"
+
+namespace scumble {
+namespace {
+
+// `guides` apart from the rest, so that nobody copies them.
+FrameReport ReportOf(const GuidegenRequest& request, const std::string& output, const GuideSet& guides,
+                     const SceneGuides& made) {
+  const bool open_ended = request.scene.noise > 0.0 || request.scene.time_budget_seconds > 0.0;
+  GuidesReport report{output,       guides.width(), guides.height(), guides.layers(),
+                      made.samples, made.noise,     open_ended,      made.times};
+  return {std::move(report), request.explain ? made.plan : std::vector<PlanItem>(), made.memory, made.cost, 0, 0.0};
+}
+
+void NameStylesInPlan(std::vector<PlanItem>& plan, const std::optional<StyleSet>& styles) {
+  if (!styles) return;
+  for (const Style& style : styles->styles) NameStyleInPlan(plan, style);
+}
+
+Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Sequence& sequence, const LayersFor& layers_for,
+                                    bool motion, const std::optional<StyleSet>& styles, const SequenceListener& listener, const RunContext& context) {
+  const Size& size = request.scene.size;
+  SceneFrames scene(request.scene, layers_for, motion, context);
+  const std::string settings = GuideSettings(request.scene);
+  SequenceWork work;
+  // What the scene wishes is in the file as well, so that nothing is loaded where nothing is left to make.
+  work.check = [&](int, const std::string& output) -> Status {
+    const Expected<GuideFileInfo> info = InspectGuides(output);
+    SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? WishesOf(info->header) : StyleWishes()));
+    return CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()), request.scene.half, settings});
+  };
+  work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
+  work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
+    SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
+    SceneGuides report;  // what there is to say; the pixels stay where they are
+    report.times = guides->times, report.plan = guides->plan, report.cost = guides->cost;
+    report.memory = guides->memory;
+    report.samples = guides->samples, report.noise = guides->noise;
+    NameStylesInPlan(report.plan, styles);
+    return FrameWrite([&request, output, kept = scene.Keep(),
+                       told = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
+      Stopwatch watch;
+      const std::uint64_t before = BytesWrittenByThisThread();
+      SCUMBLE_RETURN_IF_ERROR(WriteGuides(output, kept->guides, request.write));
+      const double ms = watch.Lap();
+      told->times.emplace_back("write", ms);
+      FrameReport done = ReportOf(request, output, kept->guides, *told);
+      done.bytes_written = BytesWrittenByThisThread() - before;
+      done.write_ms = ms;
+      return done;
+    });
+  };
+  RunReport report;
+  SCUMBLE_ASSIGN(report.sequence,
+                 RunSequence(sequence, work, listener, context, context.StartProgress("guidegen")));
+  return report;
+}
+
+Status CheckFiles(RunFiles& files, const GuidegenRequest& request, const std::optional<Sequence>& sequence,
+                  const std::optional<StyleSet>& styles) {
+  files.ReadsScene(request.scene.scene);
+  if (styles) files.ReadsStyles(*styles);
+  SCUMBLE_ASSIGN(const auto outputs, NamesOf(request.output, sequence));
+  return files.CheckOutputs(outputs);
+}
+
+}  // namespace
+
+Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener& listener, const RunContext& context) {
+  const LayerSet asked = request.layers;
+  const bool motion = asked.Has(Layer::kMotion);
+  std::optional<StyleSet> styles;
+  if (request.style) {
+    if (!request.output.empty()) request.style->room = RoomForStyles(context);  // a plan refuses nothing
+    SCUMBLE_ASSIGN(styles, OpenStyles(*request.style, context));
+    context.EndStage("style");
+  }
+  SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.scene.blender.frame, request.output));
+  const bool plan_only = request.output.empty();
+  RunFiles files;
+  const LayersFor layers_for = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
+    LayerSet layers = asked;
+    if (!styles) return layers;
+    SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, wishes, request.scene.scene));
+    // Once more, where the scene has asked for styles.
+    if (!plan_only && !files.KnowsStyles(*styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
+    return layers.Add(read);
+  };
+  const std::optional<int> frame = request.scene.blender.frame;
+  if (plan_only && !request.explain)
+    return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckGuideTarget(request.output, request.write));
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
+  if (!sequence) {
+    SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.scene.blender.frame));
+  }
+  if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
+  request.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    if (behind) AddGuidesBehind(size, layers, need);
+    AddGuideFile(size, layers, need);
+  };
+  if (sequence && !plan_only) return GuidegenSequence(request, *sequence, layers_for, motion, styles, listener, context);
+  if (sequence && IsBlenderScene(request.scene.scene)) request.scene.blender.frame = sequence->frames.front();
+  const Progress progress = context.StartProgress("guidegen");
+  SceneGuides made;
+  if (frame && !plan_only) {
+    SCUMBLE_ASSIGN(made, MakeGuidesAt(*frame, request.scene, layers_for, motion, context, progress));
+  } else {
+    // A plan is the same at any time.
+    const bool timeless = plan_only && (frame || sequence);
+    SceneRequest scene = request.scene;
+    if (timeless) scene.animation.clear();
+    SCUMBLE_ASSIGN(made, MakeGuidesAtRest(scene, layers_for, motion && !timeless, context, progress,
+                                          plan_only));
+  }
+  NameStylesInPlan(made.plan, styles);
+  if (!plan_only) {
+    Stopwatch watch;
+    SCUMBLE_RETURN_IF_ERROR(WriteGuides(request.output, made.guides, request.write));
+    made.times.emplace_back("write", watch.Lap());
+    context.EndStage("write");
+  }
+  RunReport report;
+  if (plan_only) {
+    report.plan = std::move(made.plan);
+    report.memory = std::move(made.memory);
+    return report;
+  }
+  report.frame = ReportOf(request, request.output, made.guides, made);
+  report.frame->bytes_written = BytesWrittenByThisThread();
+  return report;
+}
+
+}  // namespace scumble

@@ -1,0 +1,185 @@
+// A scene and styles to pictures: one, or a range of frames.
+#include <fmt/format.h>
+
+#include <span>
+#include <utility>
+
+#include "core/image/stopwatch.h"
+#include "core/io/blender/blender_camera.h"
+#include "core/io/guide_file.h"
+#include "core/io/picture_file.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/picture_sequence.h"
+#include "pipeline/run/run_requests.h"
+#include "pipeline/scene/scene_sequence.h"
+
+namespace scumble {
+namespace {
+
+LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene, const FilesCheck& check_files) {
+  return [&styles, scene, check_files](const StyleWishes& wishes) -> Expected<LayerSet> {
+    SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, wishes, scene));
+    SCUMBLE_RETURN_IF_ERROR(check_files());
+    return layers;
+  };
+}
+
+// The guides' size for a picture of the request's size that is painted upsampled.
+Status ShrinkGuides(StylizeRequest& request) {
+  const int factor = request.picture.upsample;
+  if (factor == 1) return Ok();
+  const Size size = request.scene.size;
+  if (size.width % factor || size.height % factor) {
+    return UsageError(fmt::format("--size {} with --upsample {}: the guides are {} times smaller, so both sides must be "
+                                  "multiples of {}; take --size {}x{}",
+                                  SizeToText(size), factor, factor, factor, (size.width + factor - 1) / factor * factor,
+                                  (size.height + factor - 1) / factor * factor));
+  }
+  request.scene.size = {size.width / factor, size.height / factor};
+  return Ok();
+}
+
+// Refers to both.
+decltype(SceneRequest::more_memory) PaintingOf(const StyleSet& styles, const PictureRequest& picture, bool is_sequence,
+                                               const RunContext& context) {
+  return [&styles, picture, is_sequence, &context](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    AddPicture(WorkOf(styles, picture, size, layers, is_sequence, context), picture, need);
+  };
+}
+
+Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequence& sequence, StyleSet& styles,
+                                   const FilesCheck& check_files, const SequenceListener& listener, const RunContext& context) {
+  const Size& size = request.scene.size;
+  SceneRequest options = request.scene;
+  options.seed = request.picture.seed, options.fps = request.picture.fps;
+  SceneFrames scene(options, RequiredOfScene(styles, options.scene, check_files), false, context);
+  PictureSequence pictures(styles, request.picture, context);
+  const auto source = [&](const SceneGuides& made) -> FrameGuides {
+    GuideSource from{request.scene.scene, made.times, request.explain ? made.plan : std::vector<PlanItem>(), made.cost,
+                     made.memory};
+    for (const Style& style : styles.styles) NameStyleInPlan(from.plan, style);
+    return {&made.guides, std::move(from)};
+  };
+  const GuidesAt guides_at = [&](int frame, const Progress& progress) -> Expected<FrameGuides> {
+    SCUMBLE_ASSIGN(const SceneGuides* const made, scene.At(frame, progress));
+    return source(*made);
+  };
+  const GuidesAt guides_ahead = [&](int frame, const Progress& progress) -> Expected<FrameGuides> {
+    SCUMBLE_ASSIGN(const SceneGuides* const made, scene.Ahead(frame, progress));
+    return source(*made);
+  };
+  SequenceWork work;
+  // How fast a .blend plays is known when it is exported.
+  std::optional<FrameRate> fps = options.fps;
+  if (!fps && !IsBlenderScene(options.scene)) fps = FrameRate();
+  const int width = size.width * request.picture.upsample, height = size.height * request.picture.upsample;
+  work.check = [&](int frame, const std::string& output) {
+    return pictures.Check(frame, output, width, height, fps, options.samples);
+  };
+  work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
+    std::vector<int> wanted(frames.begin(), frames.end());
+    const int first = sequence.frames.front();
+    // What a .blend wants is known when its first frame is there: it may be a style that is exposed.
+    const bool may_want = IsBlenderScene(options.scene) && request.style.scene_styles && !request.picture.exposure;
+    SCUMBLE_RETURN_IF_ERROR(pictures.ReadOverOfAll(width, height));
+    const bool look = sequence.frames.size() > 1 && (may_want || pictures.MustLookAhead(sequence));
+    if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
+    SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
+    if (look && !pictures.MustLookAhead(sequence) && !guides_ahead(first, {})) return Ok();  // said when it is made
+    return pictures.Begin(sequence, width, height, guides_ahead, {});
+  };
+  work.make = [&](int frame, const std::string& output, const Progress& progress) {
+    return pictures.Make(frame, output, guides_at, 0.5, progress);
+  };
+  SCUMBLE_ASSIGN(SequenceTotals totals,
+                 RunSequence(sequence, work, listener, context, context.StartProgress("stylize")));
+  RunReport report;
+  report.sequence = std::move(totals);
+  report.paints = true;
+  report.warnings = AssignmentReport(styles);
+  return report;
+}
+
+// Without a picture: the plan of a run, why it needs each layer, and its memory.
+Expected<RunReport> PlanOf(const StylizeRequest& request, StyleSet& styles, const RunContext& context) {
+  SceneRequest scene = request.scene;
+  scene.animation.clear();  // a plan is the same at any time
+  scene.blender.frame = request.picture.frame;
+  SCUMBLE_ASSIGN(SceneGuides made, MakeGuidesAtRest(scene, RequiredOfScene(styles, scene.scene, Ok), false, context,
+                                                    context.StartProgress("stylize"), true));
+  for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
+  RunReport report;
+  report.plan = std::move(made.plan);
+  report.memory = std::move(made.memory);
+  return report;
+}
+
+// --quality and --budget-ms: by the first frame of a sequence.
+Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, const std::optional<Sequence>& sequence, StyleSet& styles, const RunContext& context) {
+  SceneRequest scene = request.scene;
+  scene.seed = request.picture.seed, scene.fps = request.picture.fps;
+  scene.more_memory = PaintingOf(styles, request.picture, sequence.has_value(), context);  // pictures are painted on trial
+  const std::optional<int> frame = sequence ? sequence->frames.front() : request.picture.frame;
+  if (!frame && request.explain && request.picture.output.empty()) scene.animation.clear();  // a plan is the same at any time
+  const int before = request.picture.upsample;
+  SCUMBLE_ASSIGN(const std::string over, OverOnTrial(request.picture, sequence));
+  SCUMBLE_ASSIGN(auto choice, ChooseForScene(request.budget, scene, frame, over, styles, request.picture, context));
+  request.scene.samples = scene.samples;
+  if (request.picture.upsample != before) SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(request));
+  return choice;
+}
+
+}  // namespace
+
+Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& listener, const RunContext& context) {
+  SCUMBLE_RETURN_IF_ERROR(ShrinkGuides(request));
+  if (request.picture.output.empty()) {
+    if (!request.explain) {
+      return UsageError("scumble stylize: -o FILE is required; with --explain and no -o the plan is printed alone");
+    }
+    SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
+    SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
+    SCUMBLE_RETURN_IF_ERROR(ChooseForStylize(request, std::nullopt, styles, context));
+    request.scene.more_memory = PaintingOf(styles, request.picture, false, context);
+    return PlanOf(request, styles, context);
+  }
+  SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.picture.output, {request.picture.bits}));
+  SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.picture.frame, request.picture.output));
+  if (!sequence) SCUMBLE_RETURN_IF_ERROR(NameOne(request.picture));
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
+  Stopwatch watch;
+  request.style.room = RoomForStyles(context);
+  SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
+  const double style_ms = watch.Lap();
+  context.EndStage("style");
+  RunFiles files;
+  files.ReadsScene(request.scene.scene);
+  SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request.picture, sequence, styles));
+  const FilesCheck check_files = CheckOfSceneStyles(files, request.picture, sequence, styles);
+  SCUMBLE_ASSIGN(auto choice, ChooseForStylize(request, sequence, styles, context));
+  request.scene.more_memory = PaintingOf(styles, request.picture, sequence.has_value(), context);
+  if (sequence) {
+    SCUMBLE_ASSIGN(RunReport report, StylizeSequence(request, *sequence, styles, check_files, listener, context));
+    report.choice = std::move(choice);
+    return report;
+  }
+  const Progress all = context.StartProgress("stylize");
+  SceneRequest scene = request.scene;
+  scene.seed = request.picture.seed, scene.fps = request.picture.fps;
+  const LayersFor layers_for = RequiredOfScene(styles, scene.scene, check_files);
+  const Progress progress = Within(all, 0.0, 0.5);
+  SCUMBLE_ASSIGN(SceneGuides made, request.picture.frame
+                                       ? MakeGuidesAt(*request.picture.frame, scene, layers_for, false, context, progress)
+                                       : MakeGuidesAtRest(scene, layers_for, false, context, progress, false));
+  SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene.scene));
+  made.times.insert(made.times.begin(), {"style", style_ms});
+  for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
+  if (!request.explain) made.plan.clear();
+  const GuideSource source{request.scene.scene, std::move(made.times), std::move(made.plan), made.cost, made.memory};
+  SCUMBLE_ASSIGN(RunReport report,
+                 RunOnePicture(styles, made.guides, source, request.picture, context, Within(all, 0.5, 1.0)));
+  report.choice = std::move(choice);
+  return report;
+}
+
+}  // namespace scumble

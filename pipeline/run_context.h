@@ -1,0 +1,62 @@
+// What a run is allowed, and where it reports to: threads, memory, messages, the clock of its stages, folders.
+//
+// No function of this library prints, exits, parses arguments or reads the environment. The application fills a
+// RunContext once and passes it down; a copy is cheap.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image/progress.h"
+
+namespace scumble {
+
+class FileCache;
+class StageClock;
+
+struct Message {
+  enum class Kind {
+    kNote,     // a decision that the user may want to know: a camera that was chosen, an exposure that was measured
+    kWarning,  // something that was asked for and has no effect, or that probably is not meant
+  };
+  Kind kind = Kind::kNote;
+  std::string text;  // one line, no newline at its end
+};
+
+struct RunContext {
+  int threads = 0;               // 0: all
+  std::uint64_t max_memory = 0;  // bytes; 0: what the machine has
+  // Starts a progress report of this label; the report ends when the returned callback is destroyed. Null: none.
+  // The callback returns false to cancel the run, which then ends with kCancelled.
+  std::function<Progress(const std::string& label)> on_progress;
+  // Receives messages on the thread that runs the request; null: they are dropped.
+  std::function<void(const Message&)> on_message;
+  std::shared_ptr<StageClock> clock;  // null: stages are not timed
+  // Look-up tables and measured times are kept here between runs; empty: nowhere.
+  std::filesystem::path cache_folder;
+  // Folders that may hold "exemplars" and "blender_scripts", the first match wins.
+  std::vector<std::filesystem::path> data_roots;
+  // The largest need of memory that was noted so far; null: needs are checked and not noted.
+  std::shared_ptr<std::atomic<std::uint64_t>> noted_memory = std::make_shared<std::atomic<std::uint64_t>>(0);
+
+  Progress StartProgress(const std::string& label) const { return on_progress ? on_progress(label) : Progress(); }
+  void Note(const std::string& text) const;
+  void Warn(const std::string& text) const;
+  // Ends a stage on the clock, as StageClock::End.
+  void EndStage(const std::string& name, const std::vector<std::pair<std::string, double>>& inside = {}) const;
+
+  // This context for work beside the run: warnings are passed on, notes are dropped, no
+  // stage is timed and no progress reported.
+  RunContext WithoutNotes() const;
+
+  // The folders of this name that are there, under data_roots.
+  std::vector<std::filesystem::path> DataFolders(const std::string& name) const;
+};
+
+}  // namespace scumble

@@ -1,0 +1,176 @@
+#include "pipeline/scene/scene_guides.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "core/image/stopwatch.h"
+#include "core/io/guide_file.h"
+#include "core/io/guides/guide_precision.h"
+#include "pipeline/frame_range.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/scene/needed_textures.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+Status CheckScene(const std::string& scene) {
+  std::error_code failed;
+  if (fs::is_directory(scene, failed)) return InputError(scene + " is a folder: name a scene file in it");
+  const bool has_ending = IsScene(scene);
+  if (!fs::exists(scene, failed) && has_ending) {
+    const Expected<FrameName> name = FrameName::Parse(scene);
+    if (!name || name->must_have_frame()) {
+      return UsageError(scene + ": a scene of one file a frame is not read as a sequence; call scumble once a frame, with " +
+                        "its file and --frame N, or export one animated .glb");
+    }
+  }
+  if (has_ending) return Ok();
+  const std::string ending = fs::path(scene).extension().string().substr(0, 40);
+  return InputError(scene + " has " + (ending.empty() ? "no ending" : "the ending '" + ending + "'") +
+                    "; expected a scene in .glb, .gltf, .obj, .ply or .blend");
+}
+
+void WarnIfNothingShows(const GuideSet& guides, const std::string& scene, const RunContext& context) {
+  const auto coverage = guides.Plane(Layer::kCoverage);
+  if (std::any_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; })) return;
+  context.Warn(scene + ": the camera sees nothing, the picture is empty; try --view or another --camera");
+}
+
+Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film) {
+  BlenderRequest blender = options.blender;
+  blender.wants_start = options.view.has_value();
+  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, context, film);
+  return LoadScene(options.scene, TextureLoading::kWhenNeeded);
+}
+
+}  // namespace
+
+bool IsScene(const std::string& path) { return HasEnding(path, {".glb", ".gltf", ".obj", ".ply", ".blend"}); }
+
+std::string ViewToText(const ViewAngles& view) {
+  return fmt::format("{},{}{}", view.azimuth, view.elevation, view.distance > 0.0 ? fmt::format(",{}", view.distance) : "");
+}
+
+Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film, bool warns) {
+  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, context, film));
+  if (!warns) return scene;
+  for (const std::string& warning : scene.warnings) context.Warn(options.scene + ": " + warning);
+  return scene;
+}
+
+Status CheckSceneRequest(const SceneRequest& request) {
+  SCUMBLE_RETURN_IF_ERROR(CheckScene(request.scene));
+  if (IsBlenderScene(request.scene)) {
+    if (request.animation.empty()) return Ok();
+    return UsageError("--animation is for glTF files; " + request.scene + " has a time of its own: leave it out");
+  }
+  if (request.blender.program.empty()) return Ok();
+  return UsageError("--blender is for .blend scenes; " + request.scene + " is read without Blender: leave it out");
+}
+
+Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, const LayerSet& layers,
+                                   const RunContext& context, const Progress& progress, bool plan_only) {
+  SCUMBLE_ASSIGN(const PreparedView prepared, ViewScene(scene, options, layers));
+  for (const std::string& note : prepared.notes) context.Note(note);
+  return CastScene(scene, prepared.camera, nullptr, options, layers, context, progress, plan_only);
+}
+
+bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers) {
+  if (!options.key_light) return false;
+  const auto needs = {Layer::kLuminance, Layer::kShadow,  Layer::kLpeFull, Layer::kLpeLDE,
+                      Layer::kLpeLSE,    Layer::kLpeLDDE, Layer::kLpeLD12E};
+  return std::any_of(needs.begin(), needs.end(), [&](Layer layer) { return layers.Has(layer); });
+}
+
+Expected<PreparedView> ViewScene(Scene& scene, const SceneRequest& options, const LayerSet& layers) {
+  const double aspect = static_cast<double>(options.size.width) / options.size.height;
+  return PrepareView(scene, options.camera, options.view, aspect, NeedsKeyLight(options, layers));
+}
+
+namespace {
+
+// The samples that were asked for; where noise or the clock decides, the most there may be.
+int SamplesOf(const SceneRequest& options) {
+  const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
+  return open_ended && !options.samples_given ? kMaxSamples : options.samples;
+}
+
+}  // namespace
+
+std::string GuideSettings(const SceneRequest& options) {
+  std::string text = fmt::format("scumble {}; aa {}; normals {}; seed {}", SCUMBLE_VERSION, options.aa,
+                                 options.normal_frame == NormalFrame::kEye ? "eye" : "camera", options.seed);
+  const auto add = [&](const char* name, std::string value) {
+    std::replace(value.begin(), value.end(), ';', ',');
+    text += fmt::format("; {} '{}'", name, value);
+  };
+  add("camera", options.camera), add("view", options.view ? ViewToText(*options.view) : "");
+  add("animation", options.animation);
+  add("fps", options.fps && *options.fps != FrameRate() ? FrameRateToText(*options.fps) : "");
+  // All of them always: what a file does not name differs.
+  return text + fmt::format("; robust {}; samples {}; bounces {}; noise {}", options.robust ? "yes" : "no",
+                            SamplesOf(options), options.max_bounces, options.noise);
+}
+
+Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next,
+                                const SceneRequest& options, const LayerSet& layers, const RunContext& context,
+                                const Progress& progress, bool plan_only) {
+  const Size& size = options.size;
+  SceneGuides result;
+  GuidegenOptions guidegen;
+  guidegen.width = size.width, guidegen.height = size.height;
+  guidegen.layers = layers;
+  guidegen.aa = options.aa;
+  guidegen.normal_frame = options.normal_frame;
+  guidegen.threads = context.threads;
+  guidegen.isa = options.isa;
+  guidegen.robust = options.robust;
+  guidegen.progress = progress;
+  guidegen.samples = options.samples;
+  guidegen.max_bounces = options.max_bounces;
+  guidegen.noise = options.noise;
+  guidegen.seed = options.seed;
+  guidegen.time_budget_seconds = options.time_budget_seconds;
+  if (options.samples_given) guidegen.max_samples = options.samples;
+  result.plan = PlanGuides(scene, guidegen);
+  AddProgram(context.threads, result.memory);
+  AddScene(scene, CountNeededPixels(scene, options, layers), result.memory);
+  AddGuides(size, layers, options, result.memory);
+  if (options.more_memory) options.more_memory(size, layers, result.memory);
+  if (plan_only) return result;
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, context, "take a smaller --size, or fewer layers"));
+  Stopwatch watch;
+  SCUMBLE_ASSIGN(result.cost, DecodeNeededTextures(scene, options, layers, context));
+  const double textures_ms = watch.Lap();
+  context.EndStage("scene");
+  SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
+                                               : RenderGuides(scene, camera, guidegen));
+  result.times.emplace_back("build", rendered.build_ms);
+  result.times.emplace_back("rays", rendered.render_ms);
+  result.guides = std::move(rendered.guides);
+  result.cost.rays = rendered.rays, result.cost.work = rendered.work;
+  result.samples = rendered.samples, result.noise = rendered.noise;
+  if (options.half) RoundColorLayersToHalf(result.guides);
+  result.guides.attributes["scumble:settings"] = GuideSettings(options);
+  result.guides.attributes[kSamplesKey] = std::to_string(SamplesOf(options));
+  if (!scene.instances.empty()) WarnIfNothingShows(result.guides, options.scene, context);
+  context.EndStage("guides", result.times);
+  if (result.cost.textures_decoded > 0) result.times.insert(result.times.begin(), {"textures", textures_ms});
+  return result;
+}
+
+void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style) {
+  const LayerSet read = RequiredLayers(style);
+  for (PlanItem& item : plan) {
+    for (const LayerInfo& info : AllLayers()) {
+      if (read.Has(info.layer) && item.layer == info.name) item.reason += ", read by style " + style.name;
+    }
+  }
+}
+
+}  // namespace scumble

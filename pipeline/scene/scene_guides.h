@@ -1,0 +1,81 @@
+// A scene request's way to guides: open the scene, decide how it is seen, cast.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image/guides.h"
+#include "core/image/progress.h"
+#include "core/image/style.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
+#include "pipeline/scene/blender_scene.h"
+
+namespace scumble {
+
+// Milliseconds by step, in the order they happened.
+using StepTimes = std::vector<std::pair<std::string, double>>;
+
+// The work that guides took, counted.
+struct SceneCost {
+  RayCounts rays;
+  WorkCounts work;
+  int textures_decoded = 0;
+  std::size_t texture_bytes = 0;  // of those
+};
+
+struct SceneGuides {
+  GuideSet guides;
+  std::vector<PlanItem> plan;
+  MemoryNeed memory;  // of the whole run
+  StepTimes times;
+  SceneCost cost;
+  int samples = 0;     // of each pixel, in light-path layers
+  double noise = 0.0;  // estimated, where noise or a time budget was asked for
+};
+
+// Whether the name has a scene's ending, in letters of either case.
+bool IsScene(const std::string& path);
+
+// "AZIMUTH,ELEVATION[,DISTANCE]" in degrees and metres.
+std::string ViewToText(const ViewAngles& view);
+
+// Finds mistakes in the request before a large scene is loaded: kUsage or kInput.
+Status CheckSceneRequest(const SceneRequest& request);
+
+// Loads the scene, a .blend by way of Blender; passes on its warnings if `warns`. CastScene decodes its textures, as
+// far as they are needed.
+Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film = nullptr,
+                          bool warns = true);
+
+// Whether a layer needs light, so that a scene without any gets a key light.
+bool NeedsKeyLight(const SceneRequest& options, const LayerSet& layers);
+
+// How an open scene is seen; the key light, where a layer needs one, is added to it.
+Expected<PreparedView> ViewScene(Scene& scene, const SceneRequest& options, const LayerSet& layers);
+
+// The attribute that holds the samples which guides were asked to be cast with.
+inline constexpr const char* kSamplesKey = "scumble:samples_asked";
+
+// The attribute scumble:settings of the guides: how they are seen, for --resume to compare.
+std::string GuideSettings(const SceneRequest& options);
+
+// Casts the guides of a scene that is ready; textures that they need are decoded and stay in it. The layer motion
+// wants `next`, which may be null otherwise.
+Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
+                                const LayerSet& layers, const RunContext& context, const Progress& progress,
+                                bool plan_only);
+
+// Casts the guides of an open scene; the key light, where one is needed, stays in it. Notes which camera and light were
+// chosen, and warns of a picture that shows nothing. With `plan_only` the guides stay empty.
+Expected<SceneGuides> MakeGuidesOf(Scene& scene, const SceneRequest& options, const LayerSet& layers,
+                                   const RunContext& context, const Progress& progress, bool plan_only);
+
+// Adds to the plan which layers the style reads.
+void NameStyleInPlan(std::vector<PlanItem>& plan, const Style& style);
+
+}  // namespace scumble

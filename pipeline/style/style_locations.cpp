@@ -1,0 +1,33 @@
+#include "pipeline/style/style_locations.h"
+
+#include <system_error>
+
+#include "core/style/style_file.h"
+
+namespace scumble {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> StyleFolders(const RunContext& context) { return context.DataFolders("exemplars"); }
+
+Expected<Style> OpenStyle(const StyleRequest& request, const RunContext& context) {
+  SCUMBLE_ASSIGN(const fs::path found, FindStyle(request.style, context));
+  return LoadStyle(found, request.sets);
+}
+
+Expected<fs::path> FindStyle(const std::string& name, const RunContext& context, const fs::path& base) {
+  std::error_code failed;
+  if (fs::exists(base / name, failed)) return base / name;
+  std::string bundled;
+  for (const fs::path& root : StyleFolders(context)) {
+    for (const fs::path& style : FindStyles(root)) {
+      if (style.filename() == name) return style;
+      bundled += (bundled.empty() ? "" : ", ") + style.filename().string();
+    }
+  }
+  return InputError("there is no style '" + name + "': expected a file, a folder, or " +
+                    (bundled.empty() ? "a bundled style, of which none are found beside this program"
+                                     : "one of the bundled styles " + bundled));
+}
+
+}  // namespace scumble

@@ -1,0 +1,95 @@
+// The library's Stylizer, over a Workspace.
+#include "scumble/stylizer.h"
+
+#include <utility>
+
+#include "core/io/library.h"
+#include "pipeline/guide_layers.h"
+#include "pipeline/workspace.h"
+
+namespace scumble {
+namespace {
+
+RunContext ContextOf(const StylizerOptions& options) {
+  RunContext context;
+  context.threads = options.threads;
+  context.max_memory = options.max_memory;
+  context.cache_folder = options.cache_folder;
+  if (!options.data_folder.empty()) {
+    context.data_roots.emplace_back(options.data_folder);
+    SetModuleFolder(std::filesystem::path(options.data_folder) / "../../lib/scumble");
+  }
+  if (options.message) {
+    context.on_message = [tell = options.message](const Message& message) {
+      tell(message.text, message.kind == Message::Kind::kWarning);
+    };
+  }
+  if (options.progress) {
+    context.on_progress = [progress = options.progress](const std::string&) { return progress; };
+  }
+  return context;
+}
+
+Expected<SceneRequest> RequestOf(const SceneSettings& settings) {
+  SceneRequest request;
+  request.scene = settings.file;
+  request.size = {settings.width, settings.height};
+  SCUMBLE_RETURN_IF_ERROR(CheckSize(request.size, SizeToText(request.size)));
+  request.camera = settings.camera;
+  if (const auto& view = settings.view) {
+    if (!(view->elevation >= -90.0 && view->elevation <= 90.0)) return UsageError("elevation must be -90 to 90");
+    if (!(view->distance >= 0.0)) return UsageError("distance must be 0 or more");
+    request.view = ViewAngles{view->azimuth, view->elevation, view->distance};
+  }
+  request.animation = settings.animation;
+  request.blender.frame = settings.frame;
+  if (settings.frames_per_second != 0.0) {
+    const double thousandths = settings.frames_per_second * 1000.0;
+    if (!(thousandths >= 0.5 && thousandths <= 1e8)) return UsageError("frames_per_second must be above 0, up to 1e5");
+    request.fps = FrameRate{static_cast<std::int64_t>(thousandths + 0.5), 1000};
+  }
+  request.aa = settings.coverage_samples;
+  request.samples = settings.light_samples;
+  request.isa = settings.instruction_set;
+  return request;
+}
+
+}  // namespace
+
+struct Stylizer::State {
+  explicit State(const StylizerOptions& options) : workspace(ContextOf(options)) {}
+  Workspace workspace;
+};
+
+Stylizer::Stylizer(StylizerOptions options) : state_(std::make_unique<State>(options)) {}
+Stylizer::~Stylizer() = default;
+Stylizer::Stylizer(Stylizer&&) noexcept = default;
+Stylizer& Stylizer::operator=(Stylizer&&) noexcept = default;
+
+Expected<Picture> Stylizer::Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint) {
+  SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
+  StyleRequest style_request;
+  style_request.style = style.style, style_request.sets = style.overrides;
+  style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;
+  PictureRequest picture;
+  picture.seed = paint.seed, picture.exposure = paint.exposure, picture.upsample = paint.upsample;
+  picture.frame = scene.frame, picture.fps = request.fps;
+  SCUMBLE_ASSIGN(PaintedFrame painted, state_->workspace.Paint(request, style_request, picture));
+  return std::move(painted.picture);
+}
+
+Expected<GuideLayers> Stylizer::Guides(const SceneSettings& scene, const LayerSet& layers) {
+  SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
+  SCUMBLE_ASSIGN(auto guides, state_->workspace.Guides(request, scene.frame, layers));
+  return GuideLayers(std::make_shared<const GuideLayers::State>(GuideLayers::State{std::move(guides)}));
+}
+
+void Stylizer::Cancel() { state_->workspace.Cancel(); }
+
+StylizerCounters Stylizer::counters() const {
+  const WorkspaceCounters counters = state_->workspace.counters();
+  return {counters.scenes_loaded, counters.guides_cast, counters.styles_loaded, counters.styles_prepared,
+          counters.frames_painted};
+}
+
+}  // namespace scumble

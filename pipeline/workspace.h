@@ -1,0 +1,69 @@
+// A workspace keeps what a caller changes one thing at a time of: the scene, its view, the guides, the styles, the
+// prepared exemplars. Each request is compared with what is there, and only what it makes stale is made again:
+//
+//   changed                          made again
+//   a key of the style, the painting style; exemplars where the key concerns them; the picture. No ray is cast, unless
+//                                    the style now reads a layer that the guides lack.
+//   camera, view, size, samples …    guides and picture. No file is loaded.
+//   the frame of an animation        pose, guides, picture. No file is loaded (a .blend is exported again).
+//   a file on disk                   what it is part of, and all that follows
+//
+// Pictures are those of `scumble stylize` with the same request, byte for byte.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "core/image/guides.h"
+#include "scumble/picture.h"
+#include "core/image/status.h"
+#include "pipeline/frame/frame_report.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
+
+namespace scumble {
+
+// How often each kind of work was done so far.
+struct WorkspaceCounters {
+  std::size_t scenes_loaded = 0;   // from files
+  std::size_t guides_cast = 0;     // rays were cast
+  std::size_t styles_loaded = 0;   // from files
+  std::size_t styles_prepared = 0;  // exemplars resized, tables and trees built
+  std::size_t frames_painted = 0;
+};
+
+// A picture in memory, and its report.
+struct PaintedFrame {
+  Picture picture;
+  std::shared_ptr<const GuideSet> guides;  // that it was painted by
+  FrameReport report;                      // without the step of writing
+};
+
+class Workspace {
+ public:
+  explicit Workspace(RunContext context);
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+
+  // Paints one frame; picture.output and picture.over name no file that is written. picture.seed, picture.fps and
+  // picture.frame count for the scene too. After an error, a cancelled run included, the next request starts from what
+  // is still valid. One call at a time.
+  Expected<PaintedFrame> Paint(const SceneRequest& scene, const StyleRequest& style, const PictureRequest& picture);
+
+  // The guides of a scene: the layers that every guide set holds, and these.
+  Expected<std::shared_ptr<const GuideSet>> Guides(const SceneRequest& scene, std::optional<int> frame,
+                                                   const LayerSet& layers);
+
+  // Ends the call at work, which returns kCancelled; does nothing where none is. From any thread, any number of times.
+  void Cancel();
+
+  WorkspaceCounters counters() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace scumble

@@ -1,0 +1,194 @@
+// A workspace pays for what changed and nothing else, and paints what `scumble stylize` paints.
+#include "pipeline/workspace.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "core/io/picture_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kSource = SCUMBLE_SOURCE_DIR;
+
+RunContext Context() {
+  RunContext context;
+  context.data_roots = {kSource};
+  return context;
+}
+
+SceneRequest SceneOf(const std::string& name) {
+  SceneRequest request;
+  request.scene = kSource + "/scenes/" + name + ".glb";
+  request.size = {96, 54};
+  request.samples = 2;
+  return request;
+}
+
+StyleRequest StyleOf(const std::string& style, std::vector<std::string> sets = {}) {
+  StyleRequest request;
+  request.style = style, request.sets = std::move(sets);
+  return request;
+}
+
+Picture Painted(Workspace& workspace, const SceneRequest& scene, const StyleRequest& style,
+                const PictureRequest& picture = {}) {
+  auto painted = workspace.Paint(scene, style, picture);
+  EXPECT_TRUE(painted.ok()) << painted.error().message;
+  return painted ? painted->picture : Picture();
+}
+
+// What the program writes for these options.
+Picture Stylized(const std::string& options) {
+  const TemporaryFolder folder;
+  const std::string file = (folder.path() / "p.png").string();
+  const std::string command = std::string(SCUMBLE_BINARY) + " stylize " + options +
+                              " --samples 2 --bits 16 --quiet -o " + file + " > /dev/null";
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  const auto picture = ReadPicture(file);
+  EXPECT_TRUE(picture.ok());
+  return picture ? *picture : Picture();
+}
+
+TEST(Workspace, PaintsWhatTheProgramPaints) {
+  Workspace workspace(Context());
+  const std::string scenes = kSource + "/scenes/";
+  EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("oil")).rgba,
+            Stylized(scenes + "suzanne.glb --style oil --size 96x54").rgba);
+  // A style that looks at light, and its measured exposure.
+  EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("chiaroscuro")).rgba,
+            Stylized(scenes + "suzanne.glb --style chiaroscuro --size 96x54").rgba);
+  PictureRequest picture;
+  picture.frame = 13, picture.upsample = 2, picture.seed = 7;
+  EXPECT_EQ(Painted(workspace, SceneOf("toys"), StyleOf("pastel", {"transfer.scale=0.5"}), picture).rgba,
+            Stylized(scenes + "toys.glb --style pastel --set transfer.scale=0.5 --size 96x54 --frame 13 --upsample 2 "
+                              "--seed 7")
+                .rgba);
+}
+
+TEST(Workspace, AChangedKeyCastsNoRay) {
+  Workspace workspace(Context());
+  const Picture before = Painted(workspace, SceneOf("suzanne"), StyleOf("oil"));
+  EXPECT_EQ(workspace.counters().guides_cast, 1u);
+  EXPECT_EQ(workspace.counters().styles_prepared, 1u);
+  // The transfer reads the threshold from the settings: exemplars stay as they are.
+  const Picture coarse = Painted(workspace, SceneOf("suzanne"), StyleOf("oil", {"transfer.threshold=0.4"}));
+  EXPECT_NE(coarse.rgba, before.rgba);
+  EXPECT_EQ(workspace.counters().styles_prepared, 1u);
+  // The exemplar's size is prepared.
+  const Picture fine = Painted(workspace, SceneOf("suzanne"), StyleOf("oil", {"transfer.scale=0.5"}));
+  EXPECT_NE(fine.rgba, before.rgba);
+  EXPECT_EQ(workspace.counters().styles_prepared, 2u);
+  EXPECT_EQ(workspace.counters().guides_cast, 1u);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+  EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("oil")).rgba, before.rgba);
+}
+
+TEST(Workspace, AStyleThatReadsAnotherLayerCastsIt) {
+  Workspace workspace(Context());
+  Painted(workspace, SceneOf("suzanne"), StyleOf("chiaroscuro"));
+  Painted(workspace, SceneOf("suzanne"), StyleOf("oil"));  // reads less: the guides have it
+  EXPECT_EQ(workspace.counters().guides_cast, 1u);
+  Painted(workspace, SceneOf("suzanne"), StyleOf("tinted-oil"));  // reads base colours
+  EXPECT_EQ(workspace.counters().guides_cast, 2u);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+}
+
+TEST(Workspace, AChangedViewLoadsNoFile) {
+  Workspace workspace(Context());
+  const Picture before = Painted(workspace, SceneOf("suzanne"), StyleOf("oil"));
+  SceneRequest turned = SceneOf("suzanne");
+  turned.view = ViewAngles{70.0, 10.0, 0.0};
+  EXPECT_NE(Painted(workspace, turned, StyleOf("oil")).rgba, before.rgba);
+  SceneRequest larger = turned;
+  larger.size = {128, 72};
+  EXPECT_EQ(Painted(workspace, larger, StyleOf("oil")).width, 128);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+  EXPECT_EQ(workspace.counters().styles_loaded, 1u);
+  EXPECT_EQ(workspace.counters().guides_cast, 3u);
+  EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("oil")).rgba, before.rgba);
+}
+
+TEST(Workspace, AFrameOfAnAnimationLoadsNoFile) {
+  Workspace workspace(Context());
+  PictureRequest first, later;
+  first.frame = 1, later.frame = 20;
+  const Picture one = Painted(workspace, SceneOf("toys"), StyleOf("pastel"), first);
+  EXPECT_NE(Painted(workspace, SceneOf("toys"), StyleOf("pastel"), later).rgba, one.rgba);
+  EXPECT_EQ(Painted(workspace, SceneOf("toys"), StyleOf("pastel"), first).rgba, one.rgba);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+  EXPECT_EQ(workspace.counters().styles_loaded, 1u);
+}
+
+TEST(Workspace, ASavedPaintingIsReadAgain) {
+  const TemporaryFolder folder;
+  fs::copy(kSource + "/exemplars/oil", folder.path() / "mine", fs::copy_options::recursive);
+  Workspace workspace(Context());
+  const StyleRequest style = StyleOf((folder.path() / "mine").string());
+  const Picture before = Painted(workspace, SceneOf("suzanne"), style);
+  EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), style).rgba, before.rgba);
+  EXPECT_EQ(workspace.counters().styles_loaded, 1u);
+  fs::copy_file(kSource + "/exemplars/charcoal/lit.png", folder.path() / "mine" / "lit.png",
+                fs::copy_options::overwrite_existing);
+  EXPECT_NE(Painted(workspace, SceneOf("suzanne"), style).rgba, before.rgba);
+  EXPECT_EQ(workspace.counters().styles_loaded, 2u);
+  EXPECT_EQ(workspace.counters().styles_prepared, 2u);
+  EXPECT_EQ(workspace.counters().guides_cast, 1u);
+}
+
+TEST(Workspace, CanBeCancelledAgainAndAgain) {
+  RunContext context = Context();
+  std::atomic<int> calls = 0;
+  std::atomic<bool> cancels = true;
+  Workspace* at_work = nullptr;
+  context.on_progress = [&](const std::string&) -> Progress {
+    return [&](double) {
+      ++calls;
+      if (cancels && at_work) std::thread([&] { at_work->Cancel(); }).join();
+      return true;
+    };
+  };
+  Workspace workspace(context);
+  at_work = &workspace;
+  SceneRequest scene = SceneOf("suzanne");
+  scene.size = {320, 180};
+  for (int i = 0; i < 3; ++i) {
+    const auto painted = workspace.Paint(scene, StyleOf("oil"), {});
+    ASSERT_FALSE(painted.ok());
+    EXPECT_EQ(painted.error().kind, ErrorKind::kCancelled);
+  }
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);  // what was whole is kept
+  cancels = false;
+  workspace.Cancel();  // nothing is at work: the next call is not meant
+  const Picture painted = Painted(workspace, scene, StyleOf("oil"));
+  Workspace fresh(Context());
+  EXPECT_EQ(painted.rgba, Painted(fresh, scene, StyleOf("oil")).rgba);
+  EXPECT_GT(calls, 3);
+}
+
+TEST(Workspace, MistakesAreErrorsAndLeaveItUsable) {
+  Workspace workspace(Context());
+  EXPECT_FALSE(workspace.Paint(SceneOf("nothing"), StyleOf("oil"), {}).ok());
+  EXPECT_FALSE(workspace.Paint(SceneOf("suzanne"), StyleOf("no-such-style"), {}).ok());
+  EXPECT_FALSE(workspace.Paint(SceneOf("suzanne"), StyleOf("oil", {"transfer.scale=-1"}), {}).ok());
+  EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("oil")).width, 96);
+}
+
+TEST(Workspace, GivesGuidesAlone) {
+  Workspace workspace(Context());
+  const auto guides = workspace.Guides(SceneOf("suzanne"), std::nullopt, {Layer::kAlbedo});
+  ASSERT_TRUE(guides.ok()) << guides.error().message;
+  EXPECT_TRUE((*guides)->Has(Layer::kAlbedo));
+  EXPECT_EQ((*guides)->width(), 96);
+}
+
+}  // namespace
+}  // namespace scumble
