@@ -1,6 +1,7 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo bare test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits scenes gallery format clean
+.PHONY: help build demo bare check test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits \
+  scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -18,6 +19,13 @@ demo: build ## draw a dozen pictures and a contact sheet into out/demo/; ALL=1 d
 
 bare: ## run demo and test in a new Debian root that holds only git and make (as root); ONLY=demo runs one; DEBIAN=12
 	@DEBIAN=$(or $(DEBIAN),12) .ci/bare $(foreach target,$(or $(ONLY),demo test),"make $(target)")
+
+check: ## the quick tests, for between edits: under a minute once built; one library's: CHECK=transfer
+	@.ci/install test
+	@cmake --preset release -DSCUMBLE_TESTS=ON > build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }
+	@rm -f build.log
+	@cmake --build build --target $(if $(CHECK),$(CHECK)_test,check_programs) -j $(JOBS)
+	@ctest --test-dir build --output-on-failure -j $(JOBS) -L '^unit$$' $(if $(CHECK),-L '^$(CHECK)$$')
 
 test: ## install what is missing (Blender too), build everything, run all tests
 	@.ci/install test

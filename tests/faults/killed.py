@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Kills the program at random moments while it writes sequences, until a hundred kills have met it between its first file
+"""Kills the program at random moments while it writes sequences, until fifty kills have met it between its first file
 and its last, and looks at what is left: every file
 under a final name holds the very bytes of a run that nobody killed, and `--resume` makes the rest, with the same bytes,
 and takes away the temporary file that a killed run could not. Then signals that a program may answer, which leave no
@@ -135,7 +135,7 @@ def run_together(verb, chance, times):
 
 def main():
     path, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-    kills = int(sys.argv[3]) if len(sys.argv) > 3 else 100
+    kills = int(sys.argv[3]) if len(sys.argv) > 3 else 50
     failures = common.Failures()
     with common.temporary_folder() as name:
         program = common.Program(path, name)

@@ -11,6 +11,7 @@
 
 #include "core/image/guides.h"
 #include "core/io/channel_file.h"
+#include "tests/support/temporary_folder.h"
 #include "measure/mosaic/coherence.h"
 #include "measure/compare/compare.h"
 #include "measure/compare/heat_map.h"
@@ -407,14 +408,6 @@ TEST(Coherence, NothingIsNothing) {
 // A folder that goes away with the test.
 class ChannelFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / (std::string("scumble_measure_") + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   // Writes the parts as float; their values count up from 0 across parts, channels fastest.
   std::string WriteParts(std::vector<OIIO::ImageSpec> specs) {
     const std::string path = (folder_ / "parts.exr").string();
@@ -439,7 +432,7 @@ class ChannelFile : public ::testing::Test {
     return spec;
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(ChannelFile, ReadsEveryChannelByName) {

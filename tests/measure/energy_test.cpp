@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "energy_fixtures.h"
-#include "transfer_fixtures.h"
+#include "tests/support/energy_fixtures.h"
+#include "tests/support/transfer_fixtures.h"
 
 namespace scumble::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "gltf_builder.h"
+#include "tests/support/gltf_builder.h"
 #include "guidegen/load/load_scene.h"
 
 namespace scumble {

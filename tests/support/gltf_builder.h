@@ -12,21 +12,13 @@
 #include <vector>
 
 #include "guidegen/load/load_scene.h"
+#include "tests/support/temporary_folder.h"
 
 namespace scumble {
 
 // A folder of its own for every test, removed behind it.
 class LoaderTest : public ::testing::Test {
  protected:
-  LoaderTest() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("scumble_") + info->test_suite_name() + "_" + info->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~LoaderTest() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path Path(const std::string& name) const { return folder_ / name; }
 
   std::filesystem::path Write(const std::string& name, std::span<const unsigned char> bytes) const {
@@ -39,7 +31,7 @@ class LoaderTest : public ::testing::Test {
   }
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 constexpr int kByte = 5120, kUbyte = 5121, kShort = 5122, kUshort = 5123, kUint = 5125, kFloat = 5126;

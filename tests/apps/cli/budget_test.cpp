@@ -1,5 +1,5 @@
 // --budget-ms as its users run it. What the clock decides is not looked at, only what must hold whatever it decides.
-#include "cli_harness.h"
+#include "tests/support/cli_harness.h"
 
 namespace scumble {
 namespace {

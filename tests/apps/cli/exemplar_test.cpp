@@ -109,12 +109,15 @@ TEST_F(CliExemplar, ACacheThatCannotBeWrittenIsNoError) {
   ::setenv("XDG_CACHE_HOME", "/proc/none", 1);
   EXPECT_EQ(Paint("third.png"), first);
   ::setenv("XDG_CACHE_HOME", "relative", 1);
+  const char* const home = std::getenv("HOME");
+  const std::string home_before = home ? home : "";
   ::setenv("HOME", (Work() / "home").c_str(), 1);
   EXPECT_EQ(Paint("fourth.png"), first);
   EXPECT_TRUE(Exists("home/.cache/scumble")) << "a relative XDG_CACHE_HOME does not count";
   EXPECT_FALSE(Exists("relative"));
   ::unsetenv("HOME");
   EXPECT_EQ(Paint("fifth.png"), first);
+  if (home) ::setenv("HOME", home_before.c_str(), 1);
 }
 
 TEST_F(CliExemplar, TheCacheDoesNotGrowForEver) {

@@ -1,5 +1,5 @@
 // --quality: fixed points of the ladder, the same on any machine.
-#include "cli_harness.h"
+#include "tests/support/cli_harness.h"
 
 namespace scumble {
 namespace {

@@ -20,7 +20,7 @@
 #include "core/io/guides/own_guides.h"
 #include "core/io/picture_file.h"
 #include "core/io/png/png_integrity.h"
-#include "temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace scumble {
 namespace {

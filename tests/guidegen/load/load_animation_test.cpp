@@ -2,7 +2,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "animation_fixtures.h"
+#include "tests/support/animation_fixtures.h"
 #include "guidegen/guidegen.h"
 
 namespace scumble {

@@ -1,5 +1,5 @@
 // Animations, skins and morph targets that are broken: refused by file and place, or harmless.
-#include "animation_fixtures.h"
+#include "tests/support/animation_fixtures.h"
 #include "guidegen/guidegen.h"
 
 namespace scumble {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "gltf_builder.h"
+#include "tests/support/gltf_builder.h"
 #include "guidegen/load/load_scene.h"
 #include "core/io/picture_file.h"
 

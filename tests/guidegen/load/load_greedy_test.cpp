@@ -7,7 +7,7 @@
 #include <ctime>
 #include <iterator>
 
-#include "animation_fixtures.h"
+#include "tests/support/animation_fixtures.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/scene_textures.h"
 #include "core/image/hash.h"

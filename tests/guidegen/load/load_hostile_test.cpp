@@ -7,7 +7,7 @@
 #include <memory>
 #include <set>
 
-#include "gltf_builder.h"
+#include "tests/support/gltf_builder.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/load/texture_budget.h"
 #include "guidegen/scene_textures.h"

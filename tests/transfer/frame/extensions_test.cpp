@@ -10,7 +10,7 @@
 #include "core/image/oklab.h"
 #include "transfer/tint/colorize.h"
 #include "transfer/seeds/seeds.h"
-#include "transfer_fixtures.h"
+#include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {

@@ -13,7 +13,7 @@
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/seeds/seeds.h"
 #include "transfer/match/variety.h"
-#include "transfer_fixtures.h"
+#include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {
