@@ -2,7 +2,7 @@
 # The demo script draws its dozen pictures and the contact sheet, small. usage: demo_test.sh PROGRAM
 set -eu
 program=$(realpath "$1")
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 SCUMBLE=$program .ci/demo --size 160x90 -o "$folder" > "$folder/said"
