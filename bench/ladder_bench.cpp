@@ -1,5 +1,5 @@
 // What the ladder of --quality and --budget-ms was made from: for sample scenes and bundled styles, time and energy of
-// every way to do it with less, and which of them nothing else beats in both. Prints one line a way, tab-separated:
+// every variant to do it with less, and which of them nothing else beats in both. Prints one line a variant, tab-separated:
 // docs/budget.md has the table. --help lists the arguments.
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ struct Arguments {
   std::vector<std::string> styles{"oil", "charcoal", "woodcut", "sumi-e", "chiaroscuro", "scene-oil"};
 };
 
-// What a way takes instead of the style's own.
+// What a variant takes instead of the style's own.
 struct Candidate {
   std::string name;
   int upsample = 1;

@@ -34,13 +34,13 @@ std::string StampsOf(const std::vector<std::string>& paths) {
 }
 
 std::string SceneStamps(const std::string& scene) {
-  RunFiles files;
+  RunInputs files;
   files.ReadsScene(scene);
   return StampsOf(files.Inputs());
 }
 
 std::string StyleStamps(const StyleSet& styles) {
-  RunFiles files;
+  RunInputs files;
   files.ReadsStyles(styles);
   std::vector<std::string> paths = files.Inputs();
   for (const auto& [path, place] : styles.opened) paths.push_back(path);
@@ -84,7 +84,7 @@ struct Workspace::State {
   std::string scene_key;
   std::optional<AnimatedScene> animation;  // none: the scene is Blender's
   std::string seen_key, pose_key;  // when and from where it is seen; the same with its light
-  std::optional<SceneAtRest> posed;
+  std::optional<StaticScene> posed;
   std::optional<RayScene> rays;  // of `posed`, which it borrows
   std::size_t own_lights = 0;  // of `posed`, before a key light was added
   std::string guides_key;
@@ -142,7 +142,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
     for (const std::string& warning : animation->rest().warnings) context.Warn(request.scene + ": " + warning);
   } else {
     // Blender's scene is posed as it is loaded; how it is seen is decided again in Pose.
-    const LayersFor none = [](const StyleWishes&) -> Expected<LayerSet> { return LayerSet(); };
+    const LayersFor none = [](const SceneStyleRequests&) -> Expected<LayerSet> { return LayerSet(); };
     SCUMBLE_ASSIGN(posed, OpenSceneAt(frame, request, none, context));
     own_lights = posed->scene.lights.size();
   }
@@ -154,7 +154,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
 Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for) {
   const Scene& names = animation ? animation->rest() : posed->scene;
   SCUMBLE_ASSIGN(const LayerSet layers,
-                 layers_for(WishesOf(animation ? animation->objects() : names.instances, names)));
+                 layers_for(SceneStyleRequestsOf(animation ? animation->objects() : names.instances, names)));
   const std::string fps = request.fps ? FrameRateToText(*request.fps) : "";
   seen_key = fmt::format("{} {}; {}; {}; {}; {}", frame ? std::to_string(*frame) : "rest", fps, request.camera,
                          request.view ? ViewToText(*request.view) : "",
@@ -169,8 +169,8 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
   if (!animation) {
     SCUMBLE_RETURN_IF_ERROR(ViewAgain(*posed, own_lights, request, layers));
   } else {
-    const LayersFor known = [&](const StyleWishes&) -> Expected<LayerSet> { return layers; };
-    SCUMBLE_ASSIGN(SceneAtRest now, PoseScene(*animation, frame, request, known, context, false));
+    const LayersFor known = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
+    SCUMBLE_ASSIGN(StaticScene now, PoseScene(*animation, frame, request, known, context, false));
     if (posed) {  // textures that were decoded stay decoded
       now.scene.textures = std::move(posed->scene.textures);
       now.scene.encoded_textures = std::move(posed->scene.encoded_textures);
@@ -203,7 +203,7 @@ Status Workspace::State::Cast(const SceneRequest& request, std::optional<int> fr
                                              progress, false, &*rays));
   ++counters.guides_cast;
   counters.structures_built += std::size_t(made.builds);
-  StoreFrameRate(request, posed->film, made.guides);
+  StoreFrameRate(request, posed->animation, made.guides);
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene));
   guides = std::make_shared<const SceneGuides>(std::move(made));
   guides_key = key;
@@ -217,7 +217,7 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   const Progress progress = context.StartProgress("stylize");
   SCUMBLE_RETURN_IF_ERROR(LoadStyles(style));
   SCUMBLE_RETURN_IF_ERROR(Continue());
-  const LayersFor layers_for = [&](const StyleWishes& wishes) {
+  const LayersFor layers_for = [&](const SceneStyleRequests& wishes) {
     return RequiredLayers(*styles, wishes, scene.scene);
   };
   SCUMBLE_RETURN_IF_ERROR(Cast(scene, request.frame, layers_for, Within(progress, 0.0, 0.5)));
@@ -271,7 +271,7 @@ Expected<PaintedFrame> Workspace::Paint(const SceneRequest& scene, const StyleRe
 Expected<std::shared_ptr<const GuideSet>> Workspace::Guides(const SceneRequest& scene, std::optional<int> frame,
                                                             const LayerSet& layers) {
   const Working working(state_->working, state_->cancelled);
-  const LayersFor layers_for = [&](const StyleWishes&) -> Expected<LayerSet> { return layers; };
+  const LayersFor layers_for = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
   SCUMBLE_RETURN_IF_ERROR(state_->Cast(scene, frame, layers_for, state_->context.StartProgress("guides")));
   return std::shared_ptr<const GuideSet>(state_->guides, &state_->guides->guides);
 }

@@ -310,10 +310,10 @@ class Run {
   Picture& out_;
   Region region_;
   internal::FrameInput frame_;
-  internal::FrameStart start_;
+  internal::FrameSetup start_;
   std::vector<float> luminance_;
   std::vector<std::uint8_t> wanted_;
-  internal::LateSlopes slopes_{guides_};
+  internal::LazyDepthGradient slopes_{guides_};
 };
 
 Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,

@@ -39,7 +39,7 @@ struct PreparedStyle {
   Illumination illumination;
   float reference_lightness = 0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
   std::shared_ptr<const GuideSpace> space;  // what is matched in; null: normals alone, each counting 1
-  std::vector<Picture> tones;         // by exemplar, see MakeTones; only where transfer.hybrid is above 0
+  std::vector<Picture> tones;         // by exemplar, see MakeBaseLayers; only where transfer.hybrid is above 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
   std::vector<RimPaint> rims;
@@ -116,8 +116,8 @@ Status Transfer(const PreparedStyle& style, const GuideSet& guides, const Transf
                 TransferScratch& scratch, Picture& out);
 
 // The same with several styles in one picture: `map` says which paints what. Chunks and votes never cross from one style
-// to another. Pixels of StyleMap::kLeave show what is underneath, and their coverage does not count; so do those of
-// StyleMap::kCatch, but with the first style's paint where they are in shadow, if it asks for that. The paper is the
+// to another. Pixels of StyleMap::kPassThrough show what is underneath, and their coverage does not count; so do those of
+// StyleMap::kShadowCatcher, but with the first style's paint where they are in shadow, if it asks for that. The paper is the
 // first style's. O(covered pixels + the rectangles around each style's pixels).
 Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& map, const GuideSet& guides,
                 const TransferOptions& options, TransferScratch& scratch, Picture& out);

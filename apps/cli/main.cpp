@@ -80,9 +80,9 @@ int main(int argc, char** argv) {
   try {
     scumble::OccupyStandardStreams();
     scumble::CleanUpOnSignals();
-    scumble::TellOfWhatNobodyCatches();
+    scumble::ReportUncaughtExceptions();
     return scumble::Run(argc, argv);
   } catch (...) {
-    return scumble::TellOf(std::current_exception());
+    return scumble::ReportException(std::current_exception());
   }
 }

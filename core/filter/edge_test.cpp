@@ -38,7 +38,7 @@ DepthSlopes::DepthSlopes(const GuideSet& guides) : x(guides.pixel_count(), 0.0f)
   });
 }
 
-DepthGive::DepthGive(const GuideSet& guides, double depth_tolerance) {
+DepthTolerance::DepthTolerance(const GuideSet& guides, double depth_tolerance) {
   const bool flat = guides.camera && guides.camera->IsOrthographic();
   const double height = flat ? 2.0 / std::abs(guides.camera->clip_from_view[1][1]) : 0.0;
   const auto metres = static_cast<float>(depth_tolerance * height);

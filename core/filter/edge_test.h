@@ -23,9 +23,9 @@ struct DepthSlopes {
 };
 
 // The same, made when first asked for, by whichever thread is first. Keeps a reference to the guides.
-class LateSlopes {
+class LazyDepthGradient {
  public:
-  explicit LateSlopes(const GuideSet& guides) : guides_(guides) {}
+  explicit LazyDepthGradient(const GuideSet& guides) : guides_(guides) {}
   const DepthSlopes& Get() {
     std::call_once(made_, [this] { slopes_.emplace(guides_); });
     return *slopes_;
@@ -40,8 +40,8 @@ class LateSlopes {
 // How far depth may leave the slope of a surface between two pixels: a share of the nearer one's depth. In orthographic
 // views depth depends on where the camera happens to stand, so it is a share of the height that is seen; of the depth only
 // what float's rounding in casting comes to, 2^-20.
-struct DepthGive {
-  DepthGive(const GuideSet& guides, double depth_tolerance);
+struct DepthTolerance {
+  DepthTolerance(const GuideSet& guides, double depth_tolerance);
   float At(float depth) const { return fixed + share * depth; }
 
   float share = 0.0f;
@@ -53,10 +53,10 @@ struct EdgeRules {
   // As the test has them; at 180 degrees even opposite normals pass, whose cosine rounding may put below -1.
   float CreaseCosine() const { return CreaseCosine(crease_degrees); }
   static float CreaseCosine(double degrees);
-  DepthGive Give() const { return {guides, depth_tolerance}; }
+  DepthTolerance Give() const { return {guides, depth_tolerance}; }
 
   const GuideSet& guides;
-  LateSlopes& slopes;  // for who needs those of the whole picture
+  LazyDepthGradient& slopes;  // for who needs those of the whole picture
   double crease_degrees = 180.0;
   double depth_tolerance = 0.0;
   std::span<const std::uint8_t> covered = {};  // by pixel: whether its coverage is above 0; empty: as the guides have it
@@ -66,7 +66,7 @@ struct EdgeRules {
 //   - the same object id;
 //   - normals less than `crease` degrees apart; 180 takes any;
 //   - a depth difference that the surface's own slope explains: the mean of both pixels' slopes (the trapezoidal rule),
-//     give or take the gentler slope and `depth_tolerance` of the depth (DepthGive). All of it is relative, so one
+//     give or take the gentler slope and `depth_tolerance` of the depth (DepthTolerance). All of it is relative, so one
 //     setting works near and far. A step in depth of more than twice the slope per pixel plus the tolerance never passes.
 class EdgeTest {
  public:
@@ -109,7 +109,7 @@ class EdgeTest {
  private:
   std::span<const float> object_, depth_, slope_x_, slope_y_, normal_x_, normal_y_, normal_z_;
   float crease_cosine_;
-  DepthGive give_;
+  DepthTolerance give_;
 };
 
 }  // namespace scumble::internal

@@ -86,7 +86,7 @@ void Faults::LookAtSize() {
 }
 
 // "24 pixels left and 3 up"
-std::string Way(double dx, double dy) {
+std::string Variant(double dx, double dy) {
   const long x = std::lround(dx), y = std::lround(dy);
   std::string way;
   if (x != 0) way = fmt::format("{} pixels {}", std::abs(x), x > 0 ? "to the right" : "to the left");
@@ -114,7 +114,7 @@ void Faults::LookAtDisc() {
     return Add("off-centre",
                fmt::format("the painted sphere is {:.1f}% of its diameter off the middle; its centre is at x={:.0f}, y={:.0f}",
                            100.0 * shift / size, disc.x + context_.margin, disc.y + context_.margin),
-               fmt::format("move the painting {}", Way(-dx, -dy)));
+               fmt::format("move the painting {}", Variant(-dx, -dy)));
   }
   if (ratio < kTooSmall) {
     Add("small-sphere",

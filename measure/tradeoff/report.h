@@ -1,4 +1,4 @@
-// The report of `scumble tradeoff`: what every way to stylise a scene costs and how far off it is.
+// The report of `scumble tradeoff`: what every variant to stylise a scene costs and how far off it is.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ struct Quartiles {
   double median = 0.0, lower = 0.0, upper = 0.0;
 };
 
-// Of one way. What was not measured, or does not exist for it, is empty; a time or memory of 0 and an estimate of NaN
+// Of one variant. What was not measured, or does not exist for it, is empty; a time or memory of 0 and an estimate of NaN
 // too.
 struct TradeMeasure {
   std::string name;     // unique
@@ -53,7 +53,7 @@ struct TradeReport {
   std::optional<int> frame = {};  // of the scene and the style; none: as they stand
   // Stops by which the light of the style's own picture is brightened, given or fitted; none: the style looks at no light.
   std::optional<double> exposure = {};
-  std::vector<TradeMeasure> ways;
+  std::vector<TradeMeasure> variants;
   std::vector<std::string> left_out = {};  // ways that were not measured, or figures, in words and with why
 };
 
@@ -66,14 +66,14 @@ std::vector<std::size_t> FrontOf(const TradeReport& report);
 // Places in `ways`, the axes in the order in which they first come, ways of one axis in the order given.
 std::vector<std::size_t> ByAxis(const TradeReport& report);
 
-// A name for the picture of ways[i] that no other way has: "03-levels-4.png". Letters, digits and hyphens alone.
+// A name for the picture of variants[i] that no other way has: "03-levels-4.png". Letters, digits and hyphens alone.
 std::string TradePictureName(const TradeReport& report, std::size_t i);
 
-// For a terminal, at most 120 columns wide unless a figure is absurdly long: a line a way by axis, the front marked
-// with a star; what the guides of ways differ by, where that was measured; notes.
+// For a terminal, at most 120 columns wide unless a figure is absurdly long: a line a variant by axis, the front marked
+// with a star; what the guides of variants differ by, where that was measured; notes.
 std::string TradeTable(const TradeReport& report);
 
-// RFC 4180 (lines end in CR LF): a line of column names with their units, then one a way in the order given. Numbers
+// RFC 4180 (lines end in CR LF): a line of column names with their units, then one a variant in the order given. Numbers
 // are as C writes them, whatever the locale, and read back to the same value; yes and no are 1 and 0; what was not
 // measured is empty; "nan", "inf" and "-inf" are what was measured and is no number.
 std::string TradeCsv(const TradeReport& report);
@@ -82,7 +82,7 @@ std::string TradeCsv(const TradeReport& report);
 std::string TradeJson(const TradeReport& report);
 
 // A self-contained SVG on white: time (logarithmic) against `both`, quartiles and standard errors as bars, the front as
-// a line with its names, a colour and shape for each axis. Ways without a time or without `both` are not drawn.
+// a line with its names, a colour and shape for each axis. Variants without a time or without `both` are not drawn.
 std::string TradeChart(const TradeReport& report);
 
 // One HTML page that loads nothing: the charts, the table, and every picture, embedded. Without scripts it still has

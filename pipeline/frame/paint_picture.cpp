@@ -73,9 +73,9 @@ Expected<const Picture*> OverFor(const PictureRequest& request, const GuideSet& 
 
 bool IsCatcher(const StyleSet& styles) {
   return std::any_of(styles.assigned.begin(), styles.assigned.end(),
-                     [](const StyleSet::Assigned& one) { return one.style == StyleMap::kCatch; }) ||
+                     [](const StyleSet::Assigned& one) { return one.style == StyleMap::kShadowCatcher; }) ||
          std::any_of(styles.wanted.begin(), styles.wanted.end(),
-                     [](const auto& wish) { return wish.second == StyleMap::kCatch; });
+                     [](const auto& wish) { return wish.second == StyleMap::kShadowCatcher; });
 }
 
 // Of what was asked for and changes nothing, once in a run.

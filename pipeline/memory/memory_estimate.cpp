@@ -36,7 +36,7 @@ constexpr Bytes kSurfaceSeeds = 48;         // MatchCoherent
 constexpr Bytes kBandTile = 110'000;        // seeds of 512 columns, for one thread
 constexpr int kBandRadius = 3;              // up to it sources are kept for a few rows only
 constexpr Bytes kExplained = 24;            // planes that --show is drawn from, and a second picture
-constexpr Bytes kTones = 8 * kMega;         // Alternatives, of an exemplar of any size
+constexpr Bytes kTones = 8 * kMega;         // SourceVariation, of an exemplar of any size
 constexpr Bytes kCoherence = 9;             // MeasureCoherence, for --json
 
 Bytes PixelsOf(const Size& size) { return Bytes(size.width) * Bytes(size.height); }
@@ -118,7 +118,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
   }
   need.Take("styles", read);
   need.Take("exemplars", prepared);
-  need.Briefly("preparing exemplars", largest);
+  need.TakeTransient("preparing exemplars", largest);
 }
 
 // The sources of all pixels and what their match and votes look at.
@@ -140,7 +140,7 @@ void AddSources(const PictureWork& work, const PictureRequest& options, const Si
   if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
   const Bytes tiles = (Bytes(size.width) + 511) / 512;
   need.Take("seeds of the threads", ThreadsOf(work.threads) * tiles * kBandTile * work.styles.size());
-  if (briefly > 0) need.Briefly("match and votes", briefly * pixels);
+  if (briefly > 0) need.TakeTransient("match and votes", briefly * pixels);
 }
 
 }  // namespace
@@ -163,7 +163,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   for (const auto& texture : scene.encoded_textures) bytes += texture ? Bytes(texture->bytes) : 0;
   if (more.largest > 0) need.Take("reader", kFormatsModule);
   need.Take("scene", bytes);
-  need.Briefly("decoding a texture", kDecoded * more.largest);
+  need.TakeTransient("decoding a texture", kDecoded * more.largest);
 }
 
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need) {
@@ -175,11 +175,11 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
   // Lists of pixels that grow: twice what they hold, and the copy that they grew from.
   constexpr Bytes kPathPixel = 40, kSum = 24;
   const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
-  need.Briefly("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
+  need.TakeTransient("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
 }
 
 void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need) {
-  need.Briefly("guide file", PlanesOf(size, Made(layers)));
+  need.TakeTransient("guide file", PlanesOf(size, Made(layers)));
 }
 
 void AddGuidesBehind(const Size& size, const LayerSet& layers, MemoryNeed& need) {
@@ -198,7 +198,7 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   for (const auto& [name, found] : info.layers) channels += ChannelsOf(found);
   channels = std::max<Bytes>(channels, 1 + Bytes(std::count(info.channels.begin(), info.channels.end(), ',')));
   need.Take("reader", kFormatsModule);
-  need.Briefly("channels of the file", kFloat * channels * pixels);
+  need.TakeTransient("channels of the file", kFloat * channels * pixels);
 }
 
 void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need) {
@@ -208,15 +208,15 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   if (options.upsample > 1) need.Take("upsampled guides", kFloat * ChannelsOf(Made(work.layers)) * pixels);
   if (!options.over.empty()) {
     need.Take("picture underneath", kPaint * pixels);
-    need.Briefly("reading it", 2 * kPaint * pixels + kFormatsModule);
+    need.TakeTransient("reading it", 2 * kPaint * pixels + kFormatsModule);
   }
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
   AddSources(work, options, size, need);
-  if (options.show) need.Briefly("explaining", kExplained * pixels);
-  else if (work.keeps_field) need.Briefly("figures", kCoherence * pixels);
+  if (options.show) need.TakeTransient("explaining", kExplained * pixels);
+  else if (work.keeps_field) need.TakeTransient("figures", kCoherence * pixels);
   if (NeedsModule(options.output)) need.Take("writer", kFormatsModule);
-  need.Briefly("picture file", encoded * pixels);
+  need.TakeTransient("picture file", encoded * pixels);
 }
 
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need) {
@@ -226,8 +226,8 @@ void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layer
   const Bytes files = 4 * (has_layers_file ? 3 : 1);
   need.Take("guides", lights * PlanesOf(square, Made(layers)));
   need.Take("templates", lights * files * pixels);
-  need.Briefly("drawing", (3 * kPaint + 8) * pixels);
-  need.Briefly("guide file", PlanesOf(square, Made(layers)));
+  need.TakeTransient("drawing", (3 * kPaint + 8) * pixels);
+  need.TakeTransient("guide file", PlanesOf(square, Made(layers)));
 }
 
 }  // namespace scumble

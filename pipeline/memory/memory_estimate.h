@@ -26,7 +26,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need);
 // paths are followed.
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need);
 
-// Briefly a guide file of these layers, packed in memory before it is written.
+// TakeTransient a guide file of these layers, packed in memory before it is written.
 void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need);
 
 // A second set of guides and its file, for a sequence that writes one frame while it makes the next.

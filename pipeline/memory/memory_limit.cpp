@@ -105,7 +105,7 @@ void MemoryNeed::Take(const std::string& name, std::uint64_t bytes) {
   LookForPeak(held_);
 }
 
-void MemoryNeed::Briefly(const std::string& name, std::uint64_t bytes) {
+void MemoryNeed::TakeTransient(const std::string& name, std::uint64_t bytes) {
   std::vector<Part> parts = held_;
   AddPart(parts, name, bytes);
   LookForPeak(parts);

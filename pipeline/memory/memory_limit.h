@@ -23,7 +23,7 @@ class MemoryNeed {
   // Stays until the run ends. Parts of one name are one part.
   void Take(const std::string& name, std::uint64_t bytes);
   // Is given back before the next call.
-  void Briefly(const std::string& name, std::uint64_t bytes);
+  void TakeTransient(const std::string& name, std::uint64_t bytes);
 
   std::uint64_t peak() const { return peak_; }
   // What there is at the peak.

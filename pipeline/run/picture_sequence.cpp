@@ -92,7 +92,7 @@ PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const 
   return {styles.styles, has_map, guides, layers, is_sequence, picture.KeepsField(), context.threads};
 }
 
-Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                   const StyleSet& styles) {
   SCUMBLE_ASSIGN(const auto overs, NamesOf(picture.over, sequence));
   for (const std::string& over : overs) files.Reads("the picture of --over", over);
@@ -101,7 +101,7 @@ Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::opt
   return files.CheckOutputs(outputs);
 }
 
-FilesCheck CheckOfSceneStyles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                          const StyleSet& styles) {
   return [&] { return files.KnowsStyles(styles) ? Ok() : CheckFiles(files, picture, sequence, styles); };
 }

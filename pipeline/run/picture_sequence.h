@@ -61,12 +61,12 @@ PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const 
                    bool is_sequence, const RunContext& context);
 
 // Registers the inputs of styles and picture, and checks the outputs against all inputs.
-Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                   const StyleSet& styles);
 
 // CheckFiles once more, where scene or guides have asked for styles that were not open then. All are borrowed.
 using FilesCheck = std::function<Status()>;
-FilesCheck CheckOfSceneStyles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                               const StyleSet& styles);
 
 // The picture underneath that trials of a budget paint over: a sequence's first. A plan alone may leave open which frame

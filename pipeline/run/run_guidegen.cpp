@@ -40,7 +40,7 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
   // What the scene wishes is in the file as well, so that nothing is loaded where nothing is left to make.
   work.check = [&](int, const std::string& output) -> Status {
     const Expected<GuideFileInfo> info = InspectGuides(output);
-    SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? WishesOf(info->header) : StyleWishes()));
+    SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? SceneStyleRequestsOf(info->header) : SceneStyleRequests()));
     return CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()), request.scene.half, settings});
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
@@ -70,7 +70,7 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
   return report;
 }
 
-Status CheckFiles(RunFiles& files, const GuidegenRequest& request, const std::optional<Sequence>& sequence,
+Status CheckFiles(RunInputs& files, const GuidegenRequest& request, const std::optional<Sequence>& sequence,
                   const std::optional<StyleSet>& styles) {
   files.ReadsScene(request.scene.scene);
   if (styles) files.ReadsStyles(*styles);
@@ -91,8 +91,8 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
   }
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.scene.blender.frame, request.output));
   const bool plan_only = request.output.empty();
-  RunFiles files;
-  const LayersFor layers_for = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
+  RunInputs files;
+  const LayersFor layers_for = [&](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
     LayerSet layers = asked;
     if (!styles) return layers;
     SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, wishes, request.scene.scene));
@@ -124,7 +124,7 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
     const bool timeless = plan_only && (frame || sequence);
     SceneRequest scene = request.scene;
     if (timeless) scene.animation.clear();
-    SCUMBLE_ASSIGN(made, MakeGuidesAtRest(scene, layers_for, motion && !timeless, context, progress,
+    SCUMBLE_ASSIGN(made, MakeStaticGuides(scene, layers_for, motion && !timeless, context, progress,
                                           plan_only));
   }
   NameStylesInPlan(made.plan, styles);

@@ -17,7 +17,7 @@ namespace scumble {
 namespace {
 
 LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene, const FilesCheck& check_files) {
-  return [&styles, scene, check_files](const StyleWishes& wishes) -> Expected<LayerSet> {
+  return [&styles, scene, check_files](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
     SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, wishes, scene));
     SCUMBLE_RETURN_IF_ERROR(check_files());
     return layers;
@@ -105,7 +105,7 @@ Expected<RunReport> PlanOf(const StylizeRequest& request, StyleSet& styles, cons
   SceneRequest scene = request.scene;
   scene.animation.clear();  // a plan is the same at any time
   scene.blender.frame = request.picture.frame;
-  SCUMBLE_ASSIGN(SceneGuides made, MakeGuidesAtRest(scene, RequiredOfScene(styles, scene.scene, Ok), false, context,
+  SCUMBLE_ASSIGN(SceneGuides made, MakeStaticGuides(scene, RequiredOfScene(styles, scene.scene, Ok), false, context,
                                                     context.StartProgress("stylize"), true));
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
   RunReport report;
@@ -152,7 +152,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
   const double style_ms = watch.Lap();
   context.EndStage("style");
-  RunFiles files;
+  RunInputs files;
   files.ReadsScene(request.scene.scene);
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request.picture, sequence, styles));
   const FilesCheck check_files = CheckOfSceneStyles(files, request.picture, sequence, styles);
@@ -170,7 +170,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   const Progress progress = Within(all, 0.0, 0.5);
   SCUMBLE_ASSIGN(SceneGuides made, request.picture.frame
                                        ? MakeGuidesAt(*request.picture.frame, scene, layers_for, false, context, progress)
-                                       : MakeGuidesAtRest(scene, layers_for, false, context, progress, false));
+                                       : MakeStaticGuides(scene, layers_for, false, context, progress, false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);

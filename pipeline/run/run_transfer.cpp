@@ -27,9 +27,9 @@ GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& sty
 // Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks for
 // nothing here; reading it says why. Layers that tell of names alone are optional: a render may have one of them.
 Status RequireOfFile(StyleSet& styles, const std::string& file, GuideReadOptions& read) {
-  StyleWishes wishes;
+  SceneStyleRequests wishes;
   if (styles.options.scene_styles) {
-    if (const Expected<GuideFileInfo> info = InspectGuides(file)) wishes = WishesOf(info->header);
+    if (const Expected<GuideFileInfo> info = InspectGuides(file)) wishes = SceneStyleRequestsOf(info->header);
   }
   SCUMBLE_ASSIGN(read.required, StyleLayers(styles, wishes, file));
   read.optional = styles.LayersOfNames(wishes);
@@ -142,7 +142,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
   request.style.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
   context.EndStage("style");
-  RunFiles files;
+  RunInputs files;
   for (const auto& [what, name] : {std::pair("the guides", &request.guides), {"the .camera file", &request.camera}}) {
     SCUMBLE_ASSIGN(const auto names, NamesOf(*name, sequence));
     for (const std::string& file : names) files.Reads(what, file);

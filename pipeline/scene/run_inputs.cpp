@@ -154,11 +154,11 @@ std::string WithoutPercents(const std::string& text) {
 
 }  // namespace
 
-void RunFiles::Reads(const std::string& what, const std::string& path) {
+void RunInputs::Reads(const std::string& what, const std::string& path) {
   if (const auto identity = IdentityOf(path)) inputs_.try_emplace(*identity, Input{what, path});
 }
 
-void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder) {
+void RunInputs::ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder) {
   const std::string text = StartOf(file);
   for (std::size_t begin = text.find_first_of("\"'"); begin != std::string::npos;) {
     const std::size_t end = text.find(text[begin], begin + 1);
@@ -170,7 +170,7 @@ void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, con
   }
 }
 
-void RunFiles::ReadsScene(const std::string& scene) {
+void RunInputs::ReadsScene(const std::string& scene) {
   const std::string what = "a file of the scene " + scene, folder = fs::path(scene).parent_path().string();
   Reads("the scene", scene);
   if (Ending(scene) == ".gltf" || Ending(scene) == ".glb") ReadsUris(what, scene, folder);
@@ -193,7 +193,7 @@ void RunFiles::ReadsScene(const std::string& scene) {
   }
 }
 
-std::vector<std::string> RunFiles::Inputs() const {
+std::vector<std::string> RunInputs::Inputs() const {
   std::vector<std::string> paths;
   for (const auto& [identity, input] : inputs_) paths.push_back(input.path);
   std::sort(paths.begin(), paths.end());
@@ -201,7 +201,7 @@ std::vector<std::string> RunFiles::Inputs() const {
 }
 
 // Of all that a .gltf has in quotes only what stands behind "uri" names a file: a scene of 100,000 nodes has as many names.
-void RunFiles::ReadsUris(const std::string& what, const std::string& file, const std::string& folder) {
+void RunInputs::ReadsUris(const std::string& what, const std::string& file, const std::string& folder) {
   constexpr std::string_view kKey = "\"uri\"", kBlank = " \t\r\n";
   const std::string text = StartOf(file);
   for (std::size_t key = text.find(kKey); key != std::string::npos; key = text.find(kKey, key + 1)) {
@@ -220,7 +220,7 @@ void RunFiles::ReadsUris(const std::string& what, const std::string& file, const
   }
 }
 
-void RunFiles::ReadsStyles(const StyleSet& styles) {
+void RunInputs::ReadsStyles(const StyleSet& styles) {
   styles_ = styles.opened.size();
   std::error_code failed;
   for (const auto& [path, place] : styles.opened) {
@@ -241,7 +241,7 @@ void RunFiles::ReadsStyles(const StyleSet& styles) {
   }
 }
 
-Status RunFiles::CheckOutputs(std::span<const std::string> outputs) const {
+Status RunInputs::CheckOutputs(std::span<const std::string> outputs) const {
   for (const std::string& output : outputs) {
     const auto identity = IdentityOf(output);
     const auto found = identity ? inputs_.find(*identity) : inputs_.end();

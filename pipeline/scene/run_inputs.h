@@ -13,7 +13,7 @@
 
 namespace scumble {
 
-class RunFiles {
+class RunInputs {
  public:
   // A file that the run reads; `what` is for the message: "the guides". Empty names and files that are not there (reading
   // them says so) are no matter.

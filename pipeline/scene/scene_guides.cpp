@@ -41,10 +41,10 @@ void WarnIfNothingShows(const GuideSet& guides, const std::string& scene, const 
   context.Warn(scene + ": the camera sees nothing, the picture is empty; try --view or another --camera");
 }
 
-Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film) {
+Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation) {
   BlenderRequest blender = options.blender;
   blender.wants_start = options.view.has_value();
-  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, context, film);
+  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, context, animation);
   return LoadScene(options.scene, TextureLoading::kWhenNeeded);
 }
 
@@ -56,8 +56,8 @@ std::string ViewToText(const ViewAngles& view) {
   return fmt::format("{},{}{}", view.azimuth, view.elevation, view.distance > 0.0 ? fmt::format(",{}", view.distance) : "");
 }
 
-Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film, bool warns) {
-  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, context, film));
+Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation, bool warns) {
+  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, context, animation));
   if (!warns) return scene;
   for (const std::string& warning : scene.warnings) context.Warn(options.scene + ": " + warning);
   return scene;

@@ -50,7 +50,7 @@ Status CheckSceneRequest(const SceneRequest& request);
 
 // Loads the scene, a .blend by way of Blender; passes on its warnings if `warns`. CastScene decodes its textures, as
 // far as they are needed.
-Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film = nullptr,
+Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation = nullptr,
                           bool warns = true);
 
 // Whether a layer needs light, so that a scene without any gets a key light.

@@ -20,7 +20,7 @@
 namespace scumble {
 
 // The layers to make of a scene whose author has these wishes.
-using LayersFor = std::function<Expected<LayerSet>(const StyleWishes&)>;
+using LayersFor = std::function<Expected<LayerSet>(const SceneStyleRequests&)>;
 
 class SceneFrames {
  public:
@@ -64,7 +64,7 @@ class SceneFrames {
   RunContext silent_;
 
   // A file that moves.
-  std::optional<AnimatedScene> film_;  // none: the scene stands still, or is Blender's
+  std::optional<AnimatedScene> animation_;  // none: the scene stands still, or is Blender's
   LayerSet layers_;
   std::optional<double> load_ms_;  // that no frame has told of
   SceneCost decoded_;              // nor of these textures
@@ -88,40 +88,40 @@ class SceneFrames {
 };
 
 // Writes the frames' rate among the attributes, where the command line or the .blend names one.
-void StoreFrameRate(const SceneRequest& options, const BlenderFilm& film, GuideSet& guides);
+void StoreFrameRate(const SceneRequest& options, const BlenderAnimation& animation, GuideSet& guides);
 
 // One frame, as a sequence would have it.
 Expected<SceneGuides> MakeGuidesAt(int frame, const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                    const RunContext& context, const Progress& progress);
 
 // A scene that stands still, at a frame or without one's number, and how it is seen.
-struct SceneAtRest {
+struct StaticScene {
   Scene scene;
   PreparedView view;
   LayerSet layers;
-  BlenderFilm film;
+  BlenderAnimation animation;
   double load_ms = 0.0;
 };
 
 // Says how it is seen, and what the scene warns of unless `warns` is false: it will be opened once more. Errors as
-// MakeGuidesAtRest has them.
-Expected<SceneAtRest> OpenSceneAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+// MakeStaticGuides has them.
+Expected<StaticScene> OpenStaticScene(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                       const RunContext& context, bool plan_only, bool warns = true);
 
 // Poses a scene that is loaded, at a frame or at rest, and decides how it is seen. Passes on its warnings if `warns`.
-Expected<SceneAtRest> PoseScene(const AnimatedScene& film, std::optional<int> frame, const SceneRequest& options,
+Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<int> frame, const SceneRequest& options,
                                 const LayersFor& layers_for, const RunContext& context, bool warns);
 
 // Decides again how a posed scene of Blender's is seen, for other layers or through another camera.
-Status ViewAgain(SceneAtRest& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers);
+Status ViewAgain(StaticScene& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers);
 
 // The same of a frame, seen as SceneFrames sees it; without a number, at rest.
-Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
+Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
                                   const RunContext& context, bool warns = true);
 
 // The scene as it stands without a frame's number, as MakeGuidesOf has it. --animation and the layer motion are usage
 // errors.
-Expected<SceneGuides> MakeGuidesAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                        const RunContext& context, const Progress& progress, bool plan_only);
 
 }  // namespace scumble

@@ -45,8 +45,8 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
 
 // The same, or what the reserved words mean.
 Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
-  if (name == kRendered) return StyleMap::kLeave;
-  if (name == kCatcher) return StyleMap::kCatch;
+  if (name == kRendered) return StyleMap::kPassThrough;
+  if (name == kCatcher) return StyleMap::kShadowCatcher;
   return PlaceOf(set, name, base);
 }
 
@@ -56,7 +56,7 @@ bool IsAssigned(const StyleSet& set, const std::string& name) {
 }
 
 // Opens them, and adds the places of their styles to `read`.
-Status AddWishes(StyleSet& set, const std::map<std::string, std::string>& wishes, const std::string& kind,
+Status OpenStyleRequests(StyleSet& set, const std::map<std::string, std::string>& wishes, const std::string& kind,
                  const std::string& file, std::set<std::size_t>& read) {
   for (const auto& [name, wish] : wishes) {
     if (IsAssigned(set, name)) continue;
@@ -69,7 +69,7 @@ Status AddWishes(StyleSet& set, const std::map<std::string, std::string>& wishes
     const std::string mend = "; mend the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
     const Expected<std::uint16_t> place = PlaceOrWord(set, wish, std::filesystem::path(file).parent_path());
     if (!place) return Error{place.error().kind, who + ": " + place.error().message + mend};
-    if (*place == StyleMap::kCatch && !PaintsShadows(set.first())) {
+    if (*place == StyleMap::kShadowCatcher && !PaintsShadows(set.first())) {
       return InputError(who + ", and the style of the picture paints no shadows that it could catch: give --set " +
                         "transfer.shadow=paint" + mend);
     }
@@ -87,7 +87,7 @@ std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set, const std::m
   return styles;
 }
 
-void NameWishes(const std::map<std::uint32_t, std::string>& styles, const std::map<std::uint32_t, std::string>& names,
+void NameStyleRequests(const std::map<std::uint32_t, std::string>& styles, const std::map<std::uint32_t, std::string>& names,
                 std::map<std::string, std::string>& wishes) {
   for (const auto& [id, style] : styles) {
     const auto name = names.find(id);
@@ -104,8 +104,8 @@ bool StyleSet::NeedsMap(const GuideSet& guides) const {
   return !assigned.empty() || any(guides.object_styles) || any(guides.material_styles);
 }
 
-StyleWishes WishesOf(std::span<const Instance> instances, const Scene& scene) {
-  StyleWishes wishes;
+SceneStyleRequests SceneStyleRequestsOf(std::span<const Instance> instances, const Scene& scene) {
+  SceneStyleRequests wishes;
   for (const Instance& instance : instances) {
     if (!instance.style.empty()) wishes.objects[instance.object] = instance.style;
     const Material& material = scene.materials[scene.meshes[instance.mesh].material];
@@ -114,24 +114,24 @@ StyleWishes WishesOf(std::span<const Instance> instances, const Scene& scene) {
   return wishes;
 }
 
-StyleWishes WishesOf(const GuideSet& guides) {
-  StyleWishes wishes;
-  NameWishes(guides.object_styles, guides.object_names, wishes.objects);
-  NameWishes(guides.material_styles, guides.material_names, wishes.materials);
+SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides) {
+  SceneStyleRequests wishes;
+  NameStyleRequests(guides.object_styles, guides.object_names, wishes.objects);
+  NameStyleRequests(guides.material_styles, guides.material_names, wishes.materials);
   return wishes;
 }
 
-LayerSet StyleSet::LayersOfNames(const StyleWishes& wishes) const {
+LayerSet StyleSet::LayersOfNames(const SceneStyleRequests& wishes) const {
   const bool wished = options.scene_styles && (!wishes.objects.empty() || !wishes.materials.empty());
   return wished || !assigned.empty() ? LayerSet{Layer::kObject, Layer::kMaterial} : LayerSet();
 }
 
-Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file) {
   std::set<std::size_t> read;
   for (std::size_t i = 0; i < set.chosen; ++i) read.insert(i);
   if (set.options.scene_styles) {
-    SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.objects, "object", file, read));
-    SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.materials, "material", file, read));
+    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, wishes.objects, "object", file, read));
+    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, wishes.materials, "material", file, read));
   }
   LayerSet layers;
   for (const std::size_t i : read) {
@@ -142,7 +142,7 @@ Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const s
   return layers;
 }
 
-Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file) {
   SCUMBLE_ASSIGN(LayerSet layers, StyleLayers(set, wishes, file));
   return layers.Add(set.LayersOfNames(wishes));
 }
@@ -191,7 +191,7 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
     }
     const std::uint16_t place = by_name[name];
     set.assigned.push_back({pattern, place, where});
-    if (place == StyleMap::kCatch && !PaintsShadows(set.first())) {
+    if (place == StyleMap::kShadowCatcher && !PaintsShadows(set.first())) {
       return UsageError(where + ": the style paints no shadows that it could catch; give --set " +
                         "transfer.shadow=paint, or " + pattern + "=rendered to leave it out");
     }

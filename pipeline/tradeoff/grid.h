@@ -17,7 +17,7 @@ struct TradeGridOptions {
 };
 
 struct TradeGrid {
-  std::vector<Way> ways;              // "the style" first, then "the exact way", then axis by axis
+  std::vector<Variant> variants;              // "the style" first, then "the exact variant", then axis by axis
   std::vector<std::string> left_out;  // in words, with why
 };
 
@@ -31,10 +31,10 @@ inline constexpr const char* kExactAxis = "exact";
 TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options);
 
 // The axes in the grid's order, each once.
-std::vector<std::string> AxesOf(const std::vector<Way>& ways);
+std::vector<std::string> AxesOf(const std::vector<Variant>& variants);
 
 // The ways that --only names, "levels,nearest*": those of an axis of that name, and those whose own name fits; with the style
 // in any case. A kUsage error lists the axes where a part names nothing.
-Expected<std::vector<Way>> ChooseWays(const std::vector<Way>& ways, const std::string& only);
+Expected<std::vector<Variant>> ChooseVariants(const std::vector<Variant>& variants, const std::string& only);
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// What `scumble tradeoff` does: each way is made and measured.
+// What `scumble tradeoff` does: each variant is made and measured.
 #pragma once
 
 #include <cstddef>
@@ -26,16 +26,16 @@ struct TradeSetup {
 // A run that takes longer than this is not repeated.
 inline constexpr double kSlowMs = 5000.0;
 
-// Everything that was measured. Guides are timed first, all ways' in turn, then transfers, those of a few ways in turn, quick ones
-// before slow ones: what else the machine does then is spread over ways. Each run is one of a single picture (WayPainter::Paint).
+// Everything that was measured. Guides are timed first, all variants' in turn, then transfers, those of a few variants in turn, quick ones
+// before slow ones: what else the machine does then is spread over ways. Each run is one of a single picture (VariantPainter::Paint).
 // Wrong options are kUsage; a scene that shows nothing is kInput; what would take more memory than there is, as CheckMemory.
 Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const RunContext& context);
 
 // The command line that measures all this again.
 std::string TradeCommand(const TradeSetup& setup, const RunContext& context);
 
-// Makes the picture of one way, once, and returns the memory that this process has held at most, in bytes; for a process of
+// Makes the picture of one variant, once, and returns the memory that this process has held at most, in bytes; for a process of
 // its own.
-Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const RunContext& context);
+Expected<std::size_t> PeakOfVariant(const TradeSetup& setup, const std::string& name, const RunContext& context);
 
 }  // namespace scumble

@@ -1,6 +1,6 @@
 // The ladder of --quality and --budget-ms: ways to do it with less, from the style itself down to the quickest.
 //
-// A rung takes from the style what makes accuracy, never what makes its look: guides may be cast with fewer samples and
+// A step takes from the style what makes accuracy, never what makes its look: guides may be cast with fewer samples and
 // smaller, and the paint's places be found more simply; colours, thresholds, edges and sizes are the artist's. The order is that of the
 // measured energy (measure/energy/energy.h); bench/ladder_bench measures it, and docs/budget.md has the table.
 #pragma once
@@ -17,7 +17,7 @@ namespace scumble {
 // What the guides leave to choose.
 struct LadderFrame {
   bool casts = false;  // guides are made, so they may be smaller than the picture
-  // Of the picture. Guides are 2, 4 or 8 times smaller where that divides both, else not as small as a rung asks.
+  // Of the picture. Guides are 2, 4 or 8 times smaller where that divides both, else not as small as a step asks.
   int width = 0, height = 0;
   bool fixed_guides = false;  // the user has said how large they are
   int samples = 0;            // that a pixel of light gets; 0: no choice, as no light is cast, by no chance, or the user has said
@@ -25,11 +25,11 @@ struct LadderFrame {
 
 // The most accurate first: the style as it is. What a --set of the user decides stays so, and ways that then come to
 // the same, or that change nothing of any of the styles, are left out. Never empty.
-std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame);
+std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& frame);
 
-// Whether which of two rungs is nearer differs by style, so that their order in the ladder is little more than chance: one
+// Whether which of two steps is nearer differs by style, so that their order in the ladder is little more than chance: one
 // without blending, the other by the Lit Sphere, with guides of one size.
-bool AreRivals(const Way& a, const Way& b);
+bool AreContenders(const Variant& a, const Variant& b);
 
 // Named points of it.
 enum class Quality {
@@ -41,14 +41,14 @@ enum class Quality {
   kPreview,
   kFinal,  // the style as it is
 };
-Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame);
+Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& frame);
 
 // The options of stylize and transfer that repeat it: "--upsample 4 --samples 4 --set transfer.method=litsphere"; empty for
 // the style as it is.
-std::string OptionsOf(const Way& way);
+std::string OptionsOf(const Variant& variant);
 
-// Puts the way's settings into all styles, and into those that the scene asks for later, as --set options before the
+// Puts the variant's settings into all styles, and into those that the scene asks for later, as --set options before the
 // user's would: the same bytes.
-Status ApplyWay(const Way& way, StyleSet& styles);
+Status ApplyVariant(const Variant& variant, StyleSet& styles);
 
 }  // namespace scumble

@@ -99,7 +99,7 @@ void TradeReference::AddWeighedGuides() {
   more_.assign(count, std::vector<float>(guides_->pixel_count()));
   const auto brightness = static_cast<float>(Exp2(exposure_));
   const auto coverage = guides_->Plane(Layer::kCoverage);
-  float rest[GuideSpace::kMaxRest];
+  float rest[GuideSpace::kMaxExtra];
   for (std::size_t i = 0; i < guides_->pixel_count(); ++i) {
     if (!(coverage[i] > 0.0f)) continue;
     space.Read(*guides_, i, brightness, rest);

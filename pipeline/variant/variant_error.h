@@ -1,4 +1,4 @@
-// What the ways of `scumble tradeoff` are measured against: the guides of the exact way, and the exemplars as they are used.
+// What the variants of `scumble tradeoff` are measured against: the guides of the exact variant, and the exemplars as they are used.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace scumble {
 
-// How far guides are from those of the exact way.
+// How far guides are from those of the exact variant.
 struct GuideDifference {
   double rms = 0.0;
   double flip = 0.0;

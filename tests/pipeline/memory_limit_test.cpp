@@ -79,7 +79,7 @@ TEST_F(MemoryLimitTest, DamagedFilesTellNothing) {
 TEST(MemoryNeed, ThePeakIsTheLargestSum) {
   MemoryNeed need;
   need.Take("a", 100);
-  need.Briefly("b", 50);
+  need.TakeTransient("b", 50);
   EXPECT_EQ(need.peak(), 150u);
   need.Take("c", 30);
   EXPECT_EQ(need.peak(), 150u) << "b was given back before";

@@ -35,7 +35,7 @@ namespace scumble {
 class GuideSpace {
  public:
   // The most coordinates beside the normal's.
-  static constexpr int kMaxRest = 20;
+  static constexpr int kMaxExtra = 20;
 
   // Over the usable pixels of each exemplar, which must hold the layers that have a weight above 0: their guides are
   // sampled at pixel centres. What Nearest finds may be (1 + nearest_error) times as far as the nearest. A kInput error names an exemplar whose guides lack one. One thread, O(pixels · log) an

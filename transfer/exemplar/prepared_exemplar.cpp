@@ -75,12 +75,12 @@ Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
 
 }  // namespace
 
-struct PreparedExemplar::LateAlternatives {
+struct PreparedExemplar::LazySourceVariation {
   std::once_flag made;
-  std::optional<Alternatives> value;
+  std::optional<SourceVariation> value;
 };
 
-PreparedExemplar::PreparedExemplar() : alternatives_(std::make_shared<LateAlternatives>()) {}
+PreparedExemplar::PreparedExemplar() : alternatives_(std::make_shared<LazySourceVariation>()) {}
 
 PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size)
     : PreparedExemplar() {
@@ -151,7 +151,7 @@ Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* co
   return exemplar;
 }
 
-const Alternatives& PreparedExemplar::alternatives() const {
+const SourceVariation& PreparedExemplar::alternatives() const {
   std::call_once(alternatives_->made, [this] { alternatives_->value.emplace(*this); });
   return *alternatives_->value;
 }

@@ -19,7 +19,7 @@
 
 namespace scumble {
 
-class Alternatives;
+class SourceVariation;
 class ExemplarSearch;
 
 // An exemplar's guides by rows, for code that looks at sixteen pixels at once: kPad values before the first and after the
@@ -99,7 +99,7 @@ class PreparedExemplar {
   glm::vec2 OnDisc(glm::vec3 normal) const;
 
   // Where else there is paint for a normal; made at the first call, by whichever thread is first.
-  const Alternatives& alternatives() const;
+  const SourceVariation& alternatives() const;
 
   ExemplarRows Rows() const;
 
@@ -124,7 +124,7 @@ class PreparedExemplar {
     }
   };
 
-  struct LateAlternatives;
+  struct LazySourceVariation;
 
   PreparedExemplar();
   float Coordinate(int index) const { return coordinate_[std::size_t(index) + ExemplarRows::kPad]; }
@@ -142,7 +142,7 @@ class PreparedExemplar {
   std::vector<Picture> pictures_;
   std::shared_ptr<const Scene> scene_;            // null: the sphere
   std::shared_ptr<const ExemplarSearch> search_;  // null: analytic
-  std::shared_ptr<LateAlternatives> alternatives_;
+  std::shared_ptr<LazySourceVariation> alternatives_;
 };
 
 // N for a picture of `size` pixels at `scale`, for an output of `output_height` pixels; `reference_height` 0 means that

@@ -47,7 +47,7 @@ struct BandShares {
 
 struct BandResult {
   bool finished = false;       // false: the progress callback asked to stop
-  bool softly_covered = false;  // as FrameStart has it
+  bool softly_covered = false;  // as FrameSetup has it
   BandShares shares;
 };
 

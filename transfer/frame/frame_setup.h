@@ -19,7 +19,7 @@ struct FrameInput {
   Region region;  // of the picture that is made; within it
 };
 
-struct FrameStart {
+struct FrameSetup {
   std::vector<Region> extents;             // the rectangle around each style's covered pixels
   std::vector<std::vector<Region>> tiles;  // by style, with a map only: small rectangles that hold all its pixels
   bool softly_covered = false;             // somewhere that is painted coverage is between 0 and 1
@@ -40,7 +40,7 @@ struct ActiveRows {
 // - `out` is 0 wherever in the region no style paints, and may hold anything where one does; outside the region it is left
 //   alone if it had its size.
 // Runs in the caller's arena.
-FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);
+FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);
 
 // `active` tells the covered pixels of a style in these tiles, or none any more.
 void Activate(const FrameInput& input, int style, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);

@@ -13,9 +13,9 @@ namespace scumble {
 
 // Per pixel the index of its style, rows from the top.
 struct StyleMap {
-  static constexpr std::uint16_t kLeave = 0xffff;  // left as it is: the picture underneath shows, or nothing
+  static constexpr std::uint16_t kPassThrough = 0xffff;  // left as it is: the picture underneath shows, or nothing
   // Not painted either, but catches shadows: see transfer.shadow of the first style.
-  static constexpr std::uint16_t kCatch = 0xfffe;
+  static constexpr std::uint16_t kShadowCatcher = 0xfffe;
   static constexpr int kMaxStyles = 0xfffe;
   std::vector<std::uint16_t> style;
 };

@@ -117,7 +117,7 @@ class CoherentMatch {
       for (int x = region.x0; x < region.x1; ++x) {
         const std::size_t i = field_.Index(x, y);
         if (!input_.Wants(i) || settled_[i]) continue;
-        const Offer own = OwnOffer(input_, i);
+        const Candidate own = OwnCandidate(input_, i);
         field_.Set(i, own.source.x, own.source.y, own.exemplar, 0);
         if (!field_.moved.empty()) field_.moved[i] = own.moved;
       }
@@ -162,7 +162,7 @@ class CoherentMatch {
     Rows(whole, [&](int y) { runs.fetch_add(FindPieces(exponent, y), std::memory_order_relaxed); });
     SeedTable seeds(runs);
     Rows(whole, [&](int y) { AddSeeds(y, seeds); });
-    Rows(input_.region, [&](int y) { OfferRow(exponent, y, seeds); });
+    Rows(input_.region, [&](int y) { CandidateRow(exponent, y, seeds); });
   }
 
   bool IsWanted(int exponent) const {
@@ -206,7 +206,7 @@ class CoherentMatch {
     }
   }
 
-  void OfferRow(int exponent, int y, SeedTable& seeds) {
+  void CandidateRow(int exponent, int y, SeedTable& seeds) {
     std::uint64_t last = 0;
     std::optional<Seed> seed;
     for (int x = input_.region.x0; x < input_.region.x1; ++x) {
@@ -216,7 +216,7 @@ class CoherentMatch {
       if (!seed) continue;
       PixelGuide guide;
       input_.ReadGuide(i, guide);
-      const auto taken = TakeOffer(input_, seed->made, seed->q, {x, y}, guide);
+      const auto taken = TryCandidate(input_, seed->made, seed->q, {x, y}, guide);
       if (!taken) continue;
       field_.Set(i, taken->source.x, taken->source.y, taken->exemplar, seed->level);
       if (!field_.moved.empty()) field_.moved[i] = taken->moved;
@@ -225,7 +225,7 @@ class CoherentMatch {
   }
 
   struct Seed {
-    SeedOffer made;
+    SeedCandidate made;
     PixelPosition q;
     int level = 0;
   };
@@ -239,8 +239,8 @@ class CoherentMatch {
     input_.ReadGuide(pixel, guide);
     PixelGuide steady = guide;
     steady.normal = Steady(guide.normal, cell_, key);
-    Seed seed{SeedOf(input_, guide, OwnOffer(input_, steady)), {static_cast<int>(pixel % width), static_cast<int>(pixel / width)}, level};
-    Vary(input_, level, seed.q, Hash(key, 0x7a), seed.made);
+    Seed seed{SeedOf(input_, guide, OwnCandidate(input_, steady)), {static_cast<int>(pixel % width), static_cast<int>(pixel / width)}, level};
+    VarySource(input_, level, seed.q, Hash(key, 0x7a), seed.made);
     return seed;
   }
 

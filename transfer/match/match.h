@@ -1,4 +1,4 @@
-// Ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that are
+// Variants to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that are
 // wanted, and leave the others as they are. False: the progress callback asked to stop.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace scumble::internal {
 struct PixelGuide {
   glm::vec3 normal;
   float light;                      // exposed luminance, for the choice of exemplars
-  float rest[GuideSpace::kMaxRest];  // only where a GuideSpace is matched in
+  float rest[GuideSpace::kMaxExtra];  // only where a GuideSpace is matched in
 };
 
 // What a match looks at. `field` has the picture's size already.
@@ -95,13 +95,13 @@ struct MatchInput {
 };
 
 // A piece of an exemplar: its nearest neighbour to a pixel's guide, and the exemplar that suits the pixel's light.
-struct Offer {
+struct Candidate {
   Source source;
   int exemplar = 0;
   glm::vec3 moved{0.0f};  // by what the seed moved the source's guide: a pixel's own counts as if moved by the same
 };
-Offer OwnOffer(const MatchInput& input, std::size_t pixel);
-Offer OwnOffer(const MatchInput& input, const PixelGuide& guide);  // the same for what was read of the pixel
+Candidate OwnCandidate(const MatchInput& input, std::size_t pixel);
+Candidate OwnCandidate(const MatchInput& input, const PixelGuide& guide);  // the same for what was read of the pixel
 
 // Every pixel takes its own nearest neighbour.
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress);

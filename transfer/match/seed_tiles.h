@@ -21,8 +21,8 @@ static_assert(kTileWidth % kBlock == 0);
 inline constexpr int kMaxSpreadLevel = 6;
 
 // What a seed at q offers: a pixel p may take `offset` + p of an exemplar.
-struct TileOffer {
-  enum State : std::uint8_t { kUnknown, kNone, kOffers };
+struct TileCandidate {
+  enum State : std::uint8_t { kUnknown, kNone, kCandidates };
   std::int32_t offset_x = 0, offset_y = 0;  // u* - q
   State state = kUnknown;
   std::uint8_t exemplar = 0;
@@ -32,7 +32,7 @@ struct TileOffer {
 // What belongs to a seed on a flat surface.
 struct SeedFreedom {
   glm::vec3 moved{0.0f};    // by what the source's guide was moved
-  Alternatives::Tone tone;  // what is wanted here
+  SourceVariation::Tone tone;  // what is wanted here
 };
 
 // One level's seeds of one tile. A seed has an index, below kSlots · columns, that holds as long as its row of cells.
@@ -51,9 +51,9 @@ class TileSeeds {
 
   // Makes the cells in the row `cell_row` and those above and below, as far as pixels [x, x + width) can be near to them:
   // so that they can be asked for offers, and with Need for their places too.
-  void NeedOffers(int cell_row, int x, int width) { NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeOffers); }
+  void NeedCandidates(int cell_row, int x, int width) { NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeCandidates); }
   void Need(int cell_row, int x, int width) {
-    NeedOffers(cell_row, x, width);
+    NeedCandidates(cell_row, x, width);
     NeedIn(placed_, cell_row, x, width, &TileSeeds::MakePlaces);
   }
   static int Slot(int cell_row) { return cell_row & (kSlots - 1); }
@@ -72,9 +72,9 @@ class TileSeeds {
   }
 
   // What a seed offers; made now if nobody asked before.
-  const TileOffer& Offer(int index) {
-    TileOffer& offer = offers_[static_cast<std::size_t>(index)];
-    if (offer.state == TileOffer::kUnknown) Fill(index, offer);
+  const TileCandidate& Candidate(int index) {
+    TileCandidate& offer = offers_[static_cast<std::size_t>(index)];
+    if (offer.state == TileCandidate::kUnknown) Fill(index, offer);
     return offer;
   }
   const SeedFreedom& Freedom(int index) const { return freedoms_[static_cast<std::size_t>(index)]; }
@@ -120,9 +120,9 @@ class TileSeeds {
   }
   template <class Visit>
   void ForEachColumn(std::uint64_t parts, const Visit& visit) const;
-  void MakeOffers(int cell_row, std::uint64_t parts);
+  void MakeCandidates(int cell_row, std::uint64_t parts);
   void MakePlaces(int cell_row, std::uint64_t parts);
-  void Fill(int index, TileOffer& offer);
+  void Fill(int index, TileCandidate& offer);
 
   const MatchInput* input_ = nullptr;
   const float* normal_[3] = {};
@@ -132,7 +132,7 @@ class TileSeeds {
   Made offered_, placed_;
   std::vector<std::uint64_t> column_hashes_;
   std::vector<PixelPosition> in_cell_;
-  std::vector<TileOffer> offers_;
+  std::vector<TileCandidate> offers_;
   std::vector<SeedFreedom> freedoms_;  // empty without variety
   std::vector<std::uint16_t> spread_x_, spread_y_;
 };

@@ -135,7 +135,7 @@ class TileMatcher {
       groups_ = 0;
       if (seeds.level() <= kMaxSpreadLevel) GroupBySpread(seeds, open);
       else GroupByRuns(seeds, open);
-      for (int g = 0; g < groups_; ++g) OfferTo(seeds, group_[g]);
+      for (int g = 0; g < groups_; ++g) CandidateFor(seeds, group_[g]);
       const int before = open;
       open = 0;
       for (int k = 0; k < before; ++k) {
@@ -294,10 +294,10 @@ class TileMatcher {
     group_[groups_++] = {static_cast<std::uint16_t>(block), static_cast<std::uint16_t>(lanes), seed};
   }
 
-  // Offers a seed to a group, and lets those take it that are like it.
-  HWY_INLINE void OfferTo(TileSeeds& seeds, const Group& group) {
-    const TileOffer& offer = seeds.Offer(group.seed);
-    if (offer.state != TileOffer::kOffers) return;
+  // Candidates a seed to a group, and lets those take it that are like it.
+  HWY_INLINE void CandidateFor(TileSeeds& seeds, const Group& group) {
+    const TileCandidate& offer = seeds.Candidate(group.seed);
+    if (offer.state != TileCandidate::kCandidates) return;
     const glm::vec3* const moved = offer.is_free ? &seeds.Freedom(group.seed).moved : nullptr;
     const int from = group.block * kBlock;
     const std::uint32_t taken = Alike(from, offer, moved, group.lanes);
@@ -306,7 +306,7 @@ class TileMatcher {
     if (offer.is_free && taken != 0) TakeFreely(seeds, group.seed, from, taken);
   }
 
-  HWY_INLINE void Take(int from, std::uint32_t lanes, const TileOffer& offer, int level) {
+  HWY_INLINE void Take(int from, std::uint32_t lanes, const TileCandidate& offer, int level) {
     const int x = row_.x + from + offer.offset_x;
     const auto y = hn::Set(kShorts, static_cast<std::int16_t>(row_.y + offer.offset_y));
     const auto how = hn::Set(kWords, static_cast<std::uint16_t>(level | offer.exemplar << 8));
@@ -320,7 +320,7 @@ class TileMatcher {
 
   // Of the lanes, those whose source is usable and whose guide, moved, is like it: GuideTest's and Illumination's rules.
   // `from` is the first lane's place in the row.
-  HWY_INLINE std::uint32_t Alike(int from, const TileOffer& offer, const glm::vec3* moved, std::uint32_t lanes) const {
+  HWY_INLINE std::uint32_t Alike(int from, const TileCandidate& offer, const glm::vec3* moved, std::uint32_t lanes) const {
     const int x = row_.x + from + offer.offset_x, y = row_.y + offer.offset_y;
     if (static_cast<unsigned>(y) >= static_cast<unsigned>(rows_.height)) return 0;
     if (rows_.is_sphere) {
@@ -415,19 +415,19 @@ class TileMatcher {
 
   // Lanes that took what a seed on a flat surface offers: near its border they choose between two.
   HWY_NOINLINE void TakeFreely(TileSeeds& seeds, int seed, int from, std::uint32_t lanes) {
-    const TileOffer& offer = seeds.Offer(seed);
+    const TileCandidate& offer = seeds.Candidate(seed);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int place = from + std::countr_zero(lanes);
       const PixelPosition p{row_.x + place, row_.y};
-      Offer taken{{p.x + offer.offset_x, p.y + offer.offset_y}, offer.exemplar, seeds.Freedom(seed).moved};
+      Candidate taken{{p.x + offer.offset_x, p.y + offer.offset_y}, offer.exemplar, seeds.Freedom(seed).moved};
       ChooseAtBorder(input_, seeds, {p, GuideOf(place)}, taken);
       Put(place, taken, seeds.level());
     }
   }
 
-  HWY_NOINLINE void TakeOwn(int place) { Put(place, OwnOffer(input_, GuideOf(place)), 0); }
+  HWY_NOINLINE void TakeOwn(int place) { Put(place, OwnCandidate(input_, GuideOf(place)), 0); }
 
-  void Put(int place, const Offer& taken, int level) {
+  void Put(int place, const Candidate& taken, int level) {
     row_.source_x[place] = static_cast<std::int16_t>(taken.source.x);
     row_.source_y[place] = static_cast<std::int16_t>(taken.source.y);
     row_.how[place] = static_cast<std::uint16_t>(level | taken.exemplar << 8);
@@ -513,14 +513,14 @@ HWY_EXPORT(MatchTileRows);
 
 void MatchTile(const TileJob& job) { HWY_DYNAMIC_DISPATCH(MatchTileRows)(job); }
 
-void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Offer& taken) {
+void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Candidate& taken) {
   const PixelPosition p = choice.p;
   seeds.Need(p.y >> seeds.level(), p.x, 1);  // where a map told the nearest, places were not
   const auto [s, t, excess] = seeds.NearestTwo(p.x, p.y);
   if (!InBorderBand(seeds.level(), excess)) return;
-  const TileOffer& second = seeds.Offer(t);
-  if (second.state != TileOffer::kOffers || !second.is_free) return;
-  const Offer other{{p.x + second.offset_x, p.y + second.offset_y}, second.exemplar, seeds.Freedom(t).moved};
+  const TileCandidate& second = seeds.Candidate(t);
+  if (second.state != TileCandidate::kCandidates || !second.is_free) return;
+  const Candidate other{{p.x + second.offset_x, p.y + second.offset_y}, second.exemplar, seeds.Freedom(t).moved};
   if (!input.exemplar.Usable(other.source.x, other.source.y)) return;
   if (!input.Alike(choice.guide, other.moved, other.source, other.exemplar)) return;
   const int nearest_off = ToneError(input, taken, seeds.Freedom(s).tone);

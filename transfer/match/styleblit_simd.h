@@ -35,6 +35,6 @@ struct FreeChoice {
   PixelPosition p;
   PixelGuide guide;
 };
-void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Offer& taken);
+void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Candidate& taken);
 
 }  // namespace scumble::internal

@@ -44,8 +44,8 @@ HWY_INLINE void Measure(int dimensions, float bound, const Off& off, Sixteen& fo
   }
 }
 
-// `nearer`: boxes count where they may hold something at less than this share of the distance found; 1 unless kRough.
-template <bool kRough>
+// `nearer`: boxes count where they may hold something at less than this share of the distance found; 1 unless kApproximate.
+template <bool kApproximate>
 class Search {
  public:
   Search(const BoxTree& tree, const float* query, std::uint32_t first, double nearer = 1.0)
@@ -79,7 +79,7 @@ class Search {
     // Whatever is farther in floats is farther; the least summand is for squares that underflow.
     const double bound = distance * tree_.slack() * tree_.slack() + 1e-40;
     bound_ = InFloats(bound);
-    box_bound_ = kRough ? InFloats(bound * nearer_squared_) : bound_;
+    box_bound_ = kApproximate ? InFloats(bound * nearer_squared_) : bound_;
   }
   static float InFloats(double bound) {
     return bound < 3e38 ? static_cast<float>(bound) : std::numeric_limits<float>::infinity();
@@ -89,7 +89,7 @@ class Search {
     const Floats d;
     const float* HWY_RESTRICT points = tree_.Leaf(leaf);
     Sixteen found;
-    Measure<!kRough>(tree_.dimensions(), bound_, [&](int k, std::size_t lane) HWY_ATTR {
+    Measure<!kApproximate>(tree_.dimensions(), bound_, [&](int k, std::size_t lane) HWY_ATTR {
       return hn::Sub(hn::Set(d, query_[k]), hn::LoadU(d, points + std::size_t(k) * BoxTree::kWide + lane));
     }, found);
     for (std::uint32_t left = found.within; left != 0; left &= left - 1) {
@@ -109,7 +109,7 @@ class Search {
     const BoxTree::Level& boxes = tree_.levels()[level];
     const float* HWY_RESTRICT sides = boxes.sides.data() + node * std::size_t(tree_.dimensions()) * 2 * BoxTree::kWide;
     Sixteen found;
-    Measure<!kRough>(tree_.dimensions(), box_bound_, [&](int k, std::size_t lane) HWY_ATTR {
+    Measure<!kApproximate>(tree_.dimensions(), box_bound_, [&](int k, std::size_t lane) HWY_ATTR {
       const float* lower = sides + std::size_t(k) * 2 * BoxTree::kWide + lane;
       const auto at = hn::Set(d, query_[k]);
       const auto outside = hn::Max(hn::Sub(hn::LoadU(d, lower), at), hn::Sub(at, hn::LoadU(d, lower + BoxTree::kWide)));

@@ -33,7 +33,7 @@ class BoxTree {
   // nearer than its distance / (1 + error) are left out (Arya et al., "An Optimal Algorithm for Approximate Nearest Neighbor
   // Searching in Fixed Dimensions", JACM 1998). With error 0 it is one of the nearest; which, where several are, is not said.
   // The answer depends on points and query alone: not on the searches before, nor on the machine.
-  std::uint32_t NearlyNearest(const float* query, double error) const;
+  std::uint32_t ApproximateNearest(const float* query, double error) const;
 
   // What the search reads, in every instruction set. Leaf j holds places 16 j … 16 j + 15; node j of a level holds the
   // boxes of 16 j … of the level below.

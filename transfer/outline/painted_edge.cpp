@@ -77,12 +77,12 @@ class EdgePainter {
     int margin = 0;
     for (const EdgePaint& paint : input.paints) {
       if (paint.rims.empty()) continue;
-      margin = std::max(margin, RimPieceMargin(paint.seeds.level_offset, paint.rims.front().band()));
+      margin = std::max(margin, RimSegmentMargin(paint.seeds.level_offset, paint.rims.front().band()));
     }
     return margin;
   }
 
-  std::vector<RimPieces> Pieces() const {
+  std::vector<RimSegments> Pieces() const {
     std::vector<float> radii;
     std::vector<SeedRules> seeds;
     int widest = 0;
@@ -92,7 +92,7 @@ class EdgePainter {
       if (!paint.rims.empty()) widest = std::max(widest, paint.rims.front().band());
     }
     const Region near = input_.region.GrownBy(EdgeReach(widest), input_.guides.width(), input_.guides.height());
-    return ChooseRimPieces({silhouettes_, radii, seeds, near});
+    return ChooseRimSegments({silhouettes_, radii, seeds, near});
   }
 
   // Of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is that from the line through it, which
@@ -108,7 +108,7 @@ class EdgePainter {
 
   // The rim as the pieces show it at a point of the picture, so far inside its edge. A line that is drawn narrower is the
   // mean of what it is drawn together from. Sums are of integers, like a vote's.
-  static Texel RimAt(const RimPaint& rim, const RimPieces& pieces, glm::vec2 at, float distance, float width) {
+  static Texel RimAt(const RimPaint& rim, const RimSegments& pieces, glm::vec2 at, float distance, float width) {
     const int samples = std::clamp(static_cast<int>(std::ceil(1.0f / width - 0.01f)), 1, 8);
     std::uint64_t sum[4] = {0, 0, 0, 0}, total = 0;
     for (std::size_t n = 0; n < pieces.piece.size() && pieces.weight[n] > 0.0f; ++n) {
@@ -133,7 +133,7 @@ class EdgePainter {
   std::span<const float> coverage_;
   std::vector<int> bands_;
   Silhouettes silhouettes_;
-  std::vector<RimPieces> pieces_;  // by outline pixel
+  std::vector<RimSegments> pieces_;  // by outline pixel
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ Silhouettes::Silhouettes(const SilhouetteInput& input)
 
 bool Silhouettes::Painted(std::size_t i) const {
   const std::size_t style = StyleOf(i);
-  return coverage_[i] > 0.0f && style != StyleMap::kLeave && style != StyleMap::kCatch;
+  return coverage_[i] > 0.0f && style != StyleMap::kPassThrough && style != StyleMap::kShadowCatcher;
 }
 
 int Silhouettes::Band(std::size_t i) const {

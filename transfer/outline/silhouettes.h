@@ -30,8 +30,8 @@ struct SilhouetteInput {
 };
 
 // The outlines of objects in front of something else. Object a stands before b where they meet if b is further from the
-// camera by more than 1% of its distance; the outline tapers off below 3%. Pixels that no style paints (StyleMap::kLeave and
-// kCatch) count as nothing, unless they stand before the object. Self-occlusion makes no outline.
+// camera by more than 1% of its distance; the outline tapers off below 3%. Pixels that no style paints (StyleMap::kPassThrough and
+// kShadowCatcher) count as nothing, unless they stand before the object. Self-occlusion makes no outline.
 //
 // `width` falls with the thickness of the object there, full from 8 bands on and 0 below one band, where the outline stays
 // exact; and with the gap to the next thing that is not behind, full from 3 bands on and 0 below half a band. It is averaged

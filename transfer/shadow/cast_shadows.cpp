@@ -16,7 +16,7 @@ struct Strength {
 };
 
 bool Catches(const ShadowInput& input, std::size_t i) {
-  return input.style[i] == StyleMap::kCatch && input.guides.Plane(Layer::kCoverage)[i] > 0.0f;
+  return input.style[i] == StyleMap::kShadowCatcher && input.guides.Plane(Layer::kCoverage)[i] > 0.0f;
 }
 
 Strength StrengthAt(const ShadowInput& input, int x, int y) {

@@ -15,7 +15,7 @@ namespace scumble::internal {
 
 struct ShadowInput {
   const GuideSet& guides;                // with shadow
-  std::span<const std::uint16_t> style;  // StyleMap::kCatch: a pixel that catches shadows
+  std::span<const std::uint16_t> style;  // StyleMap::kShadowCatcher: a pixel that catches shadows
   const ShadowPaint& paint;
   SeedRules seeds;
   Region region;

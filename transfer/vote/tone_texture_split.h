@@ -18,7 +18,7 @@ namespace scumble {
 
 // The tone of each picture of an exemplar: MaskedBlur over its usable pixels, premultiplied. Texture is what the
 // picture differs from it by.
-std::vector<Picture> MakeTones(const PreparedExemplar& exemplar, double sigma);
+std::vector<Picture> MakeBaseLayers(const PreparedExemplar& exemplar, double sigma);
 
 }  // namespace scumble
 

@@ -16,7 +16,7 @@ bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress) {
   return ForEachRow(region, progress, [&](int y) {
     for (int x = region.x0; x < region.x1; ++x) {
       if (!input.active[field.Index(x, y)]) continue;
-      Ballot ballot;
+      VoteSum ballot;
       ForEachVote(input, regions ? &*regions : nullptr, x, y, [&](int exemplar, Source source) {
         ballot.Add(input.exemplar.picture(exemplar).At(source.x, source.y));
       });

@@ -22,14 +22,14 @@ bool IsForWantOfThreads(const std::exception& error) {
 }
 
 [[noreturn]] void TellAndEnd() {
-  const int code = TellOf(std::current_exception());
+  const int code = ReportException(std::current_exception());
   RemovePendingTemporaries();
   ::_exit(code);  // other threads still run: nothing that they use may be taken down
 }
 
 }  // namespace
 
-int TellOf(std::exception_ptr thrown) {
+int ReportException(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
     // So it is where a thread could not be started while others of the same library ran.
@@ -55,6 +55,6 @@ int TellOf(std::exception_ptr thrown) {
   return static_cast<int>(ExitCode::kInternal);
 }
 
-void TellOfWhatNobodyCatches() { std::set_terminate(TellAndEnd); }
+void ReportUncaughtExceptions() { std::set_terminate(TellAndEnd); }
 
 }  // namespace scumble

@@ -20,7 +20,7 @@ namespace {
 
 Status CheckHeatMap(const CompareVerb& verb) {
   if (verb.heat_map.empty()) return Ok();
-  RunFiles files;
+  RunInputs files;
   files.Reads("the first file", verb.a), files.Reads("the second file", verb.b);
   if (!verb.motion.empty()) files.Reads("the guides", verb.motion);
   if (!verb.motion_next.empty()) files.Reads("the next frame's guides", verb.motion_next);

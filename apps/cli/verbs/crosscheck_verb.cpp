@@ -201,7 +201,7 @@ Status CheckScenes(const CrosscheckVerb& verb) {
 
 // Told before minutes of rendering, not after.
 Status CheckTargets(const CrosscheckVerb& verb) {
-  RunFiles files;
+  RunInputs files;
   for (const std::string& scene : verb.scenes) files.ReadsScene(scene);
   if (!verb.write_baseline.empty()) SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(verb.write_baseline));
   files.Reads("the baseline", verb.baseline);  // which --write-baseline may bring up to date

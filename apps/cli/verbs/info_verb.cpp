@@ -43,8 +43,8 @@ Expected<Json> DescribeGuides(const std::string& path) {
   if (info.from_blender) json["note"] = BlenderNote(info);
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
-  for (const auto& [name, style] : WishesOf(info.header).objects) json["styles"][name] = style;
-  for (const auto& [name, style] : WishesOf(info.header).materials) json["material styles"][name] = style;
+  for (const auto& [name, style] : SceneStyleRequestsOf(info.header).objects) json["styles"][name] = style;
+  for (const auto& [name, style] : SceneStyleRequestsOf(info.header).materials) json["material styles"][name] = style;
   if (info.header.camera) json["camera"] = info.header.camera->name;
   for (const auto& [name, value] : info.header.attributes) json[name] = value;
   return json;

@@ -154,7 +154,7 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   SCUMBLE_RETURN_IF_ERROR(CheckOptions(verb));
   SCUMBLE_RETURN_IF_ERROR(CheckIsPainting(request.output));
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output));
-  RunFiles files;
+  RunInputs files;
   files.Reads("the scan", request.scan);
   SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(request.output));
   SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(request.scan));

@@ -1,4 +1,4 @@
-// scumble tradeoff: what every way to stylise a scene costs, and how far off it is.
+// scumble tradeoff: what every variant to stylise a scene costs, and how far off it is.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -41,7 +41,7 @@ struct TradeoffVerb {
   SceneOptions scene;              // becomes setup.scene
   std::string exposure = "auto";  // becomes setup.exposure
   std::string folder;
-  std::string peak_of;  // a way's name: its memory alone, for the process that AskForPeak starts
+  std::string peak_of;  // a variant's name: its memory alone, for the process that AskForPeak starts
 };
 
 constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json", *kPage = "report.html";
@@ -76,7 +76,7 @@ Status CheckFolder(const TradeoffVerb& verb, const Globals& globals) {
     return OutputError(fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made; name another", verb.folder,
                                    kPictures));
   }
-  RunFiles files;
+  RunInputs files;
   files.ReadsScene(verb.setup.scene.scene);
   StyleRequest style = verb.setup.style;
   style.scene_styles = false;
@@ -101,10 +101,10 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
   const auto json = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
   if (!json.is_object() || !json.contains("ways") || !json["ways"].is_array()) return old;
   std::set<std::string> names;
-  for (std::size_t i = 0; i < report.ways.size(); ++i) names.insert(TradePictureName(report, i));
-  for (const auto& way : json["ways"]) {
-    if (!way.is_object() || !way.contains("picture") || !way["picture"].is_string()) continue;
-    const fs::path name = way["picture"].get<std::string>();
+  for (std::size_t i = 0; i < report.variants.size(); ++i) names.insert(TradePictureName(report, i));
+  for (const auto& variant : json["ways"]) {
+    if (!variant.is_object() || !variant.contains("picture") || !variant["picture"].is_string()) continue;
+    const fs::path name = variant["picture"].get<std::string>();
     if (name.extension() == ".png" && name == name.filename() && !names.contains(name.string())) {
       old.push_back(fs::path(folder) / kPictures / name);
     }
@@ -140,7 +140,7 @@ Status Remove(const fs::path& file) {
 }
 
 // All is encoded first and has room, so that a full disk leaves an older report as it was. Then that goes, its page
-// first, as pictures of other ways get the names of its own; and the new page comes last. So where a page is, all that
+// first, as pictures of other variants get the names of its own; and the new page comes last. So where a page is, all that
 // it tells of is there, whenever a run ends.
 Status WriteFolder(const std::string& folder, const TradeReport& report) {
   const fs::path place(folder);
@@ -152,7 +152,7 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
   std::size_t bytes = 0, largest = 0;
   const auto add = [&](std::size_t size) { bytes += size + kBlock, largest = std::max(largest, size); };
   for (const auto& [name, text] : texts) add(text.size());
-  for (const TradeMeasure& way : report.ways) add(way.picture_png.size());
+  for (const TradeMeasure& variant : report.variants) add(variant.picture_png.size());
   SCUMBLE_RETURN_IF_ERROR(CheckRoom(place / kPage, bytes, largest));
 
   const std::vector<fs::path> old = OldPictures(folder, report);
@@ -161,9 +161,9 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
   for (const fs::path& picture : old) fs::remove(picture, ignored);
   for (const auto& [name, text] : texts) SCUMBLE_RETURN_IF_ERROR(Remove(place / name));
 
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
     const fs::path file = place / kPictures / TradePictureName(report, i);
-    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.ways[i].picture_png))));
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.variants[i].picture_png))));
   }
   for (const auto& [name, text] : texts) SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(place / name, text));
   return Ok();
@@ -177,7 +177,7 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   SCUMBLE_ASSIGN(verb.setup.exposure, ParseExposure(verb.exposure));
   verb.setup.writes = !verb.folder.empty();
   if (!verb.peak_of.empty()) {
-    SCUMBLE_ASSIGN(const std::size_t bytes, PeakOfWay(verb.setup, verb.peak_of, globals));
+    SCUMBLE_ASSIGN(const std::size_t bytes, PeakOfVariant(verb.setup, verb.peak_of, globals));
     Print(fmt::format("{{\"peak_bytes\": {}}}\n", bytes));
     return ExitCode::kOk;
   }

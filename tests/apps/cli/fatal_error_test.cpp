@@ -37,7 +37,7 @@ class LastWords : public testing::Test {
 
   // In the process of a death test: an output is half written when a second thread ends as it should not.
   [[noreturn]] void EndOnAnotherThread(const std::function<void()>& end) {
-    TellOfWhatNobodyCatches();
+    ReportUncaughtExceptions();
     const internal::PendingTemporary file(folder_ / "p.png");
     if (file.descriptor() < 0 || std::filesystem::is_empty(folder_.path())) ::_exit(99);
     std::thread([&] { end(); }).join();

@@ -45,7 +45,7 @@ StyleMap RandomMap(int width, int height, std::uint64_t styles, std::uint64_t se
   for (std::size_t i = 0; i < map.style.size(); ++i) {
     const int x = int(i) % width, y = int(i) / width, side = seed % 3 == 0 ? 1 : 14;
     const std::uint64_t piece = Hash(seed, x / side, y / side) % (styles + 2);
-    map.style[i] = piece < styles ? static_cast<std::uint16_t>(piece) : piece == styles ? StyleMap::kLeave : StyleMap::kCatch;
+    map.style[i] = piece < styles ? static_cast<std::uint16_t>(piece) : piece == styles ? StyleMap::kPassThrough : StyleMap::kShadowCatcher;
   }
   return map;
 }

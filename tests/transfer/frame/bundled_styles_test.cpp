@@ -134,8 +134,8 @@ Painter MakePainter(Style style, const Variant& variant, const GuideSet& guides)
     style.transfer.scale *= 0.7, style.transfer.blend_radius = 2;
     prepare();
     StyleAssignment assignment;
-    assignment.of_object = {{IdOf(guides, "Floor"), StyleMap::kCatch},
-                            {IdOf(guides, "Curtain"), StyleMap::kLeave},
+    assignment.of_object = {{IdOf(guides, "Floor"), StyleMap::kShadowCatcher},
+                            {IdOf(guides, "Curtain"), StyleMap::kPassThrough},
                             {IdOf(guides, "WallLeft"), 1}};
     painter.map = MapStyles(guides, assignment);
   }

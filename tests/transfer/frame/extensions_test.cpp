@@ -343,7 +343,7 @@ TEST(StyleMap, EveryStylePaintsAsIfNothingElseWereThere) {
   std::vector<PreparedStyle> prepared;
   for (const Style& style : styles) prepared.push_back(*Prepare(style, guides.height()));
   const PreparedStyle* const pointers[] = {&prepared[0], &prepared[1], &prepared[2]};
-  const StyleMap map = MapStyles(guides, {of_object, {}, StyleMap::kLeave});
+  const StyleMap map = MapStyles(guides, {of_object, {}, StyleMap::kPassThrough});
   TransferScratch scratch;
   Picture picture;
   ASSERT_TRUE(Transfer(pointers, map, guides, {}, scratch, picture).ok());
@@ -371,7 +371,7 @@ TEST(StyleMap, LeftAsRenderedShowsThePictureUnderneath) {
   options.over = &render;
   TransferScratch scratch;
   Picture picture;
-  ASSERT_TRUE(Transfer(styles, MapStyles(guides, {{}, {}, StyleMap::kLeave}), guides, options, scratch, picture).ok());
+  ASSERT_TRUE(Transfer(styles, MapStyles(guides, {{}, {}, StyleMap::kPassThrough}), guides, options, scratch, picture).ok());
   EXPECT_EQ(picture.rgba, render.rgba);
 }
 

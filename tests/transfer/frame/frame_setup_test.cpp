@@ -31,8 +31,8 @@ StyleMap StripedMap(int styles) {
     const int x = int(i) % kWidth, y = int(i) / kWidth;
     const std::uint64_t piece = Hash(x / 17, y / 13) % (std::uint64_t(styles) + 2);
     map.style[i] = piece < std::uint64_t(styles)    ? static_cast<std::uint16_t>(piece)
-                   : piece == std::uint64_t(styles) ? StyleMap::kLeave
-                                                    : StyleMap::kCatch;
+                   : piece == std::uint64_t(styles) ? StyleMap::kPassThrough
+                                                    : StyleMap::kShadowCatcher;
   }
   return map;
 }
@@ -47,7 +47,7 @@ void Spoil(TransferScratch& scratch, Picture& out) {
   std::fill(out.rgba.begin(), out.rgba.end(), std::uint16_t{4711});
 }
 
-TEST(FrameStart, NothingOfTheFrameBeforeIsLeft) {
+TEST(FrameSetup, NothingOfTheFrameBeforeIsLeft) {
   Style first = PlainStyle(NoisePicture(96)), second = PlainStyle(PositionPicture(80)), third = PlainStyle(NoisePicture(64));
   third.transfer.method = Method::kLitSphere;
   const Picture under = NoisePicture(200);
@@ -101,14 +101,14 @@ TEST(FrameStart, NothingOfTheFrameBeforeIsLeft) {
   }
 }
 
-TEST(FrameStart, TilesAndExtentsHoldEachStylesPixels) {
+TEST(FrameSetup, TilesAndExtentsHoldEachStylesPixels) {
   const GuideSet guides = HoledGuides(false);
   const StyleMap map = StripedMap(12);
   SourceField field;
   std::vector<std::uint8_t> active;
   Picture out;
   const internal::FrameInput input{guides, &map, 12, {0, 0, kWidth, kHeight}};
-  const internal::FrameStart start = internal::StartFrame(input, field, active, out);
+  const internal::FrameSetup start = internal::StartFrame(input, field, active, out);
   EXPECT_FALSE(start.softly_covered);
   EXPECT_EQ(active, std::vector<std::uint8_t>(guides.pixel_count(), 0));
   for (int s = 0; s < 12; ++s) {

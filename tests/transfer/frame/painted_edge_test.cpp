@@ -314,7 +314,7 @@ TEST(PaintedEdge, WhatIsLeftUnpaintedCountsAsNothingUnlessItStandsBefore) {
   Style style = PlainStyle(PaintOnPaper(400, 1.02, 0.0));
   style.transfer.edge = EdgeMode::kExemplar;
   const auto prepared = Prepare(style, 180);
-  for (const std::uint16_t unpainted : {StyleMap::kLeave, StyleMap::kCatch}) {
+  for (const std::uint16_t unpainted : {StyleMap::kPassThrough, StyleMap::kShadowCatcher}) {
     for (const float depth : {10.0f, 10.05f, 12.0f, 8.0f}) {
       GuideSet guides = Ball();
       for (int y = 95; y < 180; ++y) {

@@ -44,7 +44,7 @@ TEST(Shadow, CatchersShowDarkPaintWhereTheyAreInShadowAndNothingElse) {
   EXPECT_NEAR(prepared->shadow->dark().center.x, 256 * 0.3, 20);
   EXPECT_NEAR(prepared->shadow->dark().center.y, 256 * 0.65, 20);
   const PreparedStyle* styles[] = {&*prepared};
-  const StyleMap map = MapStyles(guides, {{{2u, StyleMap::kCatch}}, {}, 0});
+  const StyleMap map = MapStyles(guides, {{{2u, StyleMap::kShadowCatcher}}, {}, 0});
   TransferScratch scratch;
   Picture picture;
   ASSERT_TRUE(Transfer(styles, map, guides, {}, scratch, picture).ok());
@@ -129,7 +129,7 @@ Picture ShadowOn(const Style& style, const std::function<float(int x, int y)>& s
   TransferOptions options;
   options.seed = seed;
   Picture picture;
-  EXPECT_TRUE(Transfer(styles, MapStyles(guides, {{{1u, StyleMap::kCatch}}, {}, 0}), guides, options, scratch, picture).ok());
+  EXPECT_TRUE(Transfer(styles, MapStyles(guides, {{{1u, StyleMap::kShadowCatcher}}, {}, 0}), guides, options, scratch, picture).ok());
   return picture;
 }
 
@@ -240,7 +240,7 @@ TEST(Shadow, ThreadsAndRegionsDoNotChangeAByte) {
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kShadow)[i] = UnitFloat(Hash(i / 7));
   const auto prepared = Prepare(style, 150);
   const PreparedStyle* styles[] = {&*prepared};
-  const StyleMap map = MapStyles(guides, {{{1u, StyleMap::kCatch}}, {}, 0});
+  const StyleMap map = MapStyles(guides, {{{1u, StyleMap::kShadowCatcher}}, {}, 0});
   TransferScratch scratch;
   Picture whole, tiled;
   ASSERT_TRUE(Transfer(styles, map, guides, {}, scratch, whole).ok());

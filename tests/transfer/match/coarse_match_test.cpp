@@ -229,7 +229,7 @@ TEST(MatchStep, ThreadsRegionsAndOtherStylesDoNotChangeAByte) {
   StyleMap map{std::vector<std::uint16_t>(guides.pixel_count())};
   for (std::size_t i = 0; i < map.style.size(); ++i) {
     const bool leave = i % 131 > 120;
-    map.style[i] = leave ? StyleMap::kLeave : guides.Plane(Layer::kObject)[i] == 2.0f;
+    map.style[i] = leave ? StyleMap::kPassThrough : guides.Plane(Layer::kObject)[i] == 2.0f;
   }
   for (const int step : {2, 5, 8}) {
     Style first = TwoLights(120), second = PlainStyle(PositionPicture(60));

@@ -36,9 +36,9 @@ Picture TwoTones(int width, int height) {
   return picture;
 }
 
-TEST(Alternatives, ToneIsTheMeanOfTheUsablePixelsAround) {
+TEST(SourceVariation, ToneIsTheMeanOfTheUsablePixelsAround) {
   const PreparedExemplar exemplar(NoisePicture(100), 2.0, 100);  // small: sums of single pixels
-  const Alternatives alternatives(exemplar);
+  const SourceVariation alternatives(exemplar);
   int empty = 0;
   for (const Source at : {Source{50, 50}, Source{12, 40}, Source{3, 50}, Source{80, 20}, Source{0, 0}}) {
     for (const int half : {1, 4, 9}) {
@@ -61,7 +61,7 @@ TEST(Alternatives, ToneIsTheMeanOfTheUsablePixelsAround) {
   EXPECT_GT(empty, 0) << "a corner outside the disc has no tone";
 }
 
-TEST(Alternatives, ToneOfAPixelIsSmooth) {
+TEST(SourceVariation, ToneOfAPixelIsSmooth) {
   // A ramp of 100 a pixel in a large exemplar, whose sums are of squares of 2 pixels: bilinear between them is exact.
   Picture ramp(300, 300);
   for (int y = 0; y < 300; ++y) {
@@ -71,15 +71,15 @@ TEST(Alternatives, ToneOfAPixelIsSmooth) {
     }
   }
   const PreparedExemplar exemplar(ramp, 2.0, 300);
-  const Alternatives alternatives(exemplar);
+  const SourceVariation alternatives(exemplar);
   for (int y = 100; y < 200; y += 7) {
     for (int x = 100; x < 200; ++x) EXPECT_NEAR(alternatives.ToneAt({x, y}, 0)[0], ramp.At(x, y)[0], 2.0);
   }
 }
 
-TEST(Alternatives, ChoosesWithinTheConeAndOfTheWantedTone) {
+TEST(SourceVariation, ChoosesWithinTheConeAndOfTheWantedTone) {
   const PreparedExemplar exemplar(TwoTones(256, 256), 2.0, 256);
-  const Alternatives alternatives(exemplar);
+  const SourceVariation alternatives(exemplar);
   const Source own{112, 120};  // light, near the dark half, which most of the cone is
   const glm::vec3 normal = exemplar.Normal(own.x, own.y);
   std::set<std::pair<int, int>> chosen;
@@ -95,7 +95,7 @@ TEST(Alternatives, ChoosesWithinTheConeAndOfTheWantedTone) {
 }
 
 // An exemplar that is a scene: two flat panes side by side, 30 degrees apart, each with one normal.
-TEST(Alternatives, ASceneOffersAllOfAFlatFace) {
+TEST(SourceVariation, ASceneOffersAllOfAFlatFace) {
   const glm::vec3 left = glm::normalize(glm::vec3(-std::tan(15.0 * kRadians), 0, 1)), right{-left.x, 0, left.z};
   const GuideSet panes = MakeGuides(200, 120, [&](int x, int) { return x < 100 ? left : right; });
   Picture paint = NoisePicture(200);
@@ -103,7 +103,7 @@ TEST(Alternatives, ASceneOffersAllOfAFlatFace) {
   const Picture* const pictures[] = {&paint};
   auto exemplar = PreparedExemplar::OfScene(pictures, panes, 0.0, 200, 120, "panes");
   ASSERT_TRUE(exemplar.ok());
-  const Alternatives alternatives(*exemplar);
+  const SourceVariation alternatives(*exemplar);
   std::set<int> tenths, both;
   for (std::uint64_t hash = 0; hash < 2000; ++hash) {
     const Source source = alternatives.Choose(*exemplar, {{0, 0}, 0, 20.0, 10, Mix64(hash)});

@@ -265,7 +265,7 @@ TEST(GuideSpace, DefinedForEveryValue) {
   for (const Layer layer : {Layer::kLuminance, Layer::kAlbedo}) scene.Add(layer);
   const auto read = [&](float luminance, float albedo, float brightness) {
     scene.Plane(Layer::kLuminance)[0] = luminance, scene.Plane(Layer::kAlbedo, 1)[0] = albedo;
-    float rest[GuideSpace::kMaxRest];
+    float rest[GuideSpace::kMaxExtra];
     space.Read(scene, 0, brightness, rest);
     return std::pair(rest[1], rest[3]);  // albedo comes first, its green second
   };
@@ -403,7 +403,7 @@ TEST(GuideSpace, EachExemplarIsSearchedByItsOwnLight) {
     if (both.level[i] == SourceField::kNoSource) continue;
     const int k = both.exemplar[i];
     EXPECT_EQ(k, prepared->illumination.Choose(guides.Plane(Layer::kLuminance)[i]));
-    float rest[GuideSpace::kMaxRest];
+    float rest[GuideSpace::kMaxExtra];
     prepared->space->Read(guides, i, 1.0f, rest);
     ASSERT_EQ((Source{both.x[i], both.y[i]}), prepared->space->Nearest(k, guides.Vec3(Layer::kNormal, i), rest));
     ++of[k];

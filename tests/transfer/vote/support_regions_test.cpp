@@ -151,7 +151,7 @@ SourceField RoughField(const GuideSet& guides, int size) {
 TEST(Support, VotesEqualTheirPlainForm) {
   for (const bool extreme : {false, true}) {
     const GuideSet guides = RoughGuides(76, 52, extreme);
-    internal::LateSlopes slopes(guides);
+    internal::LazyDepthGradient slopes(guides);
     Picture first = NoisePicture(300), second = NoisePicture(300);
     for (std::size_t i = 0; i < second.rgba.size(); i += 4) {
       first.rgba[i + 3] = static_cast<std::uint16_t>(i % 28 == 0 ? 0 : Hash(i));
@@ -185,7 +185,7 @@ TEST(Support, ArmsAreSymmetricAndHereditary) {
   for (const bool extreme : {false, true}) {
     const GuideSet guides = RoughGuides(60, 44, extreme);
     const std::vector<std::uint8_t> active = Covered(guides);
-    internal::LateSlopes slopes(guides);
+    internal::LazyDepthGradient slopes(guides);
     const internal::EdgeRules edges{guides, slopes, 40.0, 0.002};
     const internal::SupportRegions regions(edges, active, 9, {0, 0, 60, 44});
     std::vector<std::vector<std::uint8_t>> across(active.size(), std::vector<std::uint8_t>(60)), down = across;
@@ -231,7 +231,7 @@ TEST(Support, ArmsEndWhereASurfaceTurnsByTheCrease) {
     return std::fabs(angle) < 1.5f ? glm::vec3(std::sin(angle), 0, std::cos(angle)) : glm::vec3(0.0f);
   });
   const std::vector<std::uint8_t> active = Covered(guides);
-  internal::LateSlopes slopes(guides);
+  internal::LazyDepthGradient slopes(guides);
   const internal::EdgeRules edges{guides, slopes, 60.0, 0.002};
   const internal::SupportRegions regions(edges, active, 9, {0, 0, 40, 30});
   int widest = 0, highest = 0;
@@ -253,7 +253,7 @@ std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& fron
   SourceField field;
   field.Reset(guides.width(), guides.height());
   for (std::size_t i = 0; i < front.size(); ++i) field.Set(i, front[i] ? kSize / 4 : 3 * kSize / 4, kSize / 2, 0, 0);
-  internal::LateSlopes slopes(guides);
+  internal::LazyDepthGradient slopes(guides);
   const internal::EdgeRules edges{guides, slopes, 180.0, tolerance};
   const Picture out = EngineVote(guides, field, exemplar, radius, joined ? &edges : nullptr,
                                  Region{0, 0, guides.width(), guides.height()});
@@ -305,7 +305,7 @@ TEST(Support, SlopesAndCurvesAreNoSteps) {
             static_cast<float>(6.0 + 0.01 * x + 0.004 * y + bend * (x * x - 0.5 * y * y + 0.3 * x * y));
       }
     }
-    internal::LateSlopes slopes(guides);
+    internal::LazyDepthGradient slopes(guides);
     const internal::EdgeRules edges{guides, slopes, 60.0, 0.002};
     const Picture paint = NoisePicture(300);
     const PreparedExemplar exemplar(paint, 0.0, 300);

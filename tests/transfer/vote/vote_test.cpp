@@ -236,7 +236,7 @@ GuideSet ThinParts() {
 TEST(EdgeAware, NoGhostingAtAnyTolerance) {
   const GuideSet guides = ThinParts();
   const Ghosting ghosting(guides);
-  internal::LateSlopes slopes(guides);
+  internal::LazyDepthGradient slopes(guides);
   for (const int radius : {1, 8}) {
     EXPECT_GT(ghosting.Count(radius, nullptr), radius == 8 ? 20000u : 5000u) << "plain voting mixes, as it should";
     for (const double tolerance : {0.0, 1e-4, 3e-4, 1e-3, 2e-3, 1e-2, 3e-2, 1e-1, 1.0}) {
@@ -255,7 +255,7 @@ TEST(EdgeAware, DepthAndCreasesAloneStopMostGhosts) {
   const Ghosting ghosting(guides);
   GuideSet one_object = guides;
   for (float& id : one_object.Plane(Layer::kObject)) id = id > 0.0f ? 1.0f : 0.0f;
-  internal::LateSlopes slopes(one_object);
+  internal::LazyDepthGradient slopes(one_object);
   const std::size_t plain = ghosting.Count(8, nullptr);
   std::size_t last = 0;
   for (const double tolerance : {0.0, 1e-4, 1e-3, 2e-3, 1e-2, 1e-1}) {
@@ -281,7 +281,7 @@ TEST(EdgeAware, SmallWindowsLetFewGhostsThrough) {
   const Ghosting ghosting(guides);
   GuideSet one_object = guides;
   for (float& id : one_object.Plane(Layer::kObject)) id = id > 0.0f ? 1.0f : 0.0f;
-  internal::LateSlopes slopes(one_object);
+  internal::LazyDepthGradient slopes(one_object);
   for (const int radius : {1, 2, 3}) {
     const std::size_t plain = ghosting.Count(radius, nullptr);
     const internal::EdgeRules exact{one_object, slopes, 60.0, 0.0}, usual{one_object, slopes, 60.0, 0.002};

@@ -355,7 +355,7 @@ void WideSums::WriteWeighted(std::uint64_t active, std::size_t first, std::uint1
   for (; active; active &= active - 1) {
     const std::size_t x = std::size_t(std::countr_zero(active));
     const std::uint64_t* sum = weighted_.data() + 4 * (first + x);
-    Ballot{{sum[0], sum[1], sum[2]}, sum[3], votes_[first + x]}.Count(out + 4 * x);
+    VoteSum{{sum[0], sum[1], sum[2]}, sum[3], votes_[first + x]}.Count(out + 4 * x);
   }
 }
 
