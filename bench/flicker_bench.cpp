@@ -1,5 +1,5 @@
-// How much sequences flicker whose seeds are new in every frame, frozen to the screen, or live on the surface, beside the
-// Lit Sphere: prints the table of docs/sequences.md. Arguments: names of bundled styles;
+// How much sequences flicker whose seeds are new in every frame, frozen to the screen, or live on the surface, beside
+// the Lit Sphere: prints the table of docs/sequences.md. Arguments: names of bundled styles;
 // --save FOLDER writes the frames, too.
 #include <algorithm>
 #include <cstdio>
@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "core/io/picture_file.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene/framing.h"
-#include "core/io/picture_file.h"
 #include "measure/compare/flicker.h"
-#include "core/style/style_file.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -105,7 +105,8 @@ struct Figures {
   double flicker = 0, floor = 0, match_ms = 0;
 };
 
-Expected<Figures> Measure(Style style, const Variant& way, const std::vector<GuideSet>& guides, const std::string& save) {
+Expected<Figures> Measure(Style style, const Variant& way, const std::vector<GuideSet>& guides,
+                          const std::string& save) {
   way.set(style.transfer);
   SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, kHeight));
   TransferScratch scratch;

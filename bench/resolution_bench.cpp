@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "bench/or_stop.h"
+#include "core/image/stopwatch.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene/framing.h"
-#include "core/image/stopwatch.h"
-#include "core/style/style_file.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"
 

@@ -83,10 +83,10 @@ struct Workspace::State {
   // The scene: loaded, then posed and seen.
   std::string scene_key;
   std::optional<AnimatedScene> animation;  // none: the scene is Blender's
-  std::string seen_key, pose_key;  // when and from where it is seen; the same with its light
+  std::string seen_key, pose_key;          // when and from where it is seen; the same with its light
   std::optional<StaticScene> posed;
   std::optional<RayScene> rays;  // of `posed`, which it borrows
-  std::size_t own_lights = 0;  // of `posed`, before a key light was added
+  std::size_t own_lights = 0;    // of `posed`, before a key light was added
   std::string guides_key;
   std::shared_ptr<const SceneGuides> guides;
 
@@ -132,7 +132,8 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   std::string key = request.scene + "\n" + request.animation + "\n" + SceneStamps(request.scene);
   const bool blender = IsBlenderScene(request.scene);
   if (blender) {
-    key += fmt::format("{} {} {}", frame ? std::to_string(*frame) : "", request.blender.program, request.view.has_value());
+    key +=
+        fmt::format("{} {} {}", frame ? std::to_string(*frame) : "", request.blender.program, request.view.has_value());
   }
   if (key == scene_key) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
@@ -185,8 +186,9 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
 Status Workspace::State::Cast(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for,
                               const Progress& progress) {
   if (!frame && !request.animation.empty()) {
-    return UsageError("--animation plays with the frames' numbers: give --frame N, or --frames for several where the "
-                      "verb has it");
+    return UsageError(
+        "--animation plays with the frames' numbers: give --frame N, or --frames for several where the "
+        "verb has it");
   }
   SCUMBLE_RETURN_IF_ERROR(LoadScene(request, frame));
   SCUMBLE_RETURN_IF_ERROR(Continue());
@@ -227,8 +229,8 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   std::vector<std::shared_ptr<const PreparedExemplar>> before;
   for (const PreparedStyle& one : picture.prepared) before.push_back(one.exemplar);
   const GuideSource source{scene.scene, guides->times, guides->plan, guides->cost, guides->memory};
-  SCUMBLE_ASSIGN(PaintedPicture painted, PaintInMemory(*styles, guides->guides, source, request, context,
-                                                       Within(progress, 0.5, 1.0), picture));
+  SCUMBLE_ASSIGN(PaintedPicture painted,
+                 PaintInMemory(*styles, guides->guides, source, request, context, Within(progress, 0.5, 1.0), picture));
   for (std::size_t i = 0; i < picture.prepared.size(); ++i) {
     counters.styles_prepared += i >= before.size() || before[i] != picture.prepared[i].exemplar;
   }

@@ -18,21 +18,21 @@
 #include <string>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "pipeline/frame/frame_report.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
 // How often each kind of work was done so far.
 struct WorkspaceCounters {
-  std::size_t scenes_loaded = 0;   // from files
+  std::size_t scenes_loaded = 0;     // from files
   std::size_t structures_built = 0;  // acceleration structures
   std::size_t guides_cast = 0;       // rays were cast
-  std::size_t styles_loaded = 0;   // from files
-  std::size_t styles_prepared = 0;  // exemplars resized, tables and trees built
+  std::size_t styles_loaded = 0;     // from files
+  std::size_t styles_prepared = 0;   // exemplars resized, tables and trees built
   std::size_t frames_painted = 0;
 };
 

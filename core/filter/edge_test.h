@@ -15,8 +15,8 @@
 
 namespace scumble::internal {
 
-// The surface's slope in depth per pixel. A step shows on one side of a pixel only, or turns back on the other, and is no
-// slope. Made once for all styles of a picture; the guides must hold depth. O(pixels).
+// The surface's slope in depth per pixel. A step shows on one side of a pixel only, or turns back on the other, and is
+// no slope. Made once for all styles of a picture; the guides must hold depth. O(pixels).
 struct DepthSlopes {
   explicit DepthSlopes(const GuideSet& guides);
   std::vector<float> x, y;
@@ -38,8 +38,8 @@ class LazyDepthGradient {
 };
 
 // How far depth may leave the slope of a surface between two pixels: a share of the nearer one's depth. In orthographic
-// views depth depends on where the camera happens to stand, so it is a share of the height that is seen; of the depth only
-// what float's rounding in casting comes to, 2^-20.
+// views depth depends on where the camera happens to stand, so it is a share of the height that is seen; of the depth
+// only what float's rounding in casting comes to, 2^-20.
 struct DepthTolerance {
   DepthTolerance(const GuideSet& guides, double depth_tolerance);
   float At(float depth) const { return fixed + share * depth; }
@@ -59,7 +59,8 @@ struct EdgeRules {
   LazyDepthGradient& slopes;  // for who needs those of the whole picture
   double crease_degrees = 180.0;
   double depth_tolerance = 0.0;
-  std::span<const std::uint8_t> covered = {};  // by pixel: whether its coverage is above 0; empty: as the guides have it
+  std::span<const std::uint8_t> covered =
+      {};  // by pixel: whether its coverage is above 0; empty: as the guides have it
 };
 
 // Whether two neighbouring pixels look like the same piece of surface:
@@ -67,7 +68,8 @@ struct EdgeRules {
 //   - normals less than `crease` degrees apart; 180 takes any;
 //   - a depth difference that the surface's own slope explains: the mean of both pixels' slopes (the trapezoidal rule),
 //     give or take the gentler slope and `depth_tolerance` of the depth (DepthTolerance). All of it is relative, so one
-//     setting works near and far. A step in depth of more than twice the slope per pixel plus the tolerance never passes.
+//     setting works near and far. A step in depth of more than twice the slope per pixel plus the tolerance never
+//     passes.
 class EdgeTest {
  public:
   // Keeps references to both; `guides` must hold depth and object.
@@ -81,7 +83,10 @@ class EdgeTest {
     glm::vec3 normal;
   };
   Side At(std::size_t pixel) const {
-    return {object_[pixel], depth_[pixel], slope_x_[pixel], slope_y_[pixel],
+    return {object_[pixel],
+            depth_[pixel],
+            slope_x_[pixel],
+            slope_y_[pixel],
             {normal_x_[pixel], normal_y_[pixel], normal_z_[pixel]}};
   }
   // q stands (dx, dy) pixels from p, both at most 1. To the bit the same from q's side. Along a row slopes down the

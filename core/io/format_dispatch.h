@@ -14,10 +14,10 @@
 
 #include "core/image/channel_image.h"
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -3,8 +3,8 @@
 
 #include <glm/glm.hpp>
 
-#include "scumble/picture.h"
 #include "guidegen/scene/scene.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

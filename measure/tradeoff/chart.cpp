@@ -165,9 +165,10 @@ std::string Bars(const Chart& chart, const Point& point) {
 
 // What a pointer that rests on a point is told.
 std::string Words(const TradeMeasure& variant, bool front) {
-  std::string words = variant.name + (variant.chosen ? ", the style as it is" : "") + (variant.exact ? ", the exact one" : "") +
-                      (front ? ", on the front" : "");
-  words += "\ntime " + ShortTime(variant.total_ms) + " ms, of which the transfer " + ShortTime(variant.transfer_ms) + " ms";
+  std::string words = variant.name + (variant.chosen ? ", the style as it is" : "") +
+                      (variant.exact ? ", the exact one" : "") + (front ? ", on the front" : "");
+  words +=
+      "\ntime " + ShortTime(variant.total_ms) + " ms, of which the transfer " + ShortTime(variant.transfer_ms) + " ms";
   if (variant.prepare_ms > 0.0) words += "\npreparing the style " + ShortFigure(variant.prepare_ms) + " ms, once";
   if (variant.memory_bytes > 0) words += "\nmemory " + ShortMegabytes(variant.memory_bytes) + " MB";
   words += "\nboth " + ShortEstimate(variant.both) + ", energy " + ShortEstimate(variant.energy) + ", missing " +
@@ -180,8 +181,8 @@ std::string Words(const TradeMeasure& variant, bool front) {
 std::string PointMark(const Chart& chart, const Point& point, const TradeReport& report, bool page) {
   const TradeMeasure& variant = report.variants[point.variant];
   const std::string words = EscapeHtml(Words(variant, point.front));
-  std::string svg = page ? fmt::format("<a href=\"#way-{}\" class=\"point axis-{}\" aria-label=\"{}\">", point.variant + 1,
-                                       point.axis + 1, words)
+  std::string svg = page ? fmt::format("<a href=\"#way-{}\" class=\"point axis-{}\" aria-label=\"{}\">",
+                                       point.variant + 1, point.axis + 1, words)
                          : "<g>";
   svg += "<title>" + words + "</title>" + Bars(chart, point) + ChartMark(point.axis, point.x, point.y);
   if (point.front)

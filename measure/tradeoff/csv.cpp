@@ -45,14 +45,15 @@ std::string TradeCsv(const TradeReport& report) {
   const std::vector<bool> front = internal::OnFront(report);
   for (std::size_t i = 0; i < report.variants.size(); ++i) {
     const TradeMeasure& variant = report.variants[i];
-    for (const std::string& text : {variant.name, variant.axis, variant.value, variant.options, variant.note}) csv += Quoted(text) + ",";
+    for (const std::string& text : {variant.name, variant.axis, variant.value, variant.options, variant.note})
+      csv += Quoted(text) + ",";
     csv += fmt::format("{:d},{:d},{:d},", variant.chosen, variant.exact, bool(front[i]));
     for (const Quartiles& time : {variant.guides_ms, variant.transfer_ms, variant.total_ms}) csv += Time(time) + ",";
     csv += Number(internal::Taken(variant.prepare_ms)) + ",";
     csv += variant.memory_bytes > 0 ? fmt::format("{},", variant.memory_bytes) : ",";
     for (const Estimate& estimate : {variant.both, variant.energy, variant.missing}) csv += Figure(estimate) + ",";
-    for (const auto& value : {variant.guide_degrees, variant.coherence, variant.chunk_area, variant.seam_excess, variant.repetition,
-                              variant.guide_rms, variant.guide_flip}) {
+    for (const auto& value : {variant.guide_degrees, variant.coherence, variant.chunk_area, variant.seam_excess,
+                              variant.repetition, variant.guide_rms, variant.guide_flip}) {
       csv += Number(value) + ",";
     }
     csv += (variant.picture_png.empty() ? "" : TradePictureName(report, i)) + "\r\n";

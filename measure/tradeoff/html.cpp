@@ -30,7 +30,8 @@ std::string Costs(const TradeMeasure& variant) {
 
 // Where the style as it is stands.
 std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& front) {
-  const auto own = std::find_if(report.variants.begin(), report.variants.end(), [](const auto& variant) { return variant.chosen; });
+  const auto own =
+      std::find_if(report.variants.begin(), report.variants.end(), [](const auto& variant) { return variant.chosen; });
   if (own == report.variants.end() || !internal::Taken(own->total_ms.median) || !internal::Taken(own->both)) return "";
   const std::size_t place = static_cast<std::size_t>(own - report.variants.begin());
   std::string text = "The style as it is takes " + Costs(*own);
@@ -112,7 +113,8 @@ std::string Charts(const TradeReport& report) {
     }
   }
   return html +
-         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways differ "
+         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways "
+         "differ "
          "by less than two runs of one. Bars are quartiles of the time and "
          "standard "
          "errors of the sample. Each point leads to its picture.</p>\n</section>\n";
@@ -124,12 +126,12 @@ struct Column {
   bool number;
 };
 
-constexpr Column kColumns[] = {{"front", "", false},      {"way", "", false},        {"changes", "", false},
-                               {"time", "ms", true},      {"guides", "ms", true},    {"transfer", "ms", true},
-                               {"prepare", "ms", true},   {"memory", "MB", true},    {"both", "", true},        {"energy", "", true},
-                               {"missing", "", true},     {"off by", "°", true},     {"coherence", "%", true},
-                               {"chunk", "px", true},     {"seam excess", "", true}, {"repetition", "", true},
-                               {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
+constexpr Column kColumns[] = {{"front", "", false},     {"way", "", false},        {"changes", "", false},
+                               {"time", "ms", true},     {"guides", "ms", true},    {"transfer", "ms", true},
+                               {"prepare", "ms", true},  {"memory", "MB", true},    {"both", "", true},
+                               {"energy", "", true},     {"missing", "", true},     {"off by", "°", true},
+                               {"coherence", "%", true}, {"chunk", "px", true},     {"seam excess", "", true},
+                               {"repetition", "", true}, {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
 
 std::string Cell(const std::optional<double>& value, const std::string& shown) {
   return fmt::format("<td class=\"number\" data-v=\"{}\">{}</td>", value ? fmt::format("{}", *value) : "", shown);
@@ -149,10 +151,12 @@ std::string VariantRow(const TradeReport& report, std::size_t i, bool front) {
                       EscapeHtml(variant.axis));
   html += TimeCell(variant.total_ms) + TimeCell(variant.guides_ms) + TimeCell(variant.transfer_ms);
   html += FigureCell(internal::Taken(variant.prepare_ms));
-  html += Cell(internal::Taken(static_cast<double>(variant.memory_bytes)), internal::ShortMegabytes(variant.memory_bytes));
+  html +=
+      Cell(internal::Taken(static_cast<double>(variant.memory_bytes)), internal::ShortMegabytes(variant.memory_bytes));
   html += EstimateCell(variant.both) + EstimateCell(variant.energy) + EstimateCell(variant.missing);
   html += FigureCell(variant.guide_degrees) + Cell(variant.coherence, internal::ShortPercent(variant.coherence));
-  for (const auto& value : {variant.chunk_area, variant.seam_excess, variant.repetition, variant.guide_rms, variant.guide_flip}) {
+  for (const auto& value :
+       {variant.chunk_area, variant.seam_excess, variant.repetition, variant.guide_rms, variant.guide_flip}) {
     html += FigureCell(value);
   }
   return html + "</tr>\n";
@@ -177,8 +181,8 @@ std::string Caption(const TradeReport& report, std::size_t i, bool front) {
   if (variant.chosen) html += ", the style as it is";
   if (variant.exact) html += ", what the others are measured against";
   if (front) html += ", <span class=\"star\">★ on the front</span>";
-  html += fmt::format("<br>{} ms; both {}, energy {}, missing {}", ShortTime(variant.total_ms), ShortEstimate(variant.both),
-                      ShortEstimate(variant.energy), ShortEstimate(variant.missing));
+  html += fmt::format("<br>{} ms; both {}, energy {}, missing {}", ShortTime(variant.total_ms),
+                      ShortEstimate(variant.both), ShortEstimate(variant.energy), ShortEstimate(variant.missing));
   if (!variant.options.empty()) html += "<br><code>" + EscapeHtml(variant.options) + "</code>";
   if (!variant.note.empty()) html += "<br>" + EscapeHtml(variant.note);
   return html + "</figcaption>";

@@ -85,7 +85,9 @@ std::vector<std::string> AxesOf(const TradeReport& report) {
 
 namespace {
 
-bool CanBeChosen(const TradeMeasure& variant) { return !variant.by_chance && (variant.chosen || !variant.options.empty()); }
+bool CanBeChosen(const TradeMeasure& variant) {
+  return !variant.by_chance && (variant.chosen || !variant.options.empty());
+}
 
 // One run has no quartiles to be sure by.
 bool IsSurelyQuicker(const TradeMeasure& variant, const TradeMeasure& other) {

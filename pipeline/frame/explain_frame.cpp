@@ -33,8 +33,19 @@ std::vector<float> GuideErrors(const ShownTransfer& shown) {
 
 Picture Show(Explanation what, const ShownTransfer& shown) {
   const SourceField& field = shown.field;
-  ExplainPlanes planes{field.width, field.height, shown.guides.Plane(Layer::kCoverage), field.x, field.y, field.level,
-                       field.exemplar, shown.map.style, {}, {}, {}, {}, &shown.result};
+  ExplainPlanes planes{field.width,
+                       field.height,
+                       shown.guides.Plane(Layer::kCoverage),
+                       field.x,
+                       field.y,
+                       field.level,
+                       field.exemplar,
+                       shown.map.style,
+                       {},
+                       {},
+                       {},
+                       {},
+                       &shown.result};
   for (const PreparedStyle& style : shown.styles) {
     planes.exemplar_size.push_back(style.exemplar->size());
     planes.exemplar_count.push_back(style.exemplar->count());

@@ -9,21 +9,21 @@
 #include <span>
 #include <utility>
 
-#include "pipeline/variant/trial_painter.h"
-#include "pipeline/file_cache.h"
-#include "pipeline/quality/calibration.h"
-#include "pipeline/machine.h"
-#include "pipeline/memory/memory_estimate.h"
-#include "pipeline/scene/needed_textures.h"
-#include "pipeline/frame/paint_picture.h"
-#include "pipeline/variant/quality_ladder.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/scene/scene_sequence.h"
-#include "pipeline/stage_clock.h"
-#include "pipeline/variant/variant_guides.h"
 #include "core/image/hash.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/file_cache.h"
+#include "pipeline/frame/paint_picture.h"
+#include "pipeline/machine.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/quality/calibration.h"
+#include "pipeline/scene/needed_textures.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/scene/scene_sequence.h"
+#include "pipeline/stage_clock.h"
+#include "pipeline/variant/quality_ladder.h"
+#include "pipeline/variant/trial_painter.h"
+#include "pipeline/variant/variant_guides.h"
 
 namespace scumble {
 namespace {
@@ -61,18 +61,19 @@ Status Take(const Variant& variant, StyleSet& styles, PictureRequest& picture) {
 }
 
 Variant NamedVariant(Quality quality, const LadderFrame& frame, const StyleSet& styles, const RunContext& context,
-             BudgetChoice& choice) {
+                     BudgetChoice& choice) {
   const Variant variant = VariantOf(quality, styles, frame);
   const bool as_it_is = OptionsOf(variant).empty();
   choice.quality = QualityNames()[std::size_t(quality)];
   choice.options = OptionsListOf(variant);
-  context.Note(fmt::format("quality {}: {}{}", *choice.quality, WordsOf(variant), as_it_is ? "" : ", which repeats it"));
+  context.Note(
+      fmt::format("quality {}: {}{}", *choice.quality, WordsOf(variant), as_it_is ? "" : ", which repeats it"));
   return variant;
 }
 
-Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame& frame, const std::string& circumstances,
-                        const std::string& judged, const StyleSet& styles, const RunContext& context,
-                        const Trials& trials, BudgetChoice& choice) {
+Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame& frame,
+                                const std::string& circumstances, const std::string& judged, const StyleSet& styles,
+                                const RunContext& context, const Trials& trials, BudgetChoice& choice) {
   const std::vector<Variant> variants = QualityLadder(styles, frame);
   FileCache cache = TimesCache(context);
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
@@ -85,12 +86,13 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
     }
   }
   Progress progress = context.StartProgress("calibration");
-  // Each way once, the one that is taken nine times (its contender, if it has one, too), the last twice more for a cold start; and
-  // two judgements.
+  // Each way once, the one that is taken nine times (its contender, if it has one, too), the last twice more for a cold
+  // start; and two judgements.
   const double usual_runs = static_cast<double>(variants.size()) + kCalibrationRuns + 2.0 + 2.0;
   int runs = 0;
   const MeasureVariant measure = [&](std::size_t place) {
-    if (runs == 0) context.Note(fmt::format("--budget-ms: measuring up to {} ways on this machine, once", variants.size()));
+    if (runs == 0)
+      context.Note(fmt::format("--budget-ms: measuring up to {} ways on this machine, once", variants.size()));
     const double done = std::min(0.99, runs++ / usual_runs);
     if (progress) progress(done);
     return trials.paint(variants[place]);
@@ -108,12 +110,12 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
   progress = nullptr;
   context.EndStage("calibration");
   const Variant& variant = variants[picked.variant];
-  context.Note(
-      fmt::format("budget {:g} ms: at most {:.0f} ms, nine times of ten, with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
-                  WordsOf(variant), OptionsOf(variant).empty() ? "" : ", which repeats it"));
+  context.Note(fmt::format("budget {:g} ms: at most {:.0f} ms, nine times of ten, with {}{}", options.budget_ms,
+                           std::ceil(picked.predicted_ms), WordsOf(variant),
+                           OptionsOf(variant).empty() ? "" : ", which repeats it"));
   if (!picked.fits) {
     context.Warn(fmt::format("--budget-ms {:g}: nothing fits; the quickest way is taken, which needs about {:.0f} ms",
-                     options.budget_ms, std::ceil(picked.predicted_ms)));
+                             options.budget_ms, std::ceil(picked.predicted_ms)));
   }
   choice.budget_ms = options.budget_ms;
   choice.picked = variant.name;
@@ -142,20 +144,19 @@ std::uint64_t HashOfTracks(const StyleSet& styles) {
   return hash;
 }
 
-// What times depend on in either verb, as text. Frames count by what the styles say of them alone: all frames of a scene are
-// to look alike.
+// What times depend on in either verb, as text. Frames count by what the styles say of them alone: all frames of a
+// scene are to look alike.
 std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture, const RunContext& context) {
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
   const std::uint64_t tracks = HashOfTracks(styles);
   PictureSettings settings = SettingsOf(picture, {}, {}, {});
   settings.measured.reset();  // stops that were measured before take as long as those that are measured now
-  return fmt::format("{}; {}{}{}{}{}", MachineName(context.threads),
-                     SettingsText(styles, settings, hashes),
-                     all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
-                     styles.options.scene_styles ? "" : "; without the scene's styles",
-                     tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "",
-                     picture.KeepsField() ? "; keeps the field" : "");
+  return fmt::format(
+      "{}; {}{}{}{}{}", MachineName(context.threads), SettingsText(styles, settings, hashes),
+      all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
+      styles.options.scene_styles ? "" : "; without the scene's styles",
+      tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "", picture.KeepsField() ? "; keeps the field" : "");
 }
 
 // Of the scene's file and of those that it names. What cannot be read counts for nothing: who needs it says so.
@@ -173,8 +174,8 @@ std::uint64_t HashOfFiles(const std::string& scene) {
   return hash;
 }
 
-// Kept beside the times, as it takes reading the scene to know, and as little true as they are of what no circumstance tells:
-// `anew` does not look there.
+// Kept beside the times, as it takes reading the scene to know, and as little true as they are of what no circumstance
+// tells: `anew` does not look there.
 Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunContext& context,
                           const std::function<Expected<bool>()>& find) {
   FileCache cache = TimesCache(context);
@@ -189,7 +190,9 @@ Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunConte
 // What is opened when the first way is measured: the frame as the run will have it.
 Expected<StaticScene> OpenToMeasure(const SceneRequest& options, std::optional<int> frame, StyleSet& styles,
                                     const RunContext& context) {
-  const LayersFor layers = [&](const SceneStyleRequests& wishes) { return RequiredLayers(styles, wishes, options.scene); };
+  const LayersFor layers = [&](const SceneStyleRequests& wishes) {
+    return RequiredLayers(styles, wishes, options.scene);
+  };
   SCUMBLE_ASSIGN(StaticScene opened, OpenSceneAt(frame, options, layers, context, false));
   MemoryNeed need;
   AddProgram(context.threads, need);
@@ -246,9 +249,11 @@ Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& optio
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
                   guides.layers().ToString(), CommonCircumstances(styles, picture, context));
   TrialPainter trial(styles, picture, frame, name, over, context);
-  SCUMBLE_ASSIGN(const Variant variant, VariantWithin(options, ladder, circumstances, PictureText(guides, picture), styles, context,
-                                          {[&](const Variant& one) { return trial.Paint(one, guides); },
-                                           [&](const Variant& one) { return trial.MeasureError(one, guides); }}, choice));
+  SCUMBLE_ASSIGN(const Variant variant,
+                 VariantWithin(options, ladder, circumstances, PictureText(guides, picture), styles, context,
+                               {[&](const Variant& one) { return trial.Paint(one, guides); },
+                                [&](const Variant& one) { return trial.MeasureError(one, guides); }},
+                               choice));
   SCUMBLE_RETURN_IF_ERROR(Take(variant, styles, picture));
   return std::optional(std::move(choice));
 }
@@ -272,10 +277,9 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
     SCUMBLE_RETURN_IF_ERROR(take(NamedVariant(*options.quality, ladder, styles, context, choice)));
     return std::optional(std::move(choice));
   }
-  const std::string circumstances =
-      fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
-                  HashOfFiles(scene.scene), SizeToText(scene.size),
-                  GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, context));
+  const std::string circumstances = fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
+                                                HashOfFiles(scene.scene), SizeToText(scene.size), GuideSettings(scene),
+                                                scene.isa, scene.half, CommonCircumstances(styles, picture, context));
   const RunContext silent = context.WithoutNotes();
   std::optional<StaticScene> opened;
   TrialPainter trial(styles, picture, frame, scene.scene, over, context);
@@ -289,7 +293,8 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
     return NeedSamples(opened->scene, opened->layers, scene);
   };
   if (ladder.samples > 0) {
-    SCUMBLE_ASSIGN(const bool needed, KeptAnswer("samples; " + circumstances, options.recalibrate, context, needs_samples));
+    SCUMBLE_ASSIGN(const bool needed,
+                   KeptAnswer("samples; " + circumstances, options.recalibrate, context, needs_samples));
     if (!needed) ladder.samples = 0;
   }
   double casting_ms = 0.0;
@@ -313,8 +318,9 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
     SCUMBLE_ASSIGN(const GuideSet guides, cast(variant));
     return trial.MeasureError(variant, guides);
   };
-  SCUMBLE_ASSIGN(const Variant variant, VariantWithin(options, ladder, circumstances, "exposure " + ExposureText(picture), styles, context,
-                                          {paint, judge}, choice));
+  SCUMBLE_ASSIGN(const Variant variant,
+                 VariantWithin(options, ladder, circumstances, "exposure " + ExposureText(picture), styles, context,
+                               {paint, judge}, choice));
   SCUMBLE_RETURN_IF_ERROR(take(variant));
   return std::optional(std::move(choice));
 }

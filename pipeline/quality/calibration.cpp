@@ -128,7 +128,8 @@ class Picker {
 
   void Store() const {
     if (!calibration_.cache || (measured_ == 0 && judged_.empty()) || !cold_ms_) return;
-    // Another process may have measured other variants meanwhile, or all of them anew: only what was found out here joins what is kept.
+    // Another process may have measured other variants meanwhile, or all of them anew: only what was found out here
+    // joins what is kept.
     Known known;
     known.cold_ms = *cold_ms_;
     if (const auto bytes = calibration_.cache->Load(Key()); bytes && !calibration_.anew) {
@@ -142,7 +143,8 @@ class Picker {
     for (std::size_t variant = 0; variant < runs_.size(); ++variant) {
       const std::string& name = calibration_.variants[variant];
       Runs& runs = known.variants[name];
-      for (std::size_t run = kept_[variant]; run < runs_[variant].size() && runs.size() < std::size_t(kCalibrationRuns); ++run) {
+      for (std::size_t run = kept_[variant]; run < runs_[variant].size() && runs.size() < std::size_t(kCalibrationRuns);
+           ++run) {
         runs.push_back(runs_[variant][run]);
       }
     }
@@ -172,7 +174,9 @@ class Picker {
   std::string Key() const { return fmt::format("{:016x}", HashText(calibration_.circumstances)); }
 
   double Predicted(std::size_t variant) const { return PredictedMs(runs_[variant], cold_ms_.value_or(0.0)); }
-  PickedVariant Picked(std::size_t variant, bool fits) const { return {variant, Predicted(variant), fits, measured_, {}}; }
+  PickedVariant Picked(std::size_t variant, bool fits) const {
+    return {variant, Predicted(variant), fits, measured_, {}};
+  }
 
   // Of a variant that fits and its contender, if there is one that does.
   Expected<PickedVariant> NearerOf(std::size_t variant) {
@@ -251,7 +255,7 @@ double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
 }
 
 Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure,
-                            const MeasureErrorOf& judge) {
+                                    const MeasureErrorOf& judge) {
   SCUMBLE_CHECK(!calibration.variants.empty());
   SCUMBLE_CHECK(judge || calibration.contenders.empty());
   Picker picker(calibration, budget_ms, measure, judge);

@@ -22,7 +22,8 @@ Expected<PictureRequest> RequestAt(const PictureRequest& request, int frame, con
 
 }  // namespace
 
-Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress) {
+Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at,
+                              const Progress& progress) {
   SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
   if (!MustLookAhead(sequence)) return Ok();
   const int first = sequence.frames.front();
@@ -33,9 +34,10 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   }
   SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, first, request_.output));
   SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, context_, state_));
-  context_.Warn(fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
-                   "give each --exposure {:.2f}",
-                   first, *state_.exposure));
+  context_.Warn(
+      fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
+                  "give each --exposure {:.2f}",
+                  first, *state_.exposure));
   return Ok();
 }
 
@@ -48,9 +50,8 @@ Status PictureSequence::ReadOverOfAll(int width, int height) {
                                 state_.over->width, state_.over->height, width, height));
 }
 
-
 Status PictureSequence::Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
-             std::optional<int> samples) {
+                              std::optional<int> samples) {
   for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
   const std::optional<double> exposure = request_.exposure;
   PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {request_.bits}), {}};
@@ -64,15 +65,12 @@ bool PictureSequence::MustLookAhead(const Sequence& sequence) const {
   return sequence.frames.size() > 1 && MeasuresExposure(styles_, request_);
 }
 
-
-Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
-                           const Progress& progress) {
+Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at,
+                                           double guides_share, const Progress& progress) {
   SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, frame, output));
   SCUMBLE_ASSIGN(const FrameGuides found, guides_at(frame, Within(progress, 0.0, guides_share)));
-  return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0),
-                       state_);
+  return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0), state_);
 }
-
 
 Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                   const PictureRequest& request, const RunContext& context, const Progress& progress) {
@@ -102,7 +100,7 @@ Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::op
 }
 
 FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
-                         const StyleSet& styles) {
+                              const StyleSet& styles) {
   return [&] { return files.KnowsStyles(styles) ? Ok() : CheckFiles(files, picture, sequence, styles); };
 }
 

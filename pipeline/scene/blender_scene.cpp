@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/scene/blender_process.h"
+#include "guidegen/load/load_scene.h"
 #include "pipeline/frame_range.h"
 #include "pipeline/requests.h"
-#include "guidegen/load/load_scene.h"
+#include "pipeline/scene/blender_process.h"
 
 namespace scumble {
 
@@ -94,9 +94,10 @@ fs::path In(const ScratchFolder& scratch, const char* name) {
 
 constexpr const char *kStartFile = "start.glb", *kRateFile = "fps";
 
-void RequestBlenderAnimation(const ScratchFolder& scratch, const BlenderRequest& options, std::vector<std::string>& arguments) {
-  arguments.insert(arguments.end(), {"--fps-file", In(scratch, kRateFile).string(), "--start-file",
-                                     In(scratch, kStartFile).string()});
+void RequestBlenderAnimation(const ScratchFolder& scratch, const BlenderRequest& options,
+                             std::vector<std::string>& arguments) {
+  arguments.insert(arguments.end(),
+                   {"--fps-file", In(scratch, kRateFile).string(), "--start-file", In(scratch, kStartFile).string()});
   if (options.wants_start) arguments.push_back("--start-always");
 }
 
@@ -130,7 +131,7 @@ Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& 
   if (animation) RequestBlenderAnimation(scratch, options, arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   context.Note(path + ": " + arguments.front() + " exports it" +
-                   (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
+               (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
   SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), ExportTask(path, options), log, exported));
   if (animation) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(scratch, path, *animation));
   return LoadExport(exported, path);
@@ -155,7 +156,7 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
   RequestBlenderAnimation(*range->scratch_, options, arguments);
   context.Note(path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
-                   FramesToText(frames));
+               FramesToText(frames));
   const fs::path log = In(*range->scratch_, "log");
   auto program = RunningProgram::Start(arguments, log);
   if (!program) return CheckProgramEnd(program.error(), *range->task_, log, {}).error();

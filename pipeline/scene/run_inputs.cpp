@@ -81,8 +81,8 @@ std::optional<std::string> UnescapeJson(std::string_view text) {
   return result;
 }
 
-// Its beginning, where files are named; of a .glb the description, which comes first. Files of /proc, which say that they
-// are empty, name none.
+// Its beginning, where files are named; of a .glb the description, which comes first. Files of /proc, which say that
+// they are empty, name none.
 std::string StartOf(const fs::path& path) {
   constexpr std::uintmax_t kMost = std::uintmax_t(16) << 20;
   std::error_code failed;
@@ -144,7 +144,8 @@ void ForEachLibrary(const std::string& line, const Use& use) {
 std::string WithoutPercents(const std::string& text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool coded = text[i] == '%' && i + 2 < text.size() && std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
+    const bool coded = text[i] == '%' && i + 2 < text.size() &&
+                       std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
                        std::isxdigit(static_cast<unsigned char>(text[i + 2]));
     plain += coded ? static_cast<char>(std::strtol(text.substr(i + 1, 2).c_str(), nullptr, 16)) : text[i];
     if (coded) i += 2;
@@ -175,7 +176,8 @@ void RunInputs::ReadsScene(const std::string& scene) {
   Reads("the scene", scene);
   if (Ending(scene) == ".gltf" || Ending(scene) == ".glb") ReadsUris(what, scene, folder);
   if (Ending(scene) != ".obj") return;
-  // "mtllib a.mtl b.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into once.
+  // "mtllib a.mtl b.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into
+  // once.
   std::set<Identity> libraries;
   std::istringstream lines(StartOf(scene));
   for (std::string line; std::getline(lines, line);) {
@@ -187,7 +189,8 @@ void RunInputs::ReadsScene(const std::string& scene) {
       Reads(what, library);
       std::istringstream entries(StartOf(library));
       for (std::string entry; std::getline(entries, entry);) {
-        ForEachNameAtEnd(entry, [&](const std::string& picture) { Reads(what, (fs::path(folder) / picture).string()); });
+        ForEachNameAtEnd(entry,
+                         [&](const std::string& picture) { Reads(what, (fs::path(folder) / picture).string()); });
       }
     });
   }
@@ -200,7 +203,8 @@ std::vector<std::string> RunInputs::Inputs() const {
   return paths;
 }
 
-// Of all that a .gltf has in quotes only what stands behind "uri" names a file: a scene of 100,000 nodes has as many names.
+// Of all that a .gltf has in quotes only what stands behind "uri" names a file: a scene of 100,000 nodes has as many
+// names.
 void RunInputs::ReadsUris(const std::string& what, const std::string& file, const std::string& folder) {
   constexpr std::string_view kKey = "\"uri\"", kBlank = " \t\r\n";
   const std::string text = StartOf(file);

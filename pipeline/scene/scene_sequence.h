@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/scene/blender_scene.h"
-#include "pipeline/requests.h"
-#include "pipeline/scene/scene_guides.h"
-#include "pipeline/style/style_set.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene/framing.h"
+#include "pipeline/requests.h"
+#include "pipeline/scene/blender_scene.h"
+#include "pipeline/scene/scene_guides.h"
+#include "pipeline/style/style_set.h"
 
 namespace scumble {
 
@@ -26,7 +26,10 @@ class SceneFrames {
  public:
   // `context` must outlive this. `motion`: whether that layer will be among those of `layers_for`.
   SceneFrames(SceneRequest options, LayersFor layers_for, bool motion, const RunContext& context)
-      : options_(std::move(options)), layers_for_(std::move(layers_for)), motion_(motion), context_(context),
+      : options_(std::move(options)),
+        layers_for_(std::move(layers_for)),
+        motion_(motion),
+        context_(context),
         silent_(context.WithoutNotes()) {}
 
   // A scene that does not move is loaded and cast here, once for all frames. One that moves is loaded here, and how it
@@ -36,8 +39,8 @@ class SceneFrames {
   Status Start(std::span<const int> frames, const Progress& progress);
 
   // The guides of one of the frames, to be asked for in their order; the same one may be asked for again. What the
-  // scene has to say (cameras, lights, warnings) is said once. Plan, times and cost are those of the work that this call did.
-  // Valid until the next call.
+  // scene has to say (cameras, lights, warnings) is said once. Plan, times and cost are those of the work that this
+  // call did. Valid until the next call.
   Expected<const SceneGuides*> At(int frame, const Progress& progress);
 
   // The same, for a look at a frame that At will be asked for next; plan, times and cost are kept for it.
@@ -69,8 +72,8 @@ class SceneFrames {
   std::optional<double> load_ms_;  // that no frame has told of
   SceneCost decoded_;              // nor of these textures
   FrameRate rate_;
-  Scene now_, next_;           // as they are posed; `next_` for the layer motion, without textures
-  Camera camera_;              // where the file's own are not looked through
+  Scene now_, next_;            // as they are posed; `next_` for the layer motion, without textures
+  Camera camera_;               // where the file's own are not looked through
   std::optional<int> by_file_;  // otherwise, in now_.cameras
 
   std::unique_ptr<BlenderRange> blender_;  // none: no .blend

@@ -6,10 +6,10 @@
 #include <system_error>
 #include <utility>
 
-#include "pipeline/style/assignments.h"
-#include "pipeline/style/style_locations.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/style/assignments.h"
+#include "pipeline/style/style_locations.h"
 
 namespace scumble {
 namespace {
@@ -57,15 +57,15 @@ bool IsAssigned(const StyleSet& set, const std::string& name) {
 
 // Opens them, and adds the places of their styles to `read`.
 Status OpenStyleRequests(StyleSet& set, const std::map<std::string, std::string>& wishes, const std::string& kind,
-                 const std::string& file, std::set<std::size_t>& read) {
+                         const std::string& file, std::set<std::size_t>& read) {
   for (const auto& [name, wish] : wishes) {
     if (IsAssigned(set, name)) continue;
     if (const auto known = set.wanted.find(wish); known != set.wanted.end()) {
       read.insert(known->second);
       continue;
     }
-    const std::string who = file + ": " + kind + " '" + name + "' wants the style '" + wish +
-                            "' (property scumble_style)";
+    const std::string who =
+        file + ": " + kind + " '" + name + "' wants the style '" + wish + "' (property scumble_style)";
     const std::string mend = "; mend the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
     const Expected<std::uint16_t> place = PlaceOrWord(set, wish, std::filesystem::path(file).parent_path());
     if (!place) return Error{place.error().kind, who + ": " + place.error().message + mend};
@@ -79,7 +79,8 @@ Status OpenStyleRequests(StyleSet& set, const std::map<std::string, std::string>
   return Ok();
 }
 
-std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set, const std::map<std::uint32_t, std::string>& wishes) {
+std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set,
+                                               const std::map<std::uint32_t, std::string>& wishes) {
   std::map<std::uint32_t, std::uint16_t> styles;
   for (const auto& [id, wish] : wishes) {
     if (const auto found = set.wanted.find(wish); found != set.wanted.end()) styles[id] = found->second;
@@ -87,8 +88,8 @@ std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set, const std::m
   return styles;
 }
 
-void NameStyleRequests(const std::map<std::uint32_t, std::string>& styles, const std::map<std::uint32_t, std::string>& names,
-                std::map<std::string, std::string>& wishes) {
+void NameStyleRequests(const std::map<std::uint32_t, std::string>& styles,
+                       const std::map<std::uint32_t, std::string>& names, std::map<std::string, std::string>& wishes) {
   for (const auto& [id, style] : styles) {
     const auto name = names.find(id);
     wishes[name != names.end() ? name->second : "id " + std::to_string(id)] = style;
@@ -99,7 +100,8 @@ void NameStyleRequests(const std::map<std::uint32_t, std::string>& styles, const
 
 bool StyleSet::NeedsMap(const GuideSet& guides) const {
   const auto any = [this](const auto& wishes) {
-    return std::any_of(wishes.begin(), wishes.end(), [this](const auto& wish) { return wanted.count(wish.second) > 0; });
+    return std::any_of(wishes.begin(), wishes.end(),
+                       [this](const auto& wish) { return wanted.count(wish.second) > 0; });
   };
   return !assigned.empty() || any(guides.object_styles) || any(guides.material_styles);
 }
@@ -220,7 +222,8 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
   for (std::size_t rank = 0; rank < set.assigned.size(); ++rank) {
     StyleSet::Assigned& one = set.assigned[rank];
     bool fits = false;
-    for (const auto& [names, styles] : {std::pair(&objects, &assignment.of_object), {&materials, &assignment.of_material}}) {
+    for (const auto& [names, styles] :
+         {std::pair(&objects, &assignment.of_object), {&materials, &assignment.of_material}}) {
       for (const auto& [id, name] : *names) {
         if (!FitsPattern(name, one.pattern)) continue;
         (*styles)[id] = {rank, one.style};
@@ -228,7 +231,9 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
       }
     }
     if (!fits && (!has_objects || !has_materials)) {
-      const std::string lacks = has_objects ? "layer material" : has_materials ? "layer object" : "layers object and material";
+      const std::string lacks = has_objects     ? "layer material"
+                                : has_materials ? "layer object"
+                                                : "layers object and material";
       return InputError(one.where + ": " + file + " names no such object or material: " +
                         DescribeNames(one.pattern, objects, materials) + "; it lacks the " + lacks +
                         ", which may know more: make guides with scumble guidegen, or render with that Cryptomatte");
@@ -243,8 +248,8 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
   const auto wished = [&](bool has, const auto& wishes) {
     return has ? Granted(set, wishes) : std::map<std::uint32_t, std::uint16_t>();
   };
-  StyleMap map = MapStyles(
-      guides, {wished(has_objects, guides.object_styles), wished(has_materials, guides.material_styles), 0});
+  StyleMap map =
+      MapStyles(guides, {wished(has_objects, guides.object_styles), wished(has_materials, guides.material_styles), 0});
   std::vector<std::size_t> pixels(set.assigned.size());
   AssignStyles(guides, assignment, map, pixels);
   for (std::size_t rank = 0; rank < pixels.size(); ++rank) set.assigned[rank].pixels += pixels[rank];

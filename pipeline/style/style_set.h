@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/requests.h"
-#include "pipeline/run_context.h"
-#include "guidegen/scene/scene.h"
 #include "core/image/guides.h"
 #include "core/image/style.h"
+#include "guidegen/scene/scene.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
 #include "transfer/frame/style_map.h"
 
 namespace scumble {
@@ -58,9 +58,9 @@ struct SceneStyleRequests {
 SceneStyleRequests SceneStyleRequestsOf(std::span<const Instance> instances, const Scene& scene);
 SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides);
 
-// Opens what is wished for and not opened yet, except for what --assign settles and under --no-scene-styles, and returns
-// everything that the user's styles and these read, in any frame. Paths are relative to the folder of `file`, the scene
-// or guide file that the wishes are from. A kInput error names the object.
+// Opens what is wished for and not opened yet, except for what --assign settles and under --no-scene-styles, and
+// returns everything that the user's styles and these read, in any frame. Paths are relative to the folder of `file`,
+// the scene or guide file that the wishes are from. A kInput error names the object.
 Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file);
 
 // The same with LayersOfNames: what guides must be made with.
@@ -70,9 +70,9 @@ Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& wishe
 // "catcher" shows nothing of them but the shadows on them.
 Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context);
 
-// Which style paints which pixel, by the names in the guides, which are `file`'s; the last assignment that fits a pixel's
-// object or material wins, and any before what the scene says, an object's before its material's. Warns, once in all
-// frames, of a pattern that fits nothing; it is kInput where the guides lack the layer in which it might.
+// Which style paints which pixel, by the names in the guides, which are `file`'s; the last assignment that fits a
+// pixel's object or material wins, and any before what the scene says, an object's before its material's. Warns, once
+// in all frames, of a pattern that fits nothing; it is kInput where the guides lack the layer in which it might.
 Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file);
 
 // After the last frame: warns of assignments that have painted no pixel. Returns all warnings about assignments.

@@ -55,7 +55,8 @@ class Grid {
 
   Variant& Add(const std::string& axis, const std::string& value, std::vector<std::string> settings = {}) {
     Variant variant;
-    variant.name = axis + " " + value, variant.axis = axis, variant.value = value, variant.settings = std::move(settings);
+    variant.name = axis + " " + value, variant.axis = axis, variant.value = value,
+    variant.settings = std::move(settings);
     return grid_.variants.emplace_back(std::move(variant));
   }
   // One key, which gives the axis its name.
@@ -218,7 +219,8 @@ TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options) {
   std::vector<std::string> gone = AxesOf(whole.variants);
   std::erase_if(gone, [&](const std::string& axis) { return std::find(kept.begin(), kept.end(), axis) != kept.end(); });
   grid.left_out.push_back(fmt::format("by --quick {} of {} ways: the axes {}, and values of the others",
-                                      whole.variants.size() - grid.variants.size(), whole.variants.size(), fmt::join(gone, ", ")));
+                                      whole.variants.size() - grid.variants.size(), whole.variants.size(),
+                                      fmt::join(gone, ", ")));
   return grid;
 }
 

@@ -11,17 +11,17 @@
 #include <string_view>
 #include <utility>
 
-#include "pipeline/scene/blender_scene.h"
+#include "core/io/picture_file.h"
+#include "core/style/style_keyframes.h"
 #include "pipeline/machine.h"
-#include "pipeline/memory/memory_limit.h"
 #include "pipeline/memory/memory_estimate.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/scene/blender_scene.h"
 #include "pipeline/shell_quote.h"
 #include "pipeline/tradeoff/memory.h"
 #include "pipeline/tradeoff/peak_process.h"
-#include "pipeline/variant/variant_error.h"
 #include "pipeline/tradeoff/stage.h"
-#include "core/io/picture_file.h"
-#include "core/style/style_keyframes.h"
+#include "pipeline/variant/variant_error.h"
 
 namespace scumble {
 namespace {
@@ -62,7 +62,10 @@ void AddNote(TradeMeasure& measure, const std::string& note) {
 class Trade {
  public:
   Trade(const TradeSetup& setup, const RunContext& context)
-      : setup_(setup), context_(context), silent_(context.WithoutNotes()), progress_(context.StartProgress("tradeoff")) {
+      : setup_(setup),
+        context_(context),
+        silent_(context.WithoutNotes()),
+        progress_(context.StartProgress("tradeoff")) {
     asks_for_memory_ = setup.memory && !IsBlenderScene(setup.scene.scene);
   }
 
@@ -71,7 +74,7 @@ class Trade {
     SCUMBLE_ASSIGN(std::vector<Variant> variants, ChosenVariants());
     if (setup_.exposure && !LooksAtLight(stage_.style)) {
       context_.Warn(fmt::format("--exposure {}", *setup_.exposure) + " changes nothing: style " + stage_.style.name +
-           " has one exemplar and no weight for light, so it does not look at it");
+                    " has one exemplar and no weight for light, so it does not look at it");
     }
     report_.left_out = stage_.grid.left_out;
     SCUMBLE_RETURN_IF_ERROR(LeaveOutWhatIsTooLarge(variants));
@@ -120,7 +123,8 @@ class Trade {
     return UsageError("--only " + setup_.only + ": --quick leaves that out; leave out --quick");
   }
 
-  // Guides larger than the picture, and exemplars that fit them, may be too large to be made; that is told before much else.
+  // Guides larger than the picture, and exemplars that fit them, may be too large to be made; that is told before much
+  // else.
   Status LeaveOutWhatIsTooLarge(std::vector<Variant>& variants) {
     std::vector<Variant> left;
     for (const Variant& variant : variants) {
@@ -146,7 +150,8 @@ class Trade {
     const Size size{stage_.width * factor, stage_.height * factor};
     SCUMBLE_RETURN_IF_ERROR(CheckSize(size, SizeToText(size)));
     SCUMBLE_ASSIGN(MemoryNeed need, NeedOfAll(variants));
-    for (std::size_t i = 0; i < kTogether; ++i) memory_.AddVariant(variants.front(), stage_.style, stage_.scene.layers, false, need);
+    for (std::size_t i = 0; i < kTogether; ++i)
+      memory_.AddVariant(variants.front(), stage_.style, stage_.scene.layers, false, need);
     memory_.AddVariant(variant, style, layers, true, need);
     SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context_, "take a smaller --size"));
     PrepareOptions options;
@@ -155,11 +160,12 @@ class Trade {
     return Ok();
   }
 
-  // What there is whichever ways are at work: among others the guides of the exact variant and those of the style itself.
+  // What there is whichever ways are at work: among others the guides of the exact variant and those of the style
+  // itself.
   Expected<MemoryNeed> NeedOfAll(const std::vector<Variant>& variants) {
     const LayerSet& layers = stage_.scene.layers;
-    SCUMBLE_ASSIGN(SceneGuides plan,
-                   CastScene(stage_.scene.scene, stage_.scene.view.camera, nullptr, setup_.scene, layers, silent_, {}, true));
+    SCUMBLE_ASSIGN(SceneGuides plan, CastScene(stage_.scene.scene, stage_.scene.view.camera, nullptr, setup_.scene,
+                                               layers, silent_, {}, true));
     if (GuidesKey(ConvergedVariant(), layers, true) != GuidesKey(variants.front(), layers, true)) {
       AddGuides({stage_.width, stage_.height}, layers, setup_.scene, plan.memory);
     }
@@ -167,8 +173,8 @@ class Trade {
     return std::move(plan.memory);
   }
 
-  // Each style is opened once, as what is wrong with one is told before minutes of work, and so is memory that is not there.
-  // None is kept: their pictures take memory.
+  // Each style is opened once, as what is wrong with one is told before minutes of work, and so is memory that is not
+  // there. None is kept: their pictures take memory.
   Status OpenStyles(const std::vector<Variant>& variants) {
     SCUMBLE_ASSIGN(const MemoryNeed all, NeedOfAll(variants));
     MemoryNeed most = all, together;
@@ -182,17 +188,18 @@ class Trade {
         guides = {GuidesKey(variants.front(), layers_.front(), true)};
         if (i > 0) memory_.AddVariant(variants.front(), stage_.style, layers_.front(), false, together);
       }
-      memory_.AddVariant(variants[i], style, layers, guides.insert(GuidesKey(variants[i], layers, true)).second, together);
+      memory_.AddVariant(variants[i], style, layers, guides.insert(GuidesKey(variants[i], layers, true)).second,
+                         together);
       if (together.peak() > most.peak()) most = together;
     }
     return CheckMemory(most, context_, "take a smaller --size, or fewer ways by --only");
   }
 
-  // What the others are measured against. Noise of its own: guides of as many samples would be compared with themselves, and
-  // those of fewer with their own beginning.
+  // What the others are measured against. Noise of its own: guides of as many samples would be compared with
+  // themselves, and those of fewer with their own beginning.
   Variant ConvergedVariant() const {
     Variant variant = *std::find_if(stage_.grid.variants.begin(), stage_.grid.variants.end(),
-                            [](const Variant& one) { return one.axis == kExactAxis; });
+                                    [](const Variant& one) { return one.axis == kExactAxis; });
     if (stage_.chance) variant.more_seed = kReferenceSeed;
     return variant;
   }
@@ -218,15 +225,17 @@ class Trade {
     const float least = EnergyOptions().least_coverage;
     const bool nothing = std::none_of(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; });
     if (!nothing && std::none_of(coverage.begin(), coverage.end(), [least](float a) { return a >= least; })) {
-      return InputError(setup_.scene.scene +
-                        ": no pixel is covered fully, so there is no paint to measure; take a larger --size, or go nearer");
+      return InputError(
+          setup_.scene.scene +
+          ": no pixel is covered fully, so there is no paint to measure; take a larger --size, or go nearer");
     }
     if (nothing) {
       return InputError(setup_.scene.scene +
                         ": the camera sees nothing, so there is nothing to measure; try --view or another "
                         "--camera");
     }
-    SCUMBLE_ASSIGN(const VariantPainter painter, VariantPainter::Prepare(setup_, converged, style, exact_guides_, context_));
+    SCUMBLE_ASSIGN(const VariantPainter painter,
+                   VariantPainter::Prepare(setup_, converged, style, exact_guides_, context_));
     reference_.emplace(std::shared_ptr<const GuideSet>(exact_guides_, &guides), painter.prepared(), painter.exposure(),
                        context_.threads);
     return Ok();
@@ -262,7 +271,8 @@ class Trade {
     for (std::size_t i = begin; i < end; ++i) {
       SCUMBLE_ASSIGN(const Style style, StyleOfVariant(setup_, variants[i], context_));
       SCUMBLE_ASSIGN(auto guides, GuidesOf(variants[i], layers_[i]));
-      SCUMBLE_ASSIGN(VariantPainter painter, VariantPainter::Prepare(setup_, variants[i], style, std::move(guides), context_));
+      SCUMBLE_ASSIGN(VariantPainter painter,
+                     VariantPainter::Prepare(setup_, variants[i], style, std::move(guides), context_));
       painters.push_back(std::move(painter));
       SCUMBLE_ASSIGN(const double ms, painters.back().Paint(true));
       first_ms.push_back(ms);
@@ -274,7 +284,8 @@ class Trade {
     if (begin == 0) style_first_ms_ = first_ms.front();
     if (begin == 0 && LooksAtLight(stage_.style)) report_.exposure = painters.front().exposure();
     if (again) {
-      SCUMBLE_ASSIGN(VariantPainter painter, VariantPainter::Prepare(setup_, variants.front(), stage_.style, style_guides_, context_));
+      SCUMBLE_ASSIGN(VariantPainter painter,
+                     VariantPainter::Prepare(setup_, variants.front(), stage_.style, style_guides_, context_));
       painters.push_back(std::move(painter));
       SCUMBLE_ASSIGN(const double ms, painters.back().Paint());
       first_ms.push_back(ms);
@@ -409,14 +420,14 @@ std::string TradeCommand(const TradeSetup& setup, const RunContext& context) {
 
 Expected<std::size_t> PeakOfVariant(const TradeSetup& setup, const std::string& name, const RunContext& context) {
   SCUMBLE_ASSIGN(TradeStage stage, OpenTradeStage(setup, context));
-  const auto variant =
-      std::find_if(stage.grid.variants.begin(), stage.grid.variants.end(), [&](const Variant& one) { return one.name == name; });
+  const auto variant = std::find_if(stage.grid.variants.begin(), stage.grid.variants.end(),
+                                    [&](const Variant& one) { return one.name == name; });
   if (variant == stage.grid.variants.end()) return UsageError("--peak-of " + name + ": there is no such way");
   stage.style = Style();  // the variant has its own: a run of stylize has its pictures once
   SCUMBLE_ASSIGN(const Style style, StyleOfVariant(setup, *variant, context));
   SCUMBLE_ASSIGN(const LayerSet layers, LayersOverTime(style));
-  // What opening scene and style took for a moment is the same for all variants, and may hide theirs. Memory that is given back
-  // stays with the process until it is trimmed, and would count as there.
+  // What opening scene and style took for a moment is the same for all variants, and may hide theirs. Memory that is
+  // given back stays with the process until it is trimmed, and would count as there.
   malloc_trim(0);
   ForgetPeakMemory();
   SCUMBLE_ASSIGN(VariantGuides made, MakeVariantGuides(stage.scene, setup.scene, *variant, layers, context));

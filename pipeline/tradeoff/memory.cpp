@@ -8,9 +8,9 @@ namespace {
 
 // Of a pixel of picture and exemplars: TradeReference, measure/energy/energy.h.
 constexpr std::uint64_t kReference = 100, kEnergy = 250;
-constexpr std::uint64_t kPng = 4;    // of a pixel, of which no compression makes less
-constexpr std::uint64_t kPage = 4;   // of a byte of a PNG: in Base64 it is 4/3, and text that grows is there three times
-constexpr std::uint64_t kPaint = 8;  // of a pixel of a Picture
+constexpr std::uint64_t kPng = 4;   // of a pixel, of which no compression makes less
+constexpr std::uint64_t kPage = 4;  // of a byte of a PNG: in Base64 it is 4/3, and text that grows is there three times
+constexpr std::uint64_t kPaint = 8;                  // of a pixel of a Picture
 constexpr std::uint64_t kCell = 4, kTreePoint = 32;  // of a look-up table, and of the tree that it is filled by
 
 }  // namespace
@@ -38,7 +38,7 @@ void TradeMemory::AddReport(std::size_t variants, MemoryNeed& need) const {
 }
 
 void TradeMemory::AddVariant(const Variant& variant, const Style& style, const LayerSet& layers, bool own_guides,
-                         MemoryNeed& need) const {
+                             MemoryNeed& need) const {
   const int super = SupersampleOf(variant), up = UpsampleOf(variant);
   const Size size{stage_.width * super, stage_.height * super};
   if (own_guides) AddGuides(size, layers, setup_.scene, need);

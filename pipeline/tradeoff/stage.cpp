@@ -6,13 +6,13 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/variant/quality_ladder.h"
+#include "core/image/stopwatch.h"
+#include "core/style/style_keyframes.h"
+#include "pipeline/frame/frame_painter.h"
 #include "pipeline/shell_quote.h"
 #include "pipeline/style/style_set.h"
 #include "pipeline/tradeoff/peak_process.h"
-#include "pipeline/frame/frame_painter.h"
-#include "core/image/stopwatch.h"
-#include "core/style/style_keyframes.h"
+#include "pipeline/variant/quality_ladder.h"
 
 namespace scumble {
 namespace {
@@ -42,8 +42,8 @@ Status AddQualities(const TradeSetup& setup, const RunContext& context, TradeSta
   const int samples = stage.chance && !setup.scene.samples_given ? setup.scene.samples : 0;
   const std::pair<const char*, Quality> kNamed[] = {{"preview", Quality::kPreview}, {"draft", Quality::kDraft}};
   for (const auto& [name, quality] : kNamed) {
-    Variant variant = VariantOf(quality, styles,
-                    {.casts = true, .width = stage.width, .height = stage.height, .samples = samples});
+    Variant variant =
+        VariantOf(quality, styles, {.casts = true, .width = stage.width, .height = stage.height, .samples = samples});
     if (variant.settings.empty() && variant.guide_scale == 1.0 && variant.samples == 0) continue;
     variant.axis = "quality", variant.value = name, variant.name = std::string("quality ") + name;
     stage.grid.variants.push_back(std::move(variant));
@@ -79,7 +79,8 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& c
 }
 
 RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, const Variant& variant) {
-  if (variant.precision != GuidePrecision::kFloat) return {"", "stylize has its guides as floats, but for colours with --half"};
+  if (variant.precision != GuidePrecision::kFloat)
+    return {"", "stylize has its guides as floats, but for colours with --half"};
   if (variant.guide_scale > 1.0) {
     return {"", fmt::format("stylize with --size {}x{}, then each 2 x 2 pixels averaged", 2 * stage.width,
                             2 * stage.height)};
@@ -109,7 +110,8 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
 }
 
 Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const Variant& variant, const Style& style,
-                                         std::shared_ptr<const VariantGuides> guides, const RunContext& context) {
+                                                 std::shared_ptr<const VariantGuides> guides,
+                                                 const RunContext& context) {
   VariantPainter painter;
   painter.guides_ = std::move(guides);
   PrepareOptions prepare;
@@ -119,12 +121,13 @@ Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const 
   Stopwatch watch;
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
   painter.prepare_ms_ = watch.Lap();
-  painter.settings_ = {SeedOf(setup, variant),
-                       setup.frame.value_or(0),
-                       RateOf(setup.scene.fps, painter.guides_->guides),
-                       ExposureOf(setup.exposure, {&painter.prepared_, 1}, painter.guides_->ForExposure(), context.threads),
-                       nullptr,
-                       false};
+  painter.settings_ = {
+      SeedOf(setup, variant),
+      setup.frame.value_or(0),
+      RateOf(setup.scene.fps, painter.guides_->guides),
+      ExposureOf(setup.exposure, {&painter.prepared_, 1}, painter.guides_->ForExposure(), context.threads),
+      nullptr,
+      false};
   painter.context_ = context;
   painter.factor_ = SupersampleOf(variant);
   return painter;

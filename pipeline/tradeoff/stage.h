@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
+#include "pipeline/frame/frame_painter.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/tradeoff/grid.h"
-#include "pipeline/variant/variant_guides.h"
 #include "pipeline/tradeoff/measure.h"
-#include "pipeline/frame/frame_painter.h"
+#include "pipeline/variant/variant_guides.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -16,7 +16,7 @@ namespace scumble {
 // The scene and the grid around the style, both opened once.
 struct TradeStage {
   StaticScene scene;
-  Style style;        // as it is, but for its paper
+  Style style;  // as it is, but for its paper
   bool has_paper = false;
   bool has_wishes = false;  // the scene asks for other styles
   bool chance = false;
@@ -40,10 +40,10 @@ class VariantPainter {
  public:
   // `guides` are those of this way, and are kept.
   static Expected<VariantPainter> Prepare(const TradeSetup& setup, const Variant& variant, const Style& style,
-                                      std::shared_ptr<const VariantGuides> guides, const RunContext& context);
+                                          std::shared_ptr<const VariantGuides> guides, const RunContext& context);
 
-  // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the first
-  // picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
+  // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the
+  // first picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
   Expected<double> Paint(bool keep_field = false);
 
   // The same without base colours of the scene, which no exemplar has. Only for measures of the paint.

@@ -103,7 +103,8 @@ bool ChangesSomething(const VariantSetting& setting, const StyleSet& styles) {
 
 bool RaisesSomething(const VariantSetting& setting, const StyleSet& styles) {
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
-    if (setting.raises && !IsSetByUser(styles, i, setting.key) && setting.raises(styles.styles[i].transfer)) return true;
+    if (setting.raises && !IsSetByUser(styles, i, setting.key) && setting.raises(styles.styles[i].transfer))
+      return true;
   }
   return false;
 }
@@ -144,7 +145,8 @@ std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& fr
   std::vector<Variant> variants;
   for (const LadderStep& rung : LadderSteps()) {
     Variant variant = MakeVariant(rung, styles, frame);
-    const bool known = std::any_of(variants.begin(), variants.end(), [&](const Variant& other) { return other.name == variant.name; });
+    const bool known =
+        std::any_of(variants.begin(), variants.end(), [&](const Variant& other) { return other.name == variant.name; });
     if (!known) variants.push_back(std::move(variant));
   }
   return variants;
@@ -165,7 +167,8 @@ Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& fr
   if (quality == Quality::kPreview) rung = {2, {kStyleBlit, kUnsplit}};
   // Guides of normals alone take so little that nothing is gained which would not be seen.
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-  const bool drafts_guides = quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks: that is all there is
+  const bool drafts_guides =
+      quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks: that is all there is
   if (frame.casts && !lit && !drafts_guides) return MakeVariant({1, rung.settings}, styles, frame);
   if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
   return MakeVariant(rung, styles, frame);

@@ -3,14 +3,14 @@
 #include <limits>
 #include <memory>
 
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/variant/quality_ladder.h"
-#include "pipeline/frame/frame_painter.h"
-#include "pipeline/variant/variant_error.h"
 #include "core/image/check.h"
 #include "core/image/stopwatch.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/frame/frame_painter.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/variant/quality_ladder.h"
+#include "pipeline/variant/variant_error.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -22,8 +22,8 @@ std::size_t PixelsOf(const PreparedStyle& style) {
   return std::size_t(exemplar.width()) * std::size_t(exemplar.height()) * std::size_t(exemplar.count());
 }
 
-// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy/energy.h), and the planes
-// that it is made of.
+// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy/energy.h), and the
+// planes that it is made of.
 bool HasMemoryFor(std::size_t places, const RunContext& context) {
   constexpr std::uint64_t kEachPlace = 250 + 100;
   const MemoryLimit limit = LimitFor(context);
@@ -59,20 +59,21 @@ Expected<const Picture*> TrialPainter::Over(const GuideSet& guides) {
   return fits ? &*over_ : nullptr;
 }
 
-Status TrialPainter::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture, double& ms) {
+Status TrialPainter::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture,
+                              double& ms) {
   const bool needs_map = styles_.NeedsMap(guides);
   StyleMap map;
   if (needs_map) {
     SCUMBLE_ASSIGN(map, MapStyles(styles_, guides, name_));
   }
-  FrameSettings settings{picture_.seed, frame_.value_or(0), RateOf(picture_.fps, guides), exposure_, nullptr,
-                         bare || picture_.KeepsField()};
+  FrameSettings settings{picture_.seed, frame_.value_or(0),           RateOf(picture_.fps, guides), exposure_,
+                         nullptr,       bare || picture_.KeepsField()};
   if (!bare) {
     SCUMBLE_ASSIGN(settings.over, Over(guides));
   }
   Stopwatch watch;
-  SCUMBLE_RETURN_IF_ERROR(PaintFrame(prepared_, needs_map ? &map : nullptr, guides, settings, context_, {}, scratch,
-                                     picture));
+  SCUMBLE_RETURN_IF_ERROR(
+      PaintFrame(prepared_, needs_map ? &map : nullptr, guides, settings, context_, {}, scratch, picture));
   ms += watch.Lap();
   return Ok();
 }

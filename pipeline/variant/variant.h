@@ -24,9 +24,13 @@ struct Variant {
   int table_resolution = LookUpTable::kResolution;  // cells a side, where nearest neighbours come from a table
 };
 
-// The guides' size against the picture's in whole steps: smaller guides are upsampled so many times, larger ones painted as
-// they are and averaged.
-inline int UpsampleOf(const Variant& variant) { return variant.guide_scale < 1.0 ? static_cast<int>(std::lround(1.0 / variant.guide_scale)) : 1; }
-inline int SupersampleOf(const Variant& variant) { return variant.guide_scale > 1.0 ? static_cast<int>(std::lround(variant.guide_scale)) : 1; }
+// The guides' size against the picture's in whole steps: smaller guides are upsampled so many times, larger ones
+// painted as they are and averaged.
+inline int UpsampleOf(const Variant& variant) {
+  return variant.guide_scale < 1.0 ? static_cast<int>(std::lround(1.0 / variant.guide_scale)) : 1;
+}
+inline int SupersampleOf(const Variant& variant) {
+  return variant.guide_scale > 1.0 ? static_cast<int>(std::lround(variant.guide_scale)) : 1;
+}
 
 }  // namespace scumble

@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include "guidegen/light/path_layers.h"
 #include "core/image/stopwatch.h"
 #include "core/io/guides/guide_precision.h"
+#include "guidegen/light/path_layers.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -22,7 +22,7 @@ bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneRequest&
 }
 
 Expected<VariantGuides> MakeVariantGuides(StaticScene& scene, const SceneRequest& options, const Variant& variant,
-                                  const LayerSet& layers, const RunContext& context) {
+                                          const LayerSet& layers, const RunContext& context) {
   const Size& size = options.size;
   SceneRequest one = options;
   const int up = UpsampleOf(variant), super = SupersampleOf(variant);

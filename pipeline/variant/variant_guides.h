@@ -3,10 +3,10 @@
 
 #include <string>
 
+#include "core/image/guides.h"
 #include "pipeline/requests.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/variant/variant.h"
-#include "core/image/guides.h"
 
 namespace scumble {
 
@@ -23,7 +23,7 @@ struct VariantGuides {
 
 // `options.size` is the picture's.
 Expected<VariantGuides> MakeVariantGuides(StaticScene& scene, const SceneRequest& options, const Variant& variant,
-                                  const LayerSet& layers, const RunContext& context);
+                                          const LayerSet& layers, const RunContext& context);
 
 // Guides of 1/factor the sides, to be compared with guides of that size: of every block of factor × factor pixels the
 // mean coverage, and of its covered pixels the mean light and colours and the mean normal, at unit length again.

@@ -2,16 +2,16 @@
 // given to all that read text in options, and all of them are the lines of an @FILE of --assign.
 #include <CLI/CLI.hpp>
 
-#include "pipeline/style/assignments.h"
-#include "pipeline/frame_range.h"
 #include "apps/cli/app/help_format.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/run/sequence.h"
-#include "pipeline/style/style_set.h"
-#include "pipeline/frame/paint_frame.h"
 #include "apps/cli/app/verbs.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/print_page.h"
+#include "pipeline/frame/paint_frame.h"
+#include "pipeline/frame_range.h"
+#include "pipeline/run/sequence.h"
+#include "pipeline/style/assignments.h"
+#include "pipeline/style/style_set.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

@@ -229,7 +229,8 @@ TEST(TradeChart, IsWellFormedOnItsOwnAndShowsEveryWayAndTheFront) {
 // A decade is as wide wherever it is, errors are to scale, and less of either is to the left and below.
 TEST(TradeChart, PointsStandWhereTheirFiguresPutThem) {
   TradeReport report;
-  report.variants = {MadeUpVariant("a", "1", 1.0, 4.0), MadeUpVariant("a", "2", 10.0, 3.0), MadeUpVariant("a", "3", 100.0, 1.0)};
+  report.variants = {MadeUpVariant("a", "1", 1.0, 4.0), MadeUpVariant("a", "2", 10.0, 3.0),
+                     MadeUpVariant("a", "3", 100.0, 1.0)};
   const std::string svg = TradeChart(report);
   const std::vector<Tag> rings = Markup(svg).All("circle", "svg g");
   ASSERT_EQ(rings.size(), 3u);

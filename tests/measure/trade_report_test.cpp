@@ -66,7 +66,9 @@ double NumberOf(const Rows& rows, std::size_t variant, const std::string& column
 // Straight from the definition: nothing is better in one and as good in the other.
 std::set<std::size_t> PlainFront(const TradeReport& report) {
   std::set<std::size_t> front;
-  const auto counts = [](const TradeMeasure& variant) { return variant.total_ms.median > 0.0 && !std::isnan(variant.both.mean); };
+  const auto counts = [](const TradeMeasure& variant) {
+    return variant.total_ms.median > 0.0 && !std::isnan(variant.both.mean);
+  };
   for (std::size_t i = 0; i < report.variants.size(); ++i) {
     const TradeMeasure& a = report.variants[i];
     const bool beaten = std::any_of(report.variants.begin(), report.variants.end(), [&](const TradeMeasure& b) {
@@ -96,7 +98,8 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
   for (int round = 0; round < 50; ++round) {
     report.variants.clear();
     // Few different values, so that many tie; 0 ms and NaN were not measured.
-    for (int i = 0; i < 12; ++i) report.variants.push_back(MadeUpVariant("axis", std::to_string(i), next() % 8, next() % 8));
+    for (int i = 0; i < 12; ++i)
+      report.variants.push_back(MadeUpVariant("axis", std::to_string(i), next() % 8, next() % 8));
     report.variants[3].both.mean = kNoNumber;
     const std::vector<std::size_t> front = FrontOf(report);
     EXPECT_EQ(std::set<std::size_t>(front.begin(), front.end()), PlainFront(report));
@@ -114,7 +117,8 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
 // quartile of its total is below the first's lower one.
 TEST(TradeReport, TheFrontHasAPictureOnce) {
   TradeReport report;
-  for (const char* name : {"style", "again", "other"}) report.variants.push_back(MadeUpVariant("axis", name, 10.0, 1.0));
+  for (const char* name : {"style", "again", "other"})
+    report.variants.push_back(MadeUpVariant("axis", name, 10.0, 1.0));
   report.variants[2].both.mean = 2.0;
   report.variants[0].total_ms = {10.0, 9.0, 11.0};
   report.variants[1].same_as = 0;
@@ -130,7 +134,8 @@ TEST(TradeReport, TheFrontHasAPictureOnce) {
 // A method that draws the same picture in half the time of the transfer, from the very same guides, is what to choose.
 TEST(TradeReport, AQuickerTransferOfTheSamePictureCounts) {
   TradeReport report;
-  for (const char* name : {"slow", "quick", "quickest"}) report.variants.push_back(MadeUpVariant("axis", name, 20.0, 1.0));
+  for (const char* name : {"slow", "quick", "quickest"})
+    report.variants.push_back(MadeUpVariant("axis", name, 20.0, 1.0));
   for (TradeMeasure& variant : report.variants) variant.guides_ms = {10.0, 9.0, 11.0};
   report.variants[0].total_ms = {20.0, 19.0, 21.0};
   report.variants[1].same_as = report.variants[2].same_as = 0;
@@ -147,7 +152,8 @@ TEST(TradeReport, AQuickerTransferOfTheSamePictureCounts) {
 // on the front, though it is the slower of them.
 TEST(TradeReport, APictureIsStoodForByAWayThatCanBeChosen) {
   TradeReport report;
-  for (const char* name : {"style", "256", "512", "again"}) report.variants.push_back(MadeUpVariant("nearest", name, 10.0, 1.0));
+  for (const char* name : {"style", "256", "512", "again"})
+    report.variants.push_back(MadeUpVariant("nearest", name, 10.0, 1.0));
   report.variants[0].both.mean = 2.0;
   report.variants[1].options.clear();
   report.variants[1].total_ms = {5.0, 4.9, 5.1};
@@ -328,8 +334,8 @@ TEST(TradeReport, JsonHasTheFiguresOfTheCsv) {
       EXPECT_EQ(variant[error]["mean"], NumberOf(rows, i, error));
       EXPECT_EQ(variant[error]["standard_error"], NumberOf(rows, i, error + "_standard_error"));
     }
-    for (const char* figure :
-         {"prepare_ms", "memory_bytes", "guide_degrees", "coherence", "chunk_area_pixels", "seam_excess", "repetition"}) {
+    for (const char* figure : {"prepare_ms", "memory_bytes", "guide_degrees", "coherence", "chunk_area_pixels",
+                               "seam_excess", "repetition"}) {
       EXPECT_EQ(variant[figure], NumberOf(rows, i, figure)) << figure;
     }
   }

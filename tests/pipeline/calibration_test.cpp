@@ -51,7 +51,8 @@ struct FakeClock {
 
 Calibration Ladder(std::size_t variants, TableCache* cache = nullptr) {
   Calibration calibration{"a machine and a scene", {}, cache, false};
-  for (std::size_t variant = 0; variant < variants; ++variant) calibration.variants.push_back("way " + std::to_string(variant));
+  for (std::size_t variant = 0; variant < variants; ++variant)
+    calibration.variants.push_back("way " + std::to_string(variant));
   return calibration;
 }
 
@@ -156,7 +157,8 @@ TEST(Calibration, WhereNothingFitsTheQuickestIsTakenAndItsTimeNamed) {
   EXPECT_EQ(slow.runs[1], kHopelessRuns) << "over twice the budget: more runs would change nothing";
 }
 
-// What another process keeps while this one measures is not lost: it had a larger budget, and has measured the first way.
+// What another process keeps while this one measures is not lost: it had a larger budget, and has measured the first
+// way.
 TEST(Calibration, TimesOfTwoProcessesAreJoined) {
   MemoryCache cache;
   FakeClock one{{{50.0}, {30.0}, {5.0}}}, other{one.ms};
@@ -176,8 +178,8 @@ TEST(Calibration, TimesOfTwoProcessesAreJoined) {
   EXPECT_EQ(later.Total(), 0);
 }
 
-// Times were kept on a busy machine. While one process measures one more way, another measures all of them anew: what was known
-// before, the cost of a first run too, does not come back.
+// Times were kept on a busy machine. While one process measures one more way, another measures all of them anew: what
+// was known before, the cost of a first run too, does not come back.
 TEST(Calibration, WhatAnotherProcessMeasuresAnewStays) {
   MemoryCache cache;
   FakeClock busy{{{90.0}, {30.0}, {25.0, 5.0, 5.0}}}, quiet{{{40.0}, {10.0}, {4.0}}};
@@ -247,19 +249,21 @@ TEST(Calibration, AnewForgetsWhatWasKept) {
 
 TEST(Calibration, ABrokenCacheIsMeasuredOver) {
   const std::string runs10 = "[1,1,1,1,1,1,1,1,1,1]";
-  for (const std::string& text :
-       {std::string(), std::string("{"), std::string("[]"), std::string("{\"ways\": {}}"),
-        std::string(R"({"circumstances": "others", "cold_ms": 0, "off": {}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "off": {}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "off": {}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": 1}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {"way 0": -1}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": [], "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": ["x"]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": [-1]}})"),
-        R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": )" + runs10 + "}}"}) {
+  for (
+      const std::string& text :
+      {std::string(), std::string("{"), std::string("[]"), std::string("{\"ways\": {}}"),
+       std::string(R"({"circumstances": "others", "cold_ms": 0, "off": {}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "off": {}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "off": {}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": 1}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [1]}})"),
+       std::string(
+           R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {"way 0": -1}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": [], "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": ["x"]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": [-1]}})"),
+       R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": )" + runs10 + "}}"}) {
     MemoryCache cache;
     FakeClock clock{{{50.0}, {30.0}}};
     MustPick(Ladder(2, &cache), 40.0, clock);
@@ -270,7 +274,8 @@ TEST(Calibration, ABrokenCacheIsMeasuredOver) {
   }
 }
 
-// Variants 1 and 2 take 30 and 32 ms and are contenders; whichever is nearer is taken where both fit, and what was found is kept.
+// Variants 1 and 2 take 30 and 32 ms and are contenders; whichever is nearer is taken where both fit, and what was
+// found is kept.
 TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
   MemoryCache cache;
   Calibration ladder = Ladder(4, &cache);

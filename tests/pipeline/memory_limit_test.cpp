@@ -100,9 +100,10 @@ TEST(MemoryNeed, TheRefusalSaysHowMuchWhatForHowMuchThereIsAndWhatToDo) {
   const Status asked = CheckMemory(need, MemoryLimit{kGiga, "--max-memory allows", true}, "take a smaller --size");
   ASSERT_FALSE(asked);
   EXPECT_EQ(asked.error().kind, ErrorKind::kUsage);
-  EXPECT_EQ(asked.error().message,
-            "this takes up to 4.0 GiB of memory (guides 3.0 GiB, picture 1.0 GiB), and --max-memory allows 1.0 GiB: take a "
-            "smaller --size, or allow more");
+  EXPECT_EQ(
+      asked.error().message,
+      "this takes up to 4.0 GiB of memory (guides 3.0 GiB, picture 1.0 GiB), and --max-memory allows 1.0 GiB: take a "
+      "smaller --size, or allow more");
   const Status machine = CheckMemory(need, MemoryLimit{kGiga, "the machine has", false}, "take a smaller --size");
   ASSERT_FALSE(machine);
   EXPECT_EQ(machine.error().kind, ErrorKind::kMemory);
@@ -118,7 +119,8 @@ TEST(MemoryAmounts, AreReadInPowersOf1024) {
   EXPECT_EQ(bytes("64k"), 65536u);
   EXPECT_EQ(bytes("2T"), 2048 * kGiga);
   EXPECT_EQ(bytes("123456"), 123456u);
-  for (const char* wrong : {"", "0", "-1G", "4X", "4GB", "G", "1e99", "nan", "inf", "0.1", "99999999999T", " 4G", "4 G"}) {
+  for (const char* wrong :
+       {"", "0", "-1G", "4X", "4GB", "G", "1e99", "nan", "inf", "0.1", "99999999999T", " 4G", "4 G"}) {
     EXPECT_FALSE(ParseBytes(wrong)) << wrong;
   }
 }

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/variant/trial_painter.h"
-#include "pipeline/frame/provenance.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene/framing.h"
+#include "pipeline/frame/provenance.h"
+#include "pipeline/variant/trial_painter.h"
 
 namespace scumble {
 namespace {
@@ -73,8 +73,8 @@ TEST(QualityLadder, GuidesAreSmallerOnlyWhereTheyMayBe) {
   EXPECT_EQ(factors(kGiven), (std::vector<int>{1}));
 }
 
-// Where light takes samples, sixteen and four of them stand right below the style as it is, and four in all that is below:
-// what they leave is noise, which lies far below a style's own error, and they take most of the time there is.
+// Where light takes samples, sixteen and four of them stand right below the style as it is, and four in all that is
+// below: what they leave is noise, which lies far below a style's own error, and they take most of the time there is.
 TEST(QualityLadder, SamplesGoFirstWhereThereAreAny) {
   LadderFrame frame = kCast;
   frame.samples = 64;
@@ -168,7 +168,8 @@ TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
   EXPECT_TRUE(has("transfer.method=litsphere"));
   for (const Quality quality : {Quality::kPreview, Quality::kDraft}) {
     const Variant variant = VariantOf(quality, two, kGiven);
-    EXPECT_NE(std::find(variant.settings.begin(), variant.settings.end(), "transfer.method=litsphere"), variant.settings.end())
+    EXPECT_NE(std::find(variant.settings.begin(), variant.settings.end(), "transfer.method=litsphere"),
+              variant.settings.end())
         << "the other one would stay at brute force";
   }
 }
@@ -205,8 +206,9 @@ TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
 TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
   for (const char* const style : {"oil", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
     const StyleSet styles = Open(style);
-    for (const LadderFrame& frame : {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false},
-                                     LadderFrame{true, 1280, 720, false, 64}, LadderFrame{true, 961, 541, true, 8}}) {
+    for (const LadderFrame& frame :
+         {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false},
+          LadderFrame{true, 1280, 720, false, 64}, LadderFrame{true, 961, 541, true, 8}}) {
       const std::vector<std::string> names = Names(QualityLadder(styles, frame));
       const auto place = [&](Quality quality) {
         const Variant variant = VariantOf(quality, styles, frame);
@@ -241,11 +243,12 @@ TEST(QualityLadder, RivalsAreNoBlendingAndTheLitSphereOfOneSize) {
     for (std::size_t i = 0; i < variants.size(); ++i) {
       for (std::size_t j = 0; j < variants.size(); ++j) {
         EXPECT_EQ(AreContenders(variants[i], variants[j]), AreContenders(variants[j], variants[i]));
-        if (i < j && AreContenders(variants[i], variants[j])) contenders.push_back(variants[i].name + " / " + variants[j].name);
+        if (i < j && AreContenders(variants[i], variants[j]))
+          contenders.push_back(variants[i].name + " / " + variants[j].name);
       }
     }
     EXPECT_EQ(contenders, (std::vector<std::string>{"--set transfer.hybrid=0 --set transfer.blend_radius=0 / "
-                                                "--set transfer.method=litsphere --set transfer.hybrid=0"}));
+                                                    "--set transfer.method=litsphere --set transfer.hybrid=0"}));
   }
 }
 
@@ -271,7 +274,7 @@ Globals WithMemory(std::uint64_t bytes) {
 
 // Whatever the machine has.
 double MeasuredAs(StyleSet& styles, const std::string& rung, const GuideSet& guides,
-                const Globals& globals = WithMemory(std::uint64_t(1) << 40)) {
+                  const Globals& globals = WithMemory(std::uint64_t(1) << 40)) {
   const PictureOptions picture;
   const std::string name = "guides", none;
   TrialPainter trial(styles, picture, {}, name, none, globals);

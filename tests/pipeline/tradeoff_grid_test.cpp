@@ -1,6 +1,4 @@
 // Which ways `scumble tradeoff` measures, and what it does to guides and pictures on the variant.
-#include "pipeline/tradeoff/grid.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "pipeline/tradeoff/stage.h"
-#include "guidegen/guidegen.h"
 #include "core/image/hash.h"
 #include "core/io/guides/guide_precision.h"
+#include "guidegen/guidegen.h"
+#include "pipeline/tradeoff/grid.h"
+#include "pipeline/tradeoff/stage.h"
 #include "tests/support/refusal.h"
 
 namespace scumble {
@@ -55,7 +54,8 @@ using Values = std::vector<std::string>;
 
 const Variant& Named(const TradeGrid& grid, const std::string& name) {
   static const Variant none;
-  const auto found = std::find_if(grid.variants.begin(), grid.variants.end(), [&](const Variant& variant) { return variant.name == name; });
+  const auto found = std::find_if(grid.variants.begin(), grid.variants.end(),
+                                  [&](const Variant& variant) { return variant.name == name; });
   EXPECT_NE(found, grid.variants.end()) << name;
   return found == grid.variants.end() ? none : *found;
 }

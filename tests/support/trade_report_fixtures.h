@@ -43,9 +43,10 @@ inline TradeReport MadeUpReport() {
   report.repeats = 5;
   report.lambda = 10.0;
   report.command = "scumble tradeoff suzanne.glb --style oil";
-  report.variants = {MadeUpVariant("style", "", 40.0, 0.5),        MadeUpVariant("levels", "1", 10.0, 0.75),
-                 MadeUpVariant("radius", "0", 30.0, 0.5),      MadeUpVariant("levels", "3", 20.0, 0.6),
-                 MadeUpVariant("method", "litsphere", 5.0, 1), MadeUpVariant("method", "bruteforce", 12345.0, 0.45)};
+  report.variants = {
+      MadeUpVariant("style", "", 40.0, 0.5),        MadeUpVariant("levels", "1", 10.0, 0.75),
+      MadeUpVariant("radius", "0", 30.0, 0.5),      MadeUpVariant("levels", "3", 20.0, 0.6),
+      MadeUpVariant("method", "litsphere", 5.0, 1), MadeUpVariant("method", "bruteforce", 12345.0, 0.45)};
   report.variants[0].name = "the style";
   report.variants[0].options.clear();
   report.variants[0].chosen = true;

@@ -22,8 +22,8 @@ int NormalCell(float coordinate) {
   return std::clamp(static_cast<int>(std::floor((coordinate * 0.5f + 0.5f) * kNormalCells)), 0, kNormalCells - 1);
 }
 
-// 0 … count - 1 by the hash's upper half. Unlike the remainder it is the same share of any count, so a preview of half the
-// size draws where the final picture does.
+// 0 … count - 1 by the hash's upper half. Unlike the remainder it is the same share of any count, so a preview of half
+// the size draws where the final picture does.
 std::uint64_t ShareOf(std::uint64_t hash, std::uint64_t count) { return (hash >> 32) * count >> 32; }
 
 }  // namespace
@@ -92,7 +92,8 @@ std::optional<SourceVariation::Tone> SourceVariation::ToneOf(int picture, int x0
   const std::int64_t count = a.count - b.count - c.count + d.count;
   if (count == 0) return std::nullopt;
   Tone tone;
-  for (int i = 0; i < 4; ++i) tone[i] = static_cast<std::int32_t>((a.color[i] - b.color[i] - c.color[i] + d.color[i]) / count);
+  for (int i = 0; i < 4; ++i)
+    tone[i] = static_cast<std::int32_t>((a.color[i] - b.color[i] - c.color[i] + d.color[i]) / count);
   return tone;
 }
 
@@ -137,7 +138,7 @@ std::int64_t SourceVariation::Unlikeness(Source source, const StyleRequestOf& wi
 
 // One pixel of those around the cone, evenly; nothing where it is outside.
 std::optional<Source> SourceVariation::Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine,
-                                         std::uint64_t a, std::uint64_t b) const {
+                                            std::uint64_t a, std::uint64_t b) const {
   const glm::vec3 normal = exemplar.Normal(own.x, own.y);
   Source source;
   if (exemplar.is_sphere()) {

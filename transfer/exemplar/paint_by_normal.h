@@ -19,10 +19,10 @@ class SourceVariation {
   explicit SourceVariation(const PreparedExemplar& exemplar);
 
   struct StyleRequestOf {
-    Source own;           // what else would be taken; usable
-    int picture = 0;      // of the exemplar
-    double degrees = 0;   // how far from own's normal, 0 … 90
-    int half_width = 1;   // of the square of paint around a source whose tone counts, in pixels
+    Source own;          // what else would be taken; usable
+    int picture = 0;     // of the exemplar
+    double degrees = 0;  // how far from own's normal, 0 … 90
+    int half_width = 1;  // of the square of paint around a source whose tone counts, in pixels
     std::uint64_t hash = 0;
   };
 
@@ -37,7 +37,8 @@ class SourceVariation {
   using Tone = std::array<std::int32_t, 4>;
   std::optional<Tone> ToneAround(Source source, int picture, int half_width) const;
 
-  // The same of what is near a usable source, some 1/64 of the exemplar wide and without steps: for each pixel, quickly.
+  // The same of what is near a usable source, some 1/64 of the exemplar wide and without steps: for each pixel,
+  // quickly.
   Tone ToneAt(Source source, int picture) const;
 
  private:
@@ -50,9 +51,10 @@ class SourceVariation {
   std::optional<Source> Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine, std::uint64_t a,
                              std::uint64_t b) const;
 
-  int shift_ = 0, cell_ = 1;               // pixels a side of what is summed at once: 2^shift
-  int columns_ = 0, rows_ = 0;            // cells
-  std::vector<std::vector<Sums>> tables_;  // by picture: sums of everything above and to the left, (columns + 1) × (rows + 1)
+  int shift_ = 0, cell_ = 1;    // pixels a side of what is summed at once: 2^shift
+  int columns_ = 0, rows_ = 0;  // cells
+  std::vector<std::vector<Sums>>
+      tables_;  // by picture: sums of everything above and to the left, (columns + 1) × (rows + 1)
   std::vector<std::vector<Tone>> corners_;  // by picture: tones around the cells' corners
 
   // Scenes only: usable pixels by the cell that their normal's (x, y) is in, and where each cell begins.

@@ -6,13 +6,13 @@
 #include <mutex>
 #include <optional>
 
+#include "core/filter/resample.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
 #include "transfer/exemplar/paint_by_normal.h"
+#include "transfer/exemplar/usable_mask.h"
 #include "transfer/nearest/guide_tree.h"
 #include "transfer/nearest/lookup_table.h"
-#include "core/filter/resample.h"
-#include "transfer/exemplar/usable_mask.h"
 
 namespace scumble {
 
@@ -34,7 +34,8 @@ class ExemplarSearch {
 
 namespace {
 
-// The least integer not below a value of 0 or more. std::ceil is a call where the processor's oldest instructions must do.
+// The least integer not below a value of 0 or more. std::ceil is a call where the processor's oldest instructions must
+// do.
 int RoundedUp(float value) {
   const int down = static_cast<int>(value);
   return down + (static_cast<float>(down) < value);

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/filter/region.h"
 #include "core/image/guides.h"
 #include "scumble/picture.h"
-#include "core/filter/region.h"
 #include "transfer/field/source_field.h"
 #include "transfer/frame/style_map.h"
 
@@ -37,7 +37,8 @@ struct ActiveRows {
 // already.
 // - `active`: without a map 1 where coverage is above 0; with one 0 everywhere, see Activate.
 // - The field says kNoSource wherever no style paints and outside the region, and may say anything elsewhere.
-// - `out` is 0 wherever in the region no style paints, and may hold anything where one does; outside the region it is left
+// - `out` is 0 wherever in the region no style paints, and may hold anything where one does; outside the region it is
+// left
 //   alone if it had its size.
 // Runs in the caller's arena.
 FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);
@@ -46,12 +47,12 @@ FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<s
 void Activate(const FrameInput& input, int style, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
 void Deactivate(const FrameInput& input, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
 
-// The same of some rows alone, by one thread, without a field: what StartFrame says of `out` holds for these rows, `out`
-// having its size, and `covered` is 1 where coverage is above 0. Adds to `rows`.
+// The same of some rows alone, by one thread, without a field: what StartFrame says of `out` holds for these rows,
+// `out` having its size, and `covered` is 1 where coverage is above 0. Adds to `rows`.
 struct StartedRows {
-  std::vector<Region> extents;                           // by style, as many as the caller made room for, who asks for none by leaving it empty
+  std::vector<Region> extents;  // by style, as many as the caller made room for, who asks for none by leaving it empty
   std::vector<std::pair<std::uint16_t, Region>> tiles;  // styles, without a map 0, and where in these rows they are
-  bool soft = false;                                     // somewhere that is painted coverage is between 0 and 1
+  bool soft = false;                                    // somewhere that is painted coverage is between 0 and 1
 };
 void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& covered, Picture& out, StartedRows& rows);
 

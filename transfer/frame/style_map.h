@@ -20,7 +20,8 @@ struct StyleMap {
   std::vector<std::uint16_t> style;
 };
 
-// Styles by the ids of objects and of materials; an object's own goes before its material's, and both before the default.
+// Styles by the ids of objects and of materials; an object's own goes before its material's, and both before the
+// default.
 struct StyleAssignment {
   std::map<std::uint32_t, std::uint16_t> of_object;
   std::map<std::uint32_t, std::uint16_t> of_material;

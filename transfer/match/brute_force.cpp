@@ -35,7 +35,8 @@ bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& p
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (input.Wants(i)) field.level[i] = SourceField::kNoSource;  // free; what the field held before counts for nothing
+      if (input.Wants(i))
+        field.level[i] = SourceField::kNoSource;  // free; what the field held before counts for nothing
     }
   }
   for (int y = input.region.y0; y < input.region.y1; ++y) {

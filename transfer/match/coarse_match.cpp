@@ -33,7 +33,8 @@ int BlockBefore(int position, int step) { return FloorDivide(2 * position + 1 - 
 class MatchedGrid {
  public:
   MatchedGrid(const MatchInput& input, const CoarseGrid& grid, const SourceField& field)
-      : first_column_(BlockBefore(input.region.x0, grid.step())), first_row_(BlockBefore(input.region.y0, grid.step())) {
+      : first_column_(BlockBefore(input.region.x0, grid.step())),
+        first_row_(BlockBefore(input.region.y0, grid.step())) {
     columns_ = BlockBefore(input.region.x1 - 1, grid.step()) + 2 - first_column_;
     const int rows = BlockBefore(input.region.y1 - 1, grid.step()) + 2 - first_row_;
     matched_.resize(std::size_t(columns_) * rows);
@@ -82,7 +83,8 @@ std::array<PixelPosition, 4> BlocksAround(int x, int y, int column, int row, int
 }
 
 // What p takes from a block, if its guide is like p's there.
-std::optional<Candidate> Accept(const MatchInput& input, const Matched& matched, int x, int y, const PixelGuide& guide) {
+std::optional<Candidate> Accept(const MatchInput& input, const Matched& matched, int x, int y,
+                                const PixelGuide& guide) {
   const Source candidate{matched.source.x + (x - matched.pixel.x), matched.source.y + (y - matched.pixel.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   if (matched.off) {
@@ -99,8 +101,8 @@ std::optional<Candidate> Accept(const MatchInput& input, const Matched& matched,
 
 // What p takes from the blocks around it, and the level of that.
 std::optional<Candidate> Best(const MatchInput& input, const MatchedGrid& matched,
-                          const std::array<PixelPosition, 4>& blocks, int x, int y, const PixelGuide& guide,
-                          int& level) {
+                              const std::array<PixelPosition, 4>& blocks, int x, int y, const PixelGuide& guide,
+                              int& level) {
   std::optional<Candidate> best;
   float least = 0.0f;
   for (const PixelPosition& block : blocks) {

@@ -25,7 +25,7 @@ bool VarySource(const MatchInput& input, int level, PixelPosition q, std::uint64
 
 // What p may take of the seed at q, if anything: u + (p - q), where that is usable and its guide like p's, light
 // included.
-std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q, PixelPosition p,
-                               const PixelGuide& guide);
+std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q,
+                                      PixelPosition p, const PixelGuide& guide);
 
 }  // namespace scumble::internal

@@ -95,9 +95,8 @@ void TileSeeds::Fill(int index, TileCandidate& offer) {
   offer.is_free = false;
   if (!freedoms_.empty()) {
     const int column = index % columns_;
-    const std::uint64_t hash =
-        Hash(input_->seeds.seed, input_->seeds.time_step, level_ + input_->seeds.level_offset, first_column_ + column,
-             offered_.row[index / columns_], 0x7a);
+    const std::uint64_t hash = Hash(input_->seeds.seed, input_->seeds.time_step, level_ + input_->seeds.level_offset,
+                                    first_column_ + column, offered_.row[index / columns_], 0x7a);
     SeedCandidate made = SeedOf(*input_, guide, own);
     if (VarySource(*input_, level_, q, hash, made)) {
       offer.is_free = true;

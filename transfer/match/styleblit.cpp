@@ -42,8 +42,8 @@ SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Can
   return made;
 }
 
-std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q, PixelPosition p,
-                               const PixelGuide& guide) {
+std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q,
+                                      PixelPosition p, const PixelGuide& guide) {
   const Source candidate{seed.offer.source.x + (p.x - q.x), seed.offer.source.y + (p.y - q.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   if (!seed.off) {
@@ -68,12 +68,11 @@ struct GridCandidate : SeedCandidate {
 struct Level {
   SeedGrid grid;
   std::vector<std::optional<GridCandidate>> offers;  // empty: outside the picture, or not to be painted
-  std::vector<SourceVariation::Tone> tones;         // of the seeds on flat surfaces: that of the paint which fits them best
+  std::vector<SourceVariation::Tone> tones;  // of the seeds on flat surfaces: that of the paint which fits them best
   // Searches in many dimensions are slow, and most seeds of fine levels are never asked: theirs are made when they are.
   std::unique_ptr<std::once_flag[]> asked;
 
-  Level(const MatchInput& input, int level)
-      : grid(input.seeds, level, input.region), offers(grid.size()) {
+  Level(const MatchInput& input, int level) : grid(input.seeds, level, input.region), offers(grid.size()) {
     if (input.space && !(input.variety_degrees > 0.0)) {
       asked = std::make_unique<std::once_flag[]>(grid.size());
       return;
@@ -107,13 +106,14 @@ struct Level {
 
 // What p may take from seed s of this level, if anything.
 std::optional<Candidate> AcceptFrom(const MatchInput& input, Level& level, std::size_t s, int x, int y,
-                                const PixelGuide& guide) {
+                                    const PixelGuide& guide) {
   const std::optional<GridCandidate>& offer = level.CandidateOf(input, s);
   if (!offer) return std::nullopt;
   return TryCandidate(input, *offer, level.grid.Position(s), {x, y}, guide);
 }
 
-// What p may take from its nearest seed; near the border of two seeds of a flat surface, from the one that suits it better.
+// What p may take from its nearest seed; near the border of two seeds of a flat surface, from the one that suits it
+// better.
 std::optional<Candidate> Accept(const MatchInput& input, Level& level, int x, int y, const PixelGuide& guide) {
   if (level.tones.empty()) return AcceptFrom(input, level, level.grid.Nearest(x, y), x, y, guide);
   const auto [s, t, excess] = level.grid.NearestTwo(x, y);

@@ -7,8 +7,9 @@ namespace scumble::internal {
 namespace {
 
 constexpr float kFlatCosine = 0.99996192f;  // half a degree
-// Where a surface is flat for the 16 pixels that IsFlat looks at, a seed of this level has been taken already, so choosing
-// for the many seeds of finer levels would be for nothing. Small pictures have no level as coarse: their coarsest counts.
+// Where a surface is flat for the 16 pixels that IsFlat looks at, a seed of this level has been taken already, so
+// choosing for the many seeds of finer levels would be for nothing. Small pictures have no level as coarse: their
+// coarsest counts.
 constexpr int kLeastLevel = 4;
 // So much less error of tone (summed over channels of 0 … 65535) is worth the whole band, which is a quarter of the
 // level's grid on either side of a border between seeds one grid step apart.
@@ -34,7 +35,8 @@ bool IsFlat(const MatchInput& input, PixelPosition at, int reach) {
 }
 
 bool CanVary(const MatchInput& input, int level, PixelPosition seed) {
-  if (!(input.variety_degrees > 0.0) || level < std::min(kLeastLevel - input.seeds.level_offset, input.levels - 1)) return false;
+  if (!(input.variety_degrees > 0.0) || level < std::min(kLeastLevel - input.seeds.level_offset, input.levels - 1))
+    return false;
   return IsFlat(input, seed, std::max(input.flat_reach, 1 << level));
 }
 

@@ -22,9 +22,9 @@ Source ChooseAlike(const MatchInput& input, const Candidate& own, int level, std
 SourceVariation::Tone WantedTone(const MatchInput& input, const Candidate& own, int level);
 
 // Chunk borders that follow the paint. Between two seeds of a flat surface a straight border would cut strokes where it
-// happens to lie. Near it each pixel weighs distance against tone: it takes the seed whose paint, there, is nearer to the
-// wanted tone. So the border runs where both agree, and what stands out from either is cut off. Each pixel decides by
-// itself; the order of work cannot matter. `excess`: of the second nearest seed's squared distance.
+// happens to lie. Near it each pixel weighs distance against tone: it takes the seed whose paint, there, is nearer to
+// the wanted tone. So the border runs where both agree, and what stands out from either is cut off. Each pixel decides
+// by itself; the order of work cannot matter. `excess`: of the second nearest seed's squared distance.
 bool InBorderBand(int level, std::int64_t excess);
 int ToneError(const MatchInput& input, const Candidate& offer, const SourceVariation::Tone& wanted);
 bool SecondWins(int level, std::int64_t excess, int gain_of_tone);

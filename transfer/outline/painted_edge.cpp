@@ -14,7 +14,7 @@ namespace {
 // Inside, shares of the band: how deep rim paint lies over an object's own, and how deep gaps in it may cut.
 constexpr float kInkDepth = 0.5f, kCutDepth = 0.2f;
 constexpr float kFadeFrom = 0.6f;  // of the depth, on either side
-constexpr float kFirm = 0.2f;     // of the full width: narrower edges grow faint
+constexpr float kFirm = 0.2f;      // of the full width: narrower edges grow faint
 
 using Texel = std::array<std::uint16_t, 4>;
 
@@ -95,8 +95,8 @@ class EdgePainter {
     return ChooseRimSegments({silhouettes_, radii, seeds, near});
   }
 
-  // Of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is that from the line through it, which
-  // has no steps as the pixels have.
+  // Of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is that from the line through it,
+  // which has no steps as the pixels have.
   static float Distance(const OutlinePixel& outline, int x, int y, bool inside) {
     const glm::vec2 to = outline.point - glm::vec2(x + 0.5f, y + 0.5f);
     const float across = to.x * outline.outward.x + to.y * outline.outward.y;
@@ -106,8 +106,8 @@ class EdgePainter {
     return inside ? length : -length;
   }
 
-  // The rim as the pieces show it at a point of the picture, so far inside its edge. A line that is drawn narrower is the
-  // mean of what it is drawn together from. Sums are of integers, like a vote's.
+  // The rim as the pieces show it at a point of the picture, so far inside its edge. A line that is drawn narrower is
+  // the mean of what it is drawn together from. Sums are of integers, like a vote's.
   static Texel RimAt(const RimPaint& rim, const RimSegments& pieces, glm::vec2 at, float distance, float width) {
     const int samples = std::clamp(static_cast<int>(std::ceil(1.0f / width - 0.01f)), 1, 8);
     std::uint64_t sum[4] = {0, 0, 0, 0}, total = 0;

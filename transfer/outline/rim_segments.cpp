@@ -38,13 +38,15 @@ class OutlineSeeds {
                         static_cast<std::int32_t>(k), DistanceToCellSeed(k, h)});
     }
     std::sort(seeds_.begin(), seeds_.end(), [](const Seed& a, const Seed& b) {
-      return std::tie(a.row, a.column, a.object, a.distance, a.outline) < std::tie(b.row, b.column, b.object, b.distance, b.outline);
+      return std::tie(a.row, a.column, a.object, a.distance, a.outline) <
+             std::tie(b.row, b.column, b.object, b.distance, b.outline);
     });
     const auto same = [](const Seed& a, const Seed& b) {
       return a.row == b.row && a.column == b.column && a.object == b.object;
     };
     seeds_.erase(std::unique(seeds_.begin(), seeds_.end(), same), seeds_.end());
-    tbb::parallel_for(std::size_t(0), seeds_.size(), [&](std::size_t s) { seeds_[s].piece = PieceOf(seeds_[s].outline); });
+    tbb::parallel_for(std::size_t(0), seeds_.size(),
+                      [&](std::size_t s) { seeds_[s].piece = PieceOf(seeds_[s].outline); });
   }
 
   // The piece of the seed nearest to outline pixel k, among those of its object in the 3 × 3 cells around; null: none.
@@ -96,9 +98,11 @@ class OutlineSeeds {
   }
 
   const RimSegment* Find(int row, int column, std::uint32_t object) const {
-    const auto found = std::lower_bound(seeds_.begin(), seeds_.end(), std::tuple(row, column, object),
-                                        [](const Seed& a, const auto& b) { return std::tie(a.row, a.column, a.object) < b; });
-    if (found == seeds_.end() || found->row != row || found->column != column || found->object != object) return nullptr;
+    const auto found =
+        std::lower_bound(seeds_.begin(), seeds_.end(), std::tuple(row, column, object),
+                         [](const Seed& a, const auto& b) { return std::tie(a.row, a.column, a.object) < b; });
+    if (found == seeds_.end() || found->row != row || found->column != column || found->object != object)
+      return nullptr;
     return &found->piece;
   }
 
@@ -168,7 +172,8 @@ std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
     const std::uint32_t object = silhouettes.ObjectOf(pixel);
     std::vector<std::pair<RimSegment, float>> votes;
     silhouettes.ForNear(pixel.x, pixel.y, melt(k), [&](std::size_t other) {
-      if (silhouettes.ObjectOf(outline[other]) != object || glm::dot(outline[other].outward, pixel.outward) < 0.5f) return;
+      if (silhouettes.ObjectOf(outline[other]) != object || glm::dot(outline[other].outward, pixel.outward) < 0.5f)
+        return;
       for (auto& [piece, count] : votes) {
         if (piece.seed == own[other].seed && piece.outward == own[other].outward) return void(count += 1.0f);
       }

@@ -160,8 +160,16 @@ namespace {
 ChunkRow RowAt(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar* exemplar,
                int radius, int y) {
   const std::size_t begin = field.Index(0, y);
-  ChunkRow row{field.x.data() + begin, field.y.data() + begin,  nullptr, active.data() + begin, field.width,
-               y + 1 == field.height,  std::int64_t(active.size() - begin), 0, radius, 0};
+  ChunkRow row{field.x.data() + begin,
+               field.y.data() + begin,
+               nullptr,
+               active.data() + begin,
+               field.width,
+               y + 1 == field.height,
+               std::int64_t(active.size() - begin),
+               0,
+               radius,
+               0};
   if (!exemplar) return row;
   if (exemplar->count() > 1) row.exemplar = field.exemplar.data() + begin;
   if (exemplar->is_sphere()) row.size = exemplar->size(), row.limit = exemplar->usable_limit();

@@ -3,10 +3,10 @@
 #include <array>
 #include <bit>
 
-#include "transfer/vote/vote_sum.h"
 #include "transfer/vote/chunk_masks.h"
 #include "transfer/vote/edge/open_steps.h"
 #include "transfer/vote/vote_kernels.h"
+#include "transfer/vote/vote_sum.h"
 
 namespace scumble::internal {
 namespace {
@@ -143,7 +143,7 @@ class VoteTile {
     for (int k = 0; k < kNeighbourCount; ++k) {
       const auto [dx, dy] = kNeighbours[k];
       const std::uint64_t column = dy == 0 ? BitMaskRows::kAll : steps_.down.At(dy < 0 ? y - 1 : y, word);
-      const std::uint64_t row = dx == 0   ? BitMaskRows::kAll
+      const std::uint64_t row = dx == 0  ? BitMaskRows::kAll
                                 : dx < 0 ? steps_.right.Shifted(y + dy, word, -1)
                                          : steps_.right.At(y + dy, word);
       joined[std::size_t(k)] = column & row;

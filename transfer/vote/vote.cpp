@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "transfer/vote/vote_sum.h"
 #include "transfer/vote/small_vote.h"
+#include "transfer/vote/vote_sum.h"
 #include "transfer/vote/wide/wide_vote.h"
 
 namespace scumble::internal {

@@ -33,9 +33,10 @@ int ReportException(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
     // So it is where a thread could not be started while others of the same library ran.
-    std::fputs("scumble: error: a library gave up, as they do where memory or threads run out; allow more of both, or take "
-               "fewer threads, as --threads 1\n",
-               stderr);
+    std::fputs(
+        "scumble: error: a library gave up, as they do where memory or threads run out; allow more of both, or take "
+        "fewer threads, as --threads 1\n",
+        stderr);
   } catch (const std::bad_alloc&) {
     std::fputs("scumble: error: out of memory; ask for a smaller picture, or allow more memory\n", stderr);
   } catch (const std::exception& error) {

@@ -1,9 +1,7 @@
 // scumble crosscheck: our guides against those that Blender's Cycles renders of the same view.
-#include "measure/crosscheck/crosscheck.h"
-
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -12,17 +10,18 @@
 #include <system_error>
 
 #include "apps/cli/app/command.h"
-#include "pipeline/scene/cycles_reference.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/scene/scene_guides.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/shell_quote.h"
-#include "guidegen/light/path_layers.h"
-#include "guidegen/scene/pure_materials.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/scene/pure_materials.h"
 #include "measure/crosscheck/baseline.h"
+#include "measure/crosscheck/crosscheck.h"
 #include "measure/crosscheck/html.h"
+#include "pipeline/scene/cycles_reference.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/scene/scene_guides.h"
+#include "pipeline/shell_quote.h"
 
 namespace scumble {
 namespace {
@@ -84,8 +83,8 @@ Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::
   if (IsBlenderScene(path)) options.blender = {verb.blender, verb.frame};
   SCUMBLE_ASSIGN(Scene scene, OpenScene(options, globals));
   sides.unsupported = scene.warnings;
-  SCUMBLE_ASSIGN(SceneGuides data,
-                 MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, globals, Within(progress, 0.0, 0.02), false));
+  SCUMBLE_ASSIGN(SceneGuides data, MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, globals,
+                                                Within(progress, 0.0, 0.02), false));
   sides.ours = std::move(data.guides);
   if (counts.empty()) return Ok();
   if (const std::vector<std::string> replaced = UsePureMaterials(scene); !replaced.empty()) {
@@ -100,7 +99,8 @@ Status MakeOurs(const CrosscheckVerb& verb, const std::string& path, const std::
     options.samples = count;
     options.max_bounces = verb.max_bounces;
     const double end = count == counts.back() ? kOursEnd : begin + 0.03;
-    SCUMBLE_ASSIGN(SceneGuides light, MakeGuidesOf(scene, options, PathLayers(), silent, Within(progress, begin, end), false));
+    SCUMBLE_ASSIGN(SceneGuides light,
+                   MakeGuidesOf(scene, options, PathLayers(), silent, Within(progress, begin, end), false));
     sides.ours_light.push_back(std::move(light.guides));
     begin = end;
   }
@@ -115,7 +115,8 @@ Expected<BothSides> MakeBothSides(const CrosscheckVerb& verb, const std::string&
   SCUMBLE_RETURN_IF_ERROR(MakeOurs(verb, path, counts, globals, progress, sides));
   ReferenceOptions options{verb.blender, path,       size.width, size.height,
                            verb.camera,  verb.frame, counts,     verb.max_bounces};
-  SCUMBLE_ASSIGN(sides.reference, RenderReference(options, globals, Within(progress, counts.empty() ? 0.02 : 0.3, 1.0)));
+  SCUMBLE_ASSIGN(sides.reference,
+                 RenderReference(options, globals, Within(progress, counts.empty() ? 0.02 : 0.3, 1.0)));
   for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.unsupported);
   return sides;
 }
@@ -268,7 +269,7 @@ Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckRep
   for (const CrosscheckReport& report : reports) {
     if (!report.KeepsBuiltInLimits()) {
       globals.Warn(verb.write_baseline + " is not written: " + report.scene +
-           (report.failure.empty() ? " does not keep the built-in limits" : " could not be compared"));
+                   (report.failure.empty() ? " does not keep the built-in limits" : " could not be compared"));
       return Ok();
     }
     baseline.blender = report.blender_version;
@@ -367,7 +368,9 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<CrosscheckVerb>();
   CLI::App* sub =
       app.add_subcommand("crosscheck", "our guides against those of Blender's Cycles: figures, limits, verdict");
-  sub->add_option("scenes", verb->scenes, "scene files with a camera: .glb, .gltf or .blend")->type_name("FILE")->required();
+  sub->add_option("scenes", verb->scenes, "scene files with a camera: .glb, .gltf or .blend")
+      ->type_name("FILE")
+      ->required();
   sub->add_option("--size", verb->size, "pixels of the pictures; one number makes a square")
       ->type_name("WIDTHxHEIGHT")
       ->capture_default_str();
@@ -389,7 +392,8 @@ void AddCrosscheckVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("FILE");
   sub->add_option("--write-baseline", verb->write_baseline, "write what was measured, with some room, as a baseline")
       ->type_name("FILE");
-  auto* keep = sub->add_option("--keep", verb->keep, "keep both sides' guides here, as SCENE.cycles.exr and SCENE.ours.exr");
+  auto* keep =
+      sub->add_option("--keep", verb->keep, "keep both sides' guides here, as SCENE.cycles.exr and SCENE.ours.exr");
   keep->type_name("FOLDER");
   AddFastIoOption(*sub, verb->fast_io)->needs(keep);
   sub->add_option("--blender", verb->blender, "the Blender to run")

@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
-#include "scumble/picture.h"
 #include "core/io/format_dispatch.h"
+#include "scumble/picture.h"
 
 namespace scumble::internal {
 

@@ -63,7 +63,8 @@ TEST_F(LastWordsDeathTest, OfThreads) {
 }
 
 TEST_F(LastWordsDeathTest, OfAnythingElse) {
-  ExpectWords([] { throw std::runtime_error("a broken promise"); }, "internal error", "a broken promise; please report");
+  ExpectWords([] { throw std::runtime_error("a broken promise"); }, "internal error",
+              "a broken promise; please report");
   ExpectWords([] { throw std::system_error(EIO, std::generic_category()); }, "internal error", "please report");
   ExpectWords([] { throw 7; }, "internal error", "of an unknown kind; please report");
 }

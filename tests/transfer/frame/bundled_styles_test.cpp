@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "core/filter/resample.h"
+#include "core/image/hash.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene/framing.h"
-#include "core/image/hash.h"
-#include "core/style/style_file.h"
-#include "core/filter/resample.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

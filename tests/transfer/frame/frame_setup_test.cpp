@@ -1,10 +1,11 @@
 // A frame begins with whatever the one before left behind, and must not show it.
+#include "transfer/frame/frame_setup.h"
+
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/frame/frame_setup.h"
 
 namespace scumble {
 namespace {
@@ -48,7 +49,8 @@ void Spoil(TransferScratch& scratch, Picture& out) {
 }
 
 TEST(FrameSetup, NothingOfTheFrameBeforeIsLeft) {
-  Style first = PlainStyle(NoisePicture(96)), second = PlainStyle(PositionPicture(80)), third = PlainStyle(NoisePicture(64));
+  Style first = PlainStyle(NoisePicture(96)), second = PlainStyle(PositionPicture(80)),
+        third = PlainStyle(NoisePicture(64));
   third.transfer.method = Method::kLitSphere;
   const Picture under = NoisePicture(200);
   Picture over(kWidth, kHeight);
@@ -119,7 +121,8 @@ TEST(FrameSetup, TilesAndExtentsHoldEachStylesPixels) {
         const std::size_t i = guides.Index(x, y);
         expected[i] = guides.Plane(Layer::kCoverage)[i] > 0.0f && map.style[i] == s;
         if (expected[i]) {
-          extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1), std::max(extent.y1, y + 1)};
+          extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1),
+                    std::max(extent.y1, y + 1)};
         }
       }
     }
@@ -132,7 +135,8 @@ TEST(FrameSetup, TilesAndExtentsHoldEachStylesPixels) {
     if (extent.empty()) continue;
     EXPECT_TRUE(found.x0 == extent.x0 && found.y0 == extent.y0 && found.x1 == extent.x1 && found.y1 == extent.y1) << s;
   }
-  EXPECT_TRUE(internal::StartFrame({HoledGuides(true), &map, 12, {0, 0, kWidth, kHeight}}, field, active, out).softly_covered);
+  EXPECT_TRUE(
+      internal::StartFrame({HoledGuides(true), &map, 12, {0, 0, kWidth, kHeight}}, field, active, out).softly_covered);
 }
 
 }  // namespace

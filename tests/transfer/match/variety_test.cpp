@@ -1,4 +1,6 @@
 // Freedom of choice on flat surfaces: where the paint comes from, and where the borders run.
+#include "transfer/match/variety.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +12,9 @@
 #include "core/image/hash.h"
 #include "measure/energy/flat_surfaces.h"
 #include "measure/mosaic/repetition.h"
+#include "tests/support/transfer_fixtures.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/seeds/seeds.h"
-#include "transfer/match/variety.h"
-#include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {
@@ -28,8 +29,7 @@ Picture TwoTones(int width, int height) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       std::uint16_t* texel = picture.At(x, y);
-      texel[0] = texel[1] = texel[2] =
-          static_cast<std::uint16_t>((2 * x < width ? 50000 : 10000) + Hash(x, y) % 4000);
+      texel[0] = texel[1] = texel[2] = static_cast<std::uint16_t>((2 * x < width ? 50000 : 10000) + Hash(x, y) % 4000);
       texel[3] = 65535;
     }
   }
@@ -125,7 +125,8 @@ TEST(Seeds, TheTwoNearestAreThoseOfASearch) {
         std::vector<std::pair<std::int64_t, int>> order;  // by distance, then in row order
         for (int dy = -1; dy <= 1; ++dy) {
           for (int dx = -1; dx <= 1; ++dx) {
-            const PixelPosition seed = SeedOfCell({7, 0, level == 3 ? 0.0f : 1.0f, 0}, level, (x >> level) + dx, (y >> level) + dy);
+            const PixelPosition seed =
+                SeedOfCell({7, 0, level == 3 ? 0.0f : 1.0f, 0}, level, (x >> level) + dx, (y >> level) + dy);
             const std::int64_t ex = seed.x - x, ey = seed.y - y;
             order.emplace_back(ex * ex + ey * ey, 3 * dy + dx);
           }
@@ -172,7 +173,8 @@ TEST(Variety, KeepsTheToneOfTheWall) {
   style.transfer.variety = 30.0;
   const Transferred after = MustTransfer(style, wall);
   EXPECT_NE(after.picture.rgba, before.picture.rgba);
-  EXPECT_LT(ToneSpread(after.picture, all, 8.0), 0.02) << "the dark half is within 30 degrees, and would show as patches";
+  EXPECT_LT(ToneSpread(after.picture, all, 8.0), 0.02)
+      << "the dark half is within 30 degrees, and would show as patches";
   std::set<std::pair<int, int>> sources, own;
   for (std::size_t i = 0; i < after.field.x.size(); ++i) {
     sources.insert({after.field.x[i], after.field.y[i]});
@@ -208,7 +210,8 @@ TEST(Variety, APreviewShowsTheFinalPicturesPieces) {
   EXPECT_LT(other_seeds, 0.3 * same_seeds);
 }
 
-// What measures call a flat surface (measure/energy/flat_surfaces.h) is where the transfer finds one, there or a reach away.
+// What measures call a flat surface (measure/energy/flat_surfaces.h) is where the transfer finds one, there or a reach
+// away.
 TEST(Variety, MeasuresFindTheSameFlatPlaces) {
   constexpr int kSide = 40, kReach = 3;
   GuideSet guides(kSide, kSide);
@@ -221,13 +224,23 @@ TEST(Variety, MeasuresFindTheSameFlatPlaces) {
       active[i] = block % 5 != 0;
       guides.Plane(Layer::kCoverage)[i] = active[i];
       guides.Plane(Layer::kObject)[i] = float(block / 16 % 2);
-      guides.Plane(Layer::kNormal, 0)[i] = float(std::sin(0.4 * kRadians * double(angle)));  // 0.4 degrees are flat, 0.8 not
+      guides.Plane(Layer::kNormal, 0)[i] =
+          float(std::sin(0.4 * kRadians * double(angle)));  // 0.4 degrees are flat, 0.8 not
       guides.Plane(Layer::kNormal, 2)[i] = float(std::cos(0.4 * kRadians * double(angle)));
     }
   }
   const PreparedExemplar exemplar(NoisePicture(32), 2.0, 32);
   const Illumination none;
-  const internal::MatchInput input{guides, active, exemplar, none, {}, GuideTest(0.1f, ThresholdMetric::kL2), {}, 4, 15.0, kReach,
+  const internal::MatchInput input{guides,
+                                   active,
+                                   exemplar,
+                                   none,
+                                   {},
+                                   GuideTest(0.1f, ThresholdMetric::kL2),
+                                   {},
+                                   4,
+                                   15.0,
+                                   kReach,
                                    {0, 0, kSide, kSide}};
   const auto is_flat = [&](int x, int y) {
     if (x < 0 || y < 0 || x >= kSide || y >= kSide || !active[guides.Index(x, y)]) return false;

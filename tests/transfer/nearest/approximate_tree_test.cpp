@@ -26,7 +26,8 @@ double Distance(const float* a, const float* b, std::size_t dimensions) {
 
 double Least(const std::vector<float>& points, const float* query, std::size_t dimensions) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); i += dimensions) least = std::min(least, Distance(&points[i], query, dimensions));
+  for (std::size_t i = 0; i < points.size(); i += dimensions)
+    least = std::min(least, Distance(&points[i], query, dimensions));
   return least;
 }
 

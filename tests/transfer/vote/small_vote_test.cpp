@@ -1,5 +1,7 @@
 // Votes in small windows, made 64 pixels at a time, against the plain form: every width, radius, instruction set and
 // number of threads gives its bytes.
+#include "transfer/vote/small_vote.h"
+
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
@@ -11,7 +13,6 @@
 #include <vector>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/small_vote.h"
 
 namespace scumble {
 namespace {

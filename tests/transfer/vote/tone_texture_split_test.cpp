@@ -1,13 +1,14 @@
 // Tone by Lit Sphere, texture by StyleBlit: the split against plain convolution, the sum against its definition.
+#include "transfer/vote/tone_texture_split.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
 
-#include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/tone_texture_split.h"
 #include "core/filter/masked_blur.h"
+#include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,6 @@
 // Voting chunk by chunk in large windows against the definition, vote by vote.
+#include "transfer/vote/wide/wide_vote.h"
+
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
@@ -7,9 +9,8 @@
 #include <limits>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/tone_texture_split.h"
 #include "transfer/exemplar/usable_rows.h"
-#include "transfer/vote/wide/wide_vote.h"
+#include "transfer/vote/tone_texture_split.h"
 
 namespace scumble {
 namespace {
@@ -350,8 +351,8 @@ TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
-// What is done to finished pixels (here: turned to their negatives, which doing twice undoes) is done once to each, when
-// nothing writes them any more, by every way to vote.
+// What is done to finished pixels (here: turned to their negatives, which doing twice undoes) is done once to each,
+// when nothing writes them any more, by every way to vote.
 TEST(Vote, TellsOfEveryFinishedPixelOnce) {
   Case all = MakeCase(2300, 70, Pieces::kMixed, 150, 1, true, 20);
   all.guides.Add(Layer::kNormal);

@@ -1,8 +1,8 @@
 // The edge test between neighbouring pixels, 64 at a time: which steps of support_regions.h are open.
 #pragma once
 
-#include "transfer/field/bit_mask_rows.h"
 #include "core/filter/edge_test.h"
+#include "transfer/field/bit_mask_rows.h"
 
 namespace scumble::internal {
 

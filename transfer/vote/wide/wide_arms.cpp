@@ -91,9 +91,8 @@ std::uint64_t AlikeBits(const NormalPlanes& planes, std::ptrdiff_t first, std::p
       left &= left - 1;
       continue;
     }
-    const auto product = [&](int c) HWY_ATTR {
-      return hn::Mul(hn::LoadU(kFloat, n[c] + p), hn::LoadU(kFloat, n[c] + q));
-    };
+    const auto product = [&](int c)
+                             HWY_ATTR { return hn::Mul(hn::LoadU(kFloat, n[c] + p), hn::LoadU(kFloat, n[c] + q)); };
     const F cosine = hn::Add(hn::Add(product(0), product(1)), product(2));
     alike |= BitsOf(hn::Gt(cosine, crease)) << i;
     left &= BitMaskRows::kAll << 1 << std::min(63, i + lanes - 1);
