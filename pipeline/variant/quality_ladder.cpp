@@ -37,9 +37,9 @@ std::span<const VariantSetting> VariantSettings() {
   return kSettings;
 }
 
-const VariantSetting& SettingOf(const std::string& setting) {
+const VariantSetting& SettingOf(const std::string& text) {
   for (const VariantSetting& setting : VariantSettings()) {
-    if (setting == fmt::format("{}={}", setting.key, setting.text)) return setting;
+    if (text == fmt::format("{}={}", setting.key, setting.text)) return setting;
   }
   SCUMBLE_CHECK(false);
   return VariantSettings().front();
@@ -184,8 +184,8 @@ std::string OptionsOf(const Variant& variant) {
 }
 
 Status ApplyVariant(const Variant& variant, StyleSet& styles) {
-  for (const std::string& setting : variant.settings) {
-    const VariantSetting& setting = SettingOf(setting);
+  for (const std::string& text : variant.settings) {
+    const VariantSetting& setting = SettingOf(text);
     const StyleKey* const key = FindStyleKey(setting.key);
     SCUMBLE_CHECK(key != nullptr);
     for (std::size_t i = 0; i < styles.styles.size(); ++i) {
