@@ -19,7 +19,7 @@ Ground Plain(glm::vec3 color, float tooth = 0.5f, int size = 128) {
   return {Field(Sheet{size}, tooth), Colors(Sheet{size}, color)};
 }
 
-StyleRequestOf Everywhere(glm::vec3 color) {
+Wish Everywhere(glm::vec3 color) {
   return MakeWish([=](glm::vec2) { return color; });
 }
 
@@ -139,7 +139,7 @@ TEST(Colouring, StrokesDoNotCurlRoundAPole) {
 }
 
 TEST(Colouring, AWishIsAskedWhereItWasMade) {
-  const StyleRequestOf wish = MakeWish([](glm::vec2 at) { return glm::vec3(at / kSide, 0.25f); });
+  const Wish wish = MakeWish([](glm::vec2 at) { return glm::vec3(at / kSide, 0.25f); });
   for (const glm::vec2 at : {glm::vec2(3.0f, 1000.0f), glm::vec2(512.0f, 100.0f)}) {
     EXPECT_LT(glm::distance(ColorIn(wish, at), glm::vec3(at / kSide, 0.25f)), 0.004f);
   }

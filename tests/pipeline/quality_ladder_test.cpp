@@ -21,9 +21,9 @@ namespace {
 constexpr LadderFrame kCast{true, 1280, 720, false}, kGiven{false, 1280, 720, true};
 
 StyleSet Open(const std::string& style, const std::vector<std::string>& sets = {}) {
-  StyleOptions options;
+  StyleRequest options;
   options.style = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + style, options.sets = sets;
-  auto opened = OpenStyles(options);
+  auto opened = OpenStyles(options, RunContext());
   EXPECT_TRUE(opened.ok()) << (opened.ok() ? "" : opened.error().message);
   return opened.ok() ? std::move(*opened) : StyleSet();
 }
@@ -266,18 +266,18 @@ GuideSet GuidesOf(const std::string& scene_name, int width, int height) {
   return made ? std::move(made->guides) : GuideSet();
 }
 
-Globals WithMemory(std::uint64_t bytes) {
-  Globals globals;
-  globals.max_memory = bytes;
-  return globals;
+RunContext WithMemory(std::uint64_t bytes) {
+  RunContext context;
+  context.max_memory = bytes;
+  return context;
 }
 
 // Whatever the machine has.
 double MeasuredAs(StyleSet& styles, const std::string& rung, const GuideSet& guides,
-                  const Globals& globals = WithMemory(std::uint64_t(1) << 40)) {
-  const PictureOptions picture;
+                  const RunContext& context = WithMemory(std::uint64_t(1) << 40)) {
+  const PictureRequest picture;
   const std::string name = "guides", none;
-  TrialPainter trial(styles, picture, {}, name, none, globals);
+  TrialPainter trial(styles, picture, {}, name, none, context);
   for (const Variant& variant : QualityLadder(styles, kGiven)) {
     if (variant.name != rung) continue;
     const auto off = trial.MeasureError(variant, guides);
@@ -336,12 +336,12 @@ TEST(TrialPainter, ReadsWhatLiesUnderneath) {
   for (float& a : guides.Plane(Layer::kCoverage)) a = 1.0f;
   for (float& z : guides.Plane(Layer::kNormal, 2)) z = 1.0f;
   const Variant plain = QualityLadder(styles, kGiven).front();
-  const PictureOptions picture;
-  const Globals globals;
+  const PictureRequest picture;
+  const RunContext context;
   const std::string name = "guides", none, missing = "nowhere/under.png";  // they are borrowed
-  TrialPainter bare(styles, picture, {}, name, none, globals);
+  TrialPainter bare(styles, picture, {}, name, none, context);
   EXPECT_TRUE(bare.Paint(plain, guides).ok());
-  TrialPainter over(styles, picture, {}, name, missing, globals);
+  TrialPainter over(styles, picture, {}, name, missing, context);
   const auto painted = over.Paint(plain, guides);
   ASSERT_FALSE(painted.ok());
   EXPECT_NE(painted.error().message.find(missing), std::string::npos) << painted.error().message;

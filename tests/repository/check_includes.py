@@ -27,7 +27,7 @@ LIBRARIES = {
     "measure": ("measure", {"public", "image", "io", "filter"},
                 ["report", "compare", "mosaic", "energy", "painting", "crosscheck", "tradeoff"]),
     "pipeline": ("pipeline", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure"},
-                 ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff"]),
+                 ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff", "crosscheck"]),
     "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"},
             ["app", "verbs"]),
 }

@@ -118,7 +118,7 @@ SourceVariation::Tone SourceVariation::ToneAt(Source source, int picture) const 
 }
 
 // The mean squared distance of the quarters' tones from `tone`.
-std::int64_t SourceVariation::Unlikeness(Source source, const StyleRequestOf& wish, const Tone& tone) const {
+std::int64_t SourceVariation::Unlikeness(Source source, const Wanted& wish, const Tone& tone) const {
   const int half = std::max(wish.half_width, cell_);
   std::int64_t sum = 0, quarters = 0;
   for (const int dx : {-half, 0}) {
@@ -172,7 +172,7 @@ std::optional<Source> SourceVariation::Draw(const PreparedExemplar& exemplar, So
   return source;
 }
 
-Source SourceVariation::Choose(const PreparedExemplar& exemplar, const StyleRequestOf& wish) const {
+Source SourceVariation::Choose(const PreparedExemplar& exemplar, const Wanted& wish) const {
   const std::optional<Tone> tone = ToneAround(wish.own, wish.picture, wish.half_width);
   if (!tone) return wish.own;
   constexpr auto kMost = static_cast<std::int64_t>(kTolerance * 65535 * kTolerance * 65535);

@@ -18,7 +18,7 @@ class SourceVariation {
   // Sums over all usable pixels of all pictures. O(pixels · pictures).
   explicit SourceVariation(const PreparedExemplar& exemplar);
 
-  struct StyleRequestOf {
+  struct Wanted {
     Source own;          // what else would be taken; usable
     int picture = 0;     // of the exemplar
     double degrees = 0;  // how far from own's normal, 0 … 90
@@ -30,7 +30,7 @@ class SourceVariation {
   // exemplar's pixels, it is the first whose square has in its four quarters about the tone of the square around `own`;
   // if none has, the one that comes nearest to it. (Quarters: paint that is light here and dark there would show its
   // border although its mean is right.) `own` where chance finds nothing.
-  Source Choose(const PreparedExemplar& exemplar, const StyleRequestOf& wish) const;
+  Source Choose(const PreparedExemplar& exemplar, const Wanted& wish) const;
 
   // The mean colour (times alpha) and alpha of the usable pixels in a square around a source, to whole cells: 0 … 65535
   // each; nothing where no pixel there is usable. All arithmetic is of integers.
@@ -47,7 +47,7 @@ class SourceVariation {
     std::int64_t count = 0;
   };
   std::optional<Tone> ToneOf(int picture, int x0, int y0, int x1, int y1) const;
-  std::int64_t Unlikeness(Source source, const StyleRequestOf& wish, const Tone& tone) const;
+  std::int64_t Unlikeness(Source source, const Wanted& wish, const Tone& tone) const;
   std::optional<Source> Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine, std::uint64_t a,
                              std::uint64_t b) const;
 

@@ -11,6 +11,7 @@
 #include "tests/support/every_instruction_set.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/match/match.h"
+#include "transfer/match/seed_tiles.h"
 
 namespace scumble {
 namespace {

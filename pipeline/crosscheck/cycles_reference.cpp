@@ -1,4 +1,4 @@
-#include "pipeline/scene/cycles_reference.h"
+#include "pipeline/crosscheck/cycles_reference.h"
 
 #include <fmt/format.h>
 
