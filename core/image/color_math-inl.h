@@ -12,7 +12,7 @@
 //   NumberAsBits(n)             the float whose bits are 512 · (n - 2^23), for whole n of 2^23 … 2^24
 // core/image/scalar_lane.h has them for float, transfer/tint/vector_lane-inl.h for vectors.
 
-// x^(1/3) within 1.5e-7 of the true root, relative, for 2^-126 … 3.4e38. 0 gives 0; what lies between 0 and 2^-126
+// x^(1/3) within 1.9e-7 of the true root, relative, for 2^-126 … 3.4e38. 0 gives 0; what lies between 0 and 2^-126
 // gives something between 0 and 2^-42. Others are undefined.
 inline Lane CubeRoot(Lane x) {
   // A float's bits are nearly its logarithm: a third of them, negated, make x^(-1/3) within 3.5 %.
@@ -28,7 +28,7 @@ inline Lane CubeRoot(Lane x) {
   return root * p;
 }
 
-// x^(5/12), where CubeRoot is defined; within 3e-7, relative.
+// x^(5/12), where CubeRoot is defined; within 3.3e-7, relative.
 inline Lane FiveTwelfths(Lane x) {
   const Lane root = CubeRoot(x);
   return root * Sqrt(Sqrt(root));
