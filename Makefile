@@ -1,6 +1,7 @@
 # A thin wrapper: CMake builds, .ci/ holds the scripts. `make help` lists the targets.
 .DEFAULT_GOAL := build
-.PHONY: help build demo check test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits scenes gallery format clean
+.PHONY: help build demo bare check test test-asan test-tsan fuzz bench bench-budget bench-cycles tradeoff exemplars traits \
+  scenes gallery format clean
 
 JOBS := $(shell nproc)
 
@@ -11,10 +12,13 @@ build: ## install what is missing, configure, compile (Release) into build/
 	@.ci/install build
 	@cmake --preset release > build.log 2>&1 || { cat build.log; rm -f build.log; exit 1; }
 	@rm -f build.log
-	@cmake --build build --target scumble -j $(JOBS)
+	@cmake --build build --target scumble scumble_library -j $(JOBS)
 
-demo: build ## stylise the bundled scenes with the bundled styles into out/demo/
-	@.ci/demo
+demo: build ## draw a dozen pictures and a contact sheet into out/demo/; ALL=1 draws every scene in every style
+	@.ci/demo $(if $(filter-out 0,$(ALL)),--all)
+
+bare: ## run demo and test in a new Debian root that holds only git and make (as root); ONLY=demo runs one; DEBIAN=12
+	@DEBIAN=$(or $(DEBIAN),12) .ci/bare $(foreach target,$(or $(ONLY),demo test),"make $(target)")
 
 check: ## the quick tests, for between edits: under a minute once built; one library's: CHECK=transfer
 	@.ci/install test

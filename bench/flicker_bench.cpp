@@ -1,5 +1,5 @@
-// How much sequences flicker whose seeds are new in every frame, frozen to the screen, or live on the surface, beside the
-// Lit Sphere: prints the table of docs/sequences.md. Arguments: names of bundled styles;
+// How much sequences flicker whose seeds are new in every frame, frozen to the screen, or live on the surface, beside
+// the Lit Sphere: prints the table of docs/sequences.md. Arguments: names of bundled styles;
 // --save FOLDER writes the frames, too.
 #include <algorithm>
 #include <cstdio>
@@ -9,11 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "core/io/picture_file.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
-#include "core/io/picture_file.h"
+#include "guidegen/scene/framing.h"
 #include "measure/compare/flicker.h"
-#include "core/style/style_file.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -86,12 +87,12 @@ Expected<std::vector<GuideSet>> GuidesOf(const Motion& motion) {
   return guides;
 }
 
-struct Way {
+struct Variant {
   std::string name;
   std::function<void(TransferSettings&)> set;
 };
 
-std::vector<Way> Ways() {
+std::vector<Variant> Variants() {
   return {
       {"jittered", [](TransferSettings& settings) { settings.jitter_fps = -1.0; }},
       {"frozen", [](TransferSettings&) {}},
@@ -104,7 +105,8 @@ struct Figures {
   double flicker = 0, floor = 0, match_ms = 0;
 };
 
-Expected<Figures> Measure(Style style, const Way& way, const std::vector<GuideSet>& guides, const std::string& save) {
+Expected<Figures> Measure(Style style, const Variant& way, const std::vector<GuideSet>& guides,
+                          const std::string& save) {
   way.set(style.transfer);
   SCUMBLE_ASSIGN(const PreparedStyle prepared, Prepare(style, kHeight));
   TransferScratch scratch;
@@ -139,7 +141,7 @@ Status Run(const std::vector<std::string>& styles, const std::string& folder) {
     SCUMBLE_ASSIGN(const std::vector<GuideSet> guides, GuidesOf(motion));
     for (const std::string& name : styles) {
       SCUMBLE_ASSIGN(const Style style, LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + name, {}));
-      for (const Way& way : Ways()) {
+      for (const Variant& way : Variants()) {
         const std::string save = folder.empty() ? "" : folder + "/" + motion.scene + "-" + name + "-" + way.name;
         SCUMBLE_ASSIGN(const Figures figures, Measure(style, way, guides, save));
         std::printf("| %s | %s | %s | %.1f | %.1f | %.1f |\n", motion.name.c_str(), name.c_str(), way.name.c_str(),

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bench/bare_embree.h"
-#include "guidegen/guidegen.h"
 #include "core/image/stopwatch.h"
+#include "guidegen/guidegen.h"
 #include "tests/support/guidegen_scenes.h"
 
 namespace scumble::testing {

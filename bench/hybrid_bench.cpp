@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "bench/or_stop.h"
+#include "core/filter/masked_blur.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "measure/mosaic/repetition.h"
-#include "core/style/style_file.h"
-#include "core/filter/masked_blur.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -1,6 +1,6 @@
 // What the ladder of --quality and --budget-ms was made from: for sample scenes and bundled styles, time and energy of
-// every way to do it with less, and which of them nothing else beats in both. Prints one line a way, tab-separated:
-// docs/budget.md has the table. --help lists the arguments.
+// every variant to do it with less, and which of them nothing else beats in both. Prints one line a variant,
+// tab-separated: docs/budget.md has the table. --help lists the arguments.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,12 +15,13 @@
 
 #include "bench/or_stop.h"
 #include "bench/performance/repeats.h"
-#include "pipeline/variant/variant_error.h"
+#include "core/image/stopwatch.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
-#include "core/image/stopwatch.h"
+#include "guidegen/scene/framing.h"
 #include "measure/tradeoff/pareto.h"
-#include "core/style/style_file.h"
+#include "pipeline/variant/variant_error.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"
 
@@ -38,7 +39,7 @@ struct Arguments {
   std::vector<std::string> styles{"oil", "charcoal", "woodcut", "sumi-e", "chiaroscuro", "scene-oil"};
 };
 
-// What a way takes instead of the style's own.
+// What a variant takes instead of the style's own.
 struct Candidate {
   std::string name;
   int upsample = 1;

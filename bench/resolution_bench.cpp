@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "bench/or_stop.h"
-#include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_file.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "transfer/transfer.h"
 #include "transfer/upsample_guides.h"
 
@@ -69,7 +70,7 @@ double SameSources(const SourceField& a, const SourceField& b) {
 }
 
 // One way to paint the picture.
-struct Way {
+struct Variant {
   std::string name;
   const GuideSet* guides;
   int step = 1;
@@ -89,7 +90,7 @@ void Measure(const std::string& scene, const std::string& style_name) {
     GuideSet larger = OrStop(UpsampleGuides(small.guides, factor, 1));
     upsampled.push_back({std::move(larger), small.ms + watch.Lap()});
   }
-  std::vector<Way> ways;
+  std::vector<Variant> ways;
   for (const int step : {1, 2, 4, 8})
     ways.push_back({"match_step " + std::to_string(step), &full.guides, step, full.ms});
   ways.push_back({"--upsample 2, match_step 2", &upsampled[0].guides, 2, upsampled[0].ms});
@@ -97,7 +98,7 @@ void Measure(const std::string& scene, const std::string& style_name) {
   TransferScratch scratch;
   Picture picture;
   for (int run = 0; run < kRuns; ++run) {  // in turns, so that what else the machine does meets all of them
-    for (Way& way : ways) {
+    for (Variant& way : ways) {
       TransferOptions options;
       options.threads = 1;
       options.match_step = way.step;
@@ -108,7 +109,7 @@ void Measure(const std::string& scene, const std::string& style_name) {
     }
   }
   const double base = Median(ways[0].match_ms);
-  for (const Way& way : ways) {
+  for (const Variant& way : ways) {
     const Error error = GuideError(full.guides, *prepared.exemplar, way.field);
     std::printf("| %s | %s | %s | %.0f | %.2f | %.0f | %.1f° | %.1f° | %.1f%% |\n", scene.c_str(), style_name.c_str(),
                 way.name.c_str(), Median(way.match_ms), Median(way.match_ms) / base, way.guides_ms, error.mean,

@@ -12,8 +12,8 @@
 
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "measure/mosaic/repetition.h"
 #include "core/style/style_file.h"
+#include "measure/mosaic/repetition.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -90,10 +90,13 @@ namespace {
 constexpr double kDegrees = 20.0;
 const std::vector<std::string> kStyles = {"charcoal", "graphite", "oil", "watercolour"};
 
-Expected<Style> Bundled(const std::string& name) { return LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + name, {}); }
+Expected<Style> Bundled(const std::string& name) {
+  return LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + name, {});
+}
 
 int PrintWalls(const std::string& pictures) {
-  std::printf("| style | wall | variety | repetition | repeated strokes | tone spread | seam excess | pairs on borders |\n");
+  std::printf(
+      "| style | wall | variety | repetition | repeated strokes | tone spread | seam excess | pairs on borders |\n");
   std::printf("|---|---|---|---|---|---|---|---|\n");
   for (const std::string& name : kStyles) {
     const auto style = Bundled(name);
@@ -138,8 +141,8 @@ Status PrintCost(const std::string& name, const GuideSet& guides) {
     match_ratios.push_back(scratch.times.match_ms / one.match_ms);
     vote_ratios.push_back(scratch.times.vote_ms / one.vote_ms);
   }
-  std::printf("| %s | %.0f | %.0f | %.2f | %.2f | %.2f |\n", name.c_str(), Median(plain_ms), Median(varied_ms), Median(ratios),
-              Median(match_ratios), Median(vote_ratios));
+  std::printf("| %s | %.0f | %.0f | %.2f | %.2f | %.2f |\n", name.c_str(), Median(plain_ms), Median(varied_ms),
+              Median(ratios), Median(match_ratios), Median(vote_ratios));
   std::fflush(stdout);
   std::map<float, std::pair<double, double>> changed;  // by object: of how many pixels
   const auto object = guides.Plane(Layer::kObject);

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/direction.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 
@@ -25,15 +26,15 @@ struct GuidegenOptions {
   int width = 0;  // pixels, 1 … kMaxImageSide
   int height = 0;
   LayerSet layers;  // what is wanted on top of AlwaysWritten()
-  // N × N subsamples of the coverage, 1 … 16; data layers are never averaged. A pixel whose centre is hit counts as one
-  // subsample at least, however thin what it hit.
+  // N × N subsamples of the coverage, 1 … 16; data layers are never averaged. A pixel whose centre is hit counts as at
+  // least one subsample, however thin the object.
   int aa = 1;
   NormalFrame normal_frame = NormalFrame::kCamera;
   int threads = 0;  // 0: all
   std::string isa;  // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"
   // Embree's robust mode: rays that meet an edge or a corner never pass between two triangles. Without it the tests of
-  // boxes and triangles are a little quicker, and may miss there. What they hit is the same elsewhere; in
-  // attributes["scumble:robust"] as "false" where it is off.
+  // boxes and triangles are a little faster, and may miss there; elsewhere hits are equal. If it is off,
+  // attributes["scumble:robust"] is "false".
   bool robust = true;
   Progress progress;
 
@@ -50,7 +51,7 @@ struct GuidegenOptions {
   // decides, so the picture may differ from run to run; GuidegenResult::samples repeats it.
   double time_budget_seconds = 0.0;
   int max_samples = kMaxSamples;  // that `noise` and the time budget may take, 1 … kMaxSamples
-  std::uint64_t seed = 0;         // another one, other noise of the same size; in attributes["scumble:seed"] unless 0
+  std::uint64_t seed = 0;         // another seed, other noise of equal size; in attributes["scumble:seed"] unless 0
   // Luminance and shadow always take `samples`: where they need any, `noise` and the time budget are a kUsage error.
 };
 
@@ -64,7 +65,7 @@ struct PlanItem {
 // What RenderGuides will do; `options` as there. Depends on the scene only through its lights and materials.
 std::vector<PlanItem> PlanGuides(const Scene& scene, const GuidegenOptions& options);
 
-// Rays that were cast, by kind: what a scene made us pay.
+// Rays that were cast, by kind.
 struct RayCounts {
   std::size_t primary = 0;
   std::size_t coverage = 0;  // extra subsamples
@@ -72,13 +73,13 @@ struct RayCounts {
   std::size_t bounce = 0;    // that look for the next surface of a path
 };
 
-// What it made us pay besides: how often the inner loops were gone through. The same for any number of threads.
+// Counters of the inner loops. They are equal for any number of threads.
 struct WorkCounts {
-  std::size_t light_samples = 0;    // times that a lamp, a point on a light, or a direction was asked for its light
-  std::size_t materials = 0;        // times that a material was asked at a point: for its colour, or what it emits
-  std::size_t texture_lookups = 0;  // times that a texture was asked for a value
+  std::size_t light_samples = 0;    // samples of a delta light, of a point on a light, or of a direction
+  std::size_t materials = 0;        // evaluations of a material at a point: its colour or emission
+  std::size_t texture_lookups = 0;  // samples of a texture
   std::size_t texels = 0;           // that were read for it: 4 each, or 1 where nothing is interpolated
-  std::size_t filtered_hits = 0;    // times that Embree had to ask whether a surface lets a ray pass
+  std::size_t filtered_hits = 0;    // hits for which Embree called our filter
   std::size_t plane_bytes = 0;      // of the layers' planes
 };
 
@@ -86,7 +87,8 @@ struct GuidegenResult {
   GuideSet guides;
   RayCounts rays;
   WorkCounts work;
-  double build_ms = 0;  // acceleration structure
+  int builds = 0;       // acceleration structures that this call built: 1, or 0 where the RayScene had it
+  double build_ms = 0;  // for that; 0 without a build
   double render_ms = 0;
   // Of each pixel, in light-path layers; 0 where they need no chance. Also in guides.attributes["scumble:samples"].
   int samples = 0;
@@ -97,22 +99,53 @@ struct GuidegenResult {
 // double and Embree's scene is relative to the camera. Deterministic for one isa, whatever the threads; the isa in use
 // is recorded in guides.attributes["scumble:isa"]. Light-path layers are in light_paths.h; each is traced only as far
 // as its expression and the scene's lights and materials require. Layers that are not built in yet are a kUnavailable
-// error by name. An empty scene, or a camera that sees nothing, is an empty picture and no error. Uses oneTBB and
-// Embree 3.
+// error by name. An empty scene, or a camera that sees nothing, is an empty picture and no error. If options.progress
+// returns false, the call ends with kCancelled within a fraction of a second. Uses oneTBB and Embree 3.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options);
 
-// What the layer `motion` is measured against: the same scene and camera, one frame later, as AnimatedScene gives them.
-// Objects are told by name and mesh. Both are borrowed.
+// The scene and camera of the next frame, which the layer `motion` is measured against. Objects are matched by name and
+// mesh. Both are borrowed.
 struct NextFrame {
   const Scene& scene;
   const Camera& camera;
 };
 
-// As above, with the layer `motion` among what can be asked for: how far what the pixel shows moves until the next
-// frame, +X right and +Y down as rows count, in pixels. 0 for background, for what is gone by then, and, exactly, for
-// what stands still; it says nothing of whether something else hides the place then.
+// As above; `motion` can be asked for as well: how far the point that a pixel shows moves until the next frame, in
+// pixels, +X right and +Y down. It is 0 for background, for objects that are gone by then, and exactly 0 for points
+// that do not move. A point may be hidden in the next frame; `motion` does not tell.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options);
+
+// A scene before a camera, ready to be cast many times: names and ids, and the acceleration structure, which is built
+// by the first cast and kept. Casts may differ in every option. They build again only for another `isa` or `robust`,
+// and once more when light is first asked for.
+//
+// The scene is borrowed, and must outlive this. Between casts lights, the world's radiance and styles may change, and
+// DecodeTextures may be called. If anything else of the scene changes, if the camera does, or if DecodeTextures leaves
+// a texture out, make a new RayScene: the structure depends on materials, and its triangles are relative to the camera.
+//
+// Safe to use from several threads at once. A cast that is cancelled or fails leaves it as good as before.
+class RayScene {
+ public:
+  // Fails with kInput where the camera has no direction, or a lens that no picture can have.
+  static Expected<RayScene> Make(const Scene& scene, const Camera& camera);
+  static Expected<RayScene> Make(const Scene&& scene, const Camera& camera) = delete;  // would not outlive this
+
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+  ~RayScene();
+
+ private:
+  struct State;
+  explicit RayScene(std::unique_ptr<State> state);
+  friend struct RayCast;  // RenderGuides, inside
+
+  std::unique_ptr<State> state_;
+};
+
+// As RenderGuides above: the same bytes, whatever was cast before.
+Expected<GuidegenResult> RenderGuides(const RayScene& scene, const GuidegenOptions& options);
+Expected<GuidegenResult> RenderGuides(const RayScene& scene, const NextFrame& next, const GuidegenOptions& options);
 
 struct SphereOptions {
   int size = 512;  // N × N pixels

@@ -90,8 +90,9 @@ std::vector<PlanItem> PlanGuides(const Scene& scene, const GuidegenOptions& opti
   if (!scene.textures.empty()) {
     const std::vector<bool> needed = NeededTextures(scene, options);
     const auto count = std::size_t(std::count(needed.begin(), needed.end(), true));
-    plan.push_back({"textures", "pictures of the scene's materials",
-                    (count ? std::to_string(count) : std::string("none")) + " of " + std::to_string(needed.size()) + " decoded"});
+    plan.push_back(
+        {"textures", "pictures of the scene's materials",
+         (count ? std::to_string(count) : std::string("none")) + " of " + std::to_string(needed.size()) + " decoded"});
   }
   return plan;
 }

@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/image/check.h"
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/scene_textures.h"
-#include "core/image/check.h"
 
 namespace scumble {
 namespace {
@@ -54,11 +55,13 @@ bool NeedsLight(const LayerSet& layers) {
 
 // Luminance and shadow are cast in one go with a fixed number of samples.
 Status CheckOpenEnd(const GuidegenOptions& options, const PathSupply& supply) {
-  const bool soft = supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
-  if (!soft || (options.noise <= 0.0 && options.time_budget_seconds <= 0.0)) return Ok();
-  return UsageError(std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
-                    " is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples: "
-                    "make these two in a run of their own with --samples");
+  const bool sampled =
+      supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
+  if (!sampled || (options.noise <= 0.0 && options.time_budget_seconds <= 0.0)) return Ok();
+  return UsageError(
+      std::string(options.noise > 0.0 ? "a limit of the noise" : "a time budget") +
+      " is for lpe.* layers; luminance and shadow under lights with extent take a fixed number of samples: "
+      "make these two in a run of their own with --samples");
 }
 
 Status CheckRadiance(const std::string& who, const glm::vec3& radiance) {
@@ -121,62 +124,122 @@ Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenO
   return Ok();
 }
 
-// `next` may be null.
-Expected<GuidegenResult> Render(const Scene& scene, const Camera& camera, const NextFrame* next,
-                                const GuidegenOptions& options) {
-  SCUMBLE_RETURN_IF_ERROR(CheckOptions(options, next != nullptr));
-  for (const Material& material : scene.materials) CheckMaterial(material, scene);
-  for (const Mesh& mesh : scene.meshes) CheckMesh(mesh, scene);
-  CheckTextures(scene, options);
-
-  View view;
-  SCUMBLE_ASSIGN(view.camera, CameraRays::Make(camera, options.width, options.height));
-  if (NeedsLight(options.layers)) {
-    SCUMBLE_ASSIGN(view.lights, PlaceLights(scene.lights, view.camera));
-    SCUMBLE_RETURN_IF_ERROR(CheckEmission(scene));
-    view.world_radiance = scene.world_radiance;
-    view.supply = SupplyOf(scene);
-    SCUMBLE_RETURN_IF_ERROR(CheckOpenEnd(options, view.supply));
-  }
-  const std::vector<std::string> object_names = ObjectNames(scene);
-  const std::vector<std::string> material_names = MaterialNames(scene);
-  const std::vector<std::uint32_t> object_ids = IdsForNames(object_names);
-  const std::vector<std::uint32_t> material_ids = IdsForNames(material_names);
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    SCUMBLE_CHECK(instance.mesh >= 0 && std::size_t(instance.mesh) < scene.meshes.size());
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    PlacedObject object = Place(&mesh, &scene.materials[mesh.material], scene.textures,
-                                view.camera.ViewFromObject(instance.world_from_object));
-    object.object_id = object_ids[i];
-    object.material_id = material_ids[mesh.material];
-    view.objects.push_back(object);
-  }
-  if (next && options.layers.Has(Layer::kMotion)) {
-    for (const Mesh& mesh : next->scene.meshes) CheckMesh(mesh, next->scene);
-    SCUMBLE_RETURN_IF_ERROR(PlaceNextFrame(scene, *next, options, view));
-  }
-  SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(std::move(view), options));
-  result.guides.object_names = NamesById(object_ids, object_names);
-  result.guides.material_names = NamesById(material_ids, material_names);
+// What a transfer finds by an id: names, and the styles that the scene's author wants.
+void AddNames(const Scene& scene, const std::vector<std::uint32_t>& object_ids,
+              const std::vector<std::uint32_t>& material_ids, GuideSet& guides) {
+  guides.object_names = NamesById(object_ids, ObjectNames(scene));
+  guides.material_names = NamesById(material_ids, MaterialNames(scene));
   for (std::size_t i = 0; i < object_ids.size(); ++i) {
-    if (!scene.instances[i].style.empty()) result.guides.object_styles[object_ids[i]] = scene.instances[i].style;
+    if (!scene.instances[i].style.empty()) guides.object_styles[object_ids[i]] = scene.instances[i].style;
   }
   for (std::size_t i = 0; i < material_ids.size(); ++i) {
-    if (!scene.materials[i].style.empty()) result.guides.material_styles[material_ids[i]] = scene.materials[i].style;
+    if (!scene.materials[i].style.empty()) guides.material_styles[material_ids[i]] = scene.materials[i].style;
   }
-  return result;
+}
+
+std::vector<PlacedObject> PlaceObjects(const Scene& scene, const CameraPose& camera,
+                                       const std::vector<std::uint32_t>& object_ids,
+                                       const std::vector<std::uint32_t>& material_ids) {
+  std::vector<PlacedObject> objects;
+  objects.reserve(scene.instances.size());
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
+    const auto material = std::size_t(mesh.material);
+    PlacedObject object =
+        Place(&mesh, &scene.materials[material], scene.textures, camera.ViewFromObject(instance.world_from_object));
+    object.object_id = object_ids[i];
+    object.material_id = material_ids[material];
+    objects.push_back(object);
+  }
+  return objects;
 }
 
 }  // namespace
 
+struct RayScene::State {
+  State(const Scene& borrowed, const Camera& seen_by, const CameraPose& stands)
+      : scene(borrowed),
+        camera(seen_by),
+        pose(stands),
+        object_ids(IdsForNames(ObjectNames(borrowed))),
+        material_ids(IdsForNames(MaterialNames(borrowed))),
+        objects([this] { return PlaceObjects(scene, pose, object_ids, material_ids); }) {}
+
+  const Scene& scene;
+  const Camera camera;
+  const CameraPose pose;
+  const std::vector<std::uint32_t> object_ids;    // by instance
+  const std::vector<std::uint32_t> material_ids;  // by material
+  LazyScene objects;                              // locks itself
+};
+
+RayScene::RayScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+RayScene::~RayScene() = default;
+
+Expected<RayScene> RayScene::Make(const Scene& scene, const Camera& camera) {
+  for (const Material& material : scene.materials) CheckMaterial(material, scene);
+  for (const Mesh& mesh : scene.meshes) CheckMesh(mesh, scene);
+  for (const Instance& instance : scene.instances) {
+    SCUMBLE_CHECK(instance.mesh >= 0 && std::size_t(instance.mesh) < scene.meshes.size());
+  }
+  SCUMBLE_ASSIGN(const CameraPose pose, CameraPose::Make(camera));
+  return RayScene(std::make_unique<State>(scene, camera, pose));
+}
+
+struct RayCast {
+  // `next` may be null.
+  static Expected<GuidegenResult> Render(const RayScene& ray_scene, const NextFrame* next,
+                                         const GuidegenOptions& options) {
+    SCUMBLE_RETURN_IF_ERROR(CheckOptions(options, next != nullptr));
+    RayScene::State& state = *ray_scene.state_;
+    const Scene& scene = state.scene;
+    CheckTextures(scene, options);
+
+    View view;
+    SCUMBLE_ASSIGN(view.camera, CameraRays::Make(state.camera, options.width, options.height));
+    if (NeedsLight(options.layers)) {
+      SCUMBLE_ASSIGN(view.lights, PlaceLights(scene.lights, view.camera));
+      SCUMBLE_RETURN_IF_ERROR(CheckEmission(scene));
+      view.world_radiance = scene.world_radiance;
+      view.supply = SupplyOf(scene);
+      SCUMBLE_RETURN_IF_ERROR(CheckOpenEnd(options, view.supply));
+    }
+    if (next && options.layers.Has(Layer::kMotion)) {
+      for (const Mesh& mesh : next->scene.meshes) CheckMesh(mesh, next->scene);
+      SCUMBLE_RETURN_IF_ERROR(PlaceNextFrame(scene, *next, options, view));
+    }
+    SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(state.objects, view, options));
+    AddNames(scene, state.object_ids, state.material_ids, result.guides);
+    return result;
+  }
+
+  // The options are looked at before the scene is.
+  static Expected<GuidegenResult> RenderOnce(const Scene& scene, const Camera& camera, const NextFrame* next,
+                                             const GuidegenOptions& options) {
+    SCUMBLE_RETURN_IF_ERROR(CheckOptions(options, next != nullptr));
+    SCUMBLE_ASSIGN(const RayScene ray_scene, RayScene::Make(scene, camera));
+    return Render(ray_scene, next, options);
+  }
+};
+
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options) {
-  return Render(scene, camera, nullptr, options);
+  return RayCast::RenderOnce(scene, camera, nullptr, options);
 }
 
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options) {
-  return Render(scene, camera, &next, options);
+  return RayCast::RenderOnce(scene, camera, &next, options);
+}
+
+Expected<GuidegenResult> RenderGuides(const RayScene& scene, const GuidegenOptions& options) {
+  return RayCast::Render(scene, nullptr, options);
+}
+
+Expected<GuidegenResult> RenderGuides(const RayScene& scene, const NextFrame& next, const GuidegenOptions& options) {
+  return RayCast::Render(scene, &next, options);
 }
 
 }  // namespace scumble

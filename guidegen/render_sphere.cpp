@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "core/image/direction.h"
 #include "guidegen/cast/cast_guides.h"
 #include "guidegen/guidegen.h"
-#include "core/image/direction.h"
 
 namespace scumble {
 namespace {
@@ -53,8 +53,8 @@ Expected<GuidegenResult> RenderSphereGuides(const SphereOptions& options) {
   const std::uint32_t id = IdsForNames(names)[0];
   sphere.object_id = id;
   sphere.material_id = id;
-  view.objects.push_back(sphere);
-  SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(std::move(view), cast));
+  LazyScene objects([&] { return std::vector<PlacedObject>{sphere}; });
+  SCUMBLE_ASSIGN(GuidegenResult result, CastGuides(objects, view, cast));
   result.guides.object_names = {{id, names[0]}};
   result.guides.material_names = {{id, names[0]}};
   return result;

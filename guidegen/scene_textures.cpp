@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "guidegen/surface/bsdf.h"
-#include "guidegen/load/loader_util.h"
 #include "guidegen/light/path_layers.h"
+#include "guidegen/load/loader_util.h"
 #include "guidegen/load/texture_budget.h"
+#include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/surface.h"
 
 namespace scumble {
@@ -71,7 +71,8 @@ std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& opti
     const Mesh& mesh = scene.meshes[std::size_t(instance.mesh)];
     const Material& material = scene.materials[std::size_t(mesh.material)];
     const auto need = [&](bool asked, const TextureUse& use) {
-      if (asked && use.texture >= 0 && !mesh.uvs[std::size_t(use.uv_set)].empty()) needed[std::size_t(use.texture)] = true;
+      if (asked && use.texture >= 0 && !mesh.uvs[std::size_t(use.uv_set)].empty())
+        needed[std::size_t(use.texture)] = true;
     };
     need(!mesh.tangents.empty(), material.normal_texture);
     need(colored || MayHaveHoles(material), material.base_color_texture);

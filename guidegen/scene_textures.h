@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/image/status.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/scene/scene.h"
-#include "core/image/status.h"
 
 namespace scumble {
 
@@ -24,8 +24,8 @@ struct DecodedTextures {
   std::vector<std::string> warnings;  // of textures that are left out
 };
 
-// How many pixels those would have that are not decoded yet, by their headers; of one that cannot be read none: decoding it
-// says why.
+// How many pixels those would have that are not decoded yet, by their headers; of one that cannot be read none:
+// decoding it says why.
 struct TexturePixels {
   std::uint64_t all = 0;
   std::uint64_t largest = 0;  // of one
@@ -33,8 +33,8 @@ struct TexturePixels {
 TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& options);
 
 // Decodes what RenderGuides needs with these options and is not decoded yet. A picture that is missing or broken is an
-// error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than PictureBudget
-// has are an error that names the scene. After an error nothing that was decoded is lost.
+// error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than
+// PictureBudget has are an error that names the scene. After an error nothing that was decoded is lost.
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options);
 
 // The same of all there are.

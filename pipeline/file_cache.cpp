@@ -64,5 +64,4 @@ void FileCache::Store(const std::string& key, std::span<const std::byte> bytes) 
   RemoveOldest(folder_);
 }
 
-
 }  // namespace scumble

@@ -67,7 +67,8 @@ Expected<Part> ParsePart(const std::string& text, const std::string& part) {
     }
   }
   for (const std::int64_t frame : {range.first, range.last}) {
-    if (frame < -kMaxFrame || frame > kMaxFrame) return refuse(fmt::format("frames go from {} to {}", -kMaxFrame, kMaxFrame));
+    if (frame < -kMaxFrame || frame > kMaxFrame)
+      return refuse(fmt::format("frames go from {} to {}", -kMaxFrame, kMaxFrame));
   }
   return range;
 }
@@ -82,7 +83,8 @@ Expected<std::vector<int>> ParseFrames(const std::string& text) {
     const std::size_t comma = std::min(text.find(',', begin), text.size());
     SCUMBLE_ASSIGN(const Part part, ParsePart(text, Trimmed(text.substr(begin, comma - begin))));
     named += std::llabs(part.last - part.first) / std::llabs(part.step) + 1;
-    if (named > static_cast<std::int64_t>(kMaxFrames)) return BadFrames(text, text, fmt::format("more than {} frames", kMaxFrames));
+    if (named > static_cast<std::int64_t>(kMaxFrames))
+      return BadFrames(text, text, fmt::format("more than {} frames", kMaxFrames));
     for (std::int64_t frame = part.first; part.step > 0 ? frame <= part.last : frame >= part.last; frame += part.step) {
       if (!seen.insert(static_cast<int>(frame)).second) continue;
       frames.push_back(static_cast<int>(frame));

@@ -10,7 +10,7 @@
 
 namespace scumble {
 
-inline constexpr int kMaxFrame = 999'999'999;  // frame numbers are -kMaxFrame … kMaxFrame
+inline constexpr int kMaxFrame = 999'999'999;         // frame numbers are -kMaxFrame … kMaxFrame
 inline constexpr std::size_t kMaxFrames = 1'000'000;  // that may be named, those that come again too
 
 // "7", "1-24", "3,5-10", "12-24x2" (every second), "10-1" or "10-1x-1" (backwards), "-5--1" (negative numbers), as

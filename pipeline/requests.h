@@ -12,7 +12,7 @@
 #include "core/image/layers.h"
 #include "core/image/status.h"
 #include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "measure/mosaic/explain.h"
 #include "pipeline/frame_rate.h"
 
@@ -54,9 +54,9 @@ struct SceneRequest {
   NormalFrame normal_frame = NormalFrame::kCamera;
   std::string isa;  // as GuidegenOptions::isa
   bool robust = true;
-  bool half = false;        // colour layers as half floats
-  BlenderRequest blender;   // for .blend scenes
-  std::string animation;    // of a glTF file with several, as AnimationOptions has it
+  bool half = false;             // colour layers as half floats
+  BlenderRequest blender;        // for .blend scenes
+  std::string animation;         // of a glTF file with several, as AnimationOptions has it
   std::optional<FrameRate> fps;  // empty: a .blend's own, otherwise FrameRate()
   // Light-path layers, as in GuidegenOptions.
   int samples = GuidegenOptions().samples;
@@ -87,11 +87,11 @@ struct PictureRequest {
   int png_level = 6;
   bool fast_io = false;
   std::optional<int> frame;
-  std::optional<FrameRate> fps;     // empty: what the guides say, or FrameRate()
-  std::optional<double> exposure;   // stops; empty: measured
+  std::optional<FrameRate> fps;    // empty: what the guides say, or FrameRate()
+  std::optional<double> exposure;  // stops; empty: measured
   std::uint64_t seed = 0;
-  int repeat = 1;    // times to run the transfer, for the spread of its times
-  int upsample = 1;  // the picture is so many times as wide and high as the guides
+  int repeat = 1;                   // times to run the transfer, for the spread of its times
+  int upsample = 1;                 // the picture is so many times as wide and high as the guides
   std::optional<Explanation> show;  // this explanation instead of the picture
   bool measure_chunks = false;      // report coherence and chunks, for which the source field is kept
 

@@ -50,7 +50,8 @@ StageClock::StageClock() : last_wall_ms_(Wall()), last_cpu_ms_(Now(CLOCK_PROCESS
 }
 
 Stage& StageClock::At(const std::string& name) {
-  const auto found = std::find_if(stages_.begin(), stages_.end(), [&](const Stage& stage) { return stage.name == name; });
+  const auto found =
+      std::find_if(stages_.begin(), stages_.end(), [&](const Stage& stage) { return stage.name == name; });
   return found != stages_.end() ? *found : stages_.emplace_back(Stage{name, 0.0, std::nullopt});
 }
 

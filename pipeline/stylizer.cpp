@@ -88,8 +88,8 @@ void Stylizer::Cancel() { state_->workspace.Cancel(); }
 
 StylizerCounters Stylizer::counters() const {
   const WorkspaceCounters counters = state_->workspace.counters();
-  return {counters.scenes_loaded, counters.guides_cast, counters.styles_loaded, counters.styles_prepared,
-          counters.frames_painted};
+  return {counters.scenes_loaded, counters.structures_built, counters.guides_cast,
+          counters.styles_loaded, counters.styles_prepared,  counters.frames_painted};
 }
 
 }  // namespace scumble

@@ -34,13 +34,13 @@ std::string StampsOf(const std::vector<std::string>& paths) {
 }
 
 std::string SceneStamps(const std::string& scene) {
-  RunFiles files;
+  RunInputs files;
   files.ReadsScene(scene);
   return StampsOf(files.Inputs());
 }
 
 std::string StyleStamps(const StyleSet& styles) {
-  RunFiles files;
+  RunInputs files;
   files.ReadsStyles(styles);
   std::vector<std::string> paths = files.Inputs();
   for (const auto& [path, place] : styles.opened) paths.push_back(path);
@@ -83,9 +83,10 @@ struct Workspace::State {
   // The scene: loaded, then posed and seen.
   std::string scene_key;
   std::optional<AnimatedScene> animation;  // none: the scene is Blender's
-  std::string seen_key, pose_key;  // when and from where it is seen; the same with its light
-  std::optional<SceneAtRest> posed;
-  std::size_t own_lights = 0;  // of `posed`, before a key light was added
+  std::string seen_key, pose_key;          // when and from where it is seen; the same with its light
+  std::optional<StaticScene> posed;
+  std::optional<RayScene> rays;  // of `posed`, which it borrows
+  std::size_t own_lights = 0;    // of `posed`, before a key light was added
   std::string guides_key;
   std::shared_ptr<const SceneGuides> guides;
 
@@ -131,17 +132,18 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
   std::string key = request.scene + "\n" + request.animation + "\n" + SceneStamps(request.scene);
   const bool blender = IsBlenderScene(request.scene);
   if (blender) {
-    key += fmt::format("{} {} {}", frame ? std::to_string(*frame) : "", request.blender.program, request.view.has_value());
+    key +=
+        fmt::format("{} {} {}", frame ? std::to_string(*frame) : "", request.blender.program, request.view.has_value());
   }
   if (key == scene_key) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
-  animation.reset(), posed.reset();
+  rays.reset(), animation.reset(), posed.reset();
   if (!blender) {
     SCUMBLE_ASSIGN(animation, AnimatedScene::Load(request.scene, {request.animation, TextureLoading::kWhenNeeded}));
     for (const std::string& warning : animation->rest().warnings) context.Warn(request.scene + ": " + warning);
   } else {
     // Blender's scene is posed as it is loaded; how it is seen is decided again in Pose.
-    const LayersFor none = [](const StyleWishes&) -> Expected<LayerSet> { return LayerSet(); };
+    const LayersFor none = [](const SceneStyleRequests&) -> Expected<LayerSet> { return LayerSet(); };
     SCUMBLE_ASSIGN(posed, OpenSceneAt(frame, request, none, context));
     own_lights = posed->scene.lights.size();
   }
@@ -153,7 +155,7 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
 Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for) {
   const Scene& names = animation ? animation->rest() : posed->scene;
   SCUMBLE_ASSIGN(const LayerSet layers,
-                 layers_for(WishesOf(animation ? animation->objects() : names.instances, names)));
+                 layers_for(SceneStyleRequestsOf(animation ? animation->objects() : names.instances, names)));
   const std::string fps = request.fps ? FrameRateToText(*request.fps) : "";
   seen_key = fmt::format("{} {}; {}; {}; {}; {}", frame ? std::to_string(*frame) : "rest", fps, request.camera,
                          request.view ? ViewToText(*request.view) : "",
@@ -164,12 +166,12 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
     posed->layers = layers;
     return Ok();
   }
-  pose_key.clear();
+  pose_key.clear(), rays.reset();
   if (!animation) {
     SCUMBLE_RETURN_IF_ERROR(ViewAgain(*posed, own_lights, request, layers));
   } else {
-    const LayersFor known = [&](const StyleWishes&) -> Expected<LayerSet> { return layers; };
-    SCUMBLE_ASSIGN(SceneAtRest now, PoseScene(*animation, frame, request, known, context, false));
+    const LayersFor known = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
+    SCUMBLE_ASSIGN(StaticScene now, PoseScene(*animation, frame, request, known, context, false));
     if (posed) {  // textures that were decoded stay decoded
       now.scene.textures = std::move(posed->scene.textures);
       now.scene.encoded_textures = std::move(posed->scene.encoded_textures);
@@ -184,8 +186,9 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
 Status Workspace::State::Cast(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for,
                               const Progress& progress) {
   if (!frame && !request.animation.empty()) {
-    return UsageError("--animation plays with the frames' numbers: give --frame N, or --frames for several where the "
-                      "verb has it");
+    return UsageError(
+        "--animation plays with the frames' numbers: give --frame N, or --frames for several where the "
+        "verb has it");
   }
   SCUMBLE_RETURN_IF_ERROR(LoadScene(request, frame));
   SCUMBLE_RETURN_IF_ERROR(Continue());
@@ -195,10 +198,14 @@ Status Workspace::State::Cast(const SceneRequest& request, std::optional<int> fr
                   request.half, request.time_budget_seconds, seen_key);
   if (guides && key == guides_key && guides->guides.layers().Contains(posed->layers)) return Ok();
   guides_key.clear();
+  if (!rays) {
+    SCUMBLE_ASSIGN(rays, RayScene::Make(posed->scene, posed->view.camera));
+  }
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(posed->scene, posed->view.camera, nullptr, request, posed->layers, context,
-                                             progress, false));
+                                             progress, false, &*rays));
   ++counters.guides_cast;
-  StoreFrameRate(request, posed->film, made.guides);
+  counters.structures_built += std::size_t(made.builds);
+  StoreFrameRate(request, posed->animation, made.guides);
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene));
   guides = std::make_shared<const SceneGuides>(std::move(made));
   guides_key = key;
@@ -212,7 +219,7 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   const Progress progress = context.StartProgress("stylize");
   SCUMBLE_RETURN_IF_ERROR(LoadStyles(style));
   SCUMBLE_RETURN_IF_ERROR(Continue());
-  const LayersFor layers_for = [&](const StyleWishes& wishes) {
+  const LayersFor layers_for = [&](const SceneStyleRequests& wishes) {
     return RequiredLayers(*styles, wishes, scene.scene);
   };
   SCUMBLE_RETURN_IF_ERROR(Cast(scene, request.frame, layers_for, Within(progress, 0.0, 0.5)));
@@ -222,8 +229,8 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   std::vector<std::shared_ptr<const PreparedExemplar>> before;
   for (const PreparedStyle& one : picture.prepared) before.push_back(one.exemplar);
   const GuideSource source{scene.scene, guides->times, guides->plan, guides->cost, guides->memory};
-  SCUMBLE_ASSIGN(PaintedPicture painted, PaintInMemory(*styles, guides->guides, source, request, context,
-                                                       Within(progress, 0.5, 1.0), picture));
+  SCUMBLE_ASSIGN(PaintedPicture painted,
+                 PaintInMemory(*styles, guides->guides, source, request, context, Within(progress, 0.5, 1.0), picture));
   for (std::size_t i = 0; i < picture.prepared.size(); ++i) {
     counters.styles_prepared += i >= before.size() || before[i] != picture.prepared[i].exemplar;
   }
@@ -266,7 +273,7 @@ Expected<PaintedFrame> Workspace::Paint(const SceneRequest& scene, const StyleRe
 Expected<std::shared_ptr<const GuideSet>> Workspace::Guides(const SceneRequest& scene, std::optional<int> frame,
                                                             const LayerSet& layers) {
   const Working working(state_->working, state_->cancelled);
-  const LayersFor layers_for = [&](const StyleWishes&) -> Expected<LayerSet> { return layers; };
+  const LayersFor layers_for = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
   SCUMBLE_RETURN_IF_ERROR(state_->Cast(scene, frame, layers_for, state_->context.StartProgress("guides")));
   return std::shared_ptr<const GuideSet>(state_->guides, &state_->guides->guides);
 }

@@ -4,7 +4,9 @@
 //   changed                          made again
 //   a key of the style, the painting style; exemplars where the key concerns them; the picture. No ray is cast, unless
 //                                    the style now reads a layer that the guides lack.
-//   camera, view, size, samples …    guides and picture. No file is loaded.
+//   size, layers, samples, seed …    guides and picture. The acceleration structure stays.
+//   camera, view                     that, and the acceleration structure, which is relative to the camera. No file is
+//                                    loaded.
 //   the frame of an animation        pose, guides, picture. No file is loaded (a .blend is exported again).
 //   a file on disk                   what it is part of, and all that follows
 //
@@ -16,20 +18,21 @@
 #include <string>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "pipeline/frame/frame_report.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
 // How often each kind of work was done so far.
 struct WorkspaceCounters {
-  std::size_t scenes_loaded = 0;   // from files
-  std::size_t guides_cast = 0;     // rays were cast
-  std::size_t styles_loaded = 0;   // from files
-  std::size_t styles_prepared = 0;  // exemplars resized, tables and trees built
+  std::size_t scenes_loaded = 0;     // from files
+  std::size_t structures_built = 0;  // acceleration structures
+  std::size_t guides_cast = 0;       // rays were cast
+  std::size_t styles_loaded = 0;     // from files
+  std::size_t styles_prepared = 0;   // exemplars resized, tables and trees built
   std::size_t frames_painted = 0;
 };
 

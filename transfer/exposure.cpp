@@ -1,6 +1,6 @@
-#include "transfer/transfer.h"
-
 #include <tbb/task_arena.h>
+
+#include "transfer/transfer.h"
 
 namespace scumble {
 

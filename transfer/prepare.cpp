@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/image/check.h"
-#include "transfer/tint/colorize.h"
-#include "transfer/vote/tone_texture_split.h"
 #include "core/filter/resample.h"
-#include "transfer/transfer.h"
+#include "core/image/check.h"
 #include "transfer/exemplar/usable_mask.h"
+#include "transfer/tint/colorize.h"
+#include "transfer/transfer.h"
+#include "transfer/vote/tone_texture_split.h"
 
 namespace scumble {
 namespace {
@@ -62,18 +62,21 @@ Status CheckSettings(const TransferSettings& settings) {
   if (settings.blend_radius < 0 || settings.blend_radius > 64) {
     return UsageError("transfer.blend_radius must be 0 to 64");
   }
-  if (!(settings.crease >= 0.0 && settings.crease <= 180.0)) return UsageError("transfer.crease must be 0 to 180 degrees");
+  if (!(settings.crease >= 0.0 && settings.crease <= 180.0))
+    return UsageError("transfer.crease must be 0 to 180 degrees");
   if (!(settings.depth_tolerance >= 0.0 && settings.depth_tolerance <= 1.0)) {
     return UsageError("transfer.depth_tolerance must be 0 to 1");
   }
   if (!(settings.luminance_weight >= 0.0f)) return UsageError("transfer.luminance_weight must be 0 or more");
   if (!(settings.colorize >= 0.0 && settings.colorize <= 1.0)) return UsageError("transfer.colorize must be 0 to 1");
-  if (!(settings.variety >= 0.0 && settings.variety <= 90.0)) return UsageError("transfer.variety must be 0 to 90 degrees");
+  if (!(settings.variety >= 0.0 && settings.variety <= 90.0))
+    return UsageError("transfer.variety must be 0 to 90 degrees");
   if (!(settings.hybrid >= 0.0)) return UsageError("transfer.hybrid must be 0 or more, infinity included");
   if (settings.match_step < 1 || settings.match_step > kMaxMatchStep) {
     return UsageError("transfer.match_step must be 1 to " + std::to_string(kMaxMatchStep));
   }
-  if (!(settings.scale > 0.0 && settings.scale <= 64.0)) return UsageError("transfer.scale must be above 0, at most 64");
+  if (!(settings.scale > 0.0 && settings.scale <= 64.0))
+    return UsageError("transfer.scale must be above 0, at most 64");
   if (!(settings.rim >= 0.0 && std::isfinite(settings.rim))) return UsageError("transfer.rim must be 0 or more");
   if (settings.reference_height < 0) return UsageError("transfer.reference_height must be 0 or more");
   return Ok();
@@ -178,7 +181,8 @@ Expected<std::shared_ptr<const PreparedExemplar>> PrepareExemplar(const Style& s
                    PreparedExemplar::OfScene(pictures, *first.guides, settings.rim, width, height, first.name));
     prepared = std::make_shared<PreparedExemplar>(std::move(scene));
   }
-  SCUMBLE_RETURN_IF_ERROR(prepared->SearchBy(settings.nearest, options.table_resolution, options.cache, settings.nearest_error));
+  SCUMBLE_RETURN_IF_ERROR(
+      prepared->SearchBy(settings.nearest, options.table_resolution, options.cache, settings.nearest_error));
   return std::shared_ptr<const PreparedExemplar>(std::move(prepared));
 }
 
@@ -201,7 +205,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
   SCUMBLE_ASSIGN(prepared.exemplar, PrepareExemplar(style, output_height, options));
   if (!settings.guide_weights.ArePlain()) {
     SCUMBLE_ASSIGN(GuideSpace space, GuideSpace::Build(settings.guide_weights, style.exemplars, prepared.exemplar,
-                                                           settings.nearest_error));
+                                                       settings.nearest_error));
     prepared.space = std::make_shared<GuideSpace>(std::move(space));
   }
   prepared.illumination = Illumination(luminances, settings.luminance_weight, settings.luminance_error);
@@ -212,7 +216,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     // In pixels of the file; the exemplar was resized by scale and height, and the tone with it.
     const Picture& file = style.exemplars.front().picture;
     const double ratio = static_cast<double>(prepared.exemplar->size()) / std::max(file.width, file.height);
-    prepared.tones = MakeTones(*prepared.exemplar, settings.hybrid * ratio);
+    prepared.tones = MakeBaseLayers(*prepared.exemplar, settings.hybrid * ratio);
   }
   if (settings.shadow == ShadowMode::kPaint) {
     std::vector<const Picture*> pictures;

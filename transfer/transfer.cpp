@@ -10,14 +10,14 @@
 #include "core/image/exact_math.h"
 #include "core/image/stopwatch.h"
 #include "transfer/frame/band_pipeline.h"
-#include "transfer/tint/colorize.h"
 #include "transfer/frame/compose.h"
 #include "transfer/frame/frame_setup.h"
-#include "transfer/vote/tone_texture_split.h"
+#include "transfer/match/coarse_match.h"
 #include "transfer/match/match.h"
 #include "transfer/outline/painted_edge.h"
 #include "transfer/shadow/cast_shadows.h"
-#include "transfer/match/coarse_match.h"
+#include "transfer/tint/colorize.h"
+#include "transfer/vote/tone_texture_split.h"
 #include "transfer/vote/vote.h"
 
 namespace scumble {
@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t kLeastSeedBytes = 64 << 20, kSeedBytesOfAPixel = 16;
 
 // Where the time of one style goes, as shares of it.
-constexpr double kMatchShare = 0.6;  // the rest is for votes, with their tint
+constexpr double kMatchShare = 0.6;    // the rest is for votes, with their tint
 constexpr double kComposeShare = 0.1;  // of the whole
 
 Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
@@ -113,17 +113,19 @@ class Run {
   bool SeedsOfBandsFit(std::size_t styles) const {
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     const std::size_t columns = static_cast<std::size_t>(guides_.width()) / internal::kTileWidth + 1;
-    return styles <= internal::kMostBandStyles && threads * styles * columns * internal::kBandSeedBytes <=
-                                                      std::max(kLeastSeedBytes, kSeedBytesOfAPixel * guides_.pixel_count());
+    return styles <= internal::kMostBandStyles &&
+           threads * styles * columns * internal::kBandSeedBytes <=
+               std::max(kLeastSeedBytes, kSeedBytesOfAPixel * guides_.pixel_count());
   }
 
   bool GoesByBands(std::span<const PreparedStyle* const> styles) const {
     return !options_.keep_field && SeedsOfBandsFit(styles.size()) &&
            std::ranges::all_of(styles, [](const PreparedStyle* style) {
-      const TransferSettings& settings = style->settings;
-      return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 && !style->space &&
-             style->tones.empty() && style->rims.empty() && style->blend_radius <= internal::kMostBandRadius;
-    });
+             const TransferSettings& settings = style->settings;
+             return settings.method == Method::kStyleBlit && !settings.coherent && settings.match_step <= 1 &&
+                    !style->space && style->tones.empty() && style->rims.empty() &&
+                    style->blend_radius <= internal::kMostBandRadius;
+           });
   }
 
   Status PaintByBands(std::span<const PreparedStyle* const> styles) {
@@ -133,8 +135,8 @@ class Run {
     for (std::size_t s = 0; s < styles.size(); ++s) {
       const PreparedStyle& style = *styles[s];
       const Region matched = region_.GrownBy(style.blend_radius, guides_.width(), guides_.height());
-      internal::BandStyle& part =
-          parts.emplace_back(internal::BandStyle{InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style)});
+      internal::BandStyle& part = parts.emplace_back(
+          internal::BandStyle{InputOf(style, matched), style.blend_radius, std::nullopt, TintOf(style)});
       part.match.active = {};
       part.match.covered = {guides_.Plane(Layer::kCoverage),
                             map_ ? std::span<const std::uint16_t>(map_->style) : std::span<const std::uint16_t>(),
@@ -185,8 +187,8 @@ class Run {
     for (const PreparedStyle* style : styles) paints.push_back({style->rims, SeedsOf(*style), TintOf(*style)});
     internal::RowProgress progress(options_.progress, 1.0 - kComposeShare, 1.0 - kComposeShare / 2,
                                    std::max(1, region_.y1 - region_.y0));
-    const std::span<const std::uint16_t> map = map_ ? std::span<const std::uint16_t>(map_->style)
-                                                    : std::span<const std::uint16_t>();
+    const std::span<const std::uint16_t> map =
+        map_ ? std::span<const std::uint16_t>(map_->style) : std::span<const std::uint16_t>();
     const internal::PaintedEdgeInput input{guides_, map, paints, scratch_.field, region_};
     return internal::PaintEdges(input, coverage, out_, progress) ? Ok() : CancelledError();
   }
@@ -222,24 +224,24 @@ class Run {
 
   internal::MatchInput InputOf(const PreparedStyle& style, const Region& matched) {
     const TransferSettings& settings = style.settings;
-    internal::MatchInput input{
-        guides_,
-        scratch_.active,
-        *style.exemplar,
-        style.illumination,
-        style.illumination.active() ? ExposedLuminance() : std::span<const float>(),
-        GuideTest(settings.threshold, settings.threshold_metric),
-        SeedsOf(style),
-        style.levels,
-        settings.variety,
-        style.flat_reach,
-        matched};
+    internal::MatchInput input{guides_,
+                               scratch_.active,
+                               *style.exemplar,
+                               style.illumination,
+                               style.illumination.active() ? ExposedLuminance() : std::span<const float>(),
+                               GuideTest(settings.threshold, settings.threshold_metric),
+                               SeedsOf(style),
+                               style.levels,
+                               settings.variety,
+                               style.flat_reach,
+                               matched};
     input.space = style.space.get();
     input.brightness = static_cast<float>(Exp2(options_.exposure));
     return input;
   }
 
-  Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from, double to) {
+  Status MatchAndVote(const PreparedStyle& style, const Region& matched, const Region& painted, double from,
+                      double to) {
     const TransferSettings& settings = style.settings;
     const internal::MatchInput input = InputOf(style, matched);
     Stopwatch watch;
@@ -253,15 +255,17 @@ class Run {
     const internal::EdgeRules edges = EdgesOf(style, map_ ? std::span<const std::uint8_t>() : scratch_.active);
     const int rows = painted.y1 - painted.y0;
     internal::RowProgress vote_progress(options_.progress, part(kMatchShare), part(1.0), rows);
-    internal::VoteInput votes{scratch_.field, scratch_.active, *style.exemplar, style.blend_radius,
-                              IsEdgeAware(style) ? &edges : nullptr, painted};
+    internal::VoteInput votes{
+        scratch_.field, scratch_.active, *style.exemplar, style.blend_radius, IsEdgeAware(style) ? &edges : nullptr,
+        painted};
     const internal::ColorizeInput tint{guides_, scratch_.active, TintOf(style)};
-    if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { internal::ColorizeRow(tint, y, x0, x1, out_); };
+    if (tint.tint.active())
+      votes.finished = [&](int y, int x0, int x1) { internal::ColorizeRow(tint, y, x0, x1, out_); };
     if (style.tones.empty()) {
       if (!internal::Vote(votes, out_, vote_progress)) return CancelledError();
     } else {
-      const internal::HybridInput hybrid{votes, guides_, style.illumination, input.luminance, style.tones,
-                                         input.space, input.brightness};
+      const internal::HybridInput hybrid{votes,       guides_,     style.illumination, input.luminance,
+                                         style.tones, input.space, input.brightness};
       if (!internal::VoteHybrid(hybrid, out_, vote_progress)) return CancelledError();
     }
     scratch_.times.vote_ms += watch.Lap();
@@ -294,11 +298,13 @@ class Run {
 
   bool Match(const TransferSettings& settings, const internal::MatchInput& input, internal::RowProgress& progress) {
     switch (settings.method) {
-      case Method::kLitSphere: return internal::MatchLitSphere(input, scratch_.field, progress);
+      case Method::kLitSphere:
+        return internal::MatchLitSphere(input, scratch_.field, progress);
       case Method::kStyleBlit:
         return settings.coherent ? internal::MatchCoherent(input, scratch_.field, progress)
                                  : internal::MatchStyleBlit(input, scratch_.field, progress);
-      case Method::kBruteForce: return internal::MatchBruteForce(input, scratch_.field, progress);
+      case Method::kBruteForce:
+        return internal::MatchBruteForce(input, scratch_.field, progress);
     }
     return false;
   }
@@ -310,10 +316,10 @@ class Run {
   Picture& out_;
   Region region_;
   internal::FrameInput frame_;
-  internal::FrameStart start_;
+  internal::FrameSetup start_;
   std::vector<float> luminance_;
   std::vector<std::uint8_t> wanted_;
-  internal::LateSlopes slopes_{guides_};
+  internal::LazyDepthGradient slopes_{guides_};
 };
 
 Status TransferInArena(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,

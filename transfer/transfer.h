@@ -10,20 +10,20 @@
 #include <span>
 #include <vector>
 
+#include "core/filter/region.h"
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/guide_space.h"
 #include "transfer/exemplar/illumination.h"
-#include "transfer/nearest/lookup_table.h"
 #include "transfer/exemplar/prepared_exemplar.h"
-#include "core/filter/region.h"
-#include "transfer/outline/rim_paint.h"
-#include "transfer/shadow/shadow_paint.h"
 #include "transfer/field/source_field.h"
 #include "transfer/frame/style_map.h"
+#include "transfer/nearest/lookup_table.h"
+#include "transfer/outline/rim_paint.h"
+#include "transfer/shadow/shadow_paint.h"
 
 namespace scumble {
 
@@ -37,9 +37,10 @@ struct PreparedStyle {
   LayerSet required;  // of the guides
   std::shared_ptr<const PreparedExemplar> exemplar;
   Illumination illumination;
-  float reference_lightness = 0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
+  float reference_lightness =
+      0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
   std::shared_ptr<const GuideSpace> space;  // what is matched in; null: normals alone, each counting 1
-  std::vector<Picture> tones;         // by exemplar, see MakeTones; only where transfer.hybrid is above 0
+  std::vector<Picture> tones;               // by exemplar, see MakeBaseLayers; only where transfer.hybrid is above 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
   std::vector<RimPaint> rims;
@@ -47,7 +48,8 @@ struct PreparedStyle {
   int output_height = 0;
   int levels = 1;        // settings.levels at the output's height
   int blend_radius = 0;  // settings.blend_radius at the output's height
-  int flat_reach = 16;   // pixels around a seed, at the output's height, that must be flat before `variety` gives it freedom
+  int flat_reach =
+      16;  // pixels around a seed, at the output's height, that must be flat before `variety` gives it freedom
 };
 
 struct PrepareOptions {
@@ -58,18 +60,18 @@ struct PrepareOptions {
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
 // Fails where an exemplar is empty; where a sphere's picture is not square; where guides do not fit their picture, or
-// those of one style's exemplars are not of one scene; where one lacks a layer that has a weight; or where a setting is outside the range that core/image/style.h
-// states.
+// those of one style's exemplars are not of one scene; where one lacks a layer that has a weight; or where a setting is
+// outside the range that core/image/style.h states.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
 // The luminance of the light that an exemplar is painted for: what the style says, else the mean of the luminance layer
 // of its guides, else that of its paint; over the pixels that are usable with a rim of so many pixels.
 double LuminanceOf(const Exemplar& exemplar, double rim);
 
-// The exposure that suits all of these styles, as MeasureExposure of illumination.h has it: for those that weigh light, the
-// 90th percentile of their exemplars' guides counts; for other styles of several exemplars, their luminances. Nothing
-// where no style looks at light. The guides must hold what the styles require. `threads` 0: all; they do not matter to the
-// result.
+// The exposure that suits all of these styles, as MeasureExposure of illumination.h has it: for those that weigh light,
+// the 90th percentile of their exemplars' guides counts; for other styles of several exemplars, their luminances.
+// Nothing where no style looks at light. The guides must hold what the styles require. `threads` 0: all; they do not
+// matter to the result.
 std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides, int threads = 0);
 
 // The brute force takes time quadratic in the pixels; larger pictures are refused.
@@ -77,14 +79,14 @@ inline constexpr std::size_t kMostBruteForcePixels = 1 << 20;
 
 struct TransferOptions {
   std::uint64_t seed = 0;
-  std::int64_t frame = 0;           // with the rate, which jitter; see JitterStep
+  std::int64_t frame = 0;  // with the rate, which jitter; see JitterStep
   std::int64_t fps_numerator = 24;
   std::int64_t fps_denominator = 1;
-  double exposure = 0.0;            // stops by which the scene's luminance is brightened; see MeasureExposure
-  int threads = 0;                  // 0: all
-  const Picture* over = nullptr;    // composited underneath instead of the paper; the guides' size
-  std::optional<Region> region;     // only these pixels of the result are made; empty: all
-  bool keep_field = false;          // TransferScratch::field and `active` are wanted afterwards; costs some time
+  double exposure = 0.0;          // stops by which the scene's luminance is brightened; see MeasureExposure
+  int threads = 0;                // 0: all
+  const Picture* over = nullptr;  // composited underneath instead of the paper; the guides' size
+  std::optional<Region> region;   // only these pixels of the result are made; empty: all
+  bool keep_field = false;        // TransferScratch::field and `active` are wanted afterwards; costs some time
   Progress progress;
 };
 
@@ -115,10 +117,10 @@ struct TransferScratch {
 Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
                 TransferScratch& scratch, Picture& out);
 
-// The same with several styles in one picture: `map` says which paints what. Chunks and votes never cross from one style
-// to another. Pixels of StyleMap::kLeave show what is underneath, and their coverage does not count; so do those of
-// StyleMap::kCatch, but with the first style's paint where they are in shadow, if it asks for that. The paper is the
-// first style's. O(covered pixels + the rectangles around each style's pixels).
+// The same with several styles in one picture: `map` says which paints what. Chunks and votes never cross from one
+// style to another. Pixels of StyleMap::kPassThrough show what is underneath, and their coverage does not count; so do
+// those of StyleMap::kShadowCatcher, but with the first style's paint where they are in shadow, if it asks for that.
+// The paper is the first style's. O(covered pixels + the rectangles around each style's pixels).
 Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& map, const GuideSet& guides,
                 const TransferOptions& options, TransferScratch& scratch, Picture& out);
 

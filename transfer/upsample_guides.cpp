@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image/check.h"
 #include "core/filter/edge_test.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {

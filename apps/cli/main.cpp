@@ -1,9 +1,9 @@
 // scumble: paint a sphere, stylise a scene. One binary, one verb a task; `scumble help` prints verbs and exit codes.
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -12,9 +12,9 @@
 #include <sstream>
 
 #include "apps/cli/app/command.h"
-#include "apps/cli/app/signal_cleanup.h"
-#include "apps/cli/app/help_format.h"
 #include "apps/cli/app/fatal_error.h"
+#include "apps/cli/app/help_format.h"
+#include "apps/cli/app/signal_cleanup.h"
 #include "apps/cli/app/verbs.h"
 #include "core/image/check.h"
 #include "core/io/library.h"
@@ -80,9 +80,9 @@ int main(int argc, char** argv) {
   try {
     scumble::OccupyStandardStreams();
     scumble::CleanUpOnSignals();
-    scumble::TellOfWhatNobodyCatches();
+    scumble::ReportUncaughtExceptions();
     return scumble::Run(argc, argv);
   } catch (...) {
-    return scumble::TellOf(std::current_exception());
+    return scumble::ReportException(std::current_exception());
   }
 }

@@ -10,9 +10,10 @@
 #include <optional>
 
 #include "bench/or_stop.h"
+#include "core/style/style_file.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
-#include "core/style/style_file.h"
+#include "guidegen/scene/framing.h"
 
 namespace scumble::bench {
 namespace {

@@ -1,4 +1,5 @@
-// The exact Euclidean distance transform, with the pixel that is nearest and not only its distance. Not for other folders.
+// The exact Euclidean distance transform, with the pixel that is nearest and not only its distance. Not for other
+// folders.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -37,9 +38,9 @@ std::vector<std::uint16_t> NearestRows(int width, int height, const Feature& fea
 }
 
 // Meijster, Roerdink, Hesselink, "A General Algorithm for Computing Distance Transforms in Linear Time", ISMM 2000, in
-// integers. Calls visit(i, x, y, u, v) for every pixel with the nearest feature pixel (u, v), and does not where there is
-// no feature at all; ties to the lowest (u, v). Rows run in parallel: visit is called from several threads. Width and
-// height are at most 32768. O(width · height).
+// integers. Calls visit(i, x, y, u, v) for every pixel with the nearest feature pixel (u, v), and does not where there
+// is no feature at all; ties to the lowest (u, v). Rows run in parallel: visit is called from several threads. Width
+// and height are at most 32768. O(width · height).
 template <class Feature, class Visit>
 void ForNearestFeature(int width, int height, const Feature& feature, const Visit& visit) {
   const std::vector<std::uint16_t> rows = NearestRows(width, height, feature);

@@ -3,15 +3,16 @@
 #include <limits>
 #include <optional>
 
-#include "core/image/exact_math.h"
 #include "core/filter/parallel.h"
+#include "core/image/exact_math.h"
 
 namespace scumble::internal {
 namespace {
 
-// The surface's slope in depth per pixel, from both neighbours: the gentler difference where both point the same way (the
-// steeper may be an edge), 0 where they do not. A part one pixel wide is such a turning point, and so is the top of a
-// hill, whose slope is small. Without a neighbour on both sides nothing tells a slope from a step: it counts as none.
+// The surface's slope in depth per pixel, from both neighbours: the gentler difference where both point the same way
+// (the steeper may be an edge), 0 where they do not. A part one pixel wide is such a turning point, and so is the top
+// of a hill, whose slope is small. Without a neighbour on both sides nothing tells a slope from a step: it counts as
+// none.
 float Slope(std::optional<float> before, float here, std::optional<float> after) {
   if (!before || !after) return 0.0f;
   const float back = here - *before, front = *after - here;
@@ -38,7 +39,7 @@ DepthSlopes::DepthSlopes(const GuideSet& guides) : x(guides.pixel_count(), 0.0f)
   });
 }
 
-DepthGive::DepthGive(const GuideSet& guides, double depth_tolerance) {
+DepthTolerance::DepthTolerance(const GuideSet& guides, double depth_tolerance) {
   const bool flat = guides.camera && guides.camera->IsOrthographic();
   const double height = flat ? 2.0 / std::abs(guides.camera->clip_from_view[1][1]) : 0.0;
   const auto metres = static_cast<float>(depth_tolerance * height);

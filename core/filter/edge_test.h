@@ -15,17 +15,17 @@
 
 namespace scumble::internal {
 
-// The surface's slope in depth per pixel. A step shows on one side of a pixel only, or turns back on the other, and is no
-// slope. Made once for all styles of a picture; the guides must hold depth. O(pixels).
+// The surface's slope in depth per pixel. A step shows on one side of a pixel only, or turns back on the other, and is
+// no slope. Made once for all styles of a picture; the guides must hold depth. O(pixels).
 struct DepthSlopes {
   explicit DepthSlopes(const GuideSet& guides);
   std::vector<float> x, y;
 };
 
 // The same, made when first asked for, by whichever thread is first. Keeps a reference to the guides.
-class LateSlopes {
+class LazyDepthGradient {
  public:
-  explicit LateSlopes(const GuideSet& guides) : guides_(guides) {}
+  explicit LazyDepthGradient(const GuideSet& guides) : guides_(guides) {}
   const DepthSlopes& Get() {
     std::call_once(made_, [this] { slopes_.emplace(guides_); });
     return *slopes_;
@@ -38,10 +38,10 @@ class LateSlopes {
 };
 
 // How far depth may leave the slope of a surface between two pixels: a share of the nearer one's depth. In orthographic
-// views depth depends on where the camera happens to stand, so it is a share of the height that is seen; of the depth only
-// what float's rounding in casting comes to, 2^-20.
-struct DepthGive {
-  DepthGive(const GuideSet& guides, double depth_tolerance);
+// views depth depends on where the camera happens to stand, so it is a share of the height that is seen; of the depth
+// only what float's rounding in casting comes to, 2^-20.
+struct DepthTolerance {
+  DepthTolerance(const GuideSet& guides, double depth_tolerance);
   float At(float depth) const { return fixed + share * depth; }
 
   float share = 0.0f;
@@ -53,21 +53,23 @@ struct EdgeRules {
   // As the test has them; at 180 degrees even opposite normals pass, whose cosine rounding may put below -1.
   float CreaseCosine() const { return CreaseCosine(crease_degrees); }
   static float CreaseCosine(double degrees);
-  DepthGive Give() const { return {guides, depth_tolerance}; }
+  DepthTolerance Give() const { return {guides, depth_tolerance}; }
 
   const GuideSet& guides;
-  LateSlopes& slopes;  // for who needs those of the whole picture
+  LazyDepthGradient& slopes;  // for who needs those of the whole picture
   double crease_degrees = 180.0;
   double depth_tolerance = 0.0;
-  std::span<const std::uint8_t> covered = {};  // by pixel: whether its coverage is above 0; empty: as the guides have it
+  std::span<const std::uint8_t> covered =
+      {};  // by pixel: whether its coverage is above 0; empty: as the guides have it
 };
 
 // Whether two neighbouring pixels look like the same piece of surface:
 //   - the same object id;
 //   - normals less than `crease` degrees apart; 180 takes any;
 //   - a depth difference that the surface's own slope explains: the mean of both pixels' slopes (the trapezoidal rule),
-//     give or take the gentler slope and `depth_tolerance` of the depth (DepthGive). All of it is relative, so one
-//     setting works near and far. A step in depth of more than twice the slope per pixel plus the tolerance never passes.
+//     give or take the gentler slope and `depth_tolerance` of the depth (DepthTolerance). All of it is relative, so one
+//     setting works near and far. A step in depth of more than twice the slope per pixel plus the tolerance never
+//     passes.
 class EdgeTest {
  public:
   // Keeps references to both; `guides` must hold depth and object.
@@ -81,7 +83,10 @@ class EdgeTest {
     glm::vec3 normal;
   };
   Side At(std::size_t pixel) const {
-    return {object_[pixel], depth_[pixel], slope_x_[pixel], slope_y_[pixel],
+    return {object_[pixel],
+            depth_[pixel],
+            slope_x_[pixel],
+            slope_y_[pixel],
             {normal_x_[pixel], normal_y_[pixel], normal_z_[pixel]}};
   }
   // q stands (dx, dy) pixels from p, both at most 1. To the bit the same from q's side. Along a row slopes down the
@@ -109,7 +114,7 @@ class EdgeTest {
  private:
   std::span<const float> object_, depth_, slope_x_, slope_y_, normal_x_, normal_y_, normal_z_;
   float crease_cosine_;
-  DepthGive give_;
+  DepthTolerance give_;
 };
 
 }  // namespace scumble::internal

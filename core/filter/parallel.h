@@ -7,8 +7,8 @@
 #include <atomic>
 #include <mutex>
 
-#include "core/image/progress.h"
 #include "core/filter/region.h"
+#include "core/image/progress.h"
 
 namespace scumble::internal {
 

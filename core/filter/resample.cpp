@@ -56,7 +56,9 @@ struct Sums {
   std::int64_t alpha = 0;
 };
 
-std::uint16_t Clamp16(std::int64_t value) { return static_cast<std::uint16_t>(std::clamp<std::int64_t>(value, 0, 65535)); }
+std::uint16_t Clamp16(std::int64_t value) {
+  return static_cast<std::uint16_t>(std::clamp<std::int64_t>(value, 0, 65535));
+}
 
 void Store(const Sums& sums, std::uint16_t* out) {
   constexpr std::int64_t kHalf = 1 << (kWeightBits - 1);

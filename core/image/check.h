@@ -31,12 +31,12 @@ template <class A, class B>
 #define SCUMBLE_CHECK(condition) \
   ((condition) ? void(0) : ::scumble::internal::FailCheck(__FILE__, __LINE__, #condition))
 
-#define SCUMBLE_CHECK_OP(op, a, b)                                                                        \
-  do {                                                                                                    \
-    const auto& check_a = (a);                                                                            \
-    const auto& check_b = (b);                                                                            \
-    if (!(check_a op check_b))                                                                            \
-      ::scumble::internal::FailCompare(__FILE__, __LINE__, #a " " #op " " #b, check_a, check_b);          \
+#define SCUMBLE_CHECK_OP(op, a, b)                                                               \
+  do {                                                                                           \
+    const auto& check_a = (a);                                                                   \
+    const auto& check_b = (b);                                                                   \
+    if (!(check_a op check_b))                                                                   \
+      ::scumble::internal::FailCompare(__FILE__, __LINE__, #a " " #op " " #b, check_a, check_b); \
   } while (false)
 #define SCUMBLE_CHECK_EQ(a, b) SCUMBLE_CHECK_OP(==, a, b)
 #define SCUMBLE_CHECK_LT(a, b) SCUMBLE_CHECK_OP(<, a, b)

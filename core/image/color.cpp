@@ -12,8 +12,6 @@ float SrgbToLinear(float encoded) {
 
 float Srgb16ToLinear(std::uint16_t encoded) { return scalar::LinearFromCode(encoded); }
 
-std::uint16_t Srgb16FromLinear(float linear) {
-  return scalar::Rounded(scalar::ClampedCode(linear));
-}
+std::uint16_t Srgb16FromLinear(float linear) { return scalar::Rounded(scalar::ClampedCode(linear)); }
 
 }  // namespace scumble

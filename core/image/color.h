@@ -9,9 +9,9 @@ namespace scumble {
 // relative, of the standard.
 float SrgbToLinear(float encoded);
 
-// 16-bit encoded ⇄ linear in [0, 1], by core/image/color_math-inl.h: the same bits on every machine. Decoding is within 4e-7,
-// relative, of the standard. Encoding clamps and rounds to the nearest code, within 0.53 of the standard's; NaN becomes 0.
-// Srgb16FromLinear(Srgb16ToLinear(v)) == v for every v.
+// 16-bit encoded ⇄ linear in [0, 1], by core/image/color_math-inl.h: the same bits on every machine. Decoding is within
+// 4e-7, relative, of the standard. Encoding clamps and rounds to the nearest code, within 0.53 of the standard's; NaN
+// becomes 0. Srgb16FromLinear(Srgb16ToLinear(v)) == v for every v.
 float Srgb16ToLinear(std::uint16_t encoded);
 std::uint16_t Srgb16FromLinear(float linear);
 

@@ -12,8 +12,8 @@
 //   NumberAsBits(n)             the float whose bits are 512 · (n - 2^23), for whole n of 2^23 … 2^24
 // core/image/scalar_lane.h has them for float, transfer/tint/vector_lane-inl.h for vectors.
 
-// x^(1/3) within 1.5e-7 of the true root, relative, for 2^-126 … 3.4e38. 0 gives 0; what lies between 0 and 2^-126 gives
-// something between 0 and 2^-42. Others are undefined.
+// x^(1/3) within 1.5e-7 of the true root, relative, for 2^-126 … 3.4e38. 0 gives 0; what lies between 0 and 2^-126
+// gives something between 0 and 2^-42. Others are undefined.
 inline Lane CubeRoot(Lane x) {
   // A float's bits are nearly its logarithm: a third of them, negated, make x^(-1/3) within 3.5 %.
   const Lane guess = NumberAsBits(BitsAsNumber(x) * (-1.0f / (3.0f * 512.0f)) + (1419900032.0f / 512.0f + 8388608.0f));
@@ -43,8 +43,8 @@ constexpr float kKink = 0.04045f * kWhite;
 constexpr float kLinearKink = 0.04045f / 12.92f;
 constexpr float kSteepness = 12.92f * kWhite;
 
-// The linear value of a code of 0 … 65535, fractions allowed, within 1.1e-6, relative, or 0.03 of a code. 0 gives 0, 65535
-// gives 1.
+// The linear value of a code of 0 … 65535, fractions allowed, within 1.1e-6, relative, or 0.03 of a code. 0 gives 0,
+// 65535 gives 1.
 inline Lane LinearFromCode(Lane code) {
   // x^2.4 is x · s^2.8, where s = sqrt(x); minimax, relative error 6.2e-7.
   const Lane x = code * (1.0f / kSpan) + kOffset / kSpan, s = Sqrt(x);
@@ -69,9 +69,9 @@ inline LaneColor Each(Lane (*f)(Lane), LaneColor c) { return {f(c.r), f(c.g), f(
 
 inline Lane WeightedSum(float r, float g, float b, LaneColor c) { return r * c.r + g * c.g + b * c.b; }
 
-// Oklab (Björn Ottosson 2020, https://bottosson.github.io/posts/oklab/) has three steps: linear Rec.709 to the responses of
-// three cones, their cube roots, and from these to lightness L and the opponent colours a and b. The first and the last
-// are matrices.
+// Oklab (Björn Ottosson 2020, https://bottosson.github.io/posts/oklab/) has three steps: linear Rec.709 to the
+// responses of three cones, their cube roots, and from these to lightness L and the opponent colours a and b. The first
+// and the last are matrices.
 inline LaneColor ConesFromLinear(LaneColor rgb) {
   return {WeightedSum(0.4122214708f, 0.5363325363f, 0.0514459929f, rgb),
           WeightedSum(0.2119034982f, 0.6806995451f, 0.1073969566f, rgb),

@@ -18,9 +18,11 @@ double Series(double angle, double first, int next) {
 }  // namespace
 
 double SinPi(double x) {
-  x -= 2.0 * std::floor(0.5 * x + 0.5);       // [-1, 1)
-  if (x > 0.5) x = 1.0 - x;
-  else if (x < -0.5) x = -1.0 - x;            // [-1/2, 1/2]
+  x -= 2.0 * std::floor(0.5 * x + 0.5);  // [-1, 1)
+  if (x > 0.5)
+    x = 1.0 - x;
+  else if (x < -0.5)
+    x = -1.0 - x;  // [-1/2, 1/2]
   if (!(std::fabs(x) > 0.25)) return Series(std::numbers::pi * x, std::numbers::pi * x, 2);
   return std::copysign(Series(std::numbers::pi * (0.5 - std::fabs(x)), 1.0, 1), x);
 }

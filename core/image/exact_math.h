@@ -1,12 +1,12 @@
-// Sines, cosines and powers of two that are the same bits on every machine: additions, products and quotients of doubles
-// in a fixed order, where a libm's results differ from one processor or release to the next. For whatever decides on
-// pictures; functions that IEEE 754 defines exactly (sqrt, floor, fmod, ldexp) need no counterpart here.
+// Sines, cosines and powers of two that are the same bits on every machine: additions, products and quotients of
+// doubles in a fixed order, where a libm's results differ from one processor or release to the next. For whatever
+// decides on pictures; functions that IEEE 754 defines exactly (sqrt, floor, fmod, ldexp) need no counterpart here.
 #pragma once
 
 namespace scumble {
 
-// sin(π x) and cos(π x), within 4e-16 of the true value for |x| up to 1e6, whole and half numbers exact. NaN and infinity
-// give NaN.
+// sin(π x) and cos(π x), within 4e-16 of the true value for |x| up to 1e6, whole and half numbers exact. NaN and
+// infinity give NaN.
 double SinPi(double x);
 double CosPi(double x);
 
@@ -14,12 +14,12 @@ double CosPi(double x);
 double SinDegrees(double degrees);
 double CosDegrees(double degrees);
 
-// 2^x within 4e-16 of the true value, relative, where the result is a normal number; whole x exact. Overflows to infinity,
-// underflows to 0; NaN gives NaN.
+// 2^x within 4e-16 of the true value, relative, where the result is a normal number; whole x exact. Overflows to
+// infinity, underflows to 0; NaN gives NaN.
 double Exp2(double x);
 
-// log2(x) within 4e-16 of the true value, relative to the larger of it and 1/64; powers of two exact. 0 gives -infinity,
-// negative numbers and NaN give NaN.
+// log2(x) within 4e-16 of the true value, relative to the larger of it and 1/64; powers of two exact. 0 gives
+// -infinity, negative numbers and NaN give NaN.
 double Log2(double x);
 
 }  // namespace scumble

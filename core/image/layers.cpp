@@ -50,12 +50,12 @@ struct Alias {
   int component;
 };
 constexpr Alias kAliases[] = {
-    {"alpha", Layer::kCoverage, 0},    {"Combined.A", Layer::kCoverage, 0}, {"N.X", Layer::kNormal, 0},
-    {"N.Y", Layer::kNormal, 1},        {"N.Z", Layer::kNormal, 2},          {"normals.X", Layer::kNormal, 0},
-    {"normals.Y", Layer::kNormal, 1},  {"normals.Z", Layer::kNormal, 2},    {"Z", Layer::kDepth, 0},
-    {"depth", Layer::kDepth, 0},       {"depth.V", Layer::kDepth, 0},       {"IndexOB.X", Layer::kObject, 0},
-    {"IndexMA.X", Layer::kMaterial, 0}, {"P.X", Layer::kPosition, 0},       {"P.Y", Layer::kPosition, 1},
-    {"P.Z", Layer::kPosition, 2},      {"DiffCol.R", Layer::kAlbedo, 0},    {"DiffCol.G", Layer::kAlbedo, 1},
+    {"alpha", Layer::kCoverage, 0},     {"Combined.A", Layer::kCoverage, 0}, {"N.X", Layer::kNormal, 0},
+    {"N.Y", Layer::kNormal, 1},         {"N.Z", Layer::kNormal, 2},          {"normals.X", Layer::kNormal, 0},
+    {"normals.Y", Layer::kNormal, 1},   {"normals.Z", Layer::kNormal, 2},    {"Z", Layer::kDepth, 0},
+    {"depth", Layer::kDepth, 0},        {"depth.V", Layer::kDepth, 0},       {"IndexOB.X", Layer::kObject, 0},
+    {"IndexMA.X", Layer::kMaterial, 0}, {"P.X", Layer::kPosition, 0},        {"P.Y", Layer::kPosition, 1},
+    {"P.Z", Layer::kPosition, 2},       {"DiffCol.R", Layer::kAlbedo, 0},    {"DiffCol.G", Layer::kAlbedo, 1},
     {"DiffCol.B", Layer::kAlbedo, 2},
 };
 
@@ -91,9 +91,7 @@ std::string LayerSet::ToString() const {
   return text.empty() ? "none" : text;
 }
 
-LayerSet AlwaysWritten() {
-  return {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial};
-}
+LayerSet AlwaysWritten() { return {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial}; }
 
 Expected<LayerSet> ParseLayers(std::string_view comma_separated) {
   LayerSet set;

@@ -8,13 +8,13 @@
 #define SCUMBLE_CONCAT(a, b) SCUMBLE_CONCAT_INNER(a, b)
 
 // SCUMBLE_ASSIGN(auto scene, LoadScene(path));  returns the error from the enclosing function, or declares `scene`.
-#define SCUMBLE_ASSIGN(declaration, expression)                                                   \
-  auto SCUMBLE_CONCAT(expected_, __LINE__) = (expression);                                        \
+#define SCUMBLE_ASSIGN(declaration, expression)                                                            \
+  auto SCUMBLE_CONCAT(expected_, __LINE__) = (expression);                                                 \
   if (!SCUMBLE_CONCAT(expected_, __LINE__)) return std::move(SCUMBLE_CONCAT(expected_, __LINE__)).error(); \
   declaration = std::move(SCUMBLE_CONCAT(expected_, __LINE__)).value()
 
 // SCUMBLE_RETURN_IF_ERROR(WriteGuides(path, guides));
-#define SCUMBLE_RETURN_IF_ERROR(expression)                                \
-  do {                                                                     \
+#define SCUMBLE_RETURN_IF_ERROR(expression)                                    \
+  do {                                                                         \
     if (auto status = (expression); !status) return std::move(status).error(); \
   } while (false)

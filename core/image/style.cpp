@@ -23,8 +23,10 @@ bool GuideWeights::IsRadiance(Layer layer) {
     case Layer::kLpeLDE:
     case Layer::kLpeLSE:
     case Layer::kLpeLDDE:
-    case Layer::kLpeLD12E: return true;
-    default: return false;
+    case Layer::kLpeLD12E:
+      return true;
+    default:
+      return false;
   }
 }
 

@@ -35,8 +35,8 @@ enum class ThresholdMetric {
   kL1,  // sum of absolute differences, the authors' own
 };
 
-// What a lighting condition costs that is not the best one for a pixel; L are luminances of the pixel, of the exemplar that
-// the seed chose, and of exemplar k.
+// What a lighting condition costs that is not the best one for a pixel; L are luminances of the pixel, of the exemplar
+// that the seed chose, and of exemplar k.
 enum class LuminanceError {
   kExcess,     // |L_p - L_e| - min_k |L_p - L_k|: nothing where e is the best there is
   kPublished,  // |L_p - L_e|
@@ -57,8 +57,9 @@ enum class ColorizeMode {
   kOklab,     // lightness varies as the paint's does, hue and chroma are the scene's
 };
 
-// What each guide layer counts in the distance by which paint is found and chunks end: values are multiplied by the weight
-// (0 or more, finite; not all 0) before distances are taken. transfer/exemplar/guide_space.h says what the values are.
+// What each guide layer counts in the distance by which paint is found and chunks end: values are multiplied by the
+// weight (0 or more, finite; not all 0) before distances are taken. transfer/exemplar/guide_space.h says what the
+// values are.
 class GuideWeights {
  public:
   // Normals alone, counting 1: the plain engine.
@@ -84,44 +85,46 @@ class GuideWeights {
 struct TransferSettings {
   Method method = Method::kStyleBlit;
   NearestSearch nearest = NearestSearch::kAuto;
-  double nearest_error = 0.0;  // 0 … 10: a source that a tree finds may be farther than the nearest by this share of its distance
+  double nearest_error =
+      0.0;  // 0 … 10: a source that a tree finds may be farther than the nearest by this share of its distance
   GuideWeights guide_weights;
   float threshold = 0.125f;  // largest guide distance inside a chunk, at least 0, infinity allowed; the test is strict
   ThresholdMetric threshold_metric = ThresholdMetric::kL2;
-  int levels = 7;            // seed grids of 2^(levels-1) … 1 pixels, 1 … 16
-  float jitter = 1.0f;       // 0 … 1, how far seeds leave their grid
-  double jitter_fps = 0.0;   // renewals a second; 0 frozen, -1 every frame
-  bool coherent = false;     // seeds live on the surface instead of the screen; for kStyleBlit
-  int blend_radius = 1;      // voting window of (2r + 1)² pixels, 0 … 64
-  bool edge_aware = true;    // votes do not cross object borders, depth steps and creases
-  double crease = 60.0;      // 0 … 180 degrees between normals, from which on an edge is a crease; 180: none is
+  int levels = 7;           // seed grids of 2^(levels-1) … 1 pixels, 1 … 16
+  float jitter = 1.0f;      // 0 … 1, how far seeds leave their grid
+  double jitter_fps = 0.0;  // renewals a second; 0 frozen, -1 every frame
+  bool coherent = false;    // seeds live on the surface instead of the screen; for kStyleBlit
+  int blend_radius = 1;     // voting window of (2r + 1)² pixels, 0 … 64
+  bool edge_aware = true;   // votes do not cross object borders, depth steps and creases
+  double crease = 60.0;     // 0 … 180 degrees between normals, from which on an edge is a crease; 180: none is
   // 0 … 1: how far depth may leave the surface's slope, as a share of the distance, or of an orthographic view's height
   double depth_tolerance = 0.002;
-  float luminance_weight = 0.3f;  // 0 or more: how much a pixel's own light counts inside a chunk; several exemplars only
+  float luminance_weight =
+      0.3f;  // 0 or more: how much a pixel's own light counts inside a chunk; several exemplars only
   LuminanceError luminance_error = LuminanceError::kExcess;
-  double colorize = 0.0;     // 0 … 1: how much of the scene's base colour the paint takes on
+  double colorize = 0.0;  // 0 … 1: how much of the scene's base colour the paint takes on
   ColorizeMode colorize_mode = ColorizeMode::kMultiply;
-  double variety = 0.0;      // 0 … 90 degrees: how far from its own normal a seed on a flat surface may take its paint
-  double hybrid = 0.0;       // 0 or more, infinity allowed: sigma, in pixels of the first exemplar's file, of the Gaussian
-                             // that splits tone, laid as by the Lit Sphere, from texture, copied in chunks; 0: no split
-  int match_step = 1;        // 1 … kMaxMatchStep: one pixel of so many, by column and by row, is matched; the others take
-                             // on what those around them were matched to
-  double scale = 1.0;        // exemplar size, above 0
-  double rim = 2.0;          // exemplar pixels at the painted edge that are never used
+  double variety = 0.0;  // 0 … 90 degrees: how far from its own normal a seed on a flat surface may take its paint
+  double hybrid = 0.0;   // 0 or more, infinity allowed: sigma, in pixels of the first exemplar's file, of the Gaussian
+                         // that splits tone, laid as by the Lit Sphere, from texture, copied in chunks; 0: no split
+  int match_step = 1;    // 1 … kMaxMatchStep: one pixel of so many, by column and by row, is matched; the others take
+                         // on what those around them were matched to
+  double scale = 1.0;    // exemplar size, above 0
+  double rim = 2.0;      // exemplar pixels at the painted edge that are never used
   EdgeMode edge = EdgeMode::kExact;
   ShadowMode shadow = ShadowMode::kNone;  // on the pixels that a style map says catch them
-  int reference_height = 1080;  // 0: lengths are plain pixels
+  int reference_height = 1080;            // 0: lengths are plain pixels
 };
 
 // A painted sphere, which fills a square picture exactly; or any painted scene with its guides.
 struct Exemplar {
   std::string name;  // for messages
   Picture picture;
-  std::optional<double> luminance;  // of the light it is painted for, 0 or more; none: the mean of the guides'
-                                    // luminance layer, without one that of the paint
+  std::optional<double> luminance;      // of the light it is painted for, 0 or more; none: the mean of the guides'
+                                        // luminance layer, without one that of the paint
   std::optional<GuideSet> guides = {};  // of what is painted, the picture's size; A and normal at least
-  bool is_sphere = true;            // the geometry is the sphere that fills the picture, whatever the guides say;
-                                    // false needs guides
+  bool is_sphere = true;                // the geometry is the sphere that fills the picture, whatever the guides say;
+                                        // false needs guides
   std::filesystem::path guides_file = {};  // where guides are or would be read from; empty: nowhere
   int margin = 0;                          // pixels of the template that were cut off the file on every side
 };
@@ -135,19 +138,19 @@ struct Paper {
   std::optional<Picture> picture;                     // tiled
 };
 
-// A key of style.toml that changes over time; core/style/style_keyframes.h says what it means. Without tracks a style is the
-// same in every frame.
+// A key of style.toml that changes over time; core/style/style_keyframes.h says what it means. Without tracks a style
+// is the same in every frame.
 struct StyleTrack {
   using Value = std::variant<bool, std::int64_t, double, std::string>;
   struct Key {
     std::int64_t frame = 0;
     Value value;
   };
-  std::string name;                    // "transfer.threshold"
-  std::vector<Key> keys;               // by rising frame, never empty
-  bool straight = false;               // on a straight line between keys; otherwise each holds until the next
-  std::filesystem::path folder;        // that files named by values are in
-  Value current;                       // what is in the style now
+  std::string name;              // "transfer.threshold"
+  std::vector<Key> keys;         // by rising frame, never empty
+  bool straight = false;         // on a straight line between keys; otherwise each holds until the next
+  std::filesystem::path folder;  // that files named by values are in
+  Value current;                 // what is in the style now
 };
 
 struct Style {

@@ -7,17 +7,17 @@
 #include <atomic>
 #include <filesystem>
 #include <iterator>
-#include <new>
 #include <mutex>
+#include <new>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "core/io/channel_file.h"
-#include "core/io/library.h"
-#include "core/io/guides/own_guides.h"
 #include "core/io/file/readable_file.h"
+#include "core/io/guides/own_guides.h"
+#include "core/io/library.h"
 
 namespace scumble {
 namespace {
@@ -32,8 +32,8 @@ std::vector<fs::path> more_folders;
 
 constexpr const char* kFile = "libscumble_formats.so";
 
-// Beside the program, as in a build; or where it is installed. Only files of these full names are loaded: a name alone would be
-// looked for where the environment says, or in the folder that the program runs in.
+// Beside the program, as in a build; or where it is installed. Only files of these full names are loaded: a name alone
+// would be looked for where the environment says, or in the folder that the program runs in.
 std::vector<fs::path> Folders() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
@@ -92,7 +92,8 @@ Expected<const Formats*> Load() {
     if (fs::exists(folder / kFile, failed)) return LoadFrom(folder / kFile);
     searched += (searched.empty() ? "" : " or ") + folder.string();
   }
-  return Unusable(kFile, searched.empty() ? "cannot be looked for: /proc/self/exe is not readable" : "is not in " + searched);
+  return Unusable(kFile,
+                  searched.empty() ? "cannot be looked for: /proc/self/exe is not readable" : "is not in " + searched);
 }
 
 }  // namespace
@@ -107,10 +108,11 @@ Expected<const Formats*> LoadFormats(const std::string& file) {
     }();
     return kFormats;
   } catch (const std::bad_alloc&) {
-    return MemoryError("out of memory for " + file + ": the library that reads and writes its format takes " +
-                       std::to_string(kModuleAddresses >> 20) +
-                       " MB of addresses, whatever the picture's size; allow so much more (ulimit -v), or use a plain PNG, " +
-                       "or the EXR files that scumble itself writes, wherever a picture or guides are read or written");
+    return MemoryError(
+        "out of memory for " + file + ": the library that reads and writes its format takes " +
+        std::to_string(kModuleAddresses >> 20) +
+        " MB of addresses, whatever the picture's size; allow so much more (ulimit -v), or use a plain PNG, " +
+        "or the EXR files that scumble itself writes, wherever a picture or guides are read or written");
   }
 }
 

@@ -1,7 +1,7 @@
 // Where OpenImageIO is: in a module that is loaded when a file first needs it. Loading that library with all that it
-// brings along takes a fifth of a second of looking up names, and a picture in PNG of a scene without EXR or JPEG needs none of
-// it; nor do Scumble's own guides and the writing of EXR pictures, for which core/io/exr/scanline_exr.h is enough. Everybody else calls the functions of
-// picture_file.h, channel_file.h, guide_file.h and whole_output.h.
+// brings along takes a fifth of a second of looking up names, and a picture in PNG of a scene without EXR or JPEG needs
+// none of it; nor do Scumble's own guides and the writing of EXR pictures, for which core/io/exr/scanline_exr.h is
+// enough. Everybody else calls the functions of picture_file.h, channel_file.h, guide_file.h and existing_output.h.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 #include "core/image/channel_image.h"
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
@@ -34,8 +34,8 @@ struct StoredPicture {
 
 namespace formats {
 
-// What the functions of these names outside of this namespace do, for files that need the library. It writes no file itself: that
-// is WriteFileAtomically's, of which the module would have a copy that no handler of signals knows.
+// What the functions of these names outside of this namespace do, for files that need the library. It writes no file
+// itself: that is WriteFileAtomically's, of which the module would have a copy that no handler of signals knows.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
@@ -55,9 +55,10 @@ inline constexpr std::uint64_t kFormatsLayout = [] {
   constexpr std::uint64_t kOffset = 0xcbf29ce484222325u, kPrime = 0x100000001b3u;  // FNV-1a's
   std::uint64_t layout = kOffset;
   for (const std::size_t size :
-       {sizeof(Expected<Picture>), sizeof(Picture), sizeof(PictureHeader), sizeof(StoredPicture), sizeof(PictureWriteOptions),
-        sizeof(ChannelImage), sizeof(GuideSet), sizeof(GuideReadOptions), sizeof(GuideFileInfo),
-        sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet), sizeof(Error), sizeof(std::string), sizeof(std::filesystem::path)}) {
+       {sizeof(Expected<Picture>), sizeof(Picture), sizeof(PictureHeader), sizeof(StoredPicture),
+        sizeof(PictureWriteOptions), sizeof(ChannelImage), sizeof(GuideSet), sizeof(GuideReadOptions),
+        sizeof(GuideFileInfo), sizeof(Expected<std::vector<std::byte>>), sizeof(LayerSet), sizeof(Error),
+        sizeof(std::string), sizeof(std::filesystem::path)}) {
     layout = (layout ^ size) * kPrime;
   }
   return layout;
@@ -79,8 +80,8 @@ struct Formats {
 };
 
 // Loads the module, once in the life of the process; it stays. kUnavailable where it is missing or of another version,
-// kMemory where a limit leaves it too few addresses; the next call tries again then. `file`, for the message, is what it
-// is needed for. Thread-safe.
+// kMemory where a limit leaves it too few addresses; the next call tries again then. `file`, for the message, is what
+// it is needed for. Thread-safe.
 Expected<const Formats*> LoadFormats(const std::string& file);
 // The same to read a file, which is looked for first: what is wrong with it (kInput) is said whatever the module needs.
 Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path);

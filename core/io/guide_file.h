@@ -18,9 +18,9 @@ struct GuideWriteOptions {
 // Lossless, and the quickest to write and read here: background is packed, surfaces are hardly touched.
 inline constexpr const char* kFastCompression = "rle";
 
-// Writes all layers of the set, object and material names and their styles, camera matrices (worldToCamera and worldToNDC in
-// OpenEXR's own conventions) and attributes.
-// Refuses a lossy compression. The file appears whole or not at all.
+// Writes all layers of the set, object and material names and their styles, camera matrices (worldToCamera and
+// worldToNDC in OpenEXR's own conventions) and attributes. Refuses a lossy compression. The file appears whole or not
+// at all.
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options = {});
 
 // Whether WriteGuides knows the ending and the compression: to be asked before the work.
@@ -30,7 +30,7 @@ struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
-  std::string mend;                     // how the caller can do without depth and object, said where nothing else is missing
+  std::string mend;  // how the caller can do without depth and object, said where nothing else is missing
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 
@@ -44,11 +44,12 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
 struct GuideFileInfo {
   int width = 0;
   int height = 0;
-  bool has_half = false;                    // some channel is stored in half floats
-  bool from_blender = false;                // rendered by Blender itself: its passes are to be converted
-  std::map<std::string, LayerSet> layers;   // complete layers by view layer; "" where names have nothing before them; Cryptomatte counts
-  std::string channels;                     // all names as they stand in the file
-  GuideSet header;                          // names, camera and attributes; 0 × 0 pixels
+  bool has_half = false;      // some channel is stored in half floats
+  bool from_blender = false;  // rendered by Blender itself: its passes are to be converted
+  std::map<std::string, LayerSet>
+      layers;            // complete layers by view layer; "" where names have nothing before them; Cryptomatte counts
+  std::string channels;  // all names as they stand in the file
+  GuideSet header;       // names, camera and attributes; 0 × 0 pixels
 };
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
 

@@ -5,28 +5,29 @@
 #include <utility>
 
 #include "core/image/color.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/exr/scanline_exr.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/file/zip_archive.h"
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture/open_raster.h"
 #include "core/io/picture_rules.h"
+#include "core/io/png/png_integrity.h"
 #include "core/io/png/png_reader.h"
 #include "core/io/png/png_writer.h"
-#include "core/io/png/png_integrity.h"
-#include "core/io/file/zip_archive.h"
 
 namespace scumble {
 namespace {
 
 // A PNG that is whole and plain; nothing else.
 std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name) {
-  if (!internal::IsPng(bytes) || !internal::CheckPngIsWhole(bytes, name)) return std::nullopt;
+  if (!internal::IsPng(bytes) || !internal::CheckPngIntegrity(bytes, name)) return std::nullopt;
   return internal::ReadPlainPng(bytes);
 }
 
 Expected<std::uint64_t> PixelsOf(std::int64_t width, std::int64_t height, const std::string& name) {
-  if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxPicturePixels) {
+  if (width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide &&
+      width * height <= kMaxPicturePixels) {
     return static_cast<std::uint64_t>(width * height);
   }
   return InputError("cannot read " + name + ": no picture of " + std::to_string(width) + "×" + std::to_string(height) +
@@ -35,17 +36,19 @@ Expected<std::uint64_t> PixelsOf(std::int64_t width, std::int64_t height, const 
 
 // Of a PNG whose bytes are so many.
 Expected<std::uint64_t> PixelsOf(const internal::PngHeader& header, std::uint64_t bytes, const std::string& name) {
-  if (!internal::CanHold(bytes, header)) return InputError("cannot read " + name + ": it promises more than it can hold");
+  if (!internal::CanHold(bytes, header))
+    return InputError("cannot read " + name + ": it promises more than it can hold");
   return PixelsOf(header.width, header.height, name);
 }
 
 std::vector<std::byte> Png(const Picture& picture, const PictureWriteOptions& options) {
-  return internal::WritePng(picture, {options.bits, options.grey, options.png_level, options.dpi, options.settings,
-                                      internal::IoThreads()});
+  return internal::WritePng(
+      picture, {options.bits, options.grey, options.png_level, options.dpi, options.settings, internal::IoThreads()});
 }
 
 // Linear, with associated alpha.
-Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& picture, const PictureWriteOptions& options) {
+Expected<std::vector<std::byte>> Exr(const std::string& name, const Picture& picture,
+                                     const PictureWriteOptions& options) {
   internal::ExrImage image{picture.width, picture.height, {}, options.fast ? kFastCompression : "zip", {}, {}};
   if (!options.settings.empty()) image.texts[kSettingsKey] = options.settings;
   const std::size_t size = picture.rgba.size() / 4;

@@ -1,5 +1,5 @@
-// Pictures from and to files: PNG by libpng, EXR written by OpenEXR, everything else by OpenImageIO; layered OpenRaster files
-// by core/io/picture/open_raster.h.
+// Pictures from and to files: PNG by libpng, EXR written by OpenEXR, everything else by OpenImageIO; layered OpenRaster
+// files by core/io/picture/open_raster.h.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/image/status.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
@@ -18,20 +18,21 @@ namespace scumble {
 // kept; float files (EXR, HDR) are taken as linear and associated, unpremultiplied, clamped to [0, 1] and encoded.
 // Grey is spread over the three colours; a missing alpha is opaque, a NaN one transparent. A photograph is
 // turned upright by its Exif orientation; colour profiles are not applied. A file that ends early is
-// an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read. Thread-safe.
+// an error, JPEG included. Of a file of layers (.ora, Krita's .kra) the picture of all that are visible is read.
+// Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
 // What a file's header says, without its pixels; of a file of layers, that of their merged picture. Thread-safe.
 struct PictureHeader {
   int width = 0;  // as stored, before a photograph is turned upright
   int height = 0;
-  int bits = 8;   // per channel
+  int bits = 8;    // per channel
   double dpi = 0;  // 0: none, or a camera's or screen's 72 or 96, which say nothing of a picture
 };
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 
-// How many pixels ReadPicture would make, by as little of the file as tells: to be asked before they take memory. An error
-// where reading would be one, as far as the header shows it: no such pixels will ever be there. Thread-safe.
+// How many pixels ReadPicture would make, by as little of the file as tells: to be asked before they take memory. An
+// error where reading would be one, as far as the header shows it: no such pixels will ever be there. Thread-safe.
 Expected<std::uint64_t> CountPixels(const std::filesystem::path& path);
 Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name);
 
@@ -43,9 +44,9 @@ struct PictureWriteOptions {
   int bits = 8;       // 8 or 16 per channel; JPEG takes 8 alone; EXR is half floats, or floats at 32
   int png_level = 6;  // 0 … 9, zlib's compression level
   int jpeg_quality = 92;
-  int dpi = 0;        // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted
-  bool grey = false;  // PNG and TIFF: the red channel alone, for pictures that are grey and opaque
-  bool fast = false;  // EXR: kFastCompression of guide_file.h instead of zip, the same pixels
+  int dpi = 0;                // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted
+  bool grey = false;          // PNG and TIFF: the red channel alone, for pictures that are grey and opaque
+  bool fast = false;          // EXR: kFastCompression of guide_file.h instead of zip, the same pixels
   std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
 };
 

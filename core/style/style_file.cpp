@@ -226,11 +226,12 @@ Status CheckPaintingIsThere(const fs::path& image, const fs::path& drawn, bool s
   const fs::path layered = fs::path(image).replace_extension(".ora");
   if (Exists(layered)) {
     return InputError(image.string() + " is not there, and " + layered.string() + " is: write image = \"" +
-                      layered.filename().string() + "\" into " + file + ", or export it as " + image.filename().string());
+                      layered.filename().string() + "\" into " + file + ", or export it as " +
+                      image.filename().string());
   }
   if (!Exists(drawn)) return Ok();
-  return InputError(image.string() + " is not there yet: paint over " + drawn.string() + " and save it under that name" +
-                    (several ? ", or take its [[exemplar]] out of " + file : ""));
+  return InputError(image.string() + " is not there yet: paint over " + drawn.string() +
+                    " and save it under that name" + (several ? ", or take its [[exemplar]] out of " + file : ""));
 }
 
 // The style.toml that is read, and whom to ask before its pictures are.
@@ -281,9 +282,10 @@ Status ReadWeighedGuides(Style& style, const StyleRoom& room) {
   if (wanted.empty()) return Ok();
   for (Exemplar& exemplar : style.exemplars) {
     if (exemplar.guides_file.empty()) {
-      return InputError(exemplar.name + " has no guides, and transfer.guide_weights asks for " + wanted.ToString() +
-                        ": give [[exemplar]] guides that hold them, as `scumble sphere --layers` and `scumble guidegen` "
-                        "write them");
+      return InputError(
+          exemplar.name + " has no guides, and transfer.guide_weights asks for " + wanted.ToString() +
+          ": give [[exemplar]] guides that hold them, as `scumble sphere --layers` and `scumble guidegen` "
+          "write them");
     }
     if (exemplar.guides && exemplar.guides->layers().Contains(wanted)) continue;
     SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(exemplar.guides_file));
@@ -347,15 +349,17 @@ Status SetExemplarKey(Style& style, const std::string& name, const toml::node& n
   const std::string last = std::to_string(style.exemplars.size());
   const std::size_t begin = std::string_view("exemplar.").size(), dot = name.find('.', begin);
   if (dot == std::string::npos) {
-    return UsageError(where + (name == "exemplar.luminance" ? "say whose, exemplar.1.luminance to exemplar." + last + ".luminance"
-                                                            : "expected exemplar.1.luminance; other keys of [[exemplar]] "
-                                                              "are set in style.toml"));
+    return UsageError(where + (name == "exemplar.luminance"
+                                   ? "say whose, exemplar.1.luminance to exemplar." + last + ".luminance"
+                                   : "expected exemplar.1.luminance; other keys of [[exemplar]] "
+                                     "are set in style.toml"));
   }
   if (name.substr(dot + 1) != "luminance") {
     return UsageError(where + "only its luminance can be set here; image and guides are set in style.toml");
   }
   const std::string number = name.substr(begin, dot - begin);
-  const bool is_number = !number.empty() && number.size() < 4 && number.find_first_not_of("0123456789") == std::string::npos;
+  const bool is_number =
+      !number.empty() && number.size() < 4 && number.find_first_not_of("0123456789") == std::string::npos;
   const std::size_t index = is_number ? std::stoul(number) : 0;
   if (index < 1 || index > style.exemplars.size()) {
     return UsageError(where + "style " + style.name + " has the exemplars 1 to " + last);
@@ -394,11 +398,13 @@ Expected<Style> ReadPictureStyle(const fs::path& path, const StyleRoom& room) {
   if (Exists(beside)) {
     auto style = ReadStyleFile(beside, room);
     if (style && fs::path(style->exemplars.front().name).filename() == path.filename()) return style;
-    if (!style && style.error().kind != ErrorKind::kInput) return style.error();  // too large, which says nothing of whose it is
+    if (!style && style.error().kind != ErrorKind::kInput)
+      return style.error();  // too large, which says nothing of whose it is
   }
   SCUMBLE_ASSIGN(Picture picture, ReadWithin(room, path));
   if (LooksLikeTemplate(picture)) {
-    return InputError(path.string() + " is a whole template, margin and marks included: name the folder that "
+    return InputError(path.string() +
+                      " is a whole template, margin and marks included: name the folder that "
                       "`scumble sphere` wrote as the style, or crop the picture to the sphere");
   }
   Style style;

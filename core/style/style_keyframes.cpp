@@ -41,7 +41,8 @@ Status Set(Style& style, const StyleKey& key, StyleTrack& track, const KeyValue&
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track) {
   if (key.name.rfind("transfer.", 0) != 0) return UsageError(key.name + " cannot change over time");
   if (key.name.rfind(kGuideWeights, 0) == 0) {
-    return UsageError(key.name + " cannot change over time: the exposure of a sequence is measured once, for one set of "
+    return UsageError(key.name +
+                      " cannot change over time: the exposure of a sequence is measured once, for one set of "
                       "guides");
   }
   if (track.keys.empty()) return UsageError(key.name + " = []: expected a value, or pairs of frame and value");

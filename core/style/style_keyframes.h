@@ -13,12 +13,13 @@
 
 namespace scumble {
 
-// Frames are numbered from minus this to this, those of tracks as those of pictures (kMaxFrame of pipeline/frame_range.h).
+// Frames are numbered from minus this to this, those of tracks as those of pictures (kMaxFrame of
+// pipeline/frame_range.h).
 inline constexpr std::int64_t kMaxTrackFrame = 999'999'999;
 
 // Checks the track's keys and gives it to the style, in place of an earlier one of that name; the style gets the values
-// of frame 0. Frames must rise and lie within kMaxTrackFrame, and every value must be one that the key takes alone: kUsage
-// says which is not. Keys of [transfer] only, without the weights of guides.
+// of frame 0. Frames must rise and lie within kMaxTrackFrame, and every value must be one that the key takes alone:
+// kUsage says which is not. Keys of [transfer] only, without the weights of guides.
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track);
 
 // Forgets the track of that name, if there is one.

@@ -5,8 +5,8 @@
 namespace scumble::internal {
 namespace {
 
-// Behind the string that begins at `begin` with a quote of either kind, by TOML 1.0's rules. One that does not end where
-// it must is an error, at which the parser stops: whatever comes behind it is as good.
+// Behind the string that begins at `begin` with a quote of either kind, by TOML 1.0's rules. One that does not end
+// where it must is an error, at which the parser stops: whatever comes behind it is as good.
 std::size_t EndOfString(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "exemplars/paint/styles.h"
 #include "core/image/hash.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "exemplars/paint/styles.h"
 
 namespace {
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
+#include "core/io/guide_file.h"
 #include "exemplars/paint/engine/chance.h"
 #include "exemplars/paint/engine/media.h"
 #include "exemplars/paint/sphere.h"
-#include "core/io/guide_file.h"
 
 namespace scumble::paint {
 namespace {

@@ -6,9 +6,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "core/image/status.h"
 #include "exemplars/paint/engine/canvas.h"
 #include "exemplars/paint/engine/strokes.h"
-#include "core/image/status.h"
 
 namespace scumble::paint {
 

@@ -28,14 +28,15 @@ enum class Light {
   kCrevice,  // not even the sky: under things and between them, where only the ground's bounce comes
 };
 
-// The unit direction towards the light; for the sky nearly straight up, leaning to the key light's side, and in a crevice
-// from below, where the bounce comes from.
+// The unit direction towards the light; for the sky nearly straight up, leaning to the key light's side, and in a
+// crevice from below, where the bounce comes from.
 glm::vec3 Towards(Light light);
 
 // What a painter looks for in a lit ball. All in [0, 1].
 struct Shading {
-  float value;      // overall lightness, the same scale in every light
-  float light;      // how far it faces the light that there is: the cosine, 0 … 1 over the whole ball under the sky and in a crevice
+  float value;  // overall lightness, the same scale in every light
+  float light;  // how far it faces the light that there is: the cosine, 0 … 1 over the whole ball under the sky and in
+                // a crevice
   float highlight;  // mirror image of the light
   float reflected;  // light that comes back from below right into the shade
 };

@@ -1,9 +1,9 @@
 // The styles, one file each: every mark is a libmypaint stroke planned on the sphere.
 #pragma once
 
+#include "core/image/status.h"
 #include "exemplars/paint/studio.h"
 #include "scumble/picture.h"
-#include "core/image/status.h"
 
 namespace scumble::paint {
 
@@ -57,7 +57,7 @@ struct StyleEntry {
   const char* name;
   Painter* paint;
   Painter* paper;
-  int lights = 1;  // how many of kLights it is painted for, from the first
+  int lights = 1;      // how many of kLights it is painted for, from the first
   bool scene = false;  // paints the ball on its floor (scene.h), not the sphere that fills the picture
 };
 inline constexpr StyleEntry kStyles[] = {

@@ -14,14 +14,14 @@
 #include <span>
 #include <string>
 
-#include "guidegen/rays/embree_scene.h"
-#include "guidegen/light/light_passes.h"
-#include "guidegen/light/path_layers.h"
-#include "guidegen/light/progress_gate.h"
+#include "core/image/stopwatch.h"
 #include "guidegen/cast/tile_caster.h"
 #include "guidegen/cast/tile_store.h"
+#include "guidegen/light/light_passes.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/rays/embree_scene.h"
+#include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/work_counters.h"
-#include "core/image/stopwatch.h"
 
 namespace scumble {
 namespace {
@@ -43,7 +43,7 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
   tbb::enumerable_thread_specific<TileCaster::Scratch> scratch([&] { return TileCaster::Scratch(caster); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, strips * rows), [&](const auto& range) {
     TileCaster::Scratch& own = scratch.local();
-    RayCounts cast;
+    TileCaster::Share share{gate, {}};
     const WorkMeter meter;
     for (std::size_t i = range.begin(); i != range.end() && !gate.cancelled(); ++i) {
       const std::size_t row = i / strips;
@@ -59,14 +59,14 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
       }
       const auto lists =
           pixels ? std::span(*pixels).subspan(row * columns + first, count) : std::span<std::vector<PathPixel>>();
-      caster.Cast(std::span(tiles).first(count), own, cast, lists);
+      caster.Cast(std::span(tiles).first(count), own, share, lists);
       gate.TileDone();
     }
     PublishTiles();
     const std::lock_guard lock(summing);
-    result.rays.primary += cast.primary;
-    result.rays.coverage += cast.coverage;
-    result.rays.shadow += cast.shadow;
+    result.rays.primary += share.rays.primary;
+    result.rays.coverage += share.rays.coverage;
+    result.rays.shadow += share.rays.shadow;
     AddWork(meter.Since(), result.work);
   });
   return !gate.cancelled();
@@ -81,7 +81,7 @@ GuideSet UnsetGuides(const GuidegenOptions& options) {
   return guides;
 }
 
-Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) {
+Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const GuidegenOptions& options) {
   if (!Continue(options.progress, 0.0)) return CancelledError();
   GuidegenResult result;
   Stopwatch watch;
@@ -91,8 +91,13 @@ Expected<GuidegenResult> CastInArena(View view, const GuidegenOptions& options) 
   needs.emitters = options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
   needs.light_rays = needs.emitters || !follower.empty();
   needs.robust = options.robust;
-  SCUMBLE_ASSIGN(const EmbreeScene scene, EmbreeScene::Build(std::move(view.objects), options.isa, needs));
-  result.build_ms = watch.Lap();
+  SCUMBLE_ASSIGN(const LazyScene::Lease lease, objects.Get(options.isa, needs, options.progress));
+  const EmbreeScene& scene = *lease.scene;
+  const double build_ms = watch.Lap();
+  if (lease.built) {
+    result.builds = 1;
+    result.build_ms = build_ms;
+  }
 
   result.guides = UnsetGuides(options);
   for (const LayerInfo& info : AllLayers()) {
@@ -176,15 +181,15 @@ Status CheckOptions(const GuidegenOptions& options, bool has_next_frame) {
   return CheckSampling(options);
 }
 
-Expected<GuidegenResult> CastGuides(View view, const GuidegenOptions& options) {
-  // oneTBB has no workers beyond the machine's cores unless it is told that more are welcome.
+Expected<GuidegenResult> CastGuides(LazyScene& objects, const View& view, const GuidegenOptions& options) {
+  // oneTBB has no workers beyond the machine's cores unless the limit is raised.
   std::optional<tbb::global_control> more_workers;
   if (options.threads > tbb::this_task_arena::max_concurrency()) {
     more_workers.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(options.threads));
   }
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   std::optional<Expected<GuidegenResult>> result;
-  arena.execute([&] { result.emplace(CastInArena(std::move(view), options)); });
+  arena.execute([&] { result.emplace(CastInArena(objects, view, options)); });
   return *std::move(result);
 }
 

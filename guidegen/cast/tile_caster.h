@@ -2,23 +2,22 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "guidegen/cast/cast_guides.h"
-#include "guidegen/rays/embree_scene.h"
-#include "guidegen/guidegen.h"
-#include "guidegen/light/path_tracer.h"
-#include "guidegen/light/light_sampling.h"
+#include "guidegen/cast/primary_rays.h"
 #include "guidegen/cast/tile_hits.h"
 #include "guidegen/cast/tile_surface.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/light/light_sampling.h"
+#include "guidegen/light/path_tracer.h"
+#include "guidegen/rays/embree_scene.h"
+#include "guidegen/rays/progress_gate.h"
 #include "guidegen/surface/triangle_cache.h"
 
 namespace scumble {
-
-inline constexpr int kMaxAa = 16;
 
 // Casts tiles into a GuideSet. Shared by all threads; tiles do not overlap, so nothing is locked.
 class TileCaster {
@@ -33,11 +32,6 @@ class TileCaster {
 
    private:
     friend class TileCaster;
-    // A pixel whose centre misses, and where in the picture the ray went that met something all the same.
-    struct Moved {
-      int pixel;
-      glm::dvec2 at;
-    };
     struct OfTile {
       TileHits hits;
       TileRays rays;
@@ -45,28 +39,27 @@ class TileCaster {
       TileGuides guides;
       TilePoints points;
       std::vector<SurfacePoint> lit;
-      std::vector<Moved> moved;
+      std::vector<PrimaryRays::Moved> moved;
     };
     TriangleCache triangles;
     std::vector<OfTile> tiles;
   };
 
-  // Casts 1 to kStripTiles tiles that stand side by side from the left to the right. Adds what was cast to `counts`,
+  // One thread's share of the work: the gate that it asks whether to go on, and the rays that it has cast.
+  struct Share {
+    ProgressGate& gate;
+    RayCounts rays;
+  };
+
+  // Casts 1 to kStripTiles tiles that stand side by side from the left to the right. Adds what was cast to `share`,
   // and to pixels[i], unless there are none, the covered pixels of tile i for their light paths. Other threads see what
-  // was written after PublishTiles().
-  void Cast(std::span<const Tile> tiles, Scratch& scratch, RayCounts& counts,
+  // was written after PublishTiles(). If the gate is cancelled, the tiles may stay incomplete.
+  void Cast(std::span<const Tile> tiles, Scratch& scratch, Share& share,
             std::span<std::vector<PathPixel>> pixels = {}) const;
 
  private:
-  using Samples = std::bitset<kMaxAa * kMaxAa>;  // by rank: nearest the pixel's centre first
-  using Mask = std::bitset<kTilePixels>;
-  using Moved = Scratch::Moved;
   using TileScratch = Scratch::OfTile;
 
-  struct Offset {
-    double x;
-    double y;
-  };
   // A layer that is wanted; background is what its pixels are where nothing was met.
   struct Plane {
     float* values;
@@ -87,25 +80,14 @@ class TileCaster {
     std::vector<Plane> others;  // that are not written as whole tiles
   };
 
-  void PlaceRays(const Tile& tile, TileRays& rays) const;
-  // `ways`: whether hits.clear_from is asked for.
-  void CastCentres(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const;
-  template <class Packet>
-  void CastPackets(const Tile& tile, const TileRays& rays, bool ways, TileHits& hits) const;
-  template <class Packet>
-  void FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const;
-  Mask FindWhole(const Tile& tile, const TileHits& hits) const;
-  std::array<Samples, kTilePixels> CastSubsamples(const Tile& tile, const Mask& whole) const;
-  std::size_t CastMissed(const Tile& tile, Samples samples, int pixel, TileScratch& scratch) const;
-  void Cover(const Tile& tile, TileScratch& scratch, RayCounts& counts) const;
   // How far the place that was hit moves in the picture until the next frame, pixels; 0 where it is not seen then.
   glm::dvec2 MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const;
   void WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteWhole(std::span<const Tile> tiles, const Scratch& scratch) const;
-  void Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, RayCounts& counts,
+  void Fill(const Tile& tile, TriangleCache& triangles, TileScratch& scratch, Share& share,
             std::vector<PathPixel>* pixels) const;
-  void Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points, RayCounts& counts) const;
+  void Light(const Tile& tile, const TileHits& hits, const std::vector<SurfacePoint>& points, Share& share) const;
   glm::dvec2 Centre(const Tile& tile, int pixel) const {
     return {tile.x0 + TileColumn(pixel) + 0.5, tile.y0 + TileRow(pixel) + 0.5};
   }
@@ -118,15 +100,12 @@ class TileCaster {
   const GuidegenOptions& options_;
   std::size_t width_;
   bool past_caches_;
+  const PrimaryRays primary_;
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
-  const bool backs_;             // whether camera rays may pass what rays of light do not
-  std::vector<Offset> offsets_;  // of subsamples, by rank
-  std::vector<double> across_;   // of the rays through centres, as TileRays has it, by the picture's column
-  std::vector<double> up_;       // and by its row; a tile's more of both than there are
   Planes planes_;
   bool lit_ = false;     // luminance or shadow, and something shines
-  bool points_ = false;  // whether any layer asks for more than a tile's own guides
+  bool points_ = false;  // whether any layer needs more than TileGuides
 };
 
 }  // namespace scumble

@@ -18,7 +18,8 @@ struct Tile {
   int height = 0;
 };
 
-// Tiles that are worked on together, side by side: planes are written in pieces as long as all of them are wide.
+// Tiles that are worked on together, side by side: their rows of a plane are
+// written in one go.
 inline constexpr int kStripTiles = 4;
 
 // Squares of 4 × 4 pixels one after the other, row by row inside and out: a square is a packet of rays, and its halves
@@ -44,8 +45,8 @@ struct TileHits {
   alignas(64) std::array<std::uint32_t, kTilePixels> object;
   alignas(64) std::array<std::uint32_t, kTilePixels> primitive;
 
-  // From where on the ray's way to what it met is clear for rays of light, too, in lengths of its direction. Only set
-  // where something was met and somebody asks.
+  // From where up to its hit the ray is clear for rays of light, too, in lengths of its direction. Only set for hits,
+  // and only where it is asked for.
   alignas(64) std::array<float, kTilePixels> clear_from;
 
   bool Met(int pixel) const { return object[std::size_t(pixel)] != kNothing; }

@@ -14,7 +14,7 @@ namespace scumble {
 // ordered with what the thread writes next: other threads may look at them after PublishTiles().
 void StoreTiles(std::span<const Tile> tiles, std::span<const float* const> values, float* plane, std::size_t stride,
                 bool past_caches);
-// After the tiles that a thread stores and before it tells any other that they are there. Waits until they have left
+// Call it after the tiles that a thread stores and before any other thread reads them. Waits until they have left
 // the core, which takes longer than storing a plane of a tile: for once in many tiles.
 void PublishTiles();
 void FillTile(const Tile& tile, float value, float* plane, std::size_t stride);

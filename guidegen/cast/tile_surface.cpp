@@ -231,15 +231,16 @@ class TileWork {
     const D across = hn::Load(d, rays_.across[pixel / kSquarePixels % kTileSquares] + pixel % 8);
     const D up = hn::Load(d, rays_.up[pixel / 64 * 2 + pixel % kSquarePixels / 8] + pixel % 8);
     const D3 origin = rays_.orthographic ? D3{across, up, zero} : D3{zero, zero, zero};
-    const D3 way = rays_.orthographic ? D3{zero, zero, hn::Set(d, -1.0)} : D3{across, up, hn::Set(d, -1.0)};
+    const D3 direction = rays_.orthographic ? D3{zero, zero, hn::Set(d, -1.0)} : D3{across, up, hn::Set(d, -1.0)};
 
     // MeetTriangle. A product with −1 changes the sign and no more.
     const D3 from = {hn::Sub(origin.x, triangles.corner.x), hn::Sub(origin.y, triangles.corner.y),
                      hn::Sub(origin.z, triangles.corner.z)};
-    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(way.y, from.z)), hn::Add(hn::Mul(from.z, way.x), from.x),
-                       hn::Sub(hn::Mul(from.x, way.y), hn::Mul(way.x, from.y))};
-    const D along =
-        hn::Sub(hn::Add(hn::Mul(triangles.area.x, way.x), hn::Mul(triangles.area.y, way.y)), triangles.area.z);
+    const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(direction.y, from.z)),
+                       hn::Add(hn::Mul(from.z, direction.x), from.x),
+                       hn::Sub(hn::Mul(from.x, direction.y), hn::Mul(direction.x, from.y))};
+    const D along = hn::Sub(hn::Add(hn::Mul(triangles.area.x, direction.x), hn::Mul(triangles.area.y, direction.y)),
+                            triangles.area.z);
     const D scale = hn::Div(hn::Set(d, -1.0), along);
     const D v = hn::Mul(Dot(triangles.second_edge, moment), scale);
     const D w = hn::Mul(Dot(triangles.first_edge, moment), scale);
@@ -255,7 +256,7 @@ class TileWork {
     const auto back = hn::Gt(hn::Xor(along, hn::And(objects.winding, minus)), zero);
     const D side = hn::IfThenElseZero(back, minus);
 
-    // ObjectNormal and its way into view space.
+    // ObjectNormal, and its transform into view space.
     const F fv = hn::DemoteTo(f, v);
     const F fw = hn::DemoteTo(f, w);
     const F fu = hn::Sub(hn::Sub(hn::Set(f, 1.0f), fv), fw);

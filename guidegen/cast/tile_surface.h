@@ -15,7 +15,7 @@ struct TileGuides {
   alignas(64) std::array<float, kTilePixels> object;
   alignas(64) std::array<float, kTilePixels> material;
   alignas(64) std::array<std::array<float, kTilePixels>, 3> normal;
-  // Pixels that vectors cannot tell, and whose guides are not set: the plain code's.
+  // Pixels that the vector code cannot do. Their guides are not set; the plain code does them.
   std::array<std::uint8_t, kTilePixels> left_over;
   int left_over_count = 0;
 };
@@ -28,7 +28,7 @@ struct TilePoints {
   alignas(64) std::array<std::array<double, kTilePixels>, 3> normal;
   alignas(64) std::array<double, kTilePixels> largest_coordinate;
 
-  SurfacePoint At(int pixel) const;  // without rest position and clear way
+  SurfacePoint At(int pixel) const;  // without rest position and max_ray_offset
   void Set(int pixel, const SurfacePoint& point);
 };
 

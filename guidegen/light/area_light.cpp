@@ -4,8 +4,10 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "guidegen/surface/bsdf.h"
+#include "guidegen/light/light_visibility.h"
+#include "guidegen/rays/ray_offset.h"
 #include "guidegen/rays/single_ray.h"
+#include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
@@ -24,7 +26,7 @@ struct Sample {
   const LightSet& lights;
   const SurfacePoint& point;
   const glm::dvec3 origin;
-  SoftLight& sum;
+  AreaLighting& sum;
   RayCounts& rays;
 
   // Whether directions look for a light, too.
@@ -60,7 +62,7 @@ struct Sample {
     if (!lights.FewHaveExtent()) {
       const Quad u = sampler.Draw(index, 1);
       const LightChoice choice = lights.Choose(point, u[0], false);
-      if (choice.light >= 0) TakeLight(choice.light, choice.probability, choice.rest, u[1]);
+      if (choice.light >= 0) TakeLight(choice.light, choice.probability, choice.remainder, u[1]);
       return;
     }
     for (int light = 0; light < lights.count(); ++light) {
@@ -72,7 +74,7 @@ struct Sample {
 
   // A direction of the surface.
   void TakeDirection(const Quad& u) {
-    ++work_tally.light_samples;
+    ++thread_counters.light_samples;
     const glm::dvec2 disc = SquareToDisc(u[0], u[1]);
     glm::dvec3 x, y;
     MakeFrame(point.normal, x, y);
@@ -82,8 +84,8 @@ struct Sample {
     if (!(reflected > 0.0)) return;
     const auto met_before = [&](double length) {
       double light = std::isinf(length) ? Brightness(lights.world()) : 0.0;
-      lights.VisitLamps(origin, direction, length, [&](int lamp, const glm::dvec3& radiance, double density) {
-        if (LooksFor(lamp)) light += Weighed(lamp, radiance, density, reflected);
+      lights.VisitAnalytic(origin, direction, length, [&](int met, const glm::dvec3& radiance, double density) {
+        if (LooksFor(met)) light += Weighed(met, radiance, density, reflected);
       });
       return light;
     };
@@ -118,9 +120,9 @@ struct Sample {
 
 }  // namespace
 
-SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
-                          const Sampler& sampler, int samples, RayCounts& rays) {
-  SoftLight sum;
+AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
+                              const Sampler& sampler, int samples, RayCounts& rays) {
+  AreaLighting sum;
   Sample sample{scene, lights, point, ShadowRayOrigin(point), sum, rays};
   const bool by_light = lights.delta_count() < lights.count();
   const bool by_direction = lights.has_world() || lights.AnyWideFrom(point.position);

@@ -1,23 +1,23 @@
-// Direct light on white Lambert from lights with extent: lamps, meshes that emit, the world. The luminance and shadow
-// layers' share that no single ray can tell.
+// Direct light on white Lambert from lights with extent: area lights, meshes that emit, the world. This is the part of
+// the luminance and shadow layers that takes many rays.
 #pragma once
 
-#include "guidegen/rays/embree_scene.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/sampler.h"
+#include "guidegen/rays/embree_scene.h"
 
 namespace scumble {
 
-// Reflected luminance, irradiance/π, with and without what stands in the way. What shines does not count as standing in
-// the way of other shining meshes, nor the front of one as standing before its back: a ball of light casts no shadow.
-struct SoftLight {
+// Reflected luminance, irradiance/π, with and without occluders. A mesh that emits does not occlude other meshes that
+// emit, nor its own back: a sphere of light casts no shadow.
+struct AreaLighting {
   double reached = 0.0;
   double unoccluded = 0.0;
 };
 
 // The mean of `samples` samples; delta lights are left out. The same sampler gives the same bits.
-SoftLight SampleSoftLight(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
-                          const Sampler& sampler, int samples, RayCounts& rays);
+AreaLighting SampleAreaLights(const EmbreeScene& scene, const LightSet& lights, const SurfacePoint& point,
+                              const Sampler& sampler, int samples, RayCounts& rays);
 
 }  // namespace scumble

@@ -6,30 +6,24 @@
 #include <limits>
 #include <string>
 
-#include "guidegen/surface/work_counters.h"
 #include "core/image/color.h"
+#include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {
 
-// Metres up to which a lamp has no extent: as floats hold no less, no scene is so small, and a radiance, over the square
-// of it, stays within a double's range.
+// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is so small; and a radiance, over
+// the square of it, stays within a double's range.
 constexpr double kLeastRadius = 0x1p-149;
 
-// Radians up to which a sun has none: in floats nothing tells the two apart.
+// Radians up to which a sun has no extent: floats cannot show the difference.
 constexpr double kLeastHalfAngle = 1e-9;
 
 // Degrees; beyond, the tangent of half the angle would leave every range.
 constexpr double kWidestSun = 179.9;
 
-// Layers hold floats: brighter than this cannot be told.
+// Layers hold floats: they cannot hold anything brighter.
 constexpr double kMaxIrradiance = std::numeric_limits<float>::max() * glm::pi<double>();
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-glm::dvec3 WithinRange(const glm::dvec3& v) {
-  return glm::clamp(v, glm::dvec3(-kLargestInRay), glm::dvec3(kLargestInRay));
-}
 
 Status CheckBrightness(const Light& light, const std::string& who) {
   for (int i = 0; i < 3; ++i) {
@@ -59,7 +53,7 @@ Status PlaceCone(const Light& light, const std::string& who, PlacedLight& placed
   return Ok();
 }
 
-Status PlaceArea(const Light& light, const std::string& who, const CameraRays& camera, PlacedLight& placed) {
+Status PlaceArea(const Light& light, const std::string& who, const CameraPose& camera, PlacedLight& placed) {
   SCUMBLE_RETURN_IF_ERROR(CheckExtent(who, "size", light.size_x));
   SCUMBLE_RETURN_IF_ERROR(CheckExtent(who, "size", light.size_y));
   placed.ellipse = light.ellipse;
@@ -73,7 +67,7 @@ Status PlaceArea(const Light& light, const std::string& who, const CameraRays& c
   return Ok();
 }
 
-Expected<PlacedLight> PlaceLight(const Light& light, const CameraRays& camera) {
+Expected<PlacedLight> PlaceLight(const Light& light, const CameraPose& camera) {
   const std::string who = "light \"" + light.name + "\" ";
   PlacedLight placed;
   placed.type = light.type;
@@ -113,7 +107,7 @@ Expected<PlacedLight> PlaceLight(const Light& light, const CameraRays& camera) {
 
 }  // namespace
 
-Expected<std::vector<PlacedLight>> PlaceLights(const std::vector<Light>& lights, const CameraRays& camera) {
+Expected<std::vector<PlacedLight>> PlaceLights(const std::vector<Light>& lights, const CameraPose& camera) {
   std::vector<PlacedLight> placed;
   for (const Light& light : lights) {
     SCUMBLE_ASSIGN(PlacedLight one, PlaceLight(light, camera));
@@ -136,7 +130,7 @@ double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light) {
 }
 
 LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
-  ++work_tally.light_samples;
+  ++thread_counters.light_samples;
   LightSample sample;
   sample.endless = light.type == LightType::kSun;
   sample.to_light = sample.endless ? -light.axis : light.position - point.position;
@@ -153,37 +147,6 @@ LightSample SampleLight(const PlacedLight& light, const SurfacePoint& point) {
   irradiance *= SpotAttenuation(light, -direction);
   sample.luminance = irradiance * glm::one_over_pi<double>();
   return sample;
-}
-
-double LightGap(const glm::dvec3& origin, const glm::dvec3& light) {
-  return kRoundingPerCoordinate * std::max(LargestCoordinate(origin), LargestCoordinate(light));
-}
-
-LightRay LightRayTo(const glm::dvec3& origin, const glm::dvec3& light) {
-  LightRay ray{WithinRange(origin), light - origin, 1.0, 0.0};
-  const double largest = LargestCoordinate(ray.direction);
-  if (largest > kLargestInRay) {
-    ray.end = largest;
-    ray.direction /= largest;
-  }
-  ray.reach = std::max(0.0, ray.end - LightGap(origin, light) / glm::length(ray.direction));  // 0 for no way at all
-  return ray;
-}
-
-LightRay EndlessLightRay(const glm::dvec3& origin, const glm::dvec3& direction) {
-  return {WithinRange(origin), direction, kInfinity, kInfinity};
-}
-
-glm::dvec3 ShadowRayOrigin(const SurfacePoint& point) {
-  // Seen flatter than this (about half a degree), the way back would have to be too long for the height it gains.
-  constexpr double kLeastCosine = 0.01;
-  const double height = point.largest_coordinate * kRoundingPerCoordinate;
-  const double length = glm::length(point.clear_way);
-  if (!(length > 0.0)) return point.position + point.facing * height;
-  const glm::dvec3 way = point.clear_way / length;
-  const double cosine = glm::dot(point.facing, way);
-  const double back = std::min(height / std::max(cosine, kLeastCosine), length);
-  return point.position + way * back + point.facing * (height - back * cosine);
 }
 
 }  // namespace scumble

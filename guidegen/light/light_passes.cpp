@@ -7,16 +7,19 @@
 #include <limits>
 #include <span>
 
-#include "guidegen/surface/bsdf.h"
-#include "guidegen/light/progress_gate.h"
-#include "guidegen/surface/work_counters.h"
 #include "core/image/stopwatch.h"
+#include "guidegen/rays/progress_gate.h"
+#include "guidegen/surface/bsdf.h"
+#include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {
 
 // Before so many samples an estimated error is chance itself, and does not end the sampling.
 constexpr int kLeastSamplesForNoise = 16;
+
+// Paths of a pixel after which the caller may ask to stop: they take far less than a tenth of a second.
+constexpr int kSamplesBetweenPolls = 64;
 
 void AddRays(const RayCounts& from, RayCounts& to) {
   to.shadow += from.shadow;
@@ -60,7 +63,7 @@ class LightPasses {
         const auto kept =
             kept_.empty() ? std::span<glm::dvec3>() : std::span(kept_[list]).subspan(i * layers_, layers_);
         std::copy(kept.begin(), kept.end(), sums.begin());
-        Shade(pixels_[list][i], done, wanted, sums, statistics);
+        if (!Shade(pixels_[list][i], done, wanted, sums, statistics, gate)) return;
         std::copy_n(sums.begin(), kept.size(), kept.begin());
       }
       statistics.work = meter.Since();
@@ -94,7 +97,9 @@ class LightPasses {
   const WorkCounts& work() const { return work_; }
 
  private:
-  void Shade(const PathPixel& pixel, int done, int wanted, PathSums& sums, PassStatistics& statistics) {
+  // False where the caller asked to stop; nothing is written then.
+  bool Shade(const PathPixel& pixel, int done, int wanted, PathSums& sums, PassStatistics& statistics,
+             ProgressGate& gate) {
     const LightPathTracer::First first = tracer_.FirstVertex(pixel);
     const Sampler sampler(pixel.index, 0, seed_);
     PathSums exact{};
@@ -103,6 +108,7 @@ class LightPasses {
     if (done == 0) AddRays(exact_rays, statistics.rays);
     const PathSums before = sums;
     for (int sample = done; sample < wanted; ++sample) {
+      if ((sample - done) % kSamplesBetweenPolls == 0 && !gate.Continue()) return false;
       tracer_.AddSample(first, sampler, std::uint32_t(sample), sums, statistics.rays);
     }
     for (std::size_t layer = 0; layer < follower_.layers().size(); ++layer) {
@@ -116,6 +122,7 @@ class LightPasses {
       const double error = (old_mean - new_mean) * std::sqrt(double(done) * (wanted - done)) / wanted;
       statistics.squared_error[layer] += error * error;
     }
+    return true;
   }
 
   void Write(Layer layer, std::size_t index, const glm::dvec3& light) {

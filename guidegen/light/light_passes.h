@@ -1,4 +1,4 @@
-// How many samples the light paths of a picture get, and their way into its layers.
+// How many samples the light paths of a picture get, and how they are averaged into its layers.
 #pragma once
 
 #include <vector>

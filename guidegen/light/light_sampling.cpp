@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "guidegen/rays/ray_offset.h"
 #include "guidegen/surface/bsdf.h"
 #include "guidegen/surface/work_counters.h"
 
@@ -18,12 +19,12 @@ constexpr double kLeastSquare = 1e-30;
 // The distance from a plane, over the largest coordinate, that doubles cannot be trusted to tell.
 constexpr double kFlat = 0x1.0p-40;
 
-// Irradiance beyond this does not fit a float once it is reflected, and could become infinite on its way.
+// Irradiance beyond this does not fit a float once it is reflected, and could become infinite before.
 constexpr double kMostIrradiance = std::numeric_limits<float>::max();
 
-double AreaOf(const PlacedLight& lamp) {
-  const double sides = glm::length(lamp.half_x) * glm::length(lamp.half_y);
-  return lamp.ellipse ? kPi * sides : 4.0 * sides;
+double AreaOf(const PlacedLight& light) {
+  const double sides = glm::length(light.half_x) * glm::length(light.half_y);
+  return light.ellipse ? kPi * sides : 4.0 * sides;
 }
 
 // A sun is a disc at a distance of 1, sampled by area; `cosine` is that of the angle to its middle.
@@ -37,26 +38,26 @@ double PerSolidAngle(double area, double square, double cosine) {
   return area > 0.0 && cosine > 0.0 ? square / (area * cosine) : 0.0;
 }
 
-LightDraw DrawDelta(const PlacedLight& lamp, const glm::dvec3& point) {
+LightDraw DrawDelta(const PlacedLight& light, const glm::dvec3& point) {
   LightDraw draw;
   draw.is_delta = true;
-  if (lamp.type == LightType::kSun) {
-    draw.direction = -lamp.axis;
+  if (light.type == LightType::kSun) {
+    draw.direction = -light.axis;
     draw.endless = true;
-    draw.radiance = lamp.color;
+    draw.radiance = light.color;
     return draw;
   }
-  const glm::dvec3 way = lamp.position - point;
-  const double length = glm::length(way);
+  const glm::dvec3 to_light = light.position - point;
+  const double length = glm::length(to_light);
   if (!(length > 0.0)) return draw;
-  draw.direction = way / length;
-  draw.target = lamp.position;
-  const double share = SpotAttenuation(lamp, -draw.direction) / std::max(length * length, kLeastSquare);
-  for (int i = 0; i < 3; ++i) draw.radiance[i] = std::min(lamp.color[i] * share, kMostIrradiance);
+  draw.direction = to_light / length;
+  draw.target = light.position;
+  const double share = SpotAttenuation(light, -draw.direction) / std::max(length * length, kLeastSquare);
+  for (int i = 0; i < 3; ++i) draw.radiance[i] = std::min(light.color[i] * share, kMostIrradiance);
   return draw;
 }
 
-// The radiance is the irradiance times the density, as in Cycles: what the directions bring is the same for all.
+// The radiance is the irradiance times the density, as in Cycles: all directions contribute equally.
 LightDraw DrawSun(const PlacedLight& sun, double u, double v) {
   LightDraw draw;
   draw.endless = true;
@@ -69,35 +70,35 @@ LightDraw DrawSun(const PlacedLight& sun, double u, double v) {
   return draw;
 }
 
-LightDraw DrawBall(const PlacedLight& lamp, const glm::dvec3& point, double u, double v) {
+LightDraw DrawBall(const PlacedLight& light, const glm::dvec3& point, double u, double v) {
   LightDraw draw;
-  const glm::dvec3 way = lamp.position - point;
-  const double distance = glm::length(way);
+  const glm::dvec3 to_light = light.position - point;
+  const double distance = glm::length(to_light);
   if (!(distance > 0.0)) return draw;
-  const glm::dvec3 axis = way / distance;
+  const glm::dvec3 axis = to_light / distance;
   glm::dvec3 x, y;
   MakeFrame(axis, x, y);
-  const glm::dvec2 disc = SquareToDisc(u, v) * lamp.radius;
-  draw.target = lamp.position + x * disc.x + y * disc.y;
+  const glm::dvec2 disc = SquareToDisc(u, v) * light.radius;
+  draw.target = light.position + x * disc.x + y * disc.y;
   const glm::dvec3 to_target = draw.target - point;
   const double square = glm::dot(to_target, to_target);
   draw.direction = to_target / std::sqrt(square);
-  const double area = kPi * lamp.radius * lamp.radius;
+  const double area = kPi * light.radius * light.radius;
   draw.density = PerSolidAngle(area, square, glm::dot(axis, draw.direction));
-  draw.radiance = lamp.color * (SpotAttenuation(lamp, -draw.direction) / area);
+  draw.radiance = light.color * (SpotAttenuation(light, -draw.direction) / area);
   return draw;
 }
 
-LightDraw DrawArea(const PlacedLight& lamp, const glm::dvec3& point, double u, double v) {
+LightDraw DrawArea(const PlacedLight& light, const glm::dvec3& point, double u, double v) {
   LightDraw draw;
-  const glm::dvec2 at = lamp.ellipse ? SquareToDisc(u, v) : glm::dvec2(2.0 * u - 1.0, 2.0 * v - 1.0);
-  draw.target = lamp.position + lamp.half_x * at.x + lamp.half_y * at.y;
-  const glm::dvec3 way = draw.target - point;
-  const double square = glm::dot(way, way);
+  const glm::dvec2 at = light.ellipse ? SquareToDisc(u, v) : glm::dvec2(2.0 * u - 1.0, 2.0 * v - 1.0);
+  draw.target = light.position + light.half_x * at.x + light.half_y * at.y;
+  const glm::dvec3 to_target = draw.target - point;
+  const double square = glm::dot(to_target, to_target);
   if (!(square > kLeastSquare)) return draw;
-  draw.direction = way / std::sqrt(square);
-  draw.density = PerSolidAngle(AreaOf(lamp), square, -glm::dot(lamp.axis, draw.direction));
-  if (draw.density > 0.0) draw.radiance = lamp.color;
+  draw.direction = to_target / std::sqrt(square);
+  draw.density = PerSolidAngle(AreaOf(light), square, -glm::dot(light.axis, draw.direction));
+  if (draw.density > 0.0) draw.radiance = light.color;
   return draw;
 }
 
@@ -112,36 +113,36 @@ LightDraw MeetSun(const PlacedLight& sun, const glm::dvec3& direction) {
   return met;
 }
 
-LightDraw MeetBall(const PlacedLight& lamp, const glm::dvec3& point, const glm::dvec3& direction, double length) {
+LightDraw MeetBall(const PlacedLight& light, const glm::dvec3& point, const glm::dvec3& direction, double length) {
   LightDraw met;
-  const glm::dvec3 way = lamp.position - point;
-  const double distance = glm::length(way);
-  const double along = glm::dot(way, direction);
+  const glm::dvec3 to_light = light.position - point;
+  const double distance = glm::length(to_light);
+  const double along = glm::dot(to_light, direction);
   if (!(along > 0.0) || !(distance > 0.0)) return met;
   const double t = distance * (distance / along);
   if (!(t - LightGap(point, point + direction * t) < length)) return met;
-  const glm::dvec3 off = direction * t - way;
-  if (glm::dot(off, off) > lamp.radius * lamp.radius) return met;
-  const double area = kPi * lamp.radius * lamp.radius;
+  const glm::dvec3 off = direction * t - to_light;
+  if (glm::dot(off, off) > light.radius * light.radius) return met;
+  const double area = kPi * light.radius * light.radius;
   met.density = PerSolidAngle(area, t * t, along / distance);
-  met.radiance = lamp.color * (SpotAttenuation(lamp, -direction) / area);
+  met.radiance = light.color * (SpotAttenuation(light, -direction) / area);
   return met;
 }
 
-LightDraw MeetArea(const PlacedLight& lamp, const glm::dvec3& point, const glm::dvec3& direction, double length) {
+LightDraw MeetArea(const PlacedLight& light, const glm::dvec3& point, const glm::dvec3& direction, double length) {
   LightDraw met;
-  const double cosine = -glm::dot(lamp.axis, direction);
+  const double cosine = -glm::dot(light.axis, direction);
   if (!(cosine > 0.0)) return met;
-  const glm::dvec3 way = lamp.position - point;
-  const double t = -glm::dot(way, lamp.axis) / cosine;
+  const glm::dvec3 to_light = light.position - point;
+  const double t = -glm::dot(to_light, light.axis) / cosine;
   if (!(t > 0.0) || !(t - LightGap(point, point + direction * t) < length)) return met;
-  const glm::dvec3 off = direction * t - way;
-  const double x = glm::dot(off, lamp.half_x) / glm::dot(lamp.half_x, lamp.half_x);
-  const double y = glm::dot(off, lamp.half_y) / glm::dot(lamp.half_y, lamp.half_y);
-  const bool inside = lamp.ellipse ? x * x + y * y <= 1.0 : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
+  const glm::dvec3 off = direction * t - to_light;
+  const double x = glm::dot(off, light.half_x) / glm::dot(light.half_x, light.half_x);
+  const double y = glm::dot(off, light.half_y) / glm::dot(light.half_y, light.half_y);
+  const bool inside = light.ellipse ? x * x + y * y <= 1.0 : std::abs(x) <= 1.0 && std::abs(y) <= 1.0;
   if (!inside) return met;
-  met.density = PerSolidAngle(AreaOf(lamp), t * t, cosine);
-  met.radiance = lamp.color;
+  met.density = PerSolidAngle(AreaOf(light), t * t, cosine);
+  met.radiance = light.color;
   return met;
 }
 
@@ -157,26 +158,27 @@ double MostAttenuation(const PlacedLight& spot, const glm::dvec3& from_centre) {
   return SpotAttenuation(spot, spot.axis * (cosine < straight ? cosine * straight + sine * turn : 1.0));
 }
 
-TreeLight ShapeOf(const PlacedLight& lamp) {
-  TreeLight shape{lamp.position, lamp.radius, std::min(Brightness(lamp.color), kMostIrradiance), false, lamp.IsDelta()};
-  shape.is_sun = lamp.type == LightType::kSun;
-  if (shape.is_sun) shape.radius = lamp.half_angle;
-  if (lamp.type == LightType::kArea) {
-    shape.radius = glm::length(lamp.half_x) + glm::length(lamp.half_y);
-    shape.power *= AreaOf(lamp);
+TreeLight ShapeOf(const PlacedLight& light) {
+  TreeLight shape{light.position, light.radius, std::min(Brightness(light.color), kMostIrradiance), false,
+                  light.IsDelta()};
+  shape.is_sun = light.type == LightType::kSun;
+  if (shape.is_sun) shape.radius = light.half_angle;
+  if (light.type == LightType::kArea) {
+    shape.radius = glm::length(light.half_x) + glm::length(light.half_y);
+    shape.power *= AreaOf(light);
   }
   return shape;
 }
 
 }  // namespace
 
-LightSet::LightSet(std::span<const PlacedLight> lamps, std::span<const PlacedObject> objects, const glm::dvec3& world)
+LightSet::LightSet(std::span<const PlacedLight> lights, std::span<const PlacedObject> objects, const glm::dvec3& world)
     : objects_(objects), emitter_of_(objects.size(), -1), world_(world) {
-  for (const PlacedLight& lamp : lamps) {
-    if (lamp.color == glm::dvec3(0.0) || (lamp.type == LightType::kArea && !(AreaOf(lamp) > 0.0))) continue;
-    lamps_.push_back(lamp);
-    shapes_.push_back(ShapeOf(lamp));
-    if (lamp.IsDelta()) ++delta_count_;
+  for (const PlacedLight& light : lights) {
+    if (light.color == glm::dvec3(0.0) || (light.type == LightType::kArea && !(AreaOf(light) > 0.0))) continue;
+    analytic_.push_back(light);
+    shapes_.push_back(ShapeOf(light));
+    if (light.IsDelta()) ++delta_count_;
   }
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (objects[i].mesh && MayEmit(*objects[i].material)) AddEmitter(std::uint32_t(i));
@@ -215,12 +217,12 @@ double LightSet::Weight(int light, const SurfacePoint& point, bool with_delta) c
   const TreeLight& shape = shapes_[std::size_t(light)];
   if (shape.is_delta && !with_delta) return 0.0;
   if (IsEmitter(light)) return BallWeight(shape.centre, shape.radius, shape.power, point);
-  const PlacedLight& lamp = lamps_[std::size_t(light)];
-  if (shape.is_sun) return SunWeight(-lamp.axis, lamp.half_angle, shape.power, point);
-  const glm::dvec3 way = point.position - lamp.position;
-  if (lamp.type == LightType::kArea && !(glm::dot(way, lamp.axis) > 0.0)) return 0.0;
+  const PlacedLight& placed = analytic_[std::size_t(light)];
+  if (shape.is_sun) return SunWeight(-placed.axis, placed.half_angle, shape.power, point);
+  const glm::dvec3 from_light = point.position - placed.position;
+  if (placed.type == LightType::kArea && !(glm::dot(from_light, placed.axis) > 0.0)) return 0.0;
   const double weight = BallWeight(shape.centre, shape.radius, shape.power, point);
-  return lamp.type == LightType::kSpot && weight > 0.0 ? weight * MostAttenuation(lamp, way) : weight;
+  return placed.type == LightType::kSpot && weight > 0.0 ? weight * MostAttenuation(placed, from_light) : weight;
 }
 
 bool LightSet::AnyWideFrom(const glm::dvec3& point) const {
@@ -237,21 +239,21 @@ double LightSet::Probability(const SurfacePoint& point, int light, bool with_del
 }
 
 LightDraw LightSet::Draw(int light, const glm::dvec3& point, double u, double v) const {
-  ++work_tally.light_samples;
-  if (IsEmitter(light)) return DrawEmitter(emitters_[std::size_t(light) - lamps_.size()], point, u, v);
-  const PlacedLight& lamp = lamps_[std::size_t(light)];
-  if (lamp.IsDelta()) return DrawDelta(lamp, point);
-  if (lamp.type == LightType::kSun) return DrawSun(lamp, u, v);
-  if (lamp.type == LightType::kArea) return DrawArea(lamp, point, u, v);
-  return DrawBall(lamp, point, u, v);
+  ++thread_counters.light_samples;
+  if (IsEmitter(light)) return DrawEmitter(emitters_[std::size_t(light) - analytic_.size()], point, u, v);
+  const PlacedLight& placed = analytic_[std::size_t(light)];
+  if (placed.IsDelta()) return DrawDelta(placed, point);
+  if (placed.type == LightType::kSun) return DrawSun(placed, u, v);
+  if (placed.type == LightType::kArea) return DrawArea(placed, point, u, v);
+  return DrawBall(placed, point, u, v);
 }
 
 LightDraw LightSet::Meet(int light, const glm::dvec3& point, const glm::dvec3& direction, double length) const {
-  const PlacedLight& lamp = lamps_[std::size_t(light)];
-  if (lamp.IsDelta()) return {};
-  if (lamp.type == LightType::kSun) return std::isinf(length) ? MeetSun(lamp, direction) : LightDraw{};
-  if (lamp.type == LightType::kArea) return MeetArea(lamp, point, direction, length);
-  return MeetBall(lamp, point, direction, length);
+  const PlacedLight& placed = analytic_[std::size_t(light)];
+  if (placed.IsDelta()) return {};
+  if (placed.type == LightType::kSun) return std::isinf(length) ? MeetSun(placed, direction) : LightDraw{};
+  if (placed.type == LightType::kArea) return MeetArea(placed, point, direction, length);
+  return MeetBall(placed, point, direction, length);
 }
 
 LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point, double u, double v) const {
@@ -261,24 +263,24 @@ LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point,
   const auto found = std::upper_bound(emitter.areas_up_to.begin(), emitter.areas_up_to.end(), wanted);
   const std::size_t at = std::min(std::size_t(found - emitter.areas_up_to.begin()), emitter.triangles.size() - 1);
   const double before = at > 0 ? emitter.areas_up_to[at - 1] : 0.0;
-  const double rest = std::clamp((wanted - before) / (emitter.areas_up_to[at] - before), 0.0, 1.0);
+  const double remainder = std::clamp((wanted - before) / (emitter.areas_up_to[at] - before), 0.0, 1.0);
   const PlacedObject& object = objects_[emitter.object];
   const std::uint32_t primitive = emitter.triangles[at];
   const Triangle triangle = ViewTriangle(object, primitive);
-  const double root = std::sqrt(rest);
+  const double root = std::sqrt(remainder);
   const glm::dvec2 barycentric(root * (1.0 - v), root * v);
   const glm::dvec3 first = triangle.corner[1] - triangle.corner[0];
   const glm::dvec3 second = triangle.corner[2] - triangle.corner[0];
   draw.target = triangle.corner[0] + first * barycentric.x + second * barycentric.y;
-  const glm::dvec3 way = draw.target - point;
-  const double square = glm::dot(way, way);
+  const glm::dvec3 to_target = draw.target - point;
+  const double square = glm::dot(to_target, to_target);
   if (!(square > kLeastSquare)) return draw;
-  draw.direction = way / std::sqrt(square);
+  draw.direction = to_target / std::sqrt(square);
   const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
   double largest = LargestCoordinate(point);
   for (const glm::dvec3& corner : triangle.corner) largest = std::max(largest, LargestCoordinate(corner));
   // A flat emitter does not light itself: so near its plane, the side is rounding alone.
-  const double off_plane = std::abs(glm::dot(normal, way));
+  const double off_plane = std::abs(glm::dot(normal, to_target));
   if (!(off_plane > largest * kFlat)) return draw;
   const double cosine = off_plane / std::sqrt(square);
   draw.density = PerSolidAngle(area, square, cosine);
@@ -292,11 +294,11 @@ LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point,
 }
 
 double LightSet::EmitterDensity(int light, const glm::dvec3& point, const SurfacePoint& on_emitter) const {
-  const Emitter& emitter = emitters_[std::size_t(light) - lamps_.size()];
-  const glm::dvec3 way = on_emitter.position - point;
-  const double square = glm::dot(way, way);
+  const Emitter& emitter = emitters_[std::size_t(light) - analytic_.size()];
+  const glm::dvec3 to_emitter = on_emitter.position - point;
+  const double square = glm::dot(to_emitter, to_emitter);
   if (!(square > kLeastSquare)) return 0.0;
-  const double cosine = std::abs(glm::dot(on_emitter.facing, way)) / std::sqrt(square);
+  const double cosine = std::abs(glm::dot(on_emitter.facing, to_emitter)) / std::sqrt(square);
   return PerSolidAngle(emitter.areas_up_to.back(), square, cosine);
 }
 

@@ -1,5 +1,6 @@
-// Every light of a scene as a path tracer wants it: chosen, sampled, and met by chance. Lamps without and with extent,
-// meshes that emit, and the world. A lamp has no body: it neither casts a shadow nor hides what is behind it.
+// Every light of a scene as a path tracer wants it: chosen, sampled, and hit by rays. Analytic lights (those of the
+// scene's list, with and without extent), meshes that emit, and the world. An analytic light has no surface: it neither
+// casts a shadow nor hides what is behind it.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +19,11 @@ namespace scumble {
 struct LightDraw {
   glm::dvec3 direction{0.0};  // unit, towards the light
   glm::dvec3 target{0.0};     // where the light is, unless endless
-  bool endless = false;       // the way has no end
+  bool endless = false;       // the light is infinitely far
   bool is_delta = false;
   glm::dvec3 radiance{0.0};  // of delta lights: the irradiance of a surface that faces them
   double density = 0.0;      // per solid angle, without the choice of the light; of no meaning for delta lights
-  // Of meshes that emit: the triangle that the target is on, and how far from it, in metres along the way, Embree's
+  // Of meshes that emit: the triangle that the target is on, and how far from it, in metres along the ray, Embree's
   // floats may find the mesh.
   static constexpr std::uint32_t kNoObject = ~0u;
   std::uint32_t object = kNoObject;
@@ -33,42 +34,42 @@ struct LightDraw {
 // The lights of a scene. Borrows the objects, which must outlive it. Immutable; free to use from any thread.
 class LightSet {
  public:
-  LightSet(std::span<const PlacedLight> lamps, std::span<const PlacedObject> objects, const glm::dvec3& world);
+  LightSet(std::span<const PlacedLight> lights, std::span<const PlacedObject> objects, const glm::dvec3& world);
 
-  // Lights are numbered: the lamps that shine, then the objects that emit. The world is none of them: directions
-  // sampled from a surface's lobes meet it by themselves.
-  int count() const { return int(lamps_.size() + emitters_.size()); }
+  // Lights are numbered: the analytic lights that are not black, then the objects that emit. The world has no number:
+  // directions sampled from a surface's lobes meet it.
+  int count() const { return int(analytic_.size() + emitters_.size()); }
   int delta_count() const { return delta_count_; }
-  // Whether those that are no delta lights are so few that a surface which matters can look at each of them.
+  // Whether the lights with extent are so few that the first surface can sample each of them.
   bool FewHaveExtent() const { return count() - delta_count_ <= 8; }
   bool has_emitters() const { return !emitters_.empty(); }
-  bool has_extended_lamps() const { return delta_count_ < int(lamps_.size()); }
+  bool has_extended_analytic() const { return delta_count_ < int(analytic_.size()); }
   bool has_world() const { return world_ != glm::dvec3(0.0); }
   // Whether a ray may meet light: whether anything but delta lights shines.
-  bool CanBeMet() const { return has_emitters() || has_extended_lamps() || has_world(); }
+  bool CanBeMet() const { return has_emitters() || has_extended_analytic() || has_world(); }
   bool empty() const { return count() == 0 && !has_world(); }
-  bool IsDelta(int light) const { return light < int(lamps_.size()) && lamps_[std::size_t(light)].IsDelta(); }
-  bool IsEmitter(int light) const { return light >= int(lamps_.size()); }
+  bool IsDelta(int light) const { return light < int(analytic_.size()) && analytic_[std::size_t(light)].IsDelta(); }
+  bool IsEmitter(int light) const { return light >= int(analytic_.size()); }
   const glm::dvec3& world() const { return world_; }
 
-  // Chooses a light about in proportion to what it may do to a point when nothing is in the way; `with_delta` says
+  // Chooses a light about in proportion to its unoccluded irradiance at a point; `with_delta` says
   // whether delta lights take part.
   LightChoice Choose(const SurfacePoint& point, double u, bool with_delta) const;
   // The probability with which Choose takes this light.
   double Probability(const SurfacePoint& point, int light, bool with_delta) const;
 
-  // Whether a lamp or an emitter is wide from there, and whether any is; see IsWide in light_tree.h.
+  // Whether a light is wide from there, and whether any is; see IsWide in light_tree.h.
   bool IsWideFrom(const glm::dvec3& point, int light) const { return IsWide(shapes_[std::size_t(light)], point); }
   bool AnyWideFrom(const glm::dvec3& point) const;
 
   // u picks among triangles too and is stretched for it. A draw that cannot reach the point has no radiance.
   LightDraw Draw(int light, const glm::dvec3& point, double u, double v) const;
 
-  // Calls visit(light, radiance, density) for each lamp with extent that the ray meets before `length` (infinite: it
-  // meets nothing else); `density` is Draw's. The world is left to the caller.
+  // Calls visit(light, radiance, density) for each analytic light with extent that the ray meets before `length`
+  // (infinite: it meets nothing else); `density` is Draw's. The world is left to the caller.
   template <class Visit>
-  void VisitLamps(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
-    if (!has_extended_lamps()) return;
+  void VisitAnalytic(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
+    if (!has_extended_analytic()) return;
     tree_.VisitAlong(point, direction, [&](int light) {
       if (IsEmitter(light)) return;
       const LightDraw met = Meet(light, point, direction, length);
@@ -76,7 +77,7 @@ class LightSet {
     });
   }
 
-  // Calls visit(emitter) for each mesh that emits and that the ray may meet; for others near its way, too.
+  // Calls visit(emitter) for each mesh that emits and that the ray may meet; for others near the ray, too.
   template <class Visit>
   void VisitEmitters(const glm::dvec3& point, const glm::dvec3& direction, const Visit& visit) const {
     if (!has_emitters()) return;
@@ -104,7 +105,7 @@ class LightSet {
   void AddEmitter(std::uint32_t object);
 
   std::span<const PlacedObject> objects_;
-  std::vector<PlacedLight> lamps_;
+  std::vector<PlacedLight> analytic_;
   std::vector<Emitter> emitters_;
   std::vector<int> emitter_of_;    // by object
   std::vector<TreeLight> shapes_;  // by light

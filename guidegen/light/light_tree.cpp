@@ -15,10 +15,10 @@ constexpr double kLeastSquare = 1e-30;
 }  // namespace
 
 double BallWeight(const glm::dvec3& centre, double radius, double power, const SurfacePoint& point) {
-  const glm::dvec3 way = centre - point.position;
-  if (glm::dot(point.facing, way) < -radius) return 0.0;
-  const double square = std::max(glm::dot(way, way), kLeastSquare);
-  const double cosine = (glm::dot(point.normal, way) + radius) / std::sqrt(square);
+  const glm::dvec3 to_centre = centre - point.position;
+  if (glm::dot(point.facing, to_centre) < -radius) return 0.0;
+  const double square = std::max(glm::dot(to_centre, to_centre), kLeastSquare);
+  const double cosine = (glm::dot(point.normal, to_centre) + radius) / std::sqrt(square);
   return power * std::clamp(cosine, kLeastCosine, 1.0) / std::max(square, radius * radius);
 }
 
@@ -29,14 +29,14 @@ double SunWeight(const glm::dvec3& direction, double half_angle, double power, c
   return power * std::clamp(glm::dot(point.normal, direction) + spread, kLeastCosine, 1.0);
 }
 
-LightTree::LightTree(std::span<const TreeLight> lights) : order_(lights.size()), way_to_(lights.size()) {
+LightTree::LightTree(std::span<const TreeLight> lights) : order_(lights.size()), path_to_(lights.size()) {
   std::iota(order_.begin(), order_.end(), 0);
   if (!lights.empty()) Build(lights, 0, std::uint32_t(lights.size()), 0, 0);
 }
 
 // Halves a leaf that is too large along its longest side; suns, which have no place, are kept together at one end.
 std::uint32_t LightTree::Build(std::span<const TreeLight> lights, std::uint32_t begin, std::uint32_t end,
-                               std::uint64_t way, int depth) {
+                               std::uint64_t path, int depth) {
   const std::uint32_t index = std::uint32_t(nodes_.size());
   nodes_.emplace_back();
   Node node;
@@ -61,7 +61,7 @@ std::uint32_t LightTree::Build(std::span<const TreeLight> lights, std::uint32_t 
   if (mine.size() <= kLeafSize) {
     node.begin = begin;
     node.count = int(mine.size());
-    for (const int light : mine) way_to_[std::size_t(light)] = way;
+    for (const int light : mine) path_to_[std::size_t(light)] = path;
     nodes_[index] = node;
     return index;
   }
@@ -76,8 +76,8 @@ std::uint32_t LightTree::Build(std::span<const TreeLight> lights, std::uint32_t 
   });
   const bool mixed = suns > 0 && suns < mine.size();
   const std::uint32_t middle = begin + (mixed ? suns : std::uint32_t(mine.size() / 2));
-  node.child[0] = Build(lights, begin, middle, way, depth + 1);
-  node.child[1] = Build(lights, middle, end, way | std::uint64_t(1) << depth, depth + 1);
+  node.child[0] = Build(lights, begin, middle, path, depth + 1);
+  node.child[1] = Build(lights, middle, end, path | std::uint64_t(1) << depth, depth + 1);
   nodes_[index] = node;
   return index;
 }
@@ -95,10 +95,10 @@ double LightTree::FirstShare(const Node& node, const SurfacePoint& point, bool w
 
 bool LightTree::MayMeet(const Node& node, const glm::dvec3& origin, const glm::dvec3& direction) {
   if (std::isinf(node.radius)) return true;
-  const glm::dvec3 way = node.centre - origin;
-  const double along = glm::dot(way, direction);
+  const glm::dvec3 to_centre = node.centre - origin;
+  const double along = glm::dot(to_centre, direction);
   if (along < -node.radius) return false;
-  const glm::dvec3 off = way - direction * along;
+  const glm::dvec3 off = to_centre - direction * along;
   return glm::dot(off, off) <= node.radius * node.radius * (1.0 + 1e-9) + kLeastSquare;
 }
 

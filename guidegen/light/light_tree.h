@@ -16,16 +16,16 @@
 
 namespace scumble {
 
-// Which light to sample.
+// A light that was chosen for sampling.
 struct LightChoice {
   int light = -1;  // −1: none can reach the point
   double probability = 0.0;
-  // What is left of the number that chose, stretched to [0, 1): it takes part in drawing a point of the light, so that
-  // the points on each light are spread as evenly as the numbers were.
-  double rest = 0.0;
+  // The remainder of the random number that chose, stretched to [0, 1). It is used to sample a point of the light, so
+  // that the points on each light are spread as evenly as the numbers were.
+  double remainder = 0.0;
 };
 
-// A light as the tree sees it: a ball somewhere, or a sun, which is as strong everywhere.
+// A light as the tree sees it: a bounding sphere, or a sun, which is equally strong everywhere.
 struct TreeLight {
   glm::dvec3 centre{0.0};
   double radius = 0.0;  // of suns half the angle, in radians
@@ -40,14 +40,14 @@ double BallWeight(const glm::dvec3& centre, double radius, double power, const S
 // The same for light that comes from one direction.
 double SunWeight(const glm::dvec3& direction, double half_angle, double power, const SurfacePoint& point);
 
-// Whether a light fills so much of the sky that directions of a wide lobe should look for it too. For smaller ones,
-// points drawn on the light are all alike, and such directions would be spent for nothing.
+// Whether a light fills so much of the hemisphere that directions of a wide lobe should sample it too. For a smaller
+// light, all points on it contribute about equally, and such directions would be wasted.
 inline bool IsWide(const TreeLight& light, const glm::dvec3& point) {
   constexpr double kWideDistance = 4.0;  // radii
   if (light.is_delta) return false;
   if (light.is_sun) return light.radius * kWideDistance > 1.0;
-  const glm::dvec3 way = light.centre - point;
-  return glm::dot(way, way) < kWideDistance * kWideDistance * light.radius * light.radius;
+  const glm::dvec3 to_centre = light.centre - point;
+  return glm::dot(to_centre, to_centre) < kWideDistance * kWideDistance * light.radius * light.radius;
 }
 
 // Immutable once built; free to use from any thread.
@@ -83,7 +83,8 @@ class LightTree {
       if (left < weights[i]) break;
       left -= weights[i];
     }
-    choice.rest = std::clamp(choice.rest, 0.0, kBelowOne);  // rounding may leave a little over for the last one
+    choice.remainder =
+        std::clamp(choice.remainder, 0.0, kBelowOne);  // rounding may leave a little over for the last one
     return choice;
   }
 
@@ -92,11 +93,11 @@ class LightTree {
   double Probability(const SurfacePoint& point, int light, bool with_delta, const Weight& weight) const {
     double probability = 1.0;
     const Node* node = &nodes_[0];
-    for (std::uint64_t way = way_to_[light]; node->count == 0; way >>= 1) {
+    for (std::uint64_t path = path_to_[light]; node->count == 0; path >>= 1) {
       const double first = FirstShare(*node, point, with_delta);
       if (!(first >= 0.0)) return 0.0;
-      probability *= (way & 1) != 0 ? 1.0 - first : first;
-      node = &nodes_[node->child[way & 1]];
+      probability *= (path & 1) != 0 ? 1.0 - first : first;
+      node = &nodes_[node->child[path & 1]];
     }
     if (node->count == 1) return weight(light) > 0.0 ? probability : 0.0;
     double total = 0.0;
@@ -104,7 +105,7 @@ class LightTree {
     return total > 0.0 ? probability * weight(light) / total : 0.0;
   }
 
-  // Calls visit(light) for every light with extent that a ray may meet, and for others near its way.
+  // Calls visit(light) for every light with extent that a ray may meet, and for others near its line.
   template <class Visit>
   void VisitAlong(const glm::dvec3& origin, const glm::dvec3& direction, const Visit& visit) const {
     if (!nodes_.empty()) VisitAlong(nodes_[0], origin, direction, visit);
@@ -123,7 +124,7 @@ class LightTree {
     int count = 0;            // 0: no leaf
   };
 
-  std::uint32_t Build(std::span<const TreeLight> lights, std::uint32_t begin, std::uint32_t end, std::uint64_t way,
+  std::uint32_t Build(std::span<const TreeLight> lights, std::uint32_t begin, std::uint32_t end, std::uint64_t path,
                       int depth);
   double NodeWeight(const Node& node, const SurfacePoint& point, bool with_delta) const;
   // The probability of a node's first child; −1 where neither can light the point.
@@ -138,9 +139,9 @@ class LightTree {
   }
   static bool MayMeet(const Node& node, const glm::dvec3& origin, const glm::dvec3& direction);
 
-  std::vector<Node> nodes_;            // the root first
-  std::vector<int> order_;             // lights, leaf by leaf
-  std::vector<std::uint64_t> way_to_;  // by light: bit d says which child is taken at depth d
+  std::vector<Node> nodes_;             // the root first
+  std::vector<int> order_;              // lights, leaf by leaf
+  std::vector<std::uint64_t> path_to_;  // by light: bit d says which child is taken at depth d
 };
 
 }  // namespace scumble

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "guidegen/surface/bsdf.h"
 #include "core/image/check.h"
+#include "guidegen/surface/bsdf.h"
 
 namespace scumble {
 namespace {

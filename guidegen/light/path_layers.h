@@ -5,19 +5,19 @@
 #include <span>
 #include <vector>
 
+#include "core/image/layers.h"
 #include "guidegen/light/path_expression.h"
 #include "guidegen/scene/scene.h"
-#include "core/image/layers.h"
 
 namespace scumble {
 
 inline constexpr int kMaxPathLayers = 5;
 
-// What a scene holds that paths are made of.
+// Kinds of light and reflection in a scene: the parts that paths are made of.
 struct PathSupply {
   bool light = false;            // anything that shines
-  std::size_t delta_lights = 0;  // lamps without extent
-  bool may_be_met = false;       // anything that shines and has an extent: lamps, meshes, the world
+  std::size_t delta_lights = 0;  // lights without extent
+  bool may_be_met = false;       // a light that has an extent: area lights, meshes, the world
   bool diffuse = false;          // materials that reflect so
   bool specular = false;
 };

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "guidegen/light/light_visibility.h"
+#include "guidegen/rays/ray_offset.h"
 #include "guidegen/rays/single_ray.h"
 
 namespace scumble {
@@ -27,7 +29,7 @@ constexpr PathEvent kLobeEvents[2] = {PathEvent::kDiffuse, PathEvent::kSpecular}
 double Balance(double a, double b) { return std::isinf(a) ? 1.0 : a / (a + b); }
 
 // The blur of what a path sees after a wide reflection, by the smallest density on its way: Cycles' "filter glossy" at
-// its default of 1. A mirror that only diffuse light looks into would otherwise show lamps as fireflies.
+// its default of 1. A mirror that only diffuse light looks into would otherwise show lights as fireflies.
 double RoughenedAlpha(double density) { return density < 1.0 ? 0.5 * std::sqrt(1.0 - density) : 0.0; }
 
 double Largest(const glm::dvec3& c) { return std::max(c.r, std::max(c.g, c.b)); }
@@ -46,7 +48,7 @@ LightPathTracer::Vertex LightPathTracer::MakeVertex(std::uint32_t object, std::u
                                                     double clear_from, double least_alpha) const {
   const PlacedObject& placed = scene_.objects()[object];
   SurfacePoint point = FindSurfacePoint(placed, primitive, ray);
-  point.clear_way = ClearWay(ray, clear_from, point.position);
+  point.max_ray_offset = MaxRayOffset(ray, clear_from, point.position);
   const SurfaceBsdf bsdf(placed, primitive, point, glm::normalize(-ray.direction), least_alpha);
   return {point, bsdf, ShadowRayOrigin(point), object, primitive};
 }
@@ -121,16 +123,16 @@ void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, int ligh
   }
 }
 
-// Lamps that a sampled direction meets before `length`, and the world where it meets nothing.
+// Analytic lights that a sampled direction meets before `length`, and the world where it meets nothing.
 void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length,
                              PathSums& sums) const {
-  // From where the ray leaves: a lamp in the surface itself is then behind it, however either is rounded.
-  lights_.VisitLamps(vertex.origin, flight.direction, length,
-                     [&](int light, const glm::dvec3& radiance, double density) {
-                       if (!LooksFor(light, vertex, flight.lobe)) return;
-                       const double other = density * ChoiceOf(light, vertex, flight);
-                       Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
-                     });
+  // From where the ray leaves: a light in the surface itself is then behind it, however either is rounded.
+  lights_.VisitAnalytic(vertex.origin, flight.direction, length,
+                        [&](int light, const glm::dvec3& radiance, double density) {
+                          if (!LooksFor(light, vertex, flight.lobe)) return;
+                          const double other = density * ChoiceOf(light, vertex, flight);
+                          Add(state, flight.throughput * radiance * Balance(flight.density, other), sums);
+                        });
   if (std::isinf(length)) Add(state, flight.throughput * lights_.world(), sums);
 }
 
@@ -148,7 +150,7 @@ bool LightPathTracer::MayMeetLight(const Vertex& vertex, const Flight& flight) c
   if (lights_.has_world() || lights_.has_emitters()) return true;
   bool met = false;
   const auto visit = [&](int light, const glm::dvec3&, double) { met = met || LooksFor(light, vertex, flight.lobe); };
-  lights_.VisitLamps(vertex.origin, flight.direction, kInfinity, visit);
+  lights_.VisitAnalytic(vertex.origin, flight.direction, kInfinity, visit);
   return met;
 }
 
@@ -188,7 +190,7 @@ void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const 
                                 const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
   const LightChoice choice = lights_.Choose(vertex.point, u[0], with_delta);
   if (choice.light < 0) return;
-  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, choice.rest, u[1]);
+  const LightDraw draw = lights_.Draw(choice.light, vertex.point.position, choice.remainder, u[1]);
   AddDraw(vertex, lobes, choice.light, draw, choice.probability, throughput, sums, rays);
 }
 
@@ -198,22 +200,22 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   flight.lobe = u[2] < lobes.probability[0] ? 0 : 1;
   const double probability = lobes.probability[flight.lobe];
   if (!(probability > 0.0)) return false;
-  const SurfaceBsdf::Bounce way =
+  const SurfaceBsdf::Bounce sampled =
       flight.lobe == 0 ? vertex.bsdf.SampleDiffuse(u[0], u[1]) : vertex.bsdf.SampleSpecular(u[0], u[1]);
-  flight.throughput *= way.weight / probability;
-  flight.direction = way.direction;
-  flight.density = way.density * probability;
-  flight.widest = std::min(flight.widest, way.density);
+  flight.throughput *= sampled.weight / probability;
+  flight.direction = sampled.direction;
+  flight.density = sampled.density * probability;
+  flight.widest = std::min(flight.widest, sampled.density);
   flight.first = bounce == 0;
   if (flight.throughput == glm::dvec3(0.0)) return false;
   if (bounce < kFirstRoulette) return true;
-  // By the root, as in Cycles: what survives is then neither all of one brightness and rare, nor all dim and dear.
+  // By the root, as in Cycles: a compromise between rare bright paths and many dim ones that cost time.
   const double survival = std::clamp(std::sqrt(Largest(flight.throughput)), kLeastSurvival, 1.0);
   flight.throughput /= survival;
   return u[3] < survival;
 }
 
-// Follows the flight to the next surface, adding the light on its way; nothing where the path ends.
+// Follows the flight to the next surface, adding the light that it meets; nothing where the path ends.
 std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex, const Lobes& lobes,
                                                             const Flight& flight, bool goes_on, PathSums& sums,
                                                             RayCounts& rays) const {
@@ -226,8 +228,8 @@ std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex
     if (lit) AddMet(vertex, state, flight, kInfinity, sums);
     return std::nullopt;
   }
-  const Vertex next = MakeVertex(hit.hit.geomID, hit.hit.primID, {vertex.origin, flight.direction}, 0.0,
-                                 RoughenedAlpha(flight.widest));
+  const Vertex next =
+      MakeVertex(hit.hit.geomID, hit.hit.primID, {vertex.origin, flight.direction}, 0.0, RoughenedAlpha(flight.widest));
   if (lit) {
     AddMet(vertex, state, flight, glm::length(next.point.position - vertex.origin), sums);
     AddEmission(vertex, next, state, flight, sums);

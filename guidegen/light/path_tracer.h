@@ -2,8 +2,8 @@
 // and Russian roulette (Veach 1997; Kajiya 1986).
 //
 // Each reflection chooses one lobe, so that every path has one string of events, and what it carries goes to exactly
-// the layers whose expression matches. On the first surface lamps without extent are summed, not sampled: where nothing
-// else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few;
+// the layers whose expression matches. On the first surface lights without extent are summed, not sampled: where
+// nothing else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few;
 // everywhere else one light is chosen.
 //
 // No path's light is clamped. The result is biased all the same, as Cycles' is by default ("filter glossy" at 1): after
@@ -18,12 +18,13 @@
 #include <limits>
 #include <optional>
 
-#include "guidegen/surface/bsdf.h"
-#include "guidegen/cast/cast_guides.h"
-#include "guidegen/rays/embree_scene.h"
+#include "guidegen/guidegen.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/light/sampler.h"
+#include "guidegen/light/view.h"
+#include "guidegen/rays/embree_scene.h"
+#include "guidegen/surface/bsdf.h"
 
 namespace scumble {
 
@@ -35,7 +36,7 @@ struct PathPixel {
   std::uint32_t index = 0;  // in the picture
   std::uint32_t object = 0;
   std::uint32_t primitive = 0;
-  glm::dvec2 at{0.0};  // where in the picture the ray went through
+  glm::dvec2 at{0.0};       // where in the picture the ray went through
   float clear_from = 0.0f;  // as in TileHits
 };
 
@@ -66,7 +67,7 @@ class LightPathTracer {
   };
   First FirstVertex(const PathPixel& pixel) const;
 
-  // What needs no chance: emission that the eye sees, and delta lights on the first surface.
+  // The part that needs no random numbers: emission that the eye sees, and delta lights on the first surface.
   void AddExact(const First& first, PathSums& sums, RayCounts& rays) const;
   // One path and all its light. The mean over the samples 0 … N − 1 and the exact part make the layers.
   void AddSample(const First& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,

@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/image/check.h"
 #include "guidegen/load/gltf/gltf_scene.h"
+#include "guidegen/load/loader_util.h"
 #include "guidegen/load/obj.h"
 #include "guidegen/load/ply.h"
-#include "guidegen/load/loader_util.h"
 #include "guidegen/scene_textures.h"
-#include "core/image/check.h"
 
 namespace scumble {
 namespace {
@@ -49,7 +49,7 @@ void CheckPromises(const Scene& scene) {
   }
 }
 
-// Calls load() and turns the ways in which memory can run out into an error.
+// Calls load() and turns each kind of memory exhaustion into an error.
 template <class Load>
 auto WithinMemory(const std::filesystem::path& path, Load load) -> decltype(load()) {
   try {

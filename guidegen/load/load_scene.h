@@ -3,13 +3,11 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
-#include "core/image/direction.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 
@@ -43,7 +41,7 @@ class AnimatedScene {
   bool moves() const;
   const Scene& rest() const { return rest_; }  // as LoadScene sees it
   std::vector<Instance> objects() const;       // all that are seen at any time, as at rest
-  double duration_seconds() const;  // of the last key, from 0; Blender puts frame N at N / fps
+  double duration_seconds() const;             // of the last key, from 0; Blender puts frame N at N / fps
   const std::vector<std::string>& animations() const { return animations_; }  // the file's, by name
 
   // A copy at that time. Before the first key and after the last one everything stands still. The result depends on
@@ -63,29 +61,5 @@ class AnimatedScene {
   std::shared_ptr<const GltfRig> rig_;  // null: nothing moves
   std::vector<std::string> animations_;
 };
-
-// From where a scene without a camera is seen. Azimuth from +Z towards +X, elevation up from the horizon, degrees.
-struct ViewAngles {
-  double azimuth = 35.0;
-  double elevation = 20.0;
-  double distance = 0.0;  // m from the centre of the scene's bounding sphere; 0 frames it with a margin
-};
-
-// A perspective camera that looks at the scene's centre. `aspect` is width / height of the picture.
-Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect);
-
-// A sun of strength π (white Lambert facing it has radiance 1) at these angles (core/image/direction.h) of the given
-// camera's view space.
-Light KeyLight(const Camera& camera, double azimuth = kKeyLightAzimuth, double elevation = kKeyLightElevation);
-
-// Makes the scene ready to be seen: picks the camera by name (empty: the first; none in the file or `view` given: a
-// framing one), and adds the key light to the scene where it has no light and `needs_light`. Each such decision is one
-// line of `notes`, for stderr. An unknown camera name is a usage error that lists the names there are.
-struct PreparedView {
-  Camera camera;
-  std::vector<std::string> notes;
-};
-Expected<PreparedView> PrepareView(Scene& scene, const std::string& camera_name, const std::optional<ViewAngles>& view,
-                                   double aspect, bool needs_light);
 
 }  // namespace scumble

@@ -58,8 +58,8 @@ class Ears {
     return {ring_[(at + n - 1) % n], ring_[at], ring_[(at + 1) % n]};
   }
 
-  // Whether no corner that is left lies in the triangle. Asked again of the same triangle, it goes on with the corner that
-  // was in the way: those before it are outside for good. So all looks are for three triangles a corner at most.
+  // Whether no corner that is left lies in the triangle. Asked again of the same triangle, it goes on with the corner
+  // that was in the way: those before it are outside for good. So all looks are for three triangles a corner at most.
   bool IsEar(std::size_t at) {
     const glm::uvec3 triangle = Triangle(at);
     const glm::dvec2 &a = points_[triangle.x], &b = points_[triangle.y], &c = points_[triangle.z];

@@ -13,14 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 
-// A file that a scene consists of, whole. Only regular files are read, and no more of one than the system says it has: a
-// scene is other people's data, and may name a pipe or a device that never ends, or one of the system's own files under
-// /proc, which say that they are empty and need not end either.
+// A file that a scene consists of, whole. Only regular files are read, and no more of one than the system says it has:
+// a scene is other people's data, and may name a pipe or a device that never ends, or one of the system's own files
+// under /proc, which say that they are empty and need not end either.
 Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& path);
 
 std::span<const unsigned char> AsChars(std::span<const std::byte> bytes);
@@ -111,9 +111,9 @@ std::string Excerpt(const std::string& text, std::size_t max_bytes = 200);
 // The colour of what no file gives a colour: Blender's own for faces without a material.
 inline constexpr glm::vec4 kPlainColor{0.8f, 0.8f, 0.8f, 1.0f};
 
-// The index of an opaque white material named "default", or "default#2", … where the names before it are others'; -1 where
-// there is none. The last material is looked at first, whatever its number: there one stands that was made, and is found
-// again at once.
+// The index of an opaque white material named "default", or "default#2", … where the names before it are others'; -1
+// where there is none. The last material is looked at first, whatever its number: there one stands that was made, and
+// is found again at once.
 int FindDefaultMaterial(const Scene& scene);
 // The same, made at the end of the list where there is none yet.
 int DefaultMaterial(Scene& scene);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "guidegen/load/loader_util.h"
 #include "core/image/check.h"
+#include "guidegen/load/loader_util.h"
 
 namespace scumble {
 namespace {

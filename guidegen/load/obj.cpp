@@ -5,86 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <memory>
 #include <numeric>
-#include <set>
 #include <span>
-#include <sstream>
-#include <system_error>
 #include <unordered_map>
 
-#include "guidegen/load/loader_util.h"
-#include "guidegen/load/mesh_normals.h"
-#include "guidegen/load/mtl_materials.h"
 #include "core/image/color.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
+#include "guidegen/load/loader_util.h"
+#include "guidegen/load/mesh_normals.h"
+#include "guidegen/load/mtl_materials.h"
+#include "guidegen/load/obj_parse.h"
 
 namespace scumble {
 namespace {
-
-std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  return scene.parent_path() / name;
-}
-
-bool IsBlank(char c) { return c == ' ' || c == '\t'; }
-
-// Makes comments of what tinyobjloader would hold and nobody looks at; the numbers of lines stay. Of a subdivision tag's 20
-// bytes it makes 360 KB, and again in each shape. The lines and points of an object it copies at each change of material:
-// the first index of each kind says that they are there.
-void BlankUnused(std::string& text) {
-  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
-  bool has_lines = false, has_points = false;  // in this object or group
-  for (auto begin = text.begin(); begin != text.end();) {
-    const auto end = std::find_if(begin, text.end(), ends_line);
-    const auto what = std::find_if_not(begin, end, IsBlank);
-    begin = end == text.end() ? end : end + 1;
-    if (what == end || what + 1 == end || !IsBlank(what[1])) continue;
-    if (*what == 'o' || *what == 'g') has_lines = has_points = false;
-    if (*what == 't') *what = '#';
-    if (*what != 'l' && *what != 'p') continue;
-    bool& is_told = *what == 'l' ? has_lines : has_points;
-    const auto index = std::find_if_not(what + 1, end, IsBlank);
-    if (is_told || index == end) {
-      *what = '#';
-    } else {
-      std::fill(std::find_if(index, end, IsBlank), end, ' ');
-      is_told = true;
-    }
-  }
-}
-
-// Reads material libraries from regular files only, each once under whatever name, and says which one is missing.
-class LibraryReader : public tinyobj::MaterialReader {
- public:
-  LibraryReader(const std::filesystem::path& scene, WarningCounter& warnings) : scene_(scene), warnings_(warnings) {}
-
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* indices, std::string* warning, std::string* error) override {
-    const std::filesystem::path path = BesideScene(scene_, name);
-    std::error_code missing;
-    const std::filesystem::path library = std::filesystem::canonical(path, missing);
-    if (!missing && read_.count(library) > 0) return true;
-    const auto bytes = ReadRegularFile(path);
-    if (!bytes) {
-      warnings_.Add("a material library is missing, its objects are matt and light grey", Excerpt(name));
-      return false;
-    }
-    if (!missing) read_.insert(library);
-    std::istringstream stream(AsText(bytes.value()));
-    tinyobj::LoadMtl(indices, materials, &stream, warning, error);
-    return true;
-  }
-
- private:
-  const std::filesystem::path& scene_;
-  WarningCounter& warnings_;
-  std::set<std::filesystem::path> read_;
-};
 
 // Where an object's middle lies within this distance of 0 or of a neighbour's origin, that is good enough: floats step
 // by 1/256 there at most. So scenes in millimetres, 60 m of them, keep the one origin of the file.
@@ -154,7 +91,7 @@ class ObjLoader {
   explicit ObjLoader(const std::filesystem::path& path) : path_(path), file_(path.string()) {}
 
   Expected<Scene> Load() {
-    SCUMBLE_RETURN_IF_ERROR(Parse());
+    SCUMBLE_RETURN_IF_ERROR(ParseObj(path_, warnings_, contents_));
     SCUMBLE_RETURN_IF_ERROR(CheckAttributes());
     for (const tinyobj::shape_t& shape : shapes_) SCUMBLE_RETURN_IF_ERROR(CheckShape(shape));
     ChooseOrigins();
@@ -168,29 +105,6 @@ class ObjLoader {
   }
 
  private:
-  Status Parse() {
-    SCUMBLE_ASSIGN(const std::vector<std::byte> bytes, ReadRegularFile(path_));
-    if (bytes.empty()) return InputError(file_ + " is empty; expected a Wavefront OBJ scene");
-    std::string text = AsText(bytes);
-    BlankUnused(text);
-    std::istringstream stream(std::move(text));
-    LibraryReader library(path_, warnings_);
-    std::string warning, error;
-    bool ok = false;
-    try {
-      // Polygons are cut here and not by tinyobjloader, which reads the corners' positions before checking their
-      // indices.
-      ok = tinyobj::LoadObj(&attributes_, &shapes_, &materials_, &warning, &error, &stream, &library,
-                            /*triangulate=*/false, /*default_vcols_fallback=*/false);
-    } catch (const std::bad_alloc&) {
-      return MemoryError(file_ + " asks for more memory than there is: simplify the scene");
-    } catch (const std::exception& e) {
-      error = e.what();
-    }
-    if (ok) return Ok();
-    return InputError(file_ + " is not a valid OBJ file: " + Excerpt(error.empty() ? "no reason given" : error, 300));
-  }
-
   Status CheckAttributes() const {
     for (std::size_t i = 0; i < attributes_.vertices.size(); ++i) {
       if (!std::isfinite(static_cast<float>(attributes_.vertices[i]))) {
@@ -394,7 +308,7 @@ class ObjLoader {
 
   void LoadMaterials() {
     mtl_ = std::make_shared<MtlLibrary>();
-    mtl_->materials = std::move(materials_);
+    mtl_->materials = std::move(contents_.materials);
     for (std::size_t i = 0; i < mtl_->materials.size(); ++i) {
       for (const std::string& name : TexturesOf(mtl_->materials[i])) KeepTexture(name, i);
     }
@@ -405,8 +319,8 @@ class ObjLoader {
     }
   }
 
-  // To be decoded later. Where it is left out, the materials that use it are made anew, and no others: a library may have
-  // as many missing textures as materials.
+  // To be decoded later. Where it is left out, the materials that use it are made anew, and no others: a library may
+  // have as many missing textures as materials.
   void KeepTexture(const std::string& name, std::size_t material) {
     const auto [known, is_new] = mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size()));
     if (!is_new) {
@@ -429,7 +343,7 @@ class ObjLoader {
     scene_.encoded_textures.push_back(std::move(texture));
   }
 
-  // What faces without a material have: Blender's own, so that nobody meets a highlight that nobody asked for. Where
+  // The material of faces without one: Blender's, which has no highlight. Where
   // the vertices have colours, those are the surface's.
   int PlainMaterial() {
     if (plain_material_ < 0) {
@@ -531,9 +445,9 @@ class ObjLoader {
 
   const std::filesystem::path& path_;
   const std::string file_;
-  tinyobj::attrib_t attributes_;
-  std::vector<tinyobj::shape_t> shapes_;
-  std::vector<tinyobj::material_t> materials_;
+  ObjContents contents_;
+  tinyobj::attrib_t& attributes_ = contents_.attributes;
+  std::vector<tinyobj::shape_t>& shapes_ = contents_.shapes;
   Scene scene_;
   GeometryBudget budget_;
   WarningCounter warnings_;
@@ -542,7 +456,7 @@ class ObjLoader {
   std::vector<glm::dvec3> origins_;  // of the shapes
   std::vector<Frame> frames_;
   std::vector<glm::vec3> positions_;  // of all vertices, each relative to its frame's origin
-  std::shared_ptr<MtlLibrary> mtl_;  // once it is loaded
+  std::shared_ptr<MtlLibrary> mtl_;   // once it is loaded
   std::vector<std::shared_ptr<std::vector<std::size_t>>> users_;  // of each texture: materials
   std::vector<Triangle> triangles_;
   std::vector<glm::vec3> smooth_normals_;

@@ -1,14 +1,14 @@
-// Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load/load_scene.h), which also sees to what all formats
-// have in common.
+// Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load/load_scene.h), which also sees to what all
+// formats have in common.
 //
 // Each shape (o or g) becomes an object, one instance for each of its materials. Read: polygons, normals, texture
 // coordinates (v turned over), vertex colours (sRGB-encoded), smoothing groups where there are no normals. A material
 // library or texture that is missing is a warning, not an error: OBJ files are often passed on without them.
 //
 // Vertices far from 0, as surveyors' are, keep their digits: the objects stand at the middle of what faces use in the
-// file instead of at 0. Where the file spans too much for that, those more than 65,536 m and 16 of their sizes from 0 each
-// stand at the middle of their own shape, or of a neighbour's within 65,536 m. Rest positions are relative to that place,
-// and normals that the file lacks are smooth across objects that share one.
+// file instead of at 0. Where the file spans too much for that, those more than 65,536 m and 16 of their sizes from 0
+// each stand at the middle of their own shape, or of a neighbour's within 65,536 m. Rest positions are relative to that
+// place, and normals that the file lacks are smooth across objects that share one.
 //
 // From the MTL, as Blender 3.4 understands it:
 //   Kd, map_Kd    base colour, linear; the map stands in place of Kd; -s, -o and -clamp are heeded
@@ -24,8 +24,8 @@
 
 #include <filesystem>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 

@@ -11,9 +11,9 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/image/color.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
-#include "core/image/color.h"
 
 namespace scumble {
 namespace {
@@ -56,7 +56,7 @@ struct Header {
   std::size_t body = 0;  // first byte behind the header
 };
 
-// What a vertex property means; kSkip for those that nobody asks for.
+// The meaning of a vertex property; kSkip for those that are not used.
 enum Role { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kAlpha, kU, kV, kSkip };
 
 Role RoleOf(const std::string& name) {

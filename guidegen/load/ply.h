@@ -11,8 +11,8 @@
 
 #include <filesystem>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace scumble {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "scumble/picture.h"
 #include "core/image/status.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

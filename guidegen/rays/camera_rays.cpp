@@ -10,6 +10,8 @@
 namespace scumble {
 namespace {
 
+std::string Called(const Camera& camera) { return "camera \"" + camera.name + "\" "; }
+
 // Empty when the camera can be used.
 std::string FindFault(const Camera& camera) {
   if (camera.orthographic) {
@@ -46,17 +48,23 @@ glm::dvec2 HalfExtent(const Camera& camera, double half, double picture_aspect) 
 
 }  // namespace
 
-Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int height) {
-  const std::string who = "camera \"" + camera.name + "\" ";
-  if (const std::string fault = FindFault(camera); !fault.empty()) return InputError(who + fault);
-  CameraRays rays;
+Expected<CameraPose> CameraPose::Make(const Camera& camera) {
+  if (const std::string fault = FindFault(camera); !fault.empty()) return InputError(Called(camera) + fault);
   const std::optional<glm::dmat3> axes = StraightenAxes(camera.world_from_camera);
   if (!axes) {
-    return InputError(who + "has a matrix without a direction: its axes must be finite, not zero and not parallel");
+    return InputError(Called(camera) +
+                      "has a matrix without a direction: its axes must be finite, not zero and not parallel");
   }
-  rays.axes_ = *axes;
+  CameraPose pose;
+  pose.axes_ = *axes;
+  pose.eye_ = glm::dvec3(camera.world_from_camera[3]);
+  return pose;
+}
+
+Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int height) {
+  CameraRays rays;
+  SCUMBLE_ASSIGN(static_cast<CameraPose&>(rays), CameraPose::Make(camera));
   rays.name_ = camera.name;
-  rays.eye_ = glm::dvec3(camera.world_from_camera[3]);
   rays.orthographic_ = camera.orthographic;
   rays.width_ = width;
   rays.height_ = height;
@@ -72,10 +80,10 @@ Expected<CameraRays> CameraRays::Make(const Camera& camera, int width, int heigh
   const double most = std::max(farthest.x, farthest.y);
   if (!(most <= kLargestInRay)) {
     std::ostringstream fault;
-    fault << "sees " << most << (camera.orthographic ? " m" : " m at a distance of 1 m") << " to one side in a picture of "
-          << width << "x" << height << " pixels; expected at most " << kLargestInRay << ": give it a smaller "
-          << (camera.orthographic ? "height" : "angle") << ", aspect or shift";
-    return InputError(who + fault.str());
+    fault << "sees " << most << (camera.orthographic ? " m" : " m at a distance of 1 m")
+          << " to one side in a picture of " << width << "x" << height << " pixels; expected at most " << kLargestInRay
+          << ": give it a smaller " << (camera.orthographic ? "height" : "angle") << ", aspect or shift";
+    return InputError(Called(camera) + fault.str());
   }
   return rays;
 }
@@ -95,7 +103,7 @@ std::optional<glm::dvec2> CameraRays::PixelOf(const glm::dvec3& point) const {
   return glm::dvec2((steps.x + width_) / 2.0, (height_ - steps.y) / 2.0);
 }
 
-glm::dmat4 CameraRays::ViewFromObject(const glm::dmat4& world_from_object) const {
+glm::dmat4 CameraPose::ViewFromObject(const glm::dmat4& world_from_object) const {
   const glm::dmat3 view_from_world = glm::transpose(axes_);
   const glm::dmat3 linear = view_from_world * glm::dmat3(world_from_object);
   glm::dmat4 result(linear);

@@ -3,30 +3,42 @@
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/guides.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
+#include "guidegen/scene/view_ray.h"
 
 namespace scumble {
 
-// Embree takes no ray with a larger component, of its origin in metres or of its direction: built with assertions, as
-// Debian's is, it ends the process. Its own limit is 1.844e18.
-inline constexpr double kLargestInRay = 0x1.9p60;
-
-// `direction.z` is exactly −1, so that the ray's parameter is the planar depth.
-struct ViewRay {
-  glm::dvec3 origin{0.0};
-  glm::dvec3 direction{0.0, 0.0, -1.0};
-};
-
-// A camera in front of a picture of a certain size. Immutable; free to use from any thread.
-class CameraRays {
+// Where a camera stands and how it is turned: its view space, for pictures of any size. Immutable; free to use from any
+// thread.
+class CameraPose {
  public:
   // Only the direction of the camera matrix's axes counts: scale is dropped and shear is straightened, keeping the
   // viewing direction. Fails with kInput, naming the camera, on a matrix that has no direction, an angle outside
-  // (0, 180), a height that is not positive, a shift that is not finite, a far plane before the near one, or rays that
-  // leave kLargestInRay.
+  // (0, 180), a height that is not positive, a shift that is not finite, or a far plane before the near one.
+  static Expected<CameraPose> Make(const Camera& camera);
+
+  // The camera's position is subtracted before anything is rotated: two places 1e7 m from the origin and one metre
+  // apart keep their distance.
+  glm::dmat4 ViewFromObject(const glm::dmat4& world_from_object) const;
+  glm::dvec3 ViewFromWorld(const glm::dvec3& point) const { return glm::transpose(axes_) * (point - eye_); }
+  glm::dvec3 WorldFromView(const glm::dvec3& point) const { return eye_ + axes_ * point; }
+  glm::dvec3 DirectionToView(const glm::dvec3& direction) const { return glm::transpose(axes_) * direction; }
+
+ protected:
+  CameraPose() = default;
+
+  glm::dmat3 axes_{1.0};  // world from view
+  glm::dvec3 eye_{0.0};
+};
+
+// A camera in front of a picture of a certain size. Immutable; free to use from any thread.
+class CameraRays : public CameraPose {
+ public:
+  // Fails as CameraPose::Make does, and with kInput where rays would leave kLargestInRay.
   static Expected<CameraRays> Make(const Camera& camera, int width, int height);
 
   // The ray through a point of the picture, in pixels from the top left corner.
@@ -42,21 +54,12 @@ class CameraRays {
   double near_depth() const { return near_depth_; }
   double far_depth() const { return far_depth_; }
 
-  // The camera's position is subtracted before anything is rotated: two places 1e7 m from the origin and one metre
-  // apart keep their distance.
-  glm::dmat4 ViewFromObject(const glm::dmat4& world_from_object) const;
-  glm::dvec3 ViewFromWorld(const glm::dvec3& point) const { return glm::transpose(axes_) * (point - eye_); }
-  glm::dvec3 WorldFromView(const glm::dvec3& point) const { return eye_ + axes_ * point; }
-  glm::dvec3 DirectionToView(const glm::dvec3& direction) const { return glm::transpose(axes_) * direction; }
-
   // For the file's header. OpenGL has no matrix for a near plane at the eye or a far plane at infinity in an
   // orthographic picture; there, 1 cm and 1 km behind the near plane stand in. x and y do not depend on them.
   GuideCamera ToGuideCamera() const;
 
  private:
   std::string name_;
-  glm::dmat3 axes_{1.0};  // world from view
-  glm::dvec3 eye_{0.0};
   bool orthographic_ = false;
   int width_ = 1;
   int height_ = 1;

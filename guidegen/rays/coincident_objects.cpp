@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <unordered_map>
 
-#include "guidegen/surface/bsdf.h"
 #include "core/image/hash.h"
+#include "guidegen/surface/bsdf.h"
 
 namespace scumble {
 namespace {
 
-// Of the matrix, of how much there is, and of the first and last place: what tells nearly all objects apart.
+// Of the matrix, the sizes, and the first and last position: enough to tell nearly all objects apart.
 std::uint64_t HashOf(const PlacedObject& object) {
   const Mesh& mesh = *object.mesh;
   std::uint64_t hash = Hash(mesh.positions.size(), mesh.triangles.size());
@@ -30,7 +30,6 @@ bool IsCopy(const PlacedObject& a, const PlacedObject& b) {
   return a.mesh == b.mesh || (a.mesh->positions == b.mesh->positions && a.mesh->triangles == b.mesh->triangles);
 }
 
-// What has holes never does.
 bool MayCover(const PlacedObject& over) { return !MayHaveHoles(*over.material); }
 
 bool Covers(const PlacedObject& over, const PlacedObject& under) {
@@ -41,7 +40,7 @@ bool Covers(const PlacedObject& over, const PlacedObject& under) {
 
 }  // namespace
 
-std::vector<bool> FindCoveredCopies(std::span<const PlacedObject> objects) {
+std::vector<bool> FindHiddenCoincident(std::span<const PlacedObject> objects) {
   std::vector<bool> covered(objects.size(), false);
   std::unordered_map<std::uint64_t, std::vector<const PlacedObject*>> seen;
   for (std::size_t i = objects.size(); i-- > 0;) {

@@ -1,4 +1,4 @@
-// Objects that stand exactly where another one stands.
+// Coincident instances: objects that stand exactly where another one stands.
 #pragma once
 
 #include <span>
@@ -8,12 +8,12 @@
 
 namespace scumble {
 
-// By object: whether a later one of the list is the same shape at the same place and lets nothing of it be seen. Of
-// exact copies the last is the one that is seen, as with paint; left to itself, a ray meets whichever the hierarchy
-// happens to offer last, another one from pixel to pixel. The same shape is the same positions and triangles under the
-// same matrix. Nothing with holes, and nothing culled where the other is not, covers anything. What emits is left
-// alone: it is a light besides. Shapes that merely touch, or that agree by other sums, are not looked for. Reads a
-// shape only where another of its size stands in its place.
-std::vector<bool> FindCoveredCopies(std::span<const PlacedObject> objects);
+// By object: whether a later object of the list has an equal shape at an equal place, and hides it. Of coincident
+// objects the last one is seen, as with paint. Without this rule a ray meets the one that the hierarchy offers last,
+// which differs from pixel to pixel. Equal shapes have equal positions and triangles under an equal matrix. An object
+// with holes hides nothing, nor does one that is culled where the other is not. An emissive object is never hidden,
+// because it is a light as well. Shapes that touch, or whose sums of matrix and positions agree, do not count. A mesh
+// is only compared with another of its size at its place.
+std::vector<bool> FindHiddenCoincident(std::span<const PlacedObject> objects);
 
 }  // namespace scumble

@@ -8,17 +8,18 @@
 #include <atomic>
 #include <stdexcept>
 
-#include "guidegen/surface/bsdf.h"
-#include "guidegen/rays/coincident_objects.h"
-#include "guidegen/surface/work_counters.h"
 #include "core/image/check.h"
+#include "guidegen/rays/coincident_objects.h"
+#include "guidegen/rays/progress_gate.h"
+#include "guidegen/surface/bsdf.h"
+#include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {
 
 struct IsaInfo {
   const char* name;
-  RTCDeviceProperty native_packets;  // what tells Embree's instruction sets apart from outside
+  RTCDeviceProperty native_packets;  // the property by which Embree's instruction sets differ
 };
 
 // Best first.
@@ -28,7 +29,7 @@ constexpr std::array<IsaInfo, 5> kIsas = {{{"avx512", RTC_DEVICE_PROPERTY_NATIVE
                                            {"sse4.2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED},
                                            {"sse2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED}}};
 
-// Embree believes whatever it is told and dies on the first unknown instruction, so the machine is asked first.
+// Embree does not check the processor and dies on the first unknown instruction, so the processor is checked first.
 bool MachineHas(const std::string& isa) {
 #if defined(__x86_64__)
   if (isa == "sse2") return __builtin_cpu_supports("sse2");
@@ -47,8 +48,8 @@ bool MachineHas(const std::string& isa) {
 // The packet width that an instruction set promises must be there: a build of Embree without it falls back silently.
 RTCDevice OpenIfSupported(const IsaInfo& isa) {
   if (!MachineHas(isa.name)) return nullptr;
-  // No cache for surfaces that Embree would divide: there are none, it is 128 MB of addresses, and a device that finds no
-  // room for it never lets go of its own lock.
+  // No cache for surfaces that Embree would divide: there are none, it is 128 MB of addresses, and a device that finds
+  // no room for it never lets go of its own lock.
   RTCDevice device = rtcNewDevice(("isa=" + std::string(isa.name) + ",tessellation_cache_size=0").c_str());
   if (device && rtcGetDeviceProperty(device, isa.native_packets) == 0) {
     rtcReleaseDevice(device);
@@ -68,9 +69,10 @@ std::string AvailableIsas() {
   return names;
 }
 
-// Whether the ray leaves the plane of the triangle, or runs along it, so that it cannot meet it: to float, what lies in a
-// large ground or just above it may be below that ground.
-bool LeavesPlane(const PlacedObject& object, std::uint32_t primitive, const glm::dvec3& origin, const glm::dvec3& direction) {
+// Whether the ray leaves the plane of the triangle, or runs along it, so that it cannot meet it: to float, what lies in
+// a large ground or just above it may be below that ground.
+bool LeavesPlane(const PlacedObject& object, std::uint32_t primitive, const glm::dvec3& origin,
+                 const glm::dvec3& direction) {
   const Triangle triangle = ViewTriangle(object, primitive);
   const glm::dvec3 normal =
       glm::cross(triangle.corner[1] - triangle.corner[0], triangle.corner[2] - triangle.corner[0]);
@@ -102,7 +104,7 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
   const unsigned count = args->N;
   for (unsigned i = 0; i < count; ++i) {
     if (args->valid[i] == 0) continue;
-    ++work_tally.filtered_hits;
+    ++thread_counters.filtered_hits;
     if (may_be_target &&
         (RTCRayN_tfar(args->ray, count, i) >= context.target.near_end ||
          (context.target.object == &object && RTCHitN_primID(args->hit, count, i) == context.target.primitive))) {
@@ -152,7 +154,7 @@ void FillVertices(RTCGeometry geometry, const PlacedObject& object) {
   });
 }
 
-// Of what shines, and of what reaches far, only rays of light ask whether they may pass.
+// Emissive objects, and those that reach far, need the filter only for rays of light.
 RTCGeometry MakeMesh(RTCDevice device, PlacedObject& object, bool light_rays) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   FillVertices(geometry, object);
@@ -186,14 +188,22 @@ RTCScene NewScene(RTCDevice device, bool robust) {
   return scene;
 }
 
+// If the gate is cancelled, the scene is of no use.
+void CommitScene(RTCScene scene, ProgressGate& gate) {
+  const auto go_on = [](void* asked, double) { return static_cast<ProgressGate*>(asked)->Continue(); };
+  rtcSetSceneProgressMonitorFunction(scene, go_on, &gate);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+}
+
 }  // namespace
 
-Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa,
-                                         const Needs& needs) {
+Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs,
+                                         const Progress& progress) {
   EmbreeScene scene;
   scene.objects_ = std::make_unique<std::vector<PlacedObject>>(std::move(objects));
   SCUMBLE_RETURN_IF_ERROR(scene.OpenDevice(isa));
-  SCUMBLE_RETURN_IF_ERROR(scene.Commit(needs));
+  SCUMBLE_RETURN_IF_ERROR(scene.Commit(needs, progress));
   return scene;
 }
 
@@ -211,7 +221,8 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
     // Not the next instruction set then: its guides would be others. Want of threads is an unknown error to Embree.
     const RTCError error = rtcGetDeviceError(nullptr);
     if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN) {
-      return MemoryError("Embree finds too little memory or no thread: allow more, or take fewer threads, as --threads 1");
+      return MemoryError(
+          "Embree finds too little memory or no thread: allow more, or take fewer threads, as --threads 1");
     }
   }
   if (!known) {
@@ -221,7 +232,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
                     AvailableIsas());
 }
 
-Status EmbreeScene::Commit(const Needs& needs) {
+Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
   std::string reason;  // the first of a row is the root of the others
   rtcSetDeviceErrorFunction(
       device_.get(),
@@ -231,7 +242,7 @@ Status EmbreeScene::Commit(const Needs& needs) {
       },
       &reason);
   scene_.reset(NewScene(device_.get(), needs.robust));
-  const std::vector<bool> covered = FindCoveredCopies(*objects_);
+  const std::vector<bool> covered = FindHiddenCoincident(*objects_);
   for (std::size_t i = 0; i < objects_->size(); ++i) {
     PlacedObject& object = (*objects_)[i];
     if (covered[i] || (object.mesh && object.mesh->triangles.empty())) continue;
@@ -246,15 +257,17 @@ Status EmbreeScene::Commit(const Needs& needs) {
     }
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(scene_.get());
-  if (emitters_) rtcCommitScene(emitters_.get());
+  ProgressGate gate(progress, 1, 0.0, 0.0);
+  CommitScene(scene_.get(), gate);
+  if (emitters_) CommitScene(emitters_.get(), gate);
   rtcSetDeviceErrorFunction(device_.get(), nullptr, nullptr);
   const RTCError error = rtcGetDeviceError(device_.get());
+  if (gate.cancelled()) return CancelledError();
   if (error == RTC_ERROR_NONE) return Ok();
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
     return MemoryError("the scene does not fit into memory: give it fewer triangles or instances");
   }
-  // Whatever else ends its tasks, as want of threads, it tells in words alone.
+  // Any other failure, as want of threads, has no code of its own but a text.
   throw std::runtime_error(reason);
 }
 

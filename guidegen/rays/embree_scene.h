@@ -9,22 +9,23 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/surface/surface.h"
+#include "core/image/progress.h"
 #include "core/image/status.h"
+#include "guidegen/surface/surface.h"
 
 namespace scumble {
 
-// The place on an emissive mesh that a shadow ray goes to. It does not shade itself: neither the triangle that was
-// aimed at counts, wherever Embree's floats put it, nor what shines so near the end that it may be the same place: the
-// next triangle, or the next piece of a light that was cut in pieces.
+// The place on an emissive mesh that a shadow ray goes to. It does not shade itself. So the triangle that was sampled
+// does not count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the
+// sampled place: the next triangle, or the next part of a light that was cut into several meshes.
 struct ShadowTarget {
   const PlacedObject* object = nullptr;
   std::uint32_t primitive = 0;
   float near_end = 1.0f;  // in lengths of the ray's direction
 };
 
-// Where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Not only before what it meets:
-// Embree goes its own way.
+// Where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Embree visits boxes in its own
+// order, so backs behind the hit may be among them.
 struct BacksPassed {
   float nearest = std::numeric_limits<float>::infinity();
   float farthest = -std::numeric_limits<float>::infinity();
@@ -40,7 +41,7 @@ struct CastContext {
   RTCIntersectContext embree;  // first: Embree passes its address on
   bool camera_rays;
   ShadowTarget target;
-  BacksPassed* passed = nullptr;  // by a ray's id; null: nobody asks
+  BacksPassed* passed = nullptr;  // by a ray's id; null: not recorded
 };
 
 // Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.
@@ -55,11 +56,14 @@ class EmbreeScene {
     bool emitters = false;    // emitters() will be asked for
     bool robust = true;       // as in GuidegenOptions
   };
-  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs);
+  // While it builds, `progress` is asked with a share of 0 whether to go on; if it says no, Build fails with
+  // kCancelled.
+  static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs,
+                                     const Progress& progress = {});
 
   RTCScene handle() const { return scene_.get(); }
-  RTCScene emitters() const { return emitters_.get(); }  // the objects that emit, under the same ids; null: none
-  const std::string& isa() const { return isa_; }        // what is in use, never empty
+  RTCScene emitters() const { return emitters_.get(); }   // the objects that emit, under the same ids; null: none
+  const std::string& isa() const { return isa_; }         // what is in use, never empty
   bool wide_packets() const { return isa_ == "avx512"; }  // whether packets of 16 rays are faster than those of 8
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 
@@ -73,7 +77,7 @@ class EmbreeScene {
 
   EmbreeScene() = default;
   Status OpenDevice(const std::string& isa);
-  Status Commit(const Needs& needs);
+  Status Commit(const Needs& needs, const Progress& progress);
 
   // Filter functions keep pointers to the objects, so they must not move with this. Order matters: the scene goes
   // before its device, the device before the objects.

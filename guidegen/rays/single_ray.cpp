@@ -1,7 +1,5 @@
 #include "guidegen/rays/single_ray.h"
 
-#include <algorithm>
-
 namespace scumble {
 namespace {
 
@@ -42,14 +40,9 @@ RTCRayHit Cast(RTCScene scene, const glm::dvec3& origin, const glm::dvec3& direc
 
 }  // namespace
 
-bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw, Blockers blockers) {
+bool IsOccluded(const EmbreeScene& scene, const LightRay& ray, const ShadowTarget& target, Blockers blockers) {
   const RTCScene among = blockers == Blockers::kAll ? scene.handle() : scene.emitters();
-  if (!among) return false;
-  if (draw.endless) return Occluded(among, EndlessLightRay(origin, draw.direction), {});
-  const LightRay ray = LightRayTo(origin, draw.target);
-  if (draw.object == LightDraw::kNoObject) return Occluded(among, ray, {});
-  const double near_end = std::max(0.0, ray.end - draw.rounding / glm::length(ray.direction));
-  return Occluded(among, ray, {&scene.objects()[draw.object], draw.primitive, float(near_end)});
+  return among && Occluded(among, ray, target);
 }
 
 RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction) {

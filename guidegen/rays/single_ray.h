@@ -1,19 +1,17 @@
-// Rays that go their own way, one at a time; packets of neighbouring rays are tile_caster.cpp's. Backs of single-sided
-// surfaces are there for them, as for shadow rays.
+// Incoherent rays, cast one at a time. They meet the backs of single-sided surfaces, as shadow rays do.
 #pragma once
 
 #include <glm/glm.hpp>
 
 #include "guidegen/rays/embree_scene.h"
-#include "guidegen/light/light_sampling.h"
+#include "guidegen/rays/ray_offset.h"
 
 namespace scumble {
 
-// Whether anything lies between a surface and the light that was drawn from it. With kEmitters nothing but meshes that
-// emit can be in the way.
+// What can block a ray: all objects, or only meshes that emit.
 enum class Blockers { kAll, kEmitters };
-bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw,
-               Blockers blockers = Blockers::kAll);
+// Whether the ray meets any of `blockers` before its reach ends. `target`, if it names an object, does not count.
+bool IsOccluded(const EmbreeScene& scene, const LightRay& ray, const ShadowTarget& target, Blockers blockers);
 
 // The nearest hit in a direction; its geomID is RTC_INVALID_GEOMETRY_ID where there is none.
 RTCRayHit CastSingleRay(const EmbreeScene& scene, const glm::dvec3& origin, const glm::dvec3& direction);

@@ -1,9 +1,10 @@
+#include "guidegen/scene/framing.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
-#include "guidegen/load/load_scene.h"
 #include "core/image/check.h"
 
 namespace scumble {
@@ -100,7 +101,7 @@ Light KeyLight(const Camera& camera, double azimuth, double elevation) {
 
 namespace {
 
-// A lamp, a surface that shines, or a world that does.
+// Whether the scene has a light, a surface that emits, or a world that does.
 bool HasLight(const Scene& scene) {
   if (!scene.lights.empty() || scene.world_radiance != glm::vec3(0.0f)) return true;
   return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {

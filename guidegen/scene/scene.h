@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/image/status.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
@@ -122,13 +122,14 @@ struct Light {
 
 struct Scene;
 
-// What a texture is decoded from, by DecodeTextures of guidegen/scene_textures.h. Immutable: copies of a scene share it.
+// What a texture is decoded from, by DecodeTextures of guidegen/scene_textures.h. Immutable: copies of a scene share
+// it.
 struct EncodedTexture {
   std::function<Expected<Picture>()> decode;
   std::function<Expected<std::uint64_t>()> count_pixels;  // that `decode` will make, by the header
-  std::size_t bytes = 0;  // that are kept in memory until then
-  // Makes the scene's materials do without: the texture's picture is empty and nothing encoded is left of it. Null: they
-  // cannot, and a picture that cannot be decoded is an error.
+  std::size_t bytes = 0;                                  // that are kept in memory until then
+  // Makes the scene's materials do without: the texture's picture is empty and nothing encoded is left of it. Null:
+  // they cannot, and a picture that cannot be decoded is an error.
   std::function<void(Scene&)> leave_out;
 };
 

@@ -14,7 +14,7 @@ constexpr double kPi = glm::pi<double>();
 
 // What glTF gives every dielectric: an index of refraction of 1.5.
 constexpr double kDielectricF0 = 0.04;
-// Below this GGX's peak is too sharp to be evaluated; Cycles draws the line at the same place.
+// Below this GGX's peak is too sharp to be evaluated; Cycles has this limit, too.
 constexpr double kSmoothestAlpha = 1e-4;
 // The eye is never lower than this above the specular normal.
 constexpr double kLowestEye = 1e-3;
@@ -196,7 +196,7 @@ bool MayEmit(const Material& material) { return NotNegative(glm::dvec3(material.
 glm::dvec3 SurfaceEmission(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
   const Material& material = *object.material;
   if (!MayEmit(material)) return glm::dvec3(0.0);
-  ++work_tally.materials;
+  ++thread_counters.materials;
   glm::dvec3 emission(material.emission);
   if (const auto texel = SampleSurfaceColor(object, material.emission_texture, primitive, barycentric)) {
     emission *= glm::dvec3(*texel);

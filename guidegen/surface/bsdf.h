@@ -28,7 +28,7 @@ class SurfaceBsdf {
     double density = 0.0;  // with which the lobe's Sample would have chosen that direction
   };
 
-  // `to_eye` is the way back along the path. A shading normal that turns away from it is bent for the specular lobe.
+  // `to_eye` points back along the path. A shading normal that turns away from it is bent for the specular lobe.
   // The specular lobe is made at least as rough as `least_alpha`.
   SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, const SurfacePoint& point, const glm::dvec3& to_eye,
               double least_alpha = 0.0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "guidegen/surface/texture.h"
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
@@ -41,12 +42,12 @@ EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray, dou
   const double length = glm::dot(across, across);
   const double share = length > 0.0 ? glm::clamp(-glm::dot(from, across) / length, 0.0, 1.0) : 0.0;
   const glm::dvec3 miss = from + across * share;
-  const double way = along(corner + edge * share);
+  const double reach = along(corner + edge * share);
   constexpr double kRounding = 0x1p-48;  // some steps of a double, of what was added up
-  const bool behind =
-      way < 0.0 && way * way * squared >
-                       kRounding * kRounding * (glm::dot(corner, corner) + glm::dot(edge, edge) + summands * summands);
-  return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), way, behind};
+  const bool behind = reach < 0.0 && reach * reach * squared >
+                                         kRounding * kRounding *
+                                             (glm::dot(corner, corner) + glm::dot(edge, edge) + summands * summands);
+  return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), reach, behind};
 }
 
 // The barycentrics of the place on a triangle's edges that the ray passes at the least distance. A triangle seen edge
@@ -215,11 +216,6 @@ double LongestEdgeSquared(const Triangle& triangle) {
   return longest;
 }
 
-glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point) {
-  const glm::dvec3 way = ray.origin + ray.direction * clear_from - point;
-  return glm::dot(way, ray.direction) < 0.0 ? way : glm::dvec3(0.0);
-}
-
 bool AllDoubleSided(std::span<const PlacedObject> objects) {
   return std::all_of(objects.begin(), objects.end(),
                      [](const PlacedObject& object) { return object.material->double_sided; });
@@ -230,7 +226,7 @@ SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitiv
 }
 
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric) {
-  ++work_tally.materials;
+  ++thread_counters.materials;
   glm::vec4 color = object.material->base_color;
   if (!object.mesh) return color;
   const Mesh& mesh = *object.mesh;

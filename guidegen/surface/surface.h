@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "guidegen/rays/camera_rays.h"
 #include "guidegen/scene/scene.h"
+#include "guidegen/scene/view_ray.h"
 #include "scumble/picture.h"
 
 namespace scumble {
@@ -25,7 +25,7 @@ struct PlacedObject {
   glm::dmat3 view_from_normal{1.0};  // the inverse transpose up to a positive factor, defined for flat objects too
   double winding = 1.0;              // −1 where the matrix mirrors and triangles turn their back
 
-  bool reaches_far = false;  // EmbreeScene finds out, where rays of light will ask
+  bool reaches_far = false;  // set by EmbreeScene, if rays of light will be cast
 };
 
 PlacedObject Place(const Mesh* mesh, const Material* material, std::span<const Picture> textures,
@@ -57,10 +57,10 @@ struct SurfacePoint {
   glm::dvec3 rest_position{0.0};    // object space
   glm::dvec2 barycentric{0.0};      // weights of the second and third corner
   double largest_coordinate = 0.0;  // of the point and its triangle: what float rounding errors are relative to
-  // A way from the point that nothing is in: back along the ray that met it, as far as the ray came, or to a place before
-  // the last back of a single-sided surface that a camera ray passed. 0: none is known.
-  // Whoever casts the rays fills it in.
-  glm::dvec3 clear_way{0.0};
+  // The longest offset of a ray's origin from the point with nothing between: back along the ray that met it, to that
+  // ray's start, or to a place before the last back of a single-sided surface that a camera ray passed. 0: unknown. The
+  // caster of the ray sets it (MaxRayOffset in rays/ray_offset.h).
+  glm::dvec3 max_ray_offset{0.0};
 };
 
 // Embree's hit is a float's worth of the truth; this meets the same surface again in double. A triangle that the exact
@@ -97,20 +97,11 @@ std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const Texture
 std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
                                             glm::dvec2 barycentric);
 
-// SurfacePoint::clear_way of a point that a ray met and before which, from `clear_from` lengths of the ray's direction
-// on, it passed nothing. 0 where float has put that place behind the point.
-glm::dvec3 ClearWay(const ViewRay& ray, double clear_from, const glm::dvec3& point);
-
 // Whether no object is single-sided: rays of light, which meet backs as well, then pass wherever camera rays pass.
 bool AllDoubleSided(std::span<const PlacedObject> objects);
 
 // Whether rays pass here: alpha masks, and blending taken for a mask at one half.
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
 bool MayHaveHoles(const Material& material);
-
-// Linear colour and alpha, bilinear unless `use` says nearest. Coordinates that are not finite read as 0.
-glm::vec4 SampleColor(const Picture& picture, const TextureUse& use, glm::vec2 uv);
-// The stored values in [0, 1], not decoded: for normal maps.
-glm::vec4 SampleRaw(const Picture& picture, const TextureUse& use, glm::vec2 uv);
 
 }  // namespace scumble

@@ -1,9 +1,10 @@
+#include "guidegen/surface/texture.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "guidegen/surface/surface.h"
-#include "guidegen/surface/work_counters.h"
 #include "core/image/color.h"
+#include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {
@@ -32,8 +33,8 @@ int WrapTexel(int texel, int size, TextureWrap wrap) {
 template <class Texel>
 glm::vec4 Sample(const Picture& picture, const TextureUse& use, glm::vec2 uv, const Texel& texel) {
   if (picture.empty()) return glm::vec4(1.0f);
-  ++work_tally.texture_lookups;
-  work_tally.texels += use.nearest ? 1 : 4;
+  ++thread_counters.texture_lookups;
+  thread_counters.texels += use.nearest ? 1 : 4;
   const glm::vec3 moved = use.uv_transform * glm::vec3(uv, 1.0f);
   double x = Fold(moved.x, use.wrap_u) * picture.width;
   double y = Fold(moved.y, use.wrap_v) * picture.height;

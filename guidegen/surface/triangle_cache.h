@@ -1,4 +1,4 @@
-// Triangles before the camera, made ready for many rays: what FindSurfacePoint works out again for each of them.
+// Triangles in view space, prepared for many rays: values that FindSurfacePoint computes anew for each ray.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Counters that the innermost loops of the ray caster add to. Each thread has its own, so that nothing is locked and
-// nothing is handed down to them; whoever splits the work takes the differences and adds them up. Sums of whole numbers
-// do not depend on how the work was split.
+// nothing is passed down to the loops. The function that splits the work adds up the differences. Sums of integers do
+// not depend on the split.
 #pragma once
 
 #include <cstddef>
@@ -9,28 +9,28 @@
 
 namespace scumble {
 
-// Of this thread, since it began.
-inline constinit thread_local WorkCounts work_tally;
+// This thread's counters, since its start.
+inline constinit thread_local WorkCounts thread_counters;
 
-inline constexpr std::size_t WorkCounts::* kWorkCounts[] = {
-    &WorkCounts::light_samples, &WorkCounts::materials,     &WorkCounts::texture_lookups,
-    &WorkCounts::texels,        &WorkCounts::filtered_hits, &WorkCounts::plane_bytes};
+inline constexpr std::size_t WorkCounts::*kWorkCounts[] = {&WorkCounts::light_samples,   &WorkCounts::materials,
+                                                           &WorkCounts::texture_lookups, &WorkCounts::texels,
+                                                           &WorkCounts::filtered_hits,   &WorkCounts::plane_bytes};
 
 inline void AddWork(const WorkCounts& from, WorkCounts& to) {
   for (const auto count : kWorkCounts) to.*count += from.*count;
 }
 
-// What this thread does while it stands. Work that is handed to other threads meanwhile is theirs to count.
+// The counts of this thread since the meter was made. Work that other threads do for it is counted there.
 class WorkMeter {
  public:
   WorkCounts Since() const {
     WorkCounts done;
-    for (const auto count : kWorkCounts) done.*count = work_tally.*count - begin_.*count;
+    for (const auto count : kWorkCounts) done.*count = thread_counters.*count - begin_.*count;
     return done;
   }
 
  private:
-  const WorkCounts begin_ = work_tally;
+  const WorkCounts begin_ = thread_counters;
 };
 
 }  // namespace scumble

@@ -25,12 +25,12 @@ struct Picture {
   const std::uint16_t* At(int x, int y) const { return rgba.data() + 4 * (std::size_t(y) * width + x); }
 };
 
-// Reads a picture file: PNG, TIFF, EXR, JPEG, PSD, ORA and what else OpenImageIO reads. Floating-point files are linear and
-// are encoded. A kInput error says what is wrong with the file.
+// Reads a picture file: PNG, TIFF, EXR, JPEG, PSD, ORA and what else OpenImageIO reads. Floating-point files are linear
+// and are encoded. A kInput error says what is wrong with the file.
 Expected<Picture> LoadPicture(const std::string& file);
 
-// Writes .png, .tif, .exr or .jpg; `bits` a channel: 8 or 16, of EXR 16 or 32. The file appears whole under its name, or
-// not at all: a kOutput error leaves an older file as it was.
+// Writes .png, .tif, .exr or .jpg; `bits` a channel: 8 or 16, of EXR 16 or 32. The file appears whole under its name,
+// or not at all: a kOutput error leaves an older file as it was.
 Status SavePicture(const std::string& file, const Picture& picture, int bits = 8);
 
 }  // namespace scumble

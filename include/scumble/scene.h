@@ -14,7 +14,7 @@ struct SceneView {
 };
 
 struct SceneSettings {
-  std::string file;  // .glb, .gltf, .obj, .ply; .blend where Blender is installed
+  std::string file;                // .glb, .gltf, .obj, .ply; .blend where Blender is installed
   int width = 1280, height = 720;  // pixels
   std::string camera;              // by name; empty: the scene's first, or a view that frames it
   std::optional<SceneView> view;   // instead of a camera

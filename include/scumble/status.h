@@ -1,5 +1,5 @@
-// Errors as values: a user's mistake or a failing disk returns an Error inside Expected<T>. Nothing here throws on purpose;
-// what the standard library throws (std::bad_alloc) passes through.
+// Errors as values: a user's mistake or a failing disk returns an Error inside Expected<T>. Nothing here throws on
+// purpose; what the standard library throws (std::bad_alloc) passes through.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// Scene and style to picture. A Stylizer keeps what it has loaded, cast and prepared, and makes again only what a changed
-// request makes stale: a changed key of the style casts no ray, a changed camera loads no file.
+// Scene and style to picture. A Stylizer keeps what it has loaded, cast and prepared, and makes again only what a
+// changed request makes stale: a changed key of the style casts no ray, a changed camera loads no file.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@
 namespace scumble {
 
 struct StylizerOptions {
-  int threads = 0;                // 0: all
-  std::uint64_t max_memory = 0;   // bytes; what needs more is refused with kMemory or kUsage. 0: what the machine has
+  int threads = 0;               // 0: all
+  std::uint64_t max_memory = 0;  // bytes; what needs more is refused with kMemory or kUsage. 0: what the machine has
   std::string data_folder = SCUMBLE_DATA_FOLDER;  // share/scumble; empty: no bundled styles
   std::string cache_folder;                       // for look-up tables; empty: they are not kept
   std::function<void(const std::string& line, bool is_warning)> message;  // on the calling thread; null: dropped
@@ -40,10 +40,11 @@ struct PaintSettings {
 
 // How often each kind of work was done so far.
 struct StylizerCounters {
-  std::size_t scenes_loaded = 0;    // from files
-  std::size_t guides_cast = 0;      // rays were cast
-  std::size_t styles_loaded = 0;    // from files
-  std::size_t styles_prepared = 0;  // exemplars were resized, tables built
+  std::size_t scenes_loaded = 0;     // from files
+  std::size_t structures_built = 0;  // acceleration structures
+  std::size_t guides_cast = 0;       // rays were cast
+  std::size_t styles_loaded = 0;     // from files
+  std::size_t styles_prepared = 0;   // exemplars were resized, tables built
   std::size_t frames_painted = 0;
 };
 
@@ -54,8 +55,8 @@ class Stylizer {
   Stylizer(Stylizer&&) noexcept;
   Stylizer& operator=(Stylizer&&) noexcept;
 
-  // Paints a picture: the bytes that `scumble stylize` would write. One call at a time. Errors: kUsage for settings that
-  // make no sense, kInput for files, kUnavailable where Blender is missing, kMemory, kCancelled.
+  // Paints a picture: the bytes that `scumble stylize` would write. One call at a time. Errors: kUsage for settings
+  // that make no sense, kInput for files, kUnavailable where Blender is missing, kMemory, kCancelled.
   Expected<Picture> Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint = {});
 
   // The guides of a scene: A, normal, depth, object, material, and the layers asked for.

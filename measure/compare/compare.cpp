@@ -244,7 +244,7 @@ bool TooMany(const DifferenceThresholds& thresholds, std::size_t count, std::siz
   return count > allowed && static_cast<double>(count) > thresholds.percent / 100.0 * static_cast<double>(total);
 }
 
-void Judge(CompareReport& report) {
+void MeasureError(CompareReport& report) {
   const CompareOptions& options = report.options;
   const std::size_t total = std::size_t(report.width) * report.height;
   const auto reason = [&](Verdict verdict, std::string text) {
@@ -344,7 +344,7 @@ Expected<CompareReport> Compare(const ChannelImage& a, const ChannelImage& b, co
   }
   report.stats = all.Stats();
   report.pixels = CountPixels(all_flags);
-  Judge(report);
+  MeasureError(report);
   return report;
 }
 

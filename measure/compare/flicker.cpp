@@ -82,9 +82,7 @@ class Flicker {
     return guides.Plane(Layer::kCoverage)[i] >= kCovered && (!has_object_ || guides.Plane(Layer::kObject)[i] == object);
   }
 
-  float ObjectAt(int x, int y) const {
-    return has_object_ ? guides_.Plane(Layer::kObject)[guides_.Index(x, y)] : 0.0f;
-  }
+  float ObjectAt(int x, int y) const { return has_object_ ? guides_.Plane(Layer::kObject)[guides_.Index(x, y)] : 0.0f; }
 
   bool IsInside(int x, int y) const {
     const float object = ObjectAt(x, y);
@@ -147,7 +145,9 @@ class Flicker {
 
   // a moved bilinearly by the same fractions of a pixel, then read as b is.
   Color MovedByItself(int x, int y, const Target& target) const {
-    const auto weights = [](double t) { return std::array<double, 3>{t * (1 - t), (1 - t) * (1 - t) + t * t, t * (1 - t)}; };
+    const auto weights = [](double t) {
+      return std::array<double, 3>{t * (1 - t), (1 - t) * (1 - t) + t * t, t * (1 - t)};
+    };
     const auto across = weights(target.along_x), down = weights(target.along_y);
     Color sum{};
     for (int dy = -1; dy <= 1; ++dy) {
@@ -178,7 +178,8 @@ Expected<FlickerReport> MeasureFlicker(const Picture& a, const Picture& b, const
   SCUMBLE_RETURN_IF_ERROR(CheckSize("the first picture", a.width, a.height, guides));
   SCUMBLE_RETURN_IF_ERROR(CheckSize("the second picture", b.width, b.height, guides));
   if (next_guides) {
-    SCUMBLE_RETURN_IF_ERROR(CheckSize("the next frame's guide set", next_guides->width(), next_guides->height(), guides));
+    SCUMBLE_RETURN_IF_ERROR(
+        CheckSize("the next frame's guide set", next_guides->width(), next_guides->height(), guides));
   }
   if (!guides.Has(Layer::kMotion)) {
     return InputError("the first frame's guides have no layer motion, but " + guides.layers().ToString() +

@@ -13,8 +13,8 @@
 #include <numbers>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/image/status.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

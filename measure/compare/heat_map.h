@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/image/channel_image.h"
-#include "scumble/picture.h"
 #include "core/image/status.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
@@ -26,8 +26,8 @@ struct HeatMap {
 // Oklab with rising lightness, so it reads alike in grey and with colour-blind eyes. Errors as those of Compare.
 Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b, const HeatMapOptions& options = {});
 
-// The same colours for values of one's own, row by row: 0 is dark blue, full_scale (above 0) and more yellow; transparent
-// where NaN. `values` are width × height.
+// The same colours for values of one's own, row by row: 0 is dark blue, full_scale (above 0) and more yellow;
+// transparent where NaN. `values` are width × height.
 Picture ValueHeatMap(std::span<const float> values, int width, int height, double full_scale);
 
 }  // namespace scumble

@@ -85,7 +85,8 @@ glm::vec3 LookOfId(const GuideSet& guides, std::size_t i) {
 std::vector<LayerMeasure> Measures(const GuideSet& a, const GuideSet& b) {
   const auto relative = [](double x, double y) { return std::fabs(x - y) / std::max(std::fabs(x), 1e-30); };
   const auto depth_a = a.Plane(Layer::kDepth), depth_b = b.Plane(Layer::kDepth);
-  float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f;  // of what is nearer than what is read for infinite
+  float nearest = std::numeric_limits<float>::infinity(),
+        farthest = 0.0f;  // of what is nearer than what is read for infinite
   for (const float z : depth_a) {
     if (z < 1e30f) nearest = std::min(nearest, z), farthest = std::max(farthest, z);
   }

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/io/blender/cycles_light.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -197,8 +197,8 @@ Estimate MeanOf(const Sample& sample, const std::vector<EnergySample>& samples, 
 
 using Places = std::vector<PatchSearch::Place>;
 
-// Where the pixels of a patch have gone or come from, moved back by their distance from its middle: in a copy all of them
-// agree. `other_of(x, y)` is of a pixel of `planes` that counts; nothing where it is not known.
+// Where the pixels of a patch have gone or come from, moved back by their distance from its middle: in a copy all of
+// them agree. `other_of(x, y)` is of a pixel of `planes` that counts; nothing where it is not known.
 template <class OtherOf>
 Places Guesses(const PatchPlanes& planes, int x, int y, const OtherOf& other_of) {
   Places guesses;
@@ -229,7 +229,8 @@ class KnownSources {
       if (!from || from->exemplar < 0 || std::size_t(from->exemplar) >= exemplars.size()) continue;
       const PatchPlanes& exemplar = exemplars[std::size_t(from->exemplar)];
       if (from->x < 0 || from->y < 0 || from->x >= exemplar.width || from->y >= exemplar.height) continue;
-      shown_[std::size_t(from->exemplar)][std::size_t(exemplar.Index(from->x, from->y))] = static_cast<std::ptrdiff_t>(i);
+      shown_[std::size_t(from->exemplar)][std::size_t(exemplar.Index(from->x, from->y))] =
+          static_cast<std::ptrdiff_t>(i);
     }
   }
 
@@ -301,8 +302,7 @@ std::vector<EnergySample> Look(const PatchSearch& search, std::span<const PatchP
   internal::ForEachIndex(static_cast<int>(samples.size()), options.threads, [&](int i) {
     const Spot spot = sample.spots[std::size_t(i)];
     const PatchPlanes& planes = here[std::size_t(spot.image)];
-    const internal::PatchMatch match =
-        search.Nearest(search.QueryAt(planes, spot.x, spot.y), guesses(spot));
+    const internal::PatchMatch match = search.Nearest(search.QueryAt(planes, spot.x, spot.y), guesses(spot));
     const glm::dvec3 found = NormalAt(there[std::size_t(match.exemplar)], match.x, match.y);
     samples[std::size_t(i)] = {.x = spot.x,
                                .y = spot.y,

@@ -6,9 +6,10 @@
 //   |G_T(p) − G_S(u)|² = max(0, |N_T(p) − N_S(u)| − free(p))² + Σ (other guides)²
 //
 // with C the colours as painted (R, G and B, sRGB-encoded, 0 … 1, straight: alpha does not matter) and G the guides:
-// unit normals N, of which the target may grant some distance, and whatever planes are added to them. It is what patch-based synthesis minimises, as StyLit does
-// [Fišer et al. 2016, eq. 1]. Guides are compared in the middle: normals of 5×5 pixels of another form never agree,
-// whatever the method, and that would be most of the figure. Three means of it:
+// unit normals N, of which the target may grant some distance, and whatever planes are added to them. It is what
+// patch-based synthesis minimises, as StyLit does [Fišer et al. 2016, eq. 1]. Guides are compared in the middle:
+// normals of 5×5 pixels of another form never agree, whatever the method, and that would be most of the figure. Three
+// means of it:
 //
 //   energy   over the target's p that are measured, of the least E(p, u) over all u. Is all that the picture shows the
 //            exemplar's? With λ = 0, any straight copy scores 0, wherever it came from; otherwise no more than λ times
@@ -36,10 +37,10 @@
 #include <span>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/image/status.h"
-#include "measure/mosaic/coherence.h"
 #include "measure/energy/stratified_sample.h"
+#include "measure/mosaic/coherence.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -19,7 +19,10 @@ constexpr Step kCorners[] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
 class Surfaces {
  public:
   Surfaces(const GuideSet& guides, int reach)
-      : guides_(guides), reach_(reach), coverage_(guides.Plane(Layer::kCoverage)), object_(guides.Plane(Layer::kObject)) {}
+      : guides_(guides),
+        reach_(reach),
+        coverage_(guides.Plane(Layer::kCoverage)),
+        object_(guides.Plane(Layer::kObject)) {}
 
   bool IsFlatAllRound(int x, int y) const {
     return std::all_of(std::begin(kSides), std::end(kSides), [&](Step step) {
@@ -65,7 +68,8 @@ std::vector<std::uint8_t> FlatSurfaces(const GuideSet& guides, int reach) {
   };
   const auto all_round = marked([&](int x, int y, std::size_t) { return surfaces.IsFlatAllRound(x, y); });
   return marked([&](int x, int y, std::size_t i) {
-    return all_round[i] || surfaces.ReachesAny(x, y, kSides, all_round) || surfaces.ReachesAny(x, y, kCorners, all_round);
+    return all_round[i] || surfaces.ReachesAny(x, y, kSides, all_round) ||
+           surfaces.ReachesAny(x, y, kCorners, all_round);
   });
 }
 

@@ -252,7 +252,8 @@ void PatchSearch::AddBounds(const Level& level, double free, std::span<float> bo
   const std::size_t normals_end = first_guide + (free > 0.0 ? kNormalGuides : 0);
   add(first_guide, normals_end);
   if (free > 0.0) {
-    // Rounded up, and by the slack once more: the root is too large by at most 10 · 2⁻²⁴ of the scale, the slack is 144.
+    // Rounded up, and by the slack once more: the root is too large by at most 10 · 2⁻²⁴ of the scale, the slack is
+    // 144.
     const float off = static_cast<float>(std::sqrt(guide_weight_) * free) * (1.0f + 0x1.0p-22f) + slack_;
     for (float& bound : bounds) {
       const float beyond = std::max(0.0f, std::sqrt(bound) - off);

@@ -3,10 +3,10 @@
 // Positions are kept in tiles of 8 × 8 with a few numbers each that bound distances from below: projections of the
 // patch onto orthonormal patterns, whose differences add up to no more than the patches' own squared distance, and the
 // length of what the projections leave, which by the triangle inequality may be added; the guides of the middle stand
-// for themselves, normals less what is free of them. A tile's box of these numbers bounds all of its positions. Tiles are visited by rising bound until
-// that exceeds the best distance found: branch and bound [Fukunaga & Narendra 1975], with projections as in [Hel-Or &
-// Hel-Or 2005]. All bounds are lowered by what rounding could have raised them, so that what comes out is the minimum
-// over all positions, to the bit.
+// for themselves, normals less what is free of them. A tile's box of these numbers bounds all of its positions. Tiles
+// are visited by rising bound until that exceeds the best distance found: branch and bound [Fukunaga & Narendra 1975],
+// with projections as in [Hel-Or & Hel-Or 2005]. All bounds are lowered by what rounding could have raised them, so
+// that what comes out is the minimum over all positions, to the bit.
 #pragma once
 
 #include <array>
@@ -53,7 +53,8 @@ struct PatchQuery {
 struct PatchMatch {
   int exemplar = -1, x = 0, y = 0;
   double color = 0.0;  // squared differences of the places that count, as 0 … 1, times `whole`
-  double guide = 0.0;  // of the middle: the square of the distance of the normals beyond `free`, and those of the others
+  double guide =
+      0.0;  // of the middle: the square of the distance of the normals beyond `free`, and those of the others
 };
 
 class PatchSearch {
@@ -111,7 +112,7 @@ class PatchSearch {
   std::size_t guides_ = 0;
   double guide_weight_ = 0.0;
   double most_free_ = 0.0;  // of all places of all exemplars
-  float slack_ = 0.0f;  // by which each difference of two numbers may be too large
+  float slack_ = 0.0f;      // by which each difference of two numbers may be too large
   int radius_ = -1;
   std::vector<Level> levels_;  // by radius
 };

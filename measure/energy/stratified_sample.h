@@ -1,5 +1,6 @@
 // Means from a stratified sample: a list is cut into pieces of equal length, and two places of each are drawn without
-// replacement [Cochran 1977, §5.5]. Where neighbours in the list are alike, the mean is surer than from places drawn anywhere.
+// replacement [Cochran 1977, §5.5]. Where neighbours in the list are alike, the mean is surer than from places drawn
+// anywhere.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,8 @@ namespace internal {
 
 struct StratifiedSample {
   std::vector<std::size_t> places;  // in the list
-  std::vector<std::size_t> strata;  // sizes, one for each two places; empty: every place of the list is there, in its order
+  std::vector<std::size_t>
+      strata;  // sizes, one for each two places; empty: every place of the list is there, in its order
 };
 
 // `samples`, rounded up to even, of a list of `count` places, by a hash of the seed; 0, or as many as there are: all.

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "core/filter/gaussian_blur.h"
 #include "core/image/check.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "core/filter/gaussian_blur.h"
 
 namespace scumble {
 namespace {
@@ -56,8 +56,8 @@ double SourceRepetition(const SourcePlanes& planes) {
   std::vector<std::uint64_t> sources;
   for (std::size_t i = 0; i < planes.covered.size(); ++i) {
     if (!planes.covered[i]) continue;
-    sources.push_back(std::uint64_t(ExemplarAt(planes, i)) << 32 | std::uint64_t(std::uint16_t(planes.source_y[i])) << 16 |
-                      std::uint16_t(planes.source_x[i]));
+    sources.push_back(std::uint64_t(ExemplarAt(planes, i)) << 32 |
+                      std::uint64_t(std::uint16_t(planes.source_y[i])) << 16 | std::uint16_t(planes.source_x[i]));
   }
   const double covered = static_cast<double>(sources.size());
   std::sort(sources.begin(), sources.end());
@@ -107,8 +107,10 @@ SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes) {
     if (!planes.covered[a] || !planes.covered[b]) return;
     const glm::vec3 d = LabAt(picture, x, y) - LabAt(picture, x + dx, y + dy);
     const double length = std::sqrt(double(d.x) * d.x + double(d.y) * d.y + double(d.z) * d.z);
-    if (SameChunk(planes, a, b, dx, dy)) within += length, ++seams.inside_pairs;
-    else across += length, ++seams.border_pairs;
+    if (SameChunk(planes, a, b, dx, dy))
+      within += length, ++seams.inside_pairs;
+    else
+      across += length, ++seams.border_pairs;
   };
   for (int y = 0; y < planes.height; ++y) {
     for (int x = 0; x < planes.width; ++x) add(x, y, 1, 0), add(x, y, 0, 1);

@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <span>
 
-#include "scumble/picture.h"
 #include "measure/mosaic/coherence.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
-// Mean number of times that a source pixel which shows at all shows over the covered pixels: covered / distinct sources.
-// 0 where nothing is covered.
+// Mean number of times that a source pixel which shows at all shows over the covered pixels: covered / distinct
+// sources. 0 where nothing is covered.
 double SourceRepetition(const SourcePlanes& planes);
 
 // A rectangle of a picture, pixels [x, x + width) × [y, y + height).

@@ -44,7 +44,8 @@ Patches FindPatches(const std::vector<std::uint8_t>& mask, int width, int height
   return patches;
 }
 
-std::vector<std::uint8_t> MostlySet(const std::vector<std::uint8_t>& mask, int width, int height, int reach, double share) {
+std::vector<std::uint8_t> MostlySet(const std::vector<std::uint8_t>& mask, int width, int height, int reach,
+                                    double share) {
   SCUMBLE_CHECK_EQ(mask.size(), std::size_t(width) * height);
   // sums[y][x]: of the rectangle above and left of (x, y).
   const std::size_t stride = std::size_t(width) + 1;

@@ -14,12 +14,13 @@ struct Patches {
   int x = 0, y = 0;         // the pixel of it that is nearest to its middle
 };
 
-// The 4-connected patches of pixels that are not 0, of at least `least` pixels. `mask` holds width × height values in row
-// order. O(pixels).
+// The 4-connected patches of pixels that are not 0, of at least `least` pixels. `mask` holds width × height values in
+// row order. O(pixels).
 Patches FindPatches(const std::vector<std::uint8_t>& mask, int width, int height, std::size_t least = 1);
 
-// 1 where at least `share` (0 … 1) of the pixels in the square of side 2 · reach + 1 round a pixel are not 0; what lies outside
-// the picture counts as 0. O(pixels).
-std::vector<std::uint8_t> MostlySet(const std::vector<std::uint8_t>& mask, int width, int height, int reach, double share);
+// 1 where at least `share` (0 … 1) of the pixels in the square of side 2 · reach + 1 round a pixel are not 0; what lies
+// outside the picture counts as 0. O(pixels).
+std::vector<std::uint8_t> MostlySet(const std::vector<std::uint8_t>& mask, int width, int height, int reach,
+                                    double share);
 
 }  // namespace scumble

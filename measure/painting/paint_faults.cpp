@@ -12,19 +12,20 @@ namespace {
 using Weight = PaintFault::Weight;
 
 // Limits, calibrated on the bundled styles, none of which is at fault, and on paintings with one mistake each.
-constexpr int kSmallest = 256;             // pixels
-constexpr double kMarginRatio = 0.8;       // sphere to template: 1 / (1 + 2 · 1/8)
-constexpr double kOffCentre = 0.01;        // of the diameter
-constexpr double kTooSmall = 0.985;        // of the radius
-constexpr double kLeastFringe = 4.0;       // % of the rim
-constexpr double kLeastTemplate = 0.2;     // % of the disc
-constexpr double kLeastTranslucent = 0.1;  // % of the disc
-constexpr double kLeastRange = 25.0;       // L*, of the style
-constexpr double kLeastRangeOfOne = 10.0;  // L*, of one of several lights
+constexpr int kSmallest = 256;                         // pixels
+constexpr double kMarginRatio = 0.8;                   // sphere to template: 1 / (1 + 2 · 1/8)
+constexpr double kOffCentre = 0.01;                    // of the diameter
+constexpr double kTooSmall = 0.985;                    // of the radius
+constexpr double kLeastFringe = 4.0;                   // % of the rim
+constexpr double kLeastTemplate = 0.2;                 // % of the disc
+constexpr double kLeastTranslucent = 0.1;              // % of the disc
+constexpr double kLeastRange = 25.0;                   // L*, of the style
+constexpr double kLeastRangeOfOne = 10.0;              // L*, of one of several lights
 constexpr double kSeesLight = 0.3, kClearLight = 0.5;  // correlation
-constexpr double kOtherLight = 45.0;       // degrees
-// A pattern that is this much the same wherever it is; or less, and as much after many periods as after one; or in pieces of
-// another direction each. Hatching by hand, ink and woodcut included, stays below 0.35, 0.7 of its peak, and 0.5.
+constexpr double kOtherLight = 45.0;                   // degrees
+// A pattern that is this much the same wherever it is; or less, and as much after many periods as after one; or in
+// pieces of another direction each. Hatching by hand, ink and woodcut included, stays below 0.35, 0.7 of its peak, and
+// 0.5.
 constexpr double kRegular = 0.45, kWeakly = 0.15, kEchoes = 0.85, kRegularLocally = 0.6;
 
 // Of a percentage that is not 0.
@@ -78,15 +79,16 @@ void Faults::LookAtSize() {
   }
   if (size < context_.largest_size) {
     Add("other-size",
-        fmt::format("it is {} pixels wide and the style's largest painting {}: all are brought to the first one's size, and "
-                    "their strokes with them",
-                    size, context_.largest_size),
+        fmt::format(
+            "it is {} pixels wide and the style's largest painting {}: all are brought to the first one's size, and "
+            "their strokes with them",
+            size, context_.largest_size),
         "paint all lights at one size");
   }
 }
 
 // "24 pixels left and 3 up"
-std::string Way(double dx, double dy) {
+std::string Variant(double dx, double dy) {
   const long x = std::lround(dx), y = std::lround(dy);
   std::string way;
   if (x != 0) way = fmt::format("{} pixels {}", std::abs(x), x > 0 ? "to the right" : "to the left");
@@ -101,24 +103,28 @@ void Faults::LookAtDisc() {
   const bool as_in_template = disc.found && std::fabs(ratio - kMarginRatio) < 0.015 && shift < 0.02 * size;
   if (context_.shows_marks || as_in_template) {
     const int sphere = static_cast<int>(std::lround(size * kMarginRatio));
-    return Add("margin",
-               fmt::format("this is a whole template: the sphere takes {} of {} pixels, the rest is the template's margin",
-                           sphere, traits_.width),
-               fmt::format("crop it to the middle {0}×{0} pixels, or name the guides.exr that came with the template as guides "
-                           "in style.toml",
-                           sphere));
+    return Add(
+        "margin",
+        fmt::format("this is a whole template: the sphere takes {} of {} pixels, the rest is the template's margin",
+                    sphere, traits_.width),
+        fmt::format(
+            "crop it to the middle {0}×{0} pixels, or name the guides.exr that came with the template as guides "
+            "in style.toml",
+            sphere));
   }
   if (!disc.found) return;
   // Paint that covers the sphere whole does no harm, wherever its own outline is.
   if (shift > kOffCentre * size && disc.radius - shift < 0.995 * middle) {
-    return Add("off-centre",
-               fmt::format("the painted sphere is {:.1f}% of its diameter off the middle; its centre is at x={:.0f}, y={:.0f}",
-                           100.0 * shift / size, disc.x + context_.margin, disc.y + context_.margin),
-               fmt::format("move the painting {}", Way(-dx, -dy)));
+    return Add(
+        "off-centre",
+        fmt::format("the painted sphere is {:.1f}% of its diameter off the middle; its centre is at x={:.0f}, y={:.0f}",
+                    100.0 * shift / size, disc.x + context_.margin, disc.y + context_.margin),
+        fmt::format("move the painting {}", Variant(-dx, -dy)));
   }
   if (ratio < kTooSmall) {
     Add("small-sphere",
-        fmt::format("the painted sphere fills {:.1f}% of the square's width; its rim takes what lies round it", 100.0 * ratio),
+        fmt::format("the painted sphere fills {:.1f}% of the square's width; its rim takes what lies round it",
+                    100.0 * ratio),
         fmt::format("enlarge the painting to {:.1f}%, or crop it to the sphere: {:.0f} pixels from x={:.0f}, y={:.0f}",
                     100.0 / ratio, 2.0 * disc.radius, disc.x - disc.radius + context_.margin,
                     disc.y - disc.radius + context_.margin));
@@ -130,21 +136,23 @@ void Faults::LookAtHoles() {
   if (holes.pixels > 0) {
     const double share = traits_.alpha.transparent_percent - traits_.alpha.translucent_percent;
     AddAt("holes", holes.x, holes.y,
-          fmt::format("{} of the {} is transparent and will be so in pictures, in {} hole{}, the largest", Percent(share),
-                      Thing(), holes.count, holes.count == 1 ? "" : "s"),
+          fmt::format("{} of the {} is transparent and will be so in pictures, in {} hole{}, the largest",
+                      Percent(share), Thing(), holes.count, holes.count == 1 ? "" : "s"),
           "fill the holes if that is not wanted");
   }
   if (traits_.template_percent >= kLeastTemplate) {
-    AddAt("bare-template", bare.x, bare.y,
-          fmt::format("{} of the sphere is still the template's own grey, most of it", Percent(traits_.template_percent)),
-          "paint over it, or switch the template's layer off before you export");
+    AddAt(
+        "bare-template", bare.x, bare.y,
+        fmt::format("{} of the sphere is still the template's own grey, most of it", Percent(traits_.template_percent)),
+        "paint over it, or switch the template's layer off before you export");
   }
   const bool misplaced = Has("margin") || Has("off-centre") || Has("small-sphere");
   if (misplaced) return;
   if (traits_.fringe_percent >= kLeastFringe) {
     Add("fringe",
-        fmt::format("paper shows at {:.0f}% of the sphere's rim, where the paint ends too early; outlines will have a fringe",
-                    traits_.fringe_percent),
+        fmt::format(
+            "paper shows at {:.0f}% of the sphere's rim, where the paint ends too early; outlines will have a fringe",
+            traits_.fringe_percent),
         "let strokes run over the sphere's edge, some 10 pixels: what lies outside is never shown");
   }
   if (shade.pixels > 0) {
@@ -178,12 +186,13 @@ void Faults::LookAtTone() {
   const double range = context_.several ? context_.tonal_range : traits_.tone.range();
   if (context_.brightest && range < kLeastRange) {
     Add("flat",
-        fmt::format("light and dark differ by {:.0f}% only (lightness {:.0f} to {:.0f} of 100), shapes will look flat", range,
-                    traits_.tone.darkest, traits_.tone.brightest),
+        fmt::format("light and dark differ by {:.0f}% only (lightness {:.0f} to {:.0f} of 100), shapes will look flat",
+                    range, traits_.tone.darkest, traits_.tone.brightest),
         "paint lights lighter and shades darker");
   } else if (context_.several && traits_.tone.range() < kLeastRangeOfOne) {
     Add("flat",
-        fmt::format("light and dark differ by {:.0f}% only in this light (lightness {:.0f} to {:.0f} of 100), shapes will look flat",
+        fmt::format("light and dark differ by {:.0f}% only in this light (lightness {:.0f} to {:.0f} of 100), shapes "
+                    "will look flat",
                     traits_.tone.range(), traits_.tone.darkest, traits_.tone.brightest),
         "let the form be read here too: reflected light, a darker core");
   }
@@ -197,10 +206,11 @@ void Faults::LookAtTone() {
   const PaintedLight& drawn = *traits_.template_light;
   const double angle = AngleBetween(light, drawn);
   if (angle < kOtherLight) return;
-  const std::string what = fmt::format("the painted light comes from {}, {:.0f}° away from the template's ({})", InWords(light),
-                                       angle, InWords(drawn));
+  const std::string what = fmt::format("the painted light comes from {}, {:.0f}° away from the template's ({})",
+                                       InWords(light), angle, InWords(drawn));
   if (context_.knows_guides) {
-    Add("other-light", what, "turn or mirror the painting back, or make a template for that light: scumble sphere --light");
+    Add("other-light", what,
+        "turn or mirror the painting back, or make a template for that light: scumble sphere --light");
   } else {
     Remark("other-light", what, "nothing if that is wanted; beside the bundled styles it will look lit from elsewhere");
   }
@@ -211,10 +221,11 @@ void Faults::LookAtPattern() {
   const bool machined = report.peak >= kWeakly && report.echo >= kEchoes * report.peak;
   if (report.peak < kRegular && !machined && report.local_echo < kRegularLocally) return;
   AddAt("regular-pattern", report.x, report.y,
-        fmt::format("a regular pattern ({}) comes back every {:.1f} pixels at {:.0f}°, {:.0f}% the same; it will tear where "
-                    "pieces of the painting meet; clearest",
-                    report.grid ? "dots, squares or weave" : "even lines", report.period, report.direction,
-                    100.0 * std::max(report.peak, report.local_echo)),
+        fmt::format(
+            "a regular pattern ({}) comes back every {:.1f} pixels at {:.0f}°, {:.0f}% the same; it will tear where "
+            "pieces of the painting meet; clearest",
+            report.grid ? "dots, squares or weave" : "even lines", report.period, report.direction,
+            100.0 * std::max(report.peak, report.local_echo)),
         report.grid ? "take halftone screens, canvas and pattern fills out; scan paper without its weave"
                     : "draw lines by hand, at uneven distances and with breaks");
 }

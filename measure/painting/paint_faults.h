@@ -17,8 +17,8 @@ struct PaintFault {
   };
   std::string code;  // stable: "off-centre"; see docs/checking.md
   Weight weight = Weight::kMistake;
-  std::string what;  // what is wrong and where, a clause without the file's name
-  std::string mend;  // what to do, a clause
+  std::string what;                          // what is wrong and where, a clause without the file's name
+  std::string mend;                          // what to do, a clause
   std::optional<std::pair<int, int>> place;  // pixel of the file, from its upper left corner
 };
 
@@ -34,8 +34,8 @@ struct PaintFaultContext {
   int margin = 0;             // of the template, that was cut off the file
 };
 
-// In the order of gravity; empty where all is well. A mistake that explains another hides it: an off-centre sphere has a
-// fringe, which is not told as well.
+// In the order of gravity; empty where all is well. A mistake that explains another hides it: an off-centre sphere has
+// a fringe, which is not told as well.
 std::vector<PaintFault> FindPaintFaults(const PaintTraits& traits, const PaintFaultContext& context);
 
 }  // namespace scumble

@@ -33,7 +33,8 @@ PaintSheet::PaintSheet(const Exemplar& exemplar, double rim) : exemplar_(exempla
       usable_pixels_ += usable_[i];
       const std::uint16_t* texel = paint.At(x, y);
       float luminance = Luminance(Srgb16ToLinear(texel[0]), Srgb16ToLinear(texel[1]), Srgb16ToLinear(texel[2]));
-      if (texel[3] < 65535 && Shows(x, y)) luminance = 1.0f + (luminance - 1.0f) * (static_cast<float>(texel[3]) / 65535.0f);
+      if (texel[3] < 65535 && Shows(x, y))
+        luminance = 1.0f + (luminance - 1.0f) * (static_cast<float>(texel[3]) / 65535.0f);
       lightness_[i] = Lightness(luminance);
     }
   }

@@ -1,4 +1,5 @@
-// A painted exemplar as the measures of paint see it: its picture, the pixels that a transfer may show, how they are turned.
+// A painted exemplar as the measures of paint see it: its picture, the pixels that a transfer may show, how they are
+// turned.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +11,12 @@
 
 namespace scumble {
 
-// Refers to the exemplar, which must outlive it. Pixels are those of the exemplar's picture, rows from the top; angles and
-// axes are those of view space (core/image/guides.h).
+// Refers to the exemplar, which must outlive it. Pixels are those of the exemplar's picture, rows from the top; angles
+// and axes are those of view space (core/image/guides.h).
 class PaintSheet {
  public:
-  // Usable is, on a sphere, what lies `rim` pixels or more inside the circle that fills the square; in a painted scene, what
-  // its guides cover. The picture is not empty; that of a sphere is square.
+  // Usable is, on a sphere, what lies `rim` pixels or more inside the circle that fills the square; in a painted scene,
+  // what its guides cover. The picture is not empty; that of a sphere is square.
   PaintSheet(const Exemplar& exemplar, double rim);
 
   const Picture& picture() const { return exemplar_.picture; }
@@ -33,7 +34,8 @@ class PaintSheet {
   // Whether there is paint at all: alpha above a hundredth.
   bool Shows(int x, int y) const { return picture().At(x, y)[3] > kClearAlpha; }
 
-  // CIE L* (0 black … 100 white) of every pixel: translucent paint as it looks on white paper, transparent as its colour says.
+  // CIE L* (0 black … 100 white) of every pixel: translucent paint as it looks on white paper, transparent as its
+  // colour says.
   const std::vector<float>& lightness() const { return lightness_; }
 
   static constexpr std::uint16_t kClearAlpha = 655;

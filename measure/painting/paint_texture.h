@@ -7,14 +7,14 @@
 namespace scumble {
 
 struct TextureReport {
-  // 0: texture has no direction, 1: all strokes of a window are parallel. The mean over the windows of the structure tensor's
-  // coherence, (λ1 - λ2) / (λ1 + λ2) (Bigün and Granlund 1987), each weighted by its gradients' power.
+  // 0: texture has no direction, 1: all strokes of a window are parallel. The mean over the windows of the structure
+  // tensor's coherence, (λ1 - λ2) / (λ1 + λ2) (Bigün and Granlund 1987), each weighted by its gradients' power.
   double anisotropy = 0.0;
   RegularityReport regularity;
 };
 
-// In up to 25 windows, evenly spread over what is usable, each wholly inside it: squares of 128 pixels, in pictures below 512
-// of a quarter of the shorter side. Nothing is measured where none of 16 pixels or more fits.
+// In up to 25 windows, evenly spread over what is usable, each wholly inside it: squares of 128 pixels, in pictures
+// below 512 of a quarter of the shorter side. Nothing is measured where none of 16 pixels or more fits.
 TextureReport MeasureTexture(const PaintSheet& sheet);
 
 }  // namespace scumble

@@ -30,7 +30,8 @@ std::vector<Cell> CellsOf(const PaintSheet& sheet) {
       ++cell.pixels;
     }
   }
-  cells.erase(std::remove_if(cells.begin(), cells.end(), [](const Cell& cell) { return cell.pixels == 0; }), cells.end());
+  cells.erase(std::remove_if(cells.begin(), cells.end(), [](const Cell& cell) { return cell.pixels == 0; }),
+              cells.end());
   for (Cell& cell : cells) cell.normal = glm::normalize(cell.normal), cell.lightness /= cell.pixels;
   return cells;
 }

@@ -7,10 +7,11 @@
 
 namespace scumble {
 
-// CIE L* over usable pixels that are not transparent; all 0 where there is none. Percentiles, so that one speck is no range.
+// CIE L* over usable pixels that are not transparent; all 0 where there is none. Percentiles, so that one speck is no
+// range.
 struct ToneReport {
-  double darkest = 0.0;   // 1st percentile
-  double brightest = 0.0; // 99th percentile
+  double darkest = 0.0;    // 1st percentile
+  double brightest = 0.0;  // 99th percentile
   double mean = 0.0;
   double range() const { return brightest - darkest; }
 };
@@ -18,13 +19,13 @@ ToneReport MeasureTone(const PaintSheet& sheet);
 
 // The direction of a distant light under which a matt surface would be light and dark where the painting is.
 struct PaintedLight {
-  double azimuth = 0.0;      // degrees, as in core/image/direction.h
+  double azimuth = 0.0;  // degrees, as in core/image/direction.h
   double elevation = 0.0;
   double correlation = 0.0;  // Pearson's, 0 … 1, of the painting's L* with max(0, n · light); 0: no light to be seen
 };
 
-// Searches all directions from which some usable pixel would be lit, to a degree. The lightness is averaged in cells of 1/48
-// of the picture first, so strokes do not count. Transparent pixels are left out. O(pixels).
+// Searches all directions from which some usable pixel would be lit, to a degree. The lightness is averaged in cells of
+// 1/48 of the picture first, so strokes do not count. Transparent pixels are left out. O(pixels).
 PaintedLight FindPaintedLight(const PaintSheet& sheet);
 
 // Degrees between two directions.

@@ -10,8 +10,8 @@
 namespace scumble {
 namespace {
 
-constexpr int kAlike = 2 * 257 + 128;    // with the rounding to 8 bits
-constexpr int kAlikeInScans = 6 * 257;   // with paper's and scanner's noise
+constexpr int kAlike = 2 * 257 + 128;   // with the rounding to 8 bits
+constexpr int kAlikeInScans = 6 * 257;  // with paper's and scanner's noise
 constexpr int kAnyGrey = 65536;
 constexpr int kClearlyGrey = 245 * 257;  // of the printed one, whose lights are paper
 
@@ -29,7 +29,8 @@ Patches FindBareTemplate(const PaintSheet& sheet, const Picture& bare, int toler
     }
   }
   const auto least = static_cast<std::size_t>(0.0005 * static_cast<double>(sheet.usable_pixels()));
-  return FindPatches(MostlySet(alike, bare.width, bare.height, 4, 0.9), bare.width, bare.height, std::max<std::size_t>(4, least));
+  return FindPatches(MostlySet(alike, bare.width, bare.height, 4, 0.9), bare.width, bare.height,
+                     std::max<std::size_t>(4, least));
 }
 
 // The printed sphere stands on white paper; grey paper may well have its tone.

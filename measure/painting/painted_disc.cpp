@@ -76,7 +76,8 @@ Ray RayOf(int i) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-// Inward from the picture's edge, where each ray first meets paint. Rays on which paint reaches the edge have no outline.
+// Inward from the picture's edge, where each ray first meets paint. Rays on which paint reaches the edge have no
+// outline.
 std::vector<glm::dvec2> Outline(const PaintOnGround& paint) {
   const int size = paint.sheet().width();
   const double middle = 0.5 * size;
@@ -88,7 +89,8 @@ std::vector<glm::dvec2> Outline(const PaintOnGround& paint) {
     int run = 0, ground = 0;
     for (double distance = longest; distance > 0.0; distance -= 0.5) {
       const glm::dvec2 at = ray.At(middle, distance);
-      const int x = std::clamp(static_cast<int>(at.x), 0, size - 1), y = std::clamp(static_cast<int>(at.y), 0, size - 1);
+      const int x = std::clamp(static_cast<int>(at.x), 0, size - 1),
+                y = std::clamp(static_cast<int>(at.y), 0, size - 1);
       if (!paint.IsPaint(x, y)) {
         run = 0, ++ground;
         continue;

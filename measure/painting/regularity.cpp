@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/image/check.h"
 #include "core/filter/gaussian_blur.h"
+#include "core/image/check.h"
 
 namespace scumble {
 namespace {
@@ -86,7 +86,8 @@ Autocorrelation Correlate(const std::vector<std::int16_t>& values, int side, int
 double LowestOnTheWay(const Autocorrelation& values, double cosine, double sine, double length) {
   double lowest = 1.0;
   for (int step = 1; step <= length; ++step) {
-    lowest = std::min(lowest, values.At(static_cast<int>(std::lround(cosine * step)), static_cast<int>(std::lround(sine * step))));
+    lowest = std::min(
+        lowest, values.At(static_cast<int>(std::lround(cosine * step)), static_cast<int>(std::lround(sine * step))));
   }
   return lowest;
 }
@@ -110,7 +111,7 @@ bool IsPeak(const Autocorrelation& values, int dx, int dy) {
 
 struct Pattern {
   Peak highest;
-  Peak nearest;       // of those that are nearly as high: a pattern comes back at every multiple of its period
+  Peak nearest;  // of those that are nearly as high: a pattern comes back at every multiple of its period
   double echo = 0.0;
 };
 
@@ -167,8 +168,8 @@ void Describe(const Autocorrelation& values, const Peak& peak, RegularityReport&
 
 }  // namespace
 
-RegularityReport MeasureRegularity(const std::vector<float>& plane, int width, const std::vector<PictureRegion>& windows,
-                                   const RegularityOptions& options) {
+RegularityReport MeasureRegularity(const std::vector<float>& plane, int width,
+                                   const std::vector<PictureRegion>& windows, const RegularityOptions& options) {
   SCUMBLE_CHECK(options.window >= 16 && width > 0);
   const int reach = options.window * 3 / 8 + 1;
   Autocorrelation mean(reach), best(reach);
@@ -198,8 +199,10 @@ RegularityReport MeasureRegularity(const std::vector<float>& plane, int width, c
   report.peak = pattern.highest.value;
   report.echo = pattern.echo;
   report.local_echo = echoes[echoes.size() * 3 / 4];
-  if (report.peak >= report.local_echo) Describe(mean, pattern.nearest, report);
-  else Describe(best, best_pattern.nearest, report);
+  if (report.peak >= report.local_echo)
+    Describe(mean, pattern.nearest, report);
+  else
+    Describe(best, best_pattern.nearest, report);
   return report;
 }
 

@@ -1,4 +1,4 @@
-// Time against error of every way, as SVG.
+// Time against error of every variant, as SVG.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ constexpr const char* kOwnStyle =
     "stroke-width: 1.6; } .bar { stroke: #777; stroke-width: 0.8; } .name { fill: #222; }</style>\n";
 
 struct Point {
-  std::size_t way = 0, axis = 0;
+  std::size_t variant = 0, axis = 0;
   Quartiles time;  // or memory
   Estimate error;
   double x = 0.0, y = 0.0;
@@ -48,15 +48,15 @@ struct Chart {
   double right = 0.0, top = 0.0;
 };
 
-Quartiles TimeOf(const TradeMeasure& way, ChartTime time) {
-  if (time == ChartTime::kTotal) return way.total_ms;
-  if (time == ChartTime::kTransfer) return way.transfer_ms;
-  const double megabytes = static_cast<double>(way.memory_bytes) * 1e-6;
+Quartiles TimeOf(const TradeMeasure& variant, ChartTime time) {
+  if (time == ChartTime::kTotal) return variant.total_ms;
+  if (time == ChartTime::kTransfer) return variant.transfer_ms;
+  const double megabytes = static_cast<double>(variant.memory_bytes) * 1e-6;
   return {megabytes, megabytes, megabytes};
 }
 
-const Estimate& ErrorOf(const TradeMeasure& way, ChartError error) {
-  return error == ChartError::kBoth ? way.both : error == ChartError::kEnergy ? way.energy : way.missing;
+const Estimate& ErrorOf(const TradeMeasure& variant, ChartError error) {
+  return error == ChartError::kBoth ? variant.both : error == ChartError::kEnergy ? variant.energy : variant.missing;
 }
 
 const char* TimeName(ChartTime time) {
@@ -72,12 +72,12 @@ const char* ErrorName(ChartError error) {
 std::vector<Point> PointsOf(const TradeReport& report, const ChartLook& look) {
   const std::vector<std::string> axes = AxesOf(report);
   std::vector<Point> points;
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const TradeMeasure& way = report.ways[i];
-    const Quartiles time = TimeOf(way, look.time);
-    const Estimate& error = ErrorOf(way, look.error);
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
+    const TradeMeasure& variant = report.variants[i];
+    const Quartiles time = TimeOf(variant, look.time);
+    const Estimate& error = ErrorOf(variant, look.error);
     if (!Taken(time.median) || !std::isfinite(time.median) || !std::isfinite(error.mean)) continue;
-    const auto axis = std::find(axes.begin(), axes.end(), way.axis) - axes.begin();
+    const auto axis = std::find(axes.begin(), axes.end(), variant.axis) - axes.begin();
     points.push_back({i, static_cast<std::size_t>(axis), time, error});
   }
   return points;
@@ -97,7 +97,7 @@ Chart ChartOf(const TradeReport& report, const ChartLook& look) {
       const double error = point.error.mean + side * point.error.standard_error;
       if (std::isfinite(error)) errors.push_back(error);
     }
-    const bool counts = look.time != ChartTime::kMemory && may[point.way];
+    const bool counts = look.time != ChartTime::kMemory && may[point.variant];
     trade.push_back({counts ? point.time.median : std::numeric_limits<double>::quiet_NaN(), point.error.mean});
   }
   chart.across = ScaleFor(times, true, kLeft, chart.right);
@@ -164,24 +164,25 @@ std::string Bars(const Chart& chart, const Point& point) {
 }
 
 // What a pointer that rests on a point is told.
-std::string Words(const TradeMeasure& way, bool front) {
-  std::string words = way.name + (way.chosen ? ", the style as it is" : "") + (way.exact ? ", the exact one" : "") +
-                      (front ? ", on the front" : "");
-  words += "\ntime " + ShortTime(way.total_ms) + " ms, of which the transfer " + ShortTime(way.transfer_ms) + " ms";
-  if (way.prepare_ms > 0.0) words += "\npreparing the style " + ShortFigure(way.prepare_ms) + " ms, once";
-  if (way.memory_bytes > 0) words += "\nmemory " + ShortMegabytes(way.memory_bytes) + " MB";
-  words += "\nboth " + ShortEstimate(way.both) + ", energy " + ShortEstimate(way.energy) + ", missing " +
-           ShortEstimate(way.missing);
-  if (way.guide_degrees) words += "\nguides off by " + ShortFigure(way.guide_degrees) + "°";
-  if (!way.options.empty()) words += "\n" + way.options;
-  return words + (way.note.empty() ? "" : "\n" + way.note);
+std::string Words(const TradeMeasure& variant, bool front) {
+  std::string words = variant.name + (variant.chosen ? ", the style as it is" : "") +
+                      (variant.exact ? ", the exact one" : "") + (front ? ", on the front" : "");
+  words +=
+      "\ntime " + ShortTime(variant.total_ms) + " ms, of which the transfer " + ShortTime(variant.transfer_ms) + " ms";
+  if (variant.prepare_ms > 0.0) words += "\npreparing the style " + ShortFigure(variant.prepare_ms) + " ms, once";
+  if (variant.memory_bytes > 0) words += "\nmemory " + ShortMegabytes(variant.memory_bytes) + " MB";
+  words += "\nboth " + ShortEstimate(variant.both) + ", energy " + ShortEstimate(variant.energy) + ", missing " +
+           ShortEstimate(variant.missing);
+  if (variant.guide_degrees) words += "\nguides off by " + ShortFigure(variant.guide_degrees) + "°";
+  if (!variant.options.empty()) words += "\n" + variant.options;
+  return words + (variant.note.empty() ? "" : "\n" + variant.note);
 }
 
 std::string PointMark(const Chart& chart, const Point& point, const TradeReport& report, bool page) {
-  const TradeMeasure& way = report.ways[point.way];
-  const std::string words = EscapeHtml(Words(way, point.front));
-  std::string svg = page ? fmt::format("<a href=\"#way-{}\" class=\"point axis-{}\" aria-label=\"{}\">", point.way + 1,
-                                       point.axis + 1, words)
+  const TradeMeasure& variant = report.variants[point.variant];
+  const std::string words = EscapeHtml(Words(variant, point.front));
+  std::string svg = page ? fmt::format("<a href=\"#way-{}\" class=\"point axis-{}\" aria-label=\"{}\">",
+                                       point.variant + 1, point.axis + 1, words)
                          : "<g>";
   svg += "<title>" + words + "</title>" + Bars(chart, point) + ChartMark(point.axis, point.x, point.y);
   if (point.front)
@@ -190,7 +191,7 @@ std::string PointMark(const Chart& chart, const Point& point, const TradeReport&
 }
 
 bool IsNamed(const Point& point, const TradeReport& report) {
-  return point.front || report.ways[point.way].chosen || report.ways[point.way].exact;
+  return point.front || report.variants[point.variant].chosen || report.variants[point.variant].exact;
 }
 
 // Names beside points, where there is room for them.
@@ -200,7 +201,7 @@ std::string Names(const Chart& chart, const TradeReport& report) {
   std::string svg;
   for (const Point& point : chart.points) {
     if (!IsNamed(point, report)) continue;
-    const std::string& name = report.ways[point.way].name;
+    const std::string& name = report.variants[point.variant].name;
     const double width = kLetter * static_cast<double>(name.size());
     for (const double far : {12.0, 24.0, 40.0, 60.0}) {
       const Box places[] = {{point.x + far, point.y - far / 2 - kLetterHeight / 2, width, kLetterHeight},

@@ -43,19 +43,20 @@ std::string Figure(const Estimate& estimate) {
 std::string TradeCsv(const TradeReport& report) {
   std::string csv = std::string(kHead) + "\r\n";
   const std::vector<bool> front = internal::OnFront(report);
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const TradeMeasure& way = report.ways[i];
-    for (const std::string& text : {way.name, way.axis, way.value, way.options, way.note}) csv += Quoted(text) + ",";
-    csv += fmt::format("{:d},{:d},{:d},", way.chosen, way.exact, bool(front[i]));
-    for (const Quartiles& time : {way.guides_ms, way.transfer_ms, way.total_ms}) csv += Time(time) + ",";
-    csv += Number(internal::Taken(way.prepare_ms)) + ",";
-    csv += way.memory_bytes > 0 ? fmt::format("{},", way.memory_bytes) : ",";
-    for (const Estimate& estimate : {way.both, way.energy, way.missing}) csv += Figure(estimate) + ",";
-    for (const auto& value : {way.guide_degrees, way.coherence, way.chunk_area, way.seam_excess, way.repetition,
-                              way.guide_rms, way.guide_flip}) {
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
+    const TradeMeasure& variant = report.variants[i];
+    for (const std::string& text : {variant.name, variant.axis, variant.value, variant.options, variant.note})
+      csv += Quoted(text) + ",";
+    csv += fmt::format("{:d},{:d},{:d},", variant.chosen, variant.exact, bool(front[i]));
+    for (const Quartiles& time : {variant.guides_ms, variant.transfer_ms, variant.total_ms}) csv += Time(time) + ",";
+    csv += Number(internal::Taken(variant.prepare_ms)) + ",";
+    csv += variant.memory_bytes > 0 ? fmt::format("{},", variant.memory_bytes) : ",";
+    for (const Estimate& estimate : {variant.both, variant.energy, variant.missing}) csv += Figure(estimate) + ",";
+    for (const auto& value : {variant.guide_degrees, variant.coherence, variant.chunk_area, variant.seam_excess,
+                              variant.repetition, variant.guide_rms, variant.guide_flip}) {
       csv += Number(value) + ",";
     }
-    csv += (way.picture_png.empty() ? "" : TradePictureName(report, i)) + "\r\n";
+    csv += (variant.picture_png.empty() ? "" : TradePictureName(report, i)) + "\r\n";
   }
   return csv;
 }

@@ -21,26 +21,27 @@ constexpr const char* kTimes[] = {"guides and transfer", "transfer alone", "memo
 constexpr const char* kErrors[] = {"both", "energy", "missing"};
 
 std::string LinkTo(const TradeReport& report, std::size_t i) {
-  return fmt::format("<a href=\"#way-{}\">{}</a>", i + 1, EscapeHtml(report.ways[i].name));
+  return fmt::format("<a href=\"#way-{}\">{}</a>", i + 1, EscapeHtml(report.variants[i].name));
 }
 
-std::string Costs(const TradeMeasure& way) {
-  return fmt::format("{} ms, both {}", ShortFigure(way.total_ms.median), ShortEstimate(way.both));
+std::string Costs(const TradeMeasure& variant) {
+  return fmt::format("{} ms, both {}", ShortFigure(variant.total_ms.median), ShortEstimate(variant.both));
 }
 
 // Where the style as it is stands.
 std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& front) {
-  const auto own = std::find_if(report.ways.begin(), report.ways.end(), [](const auto& way) { return way.chosen; });
-  if (own == report.ways.end() || !internal::Taken(own->total_ms.median) || !internal::Taken(own->both)) return "";
-  const std::size_t place = static_cast<std::size_t>(own - report.ways.begin());
+  const auto own =
+      std::find_if(report.variants.begin(), report.variants.end(), [](const auto& variant) { return variant.chosen; });
+  if (own == report.variants.end() || !internal::Taken(own->total_ms.median) || !internal::Taken(own->both)) return "";
+  const std::size_t place = static_cast<std::size_t>(own - report.variants.begin());
   std::string text = "The style as it is takes " + Costs(*own);
   if (std::find(front.begin(), front.end(), place) != front.end()) return text + ", and is on the front.";
   text += ". Faster, and no farther from the exemplar by “both”:";
   const char* comma = " ";
   for (const std::size_t i : front) {
-    const TradeMeasure& way = report.ways[i];
-    if (way.total_ms.median > own->total_ms.median || way.both.mean > own->both.mean) continue;
-    text += comma + LinkTo(report, i) + " (" + Costs(way) + ")";
+    const TradeMeasure& variant = report.variants[i];
+    if (variant.total_ms.median > own->total_ms.median || variant.both.mean > own->both.mean) continue;
+    text += comma + LinkTo(report, i) + " (" + Costs(variant) + ")";
     comma = ", ";
   }
   return text + ".";
@@ -58,9 +59,9 @@ std::string Header(const TradeReport& report) {
                      ": speed against accuracy</h1>\n<p class=\"soft\">" + EscapeHtml(internal::TradeSetup(report)) +
                      ".</p>\n";
   if (!report.command.empty()) html += "<p>Repeat with <code>" + EscapeHtml(report.command) + "</code></p>\n";
-  if (report.ways.empty()) return html + "<p>Nothing was measured.</p>\n";
+  if (report.variants.empty()) return html + "<p>Nothing was measured.</p>\n";
   html += fmt::format("<p>{} of {} ways are on the front: nothing else is as fast and nearer to the exemplar. ",
-                      front.size(), report.ways.size());
+                      front.size(), report.variants.size());
   return html + OwnPlace(report, front) + " " + internal::kMindBlending +
          " What ways of the axis <code>seed</code> differ by is chance.</p>\n" + LeftOut(report);
 }
@@ -112,7 +113,8 @@ std::string Charts(const TradeReport& report) {
     }
   }
   return html +
-         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways differ "
+         "<p id=\"told\" class=\"soft\">Dashed: the front, ringed its points; of memory none is drawn, as most ways "
+         "differ "
          "by less than two runs of one. Bars are quartiles of the time and "
          "standard "
          "errors of the sample. Each point leads to its picture.</p>\n</section>\n";
@@ -124,12 +126,12 @@ struct Column {
   bool number;
 };
 
-constexpr Column kColumns[] = {{"front", "", false},      {"way", "", false},        {"changes", "", false},
-                               {"time", "ms", true},      {"guides", "ms", true},    {"transfer", "ms", true},
-                               {"prepare", "ms", true},   {"memory", "MB", true},    {"both", "", true},        {"energy", "", true},
-                               {"missing", "", true},     {"off by", "°", true},     {"coherence", "%", true},
-                               {"chunk", "px", true},     {"seam excess", "", true}, {"repetition", "", true},
-                               {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
+constexpr Column kColumns[] = {{"front", "", false},     {"way", "", false},        {"changes", "", false},
+                               {"time", "ms", true},     {"guides", "ms", true},    {"transfer", "ms", true},
+                               {"prepare", "ms", true},  {"memory", "MB", true},    {"both", "", true},
+                               {"energy", "", true},     {"missing", "", true},     {"off by", "°", true},
+                               {"coherence", "%", true}, {"chunk", "px", true},     {"seam excess", "", true},
+                               {"repetition", "", true}, {"guides' RMS", "", true}, {"guides' FLIP", "", true}};
 
 std::string Cell(const std::optional<double>& value, const std::string& shown) {
   return fmt::format("<td class=\"number\" data-v=\"{}\">{}</td>", value ? fmt::format("{}", *value) : "", shown);
@@ -141,18 +143,20 @@ std::string EstimateCell(const Estimate& estimate) { return Cell(internal::Taken
 
 std::string FigureCell(const std::optional<double>& value) { return Cell(value, ShortFigure(value)); }
 
-std::string WayRow(const TradeReport& report, std::size_t i, bool front) {
-  const TradeMeasure& way = report.ways[i];
-  std::string html = fmt::format("<tr{}><td data-v=\"{}\">{}</td>", way.chosen ? " class=\"chosen\"" : "",
+std::string VariantRow(const TradeReport& report, std::size_t i, bool front) {
+  const TradeMeasure& variant = report.variants[i];
+  std::string html = fmt::format("<tr{}><td data-v=\"{}\">{}</td>", variant.chosen ? " class=\"chosen\"" : "",
                                  front ? 0 : 1, front ? "<span aria-label=\"on the front\">★</span>" : "");
-  html += fmt::format("<th scope=\"row\" data-v=\"{}\">{}</th><td>{}</td>", EscapeHtml(way.name), LinkTo(report, i),
-                      EscapeHtml(way.axis));
-  html += TimeCell(way.total_ms) + TimeCell(way.guides_ms) + TimeCell(way.transfer_ms);
-  html += FigureCell(internal::Taken(way.prepare_ms));
-  html += Cell(internal::Taken(static_cast<double>(way.memory_bytes)), internal::ShortMegabytes(way.memory_bytes));
-  html += EstimateCell(way.both) + EstimateCell(way.energy) + EstimateCell(way.missing);
-  html += FigureCell(way.guide_degrees) + Cell(way.coherence, internal::ShortPercent(way.coherence));
-  for (const auto& value : {way.chunk_area, way.seam_excess, way.repetition, way.guide_rms, way.guide_flip}) {
+  html += fmt::format("<th scope=\"row\" data-v=\"{}\">{}</th><td>{}</td>", EscapeHtml(variant.name), LinkTo(report, i),
+                      EscapeHtml(variant.axis));
+  html += TimeCell(variant.total_ms) + TimeCell(variant.guides_ms) + TimeCell(variant.transfer_ms);
+  html += FigureCell(internal::Taken(variant.prepare_ms));
+  html +=
+      Cell(internal::Taken(static_cast<double>(variant.memory_bytes)), internal::ShortMegabytes(variant.memory_bytes));
+  html += EstimateCell(variant.both) + EstimateCell(variant.energy) + EstimateCell(variant.missing);
+  html += FigureCell(variant.guide_degrees) + Cell(variant.coherence, internal::ShortPercent(variant.coherence));
+  for (const auto& value :
+       {variant.chunk_area, variant.seam_excess, variant.repetition, variant.guide_rms, variant.guide_flip}) {
     html += FigureCell(value);
   }
   return html + "</tr>\n";
@@ -166,21 +170,21 @@ std::string Table(const TradeReport& report) {
   }
   html += "</tr></thead><tbody>\n";
   const std::vector<bool> front = internal::OnFront(report);
-  for (const std::size_t i : ByAxis(report)) html += WayRow(report, i, front[i]);
+  for (const std::size_t i : ByAxis(report)) html += VariantRow(report, i, front[i]);
   return html + "</tbody></table>\n</section>\n";
 }
 
 // Under a picture: its figures, how to make it again.
 std::string Caption(const TradeReport& report, std::size_t i, bool front) {
-  const TradeMeasure& way = report.ways[i];
-  std::string html = "<figcaption><b>" + EscapeHtml(way.name) + "</b>";
-  if (way.chosen) html += ", the style as it is";
-  if (way.exact) html += ", what the others are measured against";
+  const TradeMeasure& variant = report.variants[i];
+  std::string html = "<figcaption><b>" + EscapeHtml(variant.name) + "</b>";
+  if (variant.chosen) html += ", the style as it is";
+  if (variant.exact) html += ", what the others are measured against";
   if (front) html += ", <span class=\"star\">★ on the front</span>";
-  html += fmt::format("<br>{} ms; both {}, energy {}, missing {}", ShortTime(way.total_ms), ShortEstimate(way.both),
-                      ShortEstimate(way.energy), ShortEstimate(way.missing));
-  if (!way.options.empty()) html += "<br><code>" + EscapeHtml(way.options) + "</code>";
-  if (!way.note.empty()) html += "<br>" + EscapeHtml(way.note);
+  html += fmt::format("<br>{} ms; both {}, energy {}, missing {}", ShortTime(variant.total_ms),
+                      ShortEstimate(variant.both), ShortEstimate(variant.energy), ShortEstimate(variant.missing));
+  if (!variant.options.empty()) html += "<br><code>" + EscapeHtml(variant.options) + "</code>";
+  if (!variant.note.empty()) html += "<br>" + EscapeHtml(variant.note);
   return html + "</figcaption>";
 }
 
@@ -193,10 +197,10 @@ std::string Figures(const TradeReport& report) {
   const std::vector<bool> front = internal::OnFront(report);
   std::map<std::string_view, std::size_t> shown;  // by their bytes
   for (const std::size_t i : ByAxis(report)) {
-    const TradeMeasure& way = report.ways[i];
-    const auto [first, is_new] = shown.try_emplace(BytesOf(way.picture_png), i);
-    const bool has_picture = !way.picture_png.empty();
-    html += fmt::format("<figure id=\"way-{}\" class=\"way{}\"{}>\n", i + 1, way.chosen ? " chosen" : "",
+    const TradeMeasure& variant = report.variants[i];
+    const auto [first, is_new] = shown.try_emplace(BytesOf(variant.picture_png), i);
+    const bool has_picture = !variant.picture_png.empty();
+    html += fmt::format("<figure id=\"way-{}\" class=\"way{}\"{}>\n", i + 1, variant.chosen ? " chosen" : "",
                         has_picture && !is_new ? fmt::format(" data-same=\"{}\"", first->second + 1) : "");
     if (!has_picture) {
       html += "<p class=\"soft\">No picture was kept.</p>\n";
@@ -205,8 +209,8 @@ std::string Figures(const TradeReport& report) {
     } else {
       html +=
           fmt::format("<img loading=\"lazy\" decoding=\"async\" width=\"{}\" height=\"{}\" alt=\"{}\" src=\"{}\">\n",
-                      report.width, report.height, EscapeHtml(internal::TradeTitle(report) + ", " + way.name),
-                      internal::PngAddress(std::as_bytes(std::span(way.picture_png))));
+                      report.width, report.height, EscapeHtml(internal::TradeTitle(report) + ", " + variant.name),
+                      internal::PngAddress(std::as_bytes(std::span(variant.picture_png))));
     }
     html += Caption(report, i, front[i]) + "\n</figure>\n";
   }
@@ -232,7 +236,7 @@ std::string TradeHtml(const TradeReport& report) {
   std::string html = internal::PageHead(internal::TradeTitle(report) + ": speed against accuracy",
                                         internal::kTradePageStyle + ChoiceStyle(report));
   html += Header(report);
-  if (!report.ways.empty()) html += Charts(report) + Table(report) + Figures(report) + kFlip;
+  if (!report.variants.empty()) html += Charts(report) + Table(report) + Figures(report) + kFlip;
   return html + "<script>" + internal::kTradePageScript + "</script>\n</body></html>\n";
 }
 

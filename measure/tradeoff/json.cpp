@@ -24,26 +24,26 @@ Json EstimateJson(const Estimate& estimate) {
   return {{"mean", JsonNumber(estimate.mean)}, {"standard_error", JsonNumber(estimate.standard_error)}};
 }
 
-Json WayJson(const TradeReport& report, std::size_t i, bool front) {
-  const TradeMeasure& way = report.ways[i];
-  Json json{{"way", way.name},  {"axis", way.axis},     {"value", way.value}, {"options", way.options},
-            {"note", way.note}, {"chosen", way.chosen}, {"exact", way.exact}, {"front", front}};
-  json["guides_ms"] = TimeJson(way.guides_ms);
-  json["transfer_ms"] = TimeJson(way.transfer_ms);
-  json["total_ms"] = TimeJson(way.total_ms);
-  json["prepare_ms"] = NumberJson(internal::Taken(way.prepare_ms));
-  json["memory_bytes"] = way.memory_bytes > 0 ? Json(way.memory_bytes) : Json();
-  json["both"] = EstimateJson(way.both);
-  json["energy"] = EstimateJson(way.energy);
-  json["missing"] = EstimateJson(way.missing);
-  json["guide_degrees"] = NumberJson(way.guide_degrees);
-  json["coherence"] = NumberJson(way.coherence);
-  json["chunk_area_pixels"] = NumberJson(way.chunk_area);
-  json["seam_excess"] = NumberJson(way.seam_excess);
-  json["repetition"] = NumberJson(way.repetition);
-  json["guide_rms"] = NumberJson(way.guide_rms);
-  json["guide_flip"] = NumberJson(way.guide_flip);
-  json["picture"] = way.picture_png.empty() ? Json() : Json(TradePictureName(report, i));
+Json VariantJson(const TradeReport& report, std::size_t i, bool front) {
+  const TradeMeasure& variant = report.variants[i];
+  Json json{{"way", variant.name},  {"axis", variant.axis},     {"value", variant.value}, {"options", variant.options},
+            {"note", variant.note}, {"chosen", variant.chosen}, {"exact", variant.exact}, {"front", front}};
+  json["guides_ms"] = TimeJson(variant.guides_ms);
+  json["transfer_ms"] = TimeJson(variant.transfer_ms);
+  json["total_ms"] = TimeJson(variant.total_ms);
+  json["prepare_ms"] = NumberJson(internal::Taken(variant.prepare_ms));
+  json["memory_bytes"] = variant.memory_bytes > 0 ? Json(variant.memory_bytes) : Json();
+  json["both"] = EstimateJson(variant.both);
+  json["energy"] = EstimateJson(variant.energy);
+  json["missing"] = EstimateJson(variant.missing);
+  json["guide_degrees"] = NumberJson(variant.guide_degrees);
+  json["coherence"] = NumberJson(variant.coherence);
+  json["chunk_area_pixels"] = NumberJson(variant.chunk_area);
+  json["seam_excess"] = NumberJson(variant.seam_excess);
+  json["repetition"] = NumberJson(variant.repetition);
+  json["guide_rms"] = NumberJson(variant.guide_rms);
+  json["guide_flip"] = NumberJson(variant.guide_flip);
+  json["picture"] = variant.picture_png.empty() ? Json() : Json(TradePictureName(report, i));
   return json;
 }
 
@@ -61,11 +61,11 @@ std::string TradeJson(const TradeReport& report) {
             {"lambda", JsonNumber(report.lambda)},
             {"command", report.command}};
   json["front"] = Json::array();
-  for (const std::size_t i : FrontOf(report)) json["front"].push_back(report.ways[i].name);
+  for (const std::size_t i : FrontOf(report)) json["front"].push_back(report.variants[i].name);
   json["left_out"] = report.left_out;
   json["ways"] = Json::array();
   const std::vector<bool> front = internal::OnFront(report);
-  for (std::size_t i = 0; i < report.ways.size(); ++i) json["ways"].push_back(WayJson(report, i, front[i]));
+  for (std::size_t i = 0; i < report.variants.size(); ++i) json["ways"].push_back(VariantJson(report, i, front[i]));
   // Names may hold any bytes; JSON may not.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

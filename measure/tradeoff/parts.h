@@ -13,11 +13,11 @@ namespace scumble::internal {
 std::optional<double> Taken(double time_or_memory);
 std::optional<double> Taken(const Estimate& estimate);
 
-// For each way, whether a front may have it, if its figures are good enough: it was timed, differs by more than chance, can be
-// chosen, since `stylize` has options for it, and stands for its picture, as at FrontOf.
+// For each variant, whether a front may have it, if its figures are good enough: it was timed, differs by more than
+// chance, can be chosen, since `stylize` has options for it, and stands for its picture, as at FrontOf.
 std::vector<bool> MayBeOnFront(const TradeReport& report);
 
-// For each way, whether it is on the front.
+// For each variant, whether it is on the front.
 std::vector<bool> OnFront(const TradeReport& report);
 
 // As people read them, "–" where there is none: three digits that count.

@@ -33,7 +33,7 @@ std::optional<double> Taken(const Estimate& estimate) {
 }
 
 std::vector<bool> OnFront(const TradeReport& report) {
-  std::vector<bool> on(report.ways.size(), false);
+  std::vector<bool> on(report.variants.size(), false);
   for (const std::size_t i : FrontOf(report)) on[i] = true;
   return on;
 }
@@ -75,8 +75,8 @@ std::string TradeSetup(const TradeReport& report) {
 
 std::vector<std::string> AxesOf(const TradeReport& report) {
   std::vector<std::string> axes;
-  for (const TradeMeasure& way : report.ways) {
-    if (std::find(axes.begin(), axes.end(), way.axis) == axes.end()) axes.push_back(way.axis);
+  for (const TradeMeasure& variant : report.variants) {
+    if (std::find(axes.begin(), axes.end(), variant.axis) == axes.end()) axes.push_back(variant.axis);
   }
   return axes;
 }
@@ -85,12 +85,14 @@ std::vector<std::string> AxesOf(const TradeReport& report) {
 
 namespace {
 
-bool CanBeChosen(const TradeMeasure& way) { return !way.by_chance && (way.chosen || !way.options.empty()); }
+bool CanBeChosen(const TradeMeasure& variant) {
+  return !variant.by_chance && (variant.chosen || !variant.options.empty());
+}
 
 // One run has no quartiles to be sure by.
-bool IsSurelyQuicker(const TradeMeasure& way, const TradeMeasure& other) {
-  const bool once = way.total_ms.lower == way.total_ms.upper || other.total_ms.lower == other.total_ms.upper;
-  return !once && way.total_ms.upper < other.total_ms.lower;
+bool IsSurelyQuicker(const TradeMeasure& variant, const TradeMeasure& other) {
+  const bool once = variant.total_ms.lower == variant.total_ms.upper || other.total_ms.lower == other.total_ms.upper;
+  return !once && variant.total_ms.upper < other.total_ms.lower;
 }
 
 }  // namespace
@@ -99,13 +101,13 @@ namespace internal {
 
 std::vector<bool> MayBeOnFront(const TradeReport& report) {
   std::map<std::size_t, std::size_t> standing;  // who stands for a picture, by the first way that makes it
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const TradeMeasure& way = report.ways[i];
-    if (!CanBeChosen(way) || !Taken(way.total_ms.median)) continue;
-    const auto [place, is_new] = standing.try_emplace(way.same_as.value_or(i), i);
-    if (!is_new && IsSurelyQuicker(way, report.ways[place->second])) place->second = i;
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
+    const TradeMeasure& variant = report.variants[i];
+    if (!CanBeChosen(variant) || !Taken(variant.total_ms.median)) continue;
+    const auto [place, is_new] = standing.try_emplace(variant.same_as.value_or(i), i);
+    if (!is_new && IsSurelyQuicker(variant, report.variants[place->second])) place->second = i;
   }
-  std::vector<bool> may(report.ways.size(), false);
+  std::vector<bool> may(report.variants.size(), false);
   for (const auto& [picture, i] : standing) may[i] = true;
   return may;
 }
@@ -116,8 +118,8 @@ std::vector<std::size_t> FrontOf(const TradeReport& report) {
   constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   std::vector<TradePoint> points;
   const std::vector<bool> may = internal::MayBeOnFront(report);
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    points.push_back({may[i] ? report.ways[i].total_ms.median : kNotMeasured, report.ways[i].both.mean});
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
+    points.push_back({may[i] ? report.variants[i].total_ms.median : kNotMeasured, report.variants[i].both.mean});
   }
   return ParetoFront(points);
 }
@@ -125,8 +127,8 @@ std::vector<std::size_t> FrontOf(const TradeReport& report) {
 std::vector<std::size_t> ByAxis(const TradeReport& report) {
   std::vector<std::size_t> order;
   for (const std::string& axis : internal::AxesOf(report)) {
-    for (std::size_t i = 0; i < report.ways.size(); ++i) {
-      if (report.ways[i].axis == axis) order.push_back(i);
+    for (std::size_t i = 0; i < report.variants.size(); ++i) {
+      if (report.variants[i].axis == axis) order.push_back(i);
     }
   }
   return order;
@@ -134,7 +136,7 @@ std::vector<std::size_t> ByAxis(const TradeReport& report) {
 
 std::string TradePictureName(const TradeReport& report, std::size_t i) {
   std::string name = fmt::format("{:02}", i + 1);
-  for (const char c : "-" + report.ways[i].name) {
+  for (const char c : "-" + report.variants[i].name) {
     const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     const bool plain = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9');
     if (plain)

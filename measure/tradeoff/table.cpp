@@ -42,19 +42,19 @@ std::string Narrow(const Estimate& estimate) {
   return wide.substr(0, sign) + "±" + (error.starts_with("0.") ? error.substr(1) : error);
 }
 
-Row RowOf(const TradeMeasure& way, bool front) {
+Row RowOf(const TradeMeasure& variant, bool front) {
   return {front ? "*" : "",
-          way.name,
-          internal::ShortTime(way.total_ms),
-          internal::ShortMegabytes(way.memory_bytes),
-          Narrow(way.both),
-          Narrow(way.energy),
-          Narrow(way.missing),
-          ShortFigure(way.guide_degrees),
-          internal::ShortPercent(way.coherence),
-          ShortFigure(way.chunk_area),
-          ShortFigure(way.seam_excess),
-          ShortFigure(way.repetition)};
+          variant.name,
+          internal::ShortTime(variant.total_ms),
+          internal::ShortMegabytes(variant.memory_bytes),
+          Narrow(variant.both),
+          Narrow(variant.energy),
+          Narrow(variant.missing),
+          ShortFigure(variant.guide_degrees),
+          internal::ShortPercent(variant.coherence),
+          ShortFigure(variant.chunk_area),
+          ShortFigure(variant.seam_excess),
+          ShortFigure(variant.repetition)};
 }
 
 const Row kHeadAbove = {"", "", "time, ms", "memory", "", "", "", "off by", "coher.", "chunk", "seam", "repe-"};
@@ -87,23 +87,23 @@ std::array<std::size_t, kColumns> WidthsOf(const std::vector<Row>& rows) {
   return widths;
 }
 
-// The error of the guides as such, of the few ways whose guides are not the exact ones.
+// The error of the guides as such, of the few variants whose guides are not the exact ones.
 std::string GuideTable(const TradeReport& report) {
   std::string text;
   for (const std::size_t i : ByAxis(report)) {
-    const TradeMeasure& way = report.ways[i];
-    if (way.guide_rms.value_or(0.0) == 0.0 && way.guide_flip.value_or(0.0) == 0.0) continue;
+    const TradeMeasure& variant = report.variants[i];
+    if (variant.guide_rms.value_or(0.0) == 0.0 && variant.guide_flip.value_or(0.0) == 0.0) continue;
     if (text.empty()) text = "\nGuides against the exact ones: root mean square, and FLIP (0 to 1)\n";
-    text += fmt::format("  {:<30} {:>10} {:>10}\n", CutTo(way.name, 30), ShortFigure(way.guide_rms),
-                        ShortFigure(way.guide_flip));
+    text += fmt::format("  {:<30} {:>10} {:>10}\n", CutTo(variant.name, 30), ShortFigure(variant.guide_rms),
+                        ShortFigure(variant.guide_flip));
   }
   return text;
 }
 
 std::string Notes(const TradeReport& report) {
   std::string text;
-  for (const TradeMeasure& way : report.ways) {
-    if (!way.note.empty()) text += "  " + way.name + ": " + way.note + "\n";
+  for (const TradeMeasure& variant : report.variants) {
+    if (!variant.note.empty()) text += "  " + variant.name + ": " + variant.note + "\n";
   }
   for (const std::string& line : report.left_out) text += "  left out: " + line + "\n";
   return text.empty() ? "" : "\nNotes\n" + text;
@@ -113,14 +113,14 @@ std::string Notes(const TradeReport& report) {
 
 std::string TradeTable(const TradeReport& report) {
   std::string text = internal::TradeTitle(report) + "\n" + internal::TradeSetup(report) + "\n\n";
-  if (report.ways.empty()) return text + "nothing was measured\n";
+  if (report.variants.empty()) return text + "nothing was measured\n";
   const std::vector<bool> front = internal::OnFront(report);
   const std::vector<std::size_t> order = ByAxis(report);
   std::vector<Row> rows{kHeadAbove, kHeadBelow};
-  for (const std::size_t i : order) rows.push_back(RowOf(report.ways[i], front[i]));
+  for (const std::size_t i : order) rows.push_back(RowOf(report.variants[i], front[i]));
   const auto widths = WidthsOf(rows);
   for (std::size_t line = 0; line < rows.size(); ++line) {
-    const bool new_axis = line > 2 && report.ways[order[line - 2]].axis != report.ways[order[line - 3]].axis;
+    const bool new_axis = line > 2 && report.variants[order[line - 2]].axis != report.variants[order[line - 3]].axis;
     if (new_axis || line == 2) text += "\n";
     text += Line(rows[line], widths);
   }

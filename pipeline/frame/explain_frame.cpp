@@ -16,7 +16,7 @@ std::vector<float> GuideErrors(const ShownTransfer& shown) {
     const glm::vec3 normal = shown.guides.Vec3(Layer::kNormal, i);
     const GuideTest test(style.settings.threshold, style.settings.threshold_metric);
     if (style.space) {
-      float rest[GuideSpace::kMaxRest];
+      float rest[GuideSpace::kMaxExtra];
       style.space->Read(shown.guides, i, exposure, rest);
       errors[i] = style.space->Distance(test, field.exemplar[i], normal, rest, {field.x[i], field.y[i]});
     } else {
@@ -33,8 +33,19 @@ std::vector<float> GuideErrors(const ShownTransfer& shown) {
 
 Picture Show(Explanation what, const ShownTransfer& shown) {
   const SourceField& field = shown.field;
-  ExplainPlanes planes{field.width, field.height, shown.guides.Plane(Layer::kCoverage), field.x, field.y, field.level,
-                       field.exemplar, shown.map.style, {}, {}, {}, {}, &shown.result};
+  ExplainPlanes planes{field.width,
+                       field.height,
+                       shown.guides.Plane(Layer::kCoverage),
+                       field.x,
+                       field.y,
+                       field.level,
+                       field.exemplar,
+                       shown.map.style,
+                       {},
+                       {},
+                       {},
+                       {},
+                       &shown.result};
   for (const PreparedStyle& style : shown.styles) {
     planes.exemplar_size.push_back(style.exemplar->size());
     planes.exemplar_count.push_back(style.exemplar->count());

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "measure/mosaic/explain.h"
+#include "scumble/picture.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/progress.h"
 #include "pipeline/frame_rate.h"
 #include "pipeline/run_context.h"
 #include "pipeline/style/style_set.h"
+#include "scumble/picture.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -63,11 +63,11 @@ struct GuidesReport {
 
 struct FrameReport {
   std::variant<PictureReport, GuidesReport> made;
-  std::vector<PlanItem> plan;           // empty: not asked for
-  MemoryNeed memory;                    // estimated for the whole run
-  std::optional<SceneCost> cost;        // of casting, where rays were cast
+  std::vector<PlanItem> plan;     // empty: not asked for
+  MemoryNeed memory;              // estimated for the whole run
+  std::optional<SceneCost> cost;  // of casting, where rays were cast
   std::uint64_t bytes_written = 0;
-  double write_ms = 0;                  // encoding and writing
+  double write_ms = 0;  // encoding and writing
 };
 
 }  // namespace scumble

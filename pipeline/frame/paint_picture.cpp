@@ -31,7 +31,8 @@ ChunksReport ChunksOf(const SourceField& field) {
   std::vector<std::uint8_t> covered(field.level.size());
   std::transform(field.level.begin(), field.level.end(), covered.begin(),
                  [](std::int8_t level) { return level != SourceField::kNoSource; });
-  const CoherenceReport report = MeasureCoherence({field.width, field.height, field.x, field.y, covered, field.exemplar});
+  const CoherenceReport report =
+      MeasureCoherence({field.width, field.height, field.x, field.y, covered, field.exemplar});
   return {report.covered, report.share, report.chunks, report.mean_chunk_area};
 }
 
@@ -73,9 +74,9 @@ Expected<const Picture*> OverFor(const PictureRequest& request, const GuideSet& 
 
 bool IsCatcher(const StyleSet& styles) {
   return std::any_of(styles.assigned.begin(), styles.assigned.end(),
-                     [](const StyleSet::Assigned& one) { return one.style == StyleMap::kCatch; }) ||
+                     [](const StyleSet::Assigned& one) { return one.style == StyleMap::kShadowCatcher; }) ||
          std::any_of(styles.wanted.begin(), styles.wanted.end(),
-                     [](const auto& wish) { return wish.second == StyleMap::kCatch; });
+                     [](const auto& wish) { return wish.second == StyleMap::kShadowCatcher; });
 }
 
 // Of what was asked for and changes nothing, once in a run.
@@ -83,41 +84,41 @@ void WarnOfIdleOptions(const StyleSet& styles, const PictureRequest& request, co
                        PictureState& state) {
   if (state.warned) return;
   state.warned = true;
-  const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(),
-                               LooksAtLight);
+  const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
   if (request.exposure && !lit) {
     context.Warn(fmt::format("--exposure {}", *request.exposure) + " changes nothing: style " + styles.first().name +
-         " has one exemplar and no weight for light, so it does not look at it");
+                 " has one exemplar and no weight for light, so it does not look at it");
   }
   if (request.fast_io && !HasEnding(request.output, {".exr"})) {
-    context.Warn("--fast-io changes nothing: " + request.output + " is no .exr; --png-level 1 makes PNG quick to write");
+    context.Warn("--fast-io changes nothing: " + request.output +
+                 " is no .exr; --png-level 1 makes PNG quick to write");
   }
-  const auto shadowed = std::find_if(styles.styles.begin(), styles.styles.end(), [](const Style& style) {
-    return style.transfer.shadow != ShadowMode::kNone;
-  });
+  const auto shadowed = std::find_if(styles.styles.begin(), styles.styles.end(),
+                                     [](const Style& style) { return style.transfer.shadow != ShadowMode::kNone; });
   if (shadowed != styles.styles.end() && !IsCatcher(styles)) {
     context.Warn("transfer.shadow of style " + shadowed->name +
-         " changes nothing, and its layer costs time: no object catches shadows; give --assign 'Ground=catcher', or leave it "
-         "out");
+                 " changes nothing, and its layer costs time: no object catches shadows; give --assign "
+                 "'Ground=catcher', or leave it "
+                 "out");
   }
 }
 
 // A frame of another size than those before is rarely meant.
-void WarnOfOtherSize(const GuideSet& guides, const std::string& name, const RunContext& context,
-                     PictureState& state) {
+void WarnOfOtherSize(const GuideSet& guides, const std::string& name, const RunContext& context, PictureState& state) {
   if (state.width == 0) state.width = guides.width(), state.height = guides.height();
   if (state.warned_of_size || (state.width == guides.width() && state.height == guides.height())) return;
   state.warned_of_size = true;
-  context.Warn(fmt::format("{} is {}×{}, the frames before it are {}×{}: its picture has another size than theirs", name,
-                   guides.width(), guides.height(), state.width, state.height));
+  context.Warn(fmt::format("{} is {}×{}, the frames before it are {}×{}: its picture has another size than theirs",
+                           name, guides.width(), guides.height(), state.width, state.height));
 }
 
 Expected<PreparedStyle> PrepareAndWarn(const Style& style, int height, const RunContext& context) {
   SCUMBLE_ASSIGN(PreparedStyle prepared, PrepareStyle(style, height, context));
   if (style.transfer.edge == EdgeMode::kExemplar && prepared.rims.empty()) {
-    context.Warn("style " + style.name +
-                 ": transfer.edge is \"exemplar\", but the exemplar has no painted edge, because its paint does not end "
-                 "near the rim on bare paper; outlines stay exact. Leave paper free in the corners, or set it to \"exact\"");
+    context.Warn(
+        "style " + style.name +
+        ": transfer.edge is \"exemplar\", but the exemplar has no painted edge, because its paint does not end "
+        "near the rim on bare paper; outlines stay exact. Leave paper free in the corners, or set it to \"exact\"");
   }
   return prepared;
 }
@@ -134,7 +135,8 @@ Status ReadOver(const std::string& file, PictureState& state) {
 
 PictureSettings SettingsOf(const PictureRequest& request, std::optional<FrameRate> fps, std::optional<double> exposure,
                            std::optional<int> samples) {
-  return {request.seed, !request.over.empty(), request.show, request.upsample, fps, exposure, !request.exposure, samples};
+  return {request.seed, !request.over.empty(), request.show, request.upsample, fps,
+          exposure,     !request.exposure,     samples};
 }
 
 std::optional<int> SamplesAsked(const std::map<std::string, std::string>& attributes) {
@@ -147,9 +149,10 @@ std::optional<int> SamplesAsked(const std::map<std::string, std::string>& attrib
 }
 
 bool IsReadEachFrame(const std::string& key) {
-  static const std::set<std::string> kKeys = {"transfer.threshold", "transfer.threshold_metric", "transfer.jitter",
-                                              "transfer.jitter_fps", "transfer.coherent", "transfer.variety", "transfer.crease",
-                                              "transfer.depth_tolerance", "transfer.match_step"};
+  static const std::set<std::string> kKeys = {
+      "transfer.threshold",  "transfer.threshold_metric", "transfer.jitter",
+      "transfer.jitter_fps", "transfer.coherent",         "transfer.variety",
+      "transfer.crease",     "transfer.depth_tolerance",  "transfer.match_step"};
   return kKeys.count(key) > 0;
 }
 
@@ -191,10 +194,11 @@ std::vector<EqualLight> EqualLights(const Style& style, const PreparedStyle& pre
     const auto first = std::find(luminances.begin(), luminances.begin() + std::ptrdiff_t(later), luminances[later]);
     const auto index = static_cast<std::size_t>(first - luminances.begin());
     if (index == later) continue;
-    equal.push_back({style.exemplars[later].name,
-                     fmt::format("has the luminance {:.4g} as {} has, which stands first and is taken, so it never shows",
-                                 luminances[later], style.exemplars[index].name),
-                     "give each [[exemplar]] its own"});
+    equal.push_back(
+        {style.exemplars[later].name,
+         fmt::format("has the luminance {:.4g} as {} has, which stands first and is taken, so it never shows",
+                     luminances[later], style.exemplars[index].name),
+         "give each [[exemplar]] its own"});
   }
   return equal;
 }
@@ -235,8 +239,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   times.emplace_back("prepare", watch.Lap());
   context.EndStage("prepare");
 
-  const FrameSettings settings{request.seed,     request.frame.value_or(0), RateOf(request.fps, given),
-                               *state.exposure, over,                      request.KeepsField()};
+  const FrameSettings settings{request.seed, request.frame.value_or(0), RateOf(request.fps, given), *state.exposure,
+                               over,         request.KeepsField()};
   TransferScratch& scratch = state.scratch;
   Picture picture;
   std::vector<double> match, vote, compose;
@@ -248,7 +252,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
     vote.push_back(scratch.times.vote_ms);
     compose.push_back(scratch.times.compose_ms);
   }
-  if (request.show) picture = Show(*request.show, {state.prepared, map, guides, scratch.field, settings.exposure, picture});
+  if (request.show)
+    picture = Show(*request.show, {state.prepared, map, guides, scratch.field, settings.exposure, picture});
   const auto sum = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
   context.EndStage("transfer", {{"match", sum(match)}, {"vote", sum(vote)}, {"compose", sum(compose)}});
 
@@ -257,8 +262,8 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   made.write.fast = request.fast_io;
   made.write.settings = SettingsText(
       styles, SettingsOf(request, settings.fps, settings.exposure, SamplesAsked(given.attributes)), state.hashes);
-  PictureReport report{request.output, guides.width(), guides.height(), request.upsample, request.repeat, request.seed,
-                       {},             {},             {},              {}};
+  PictureReport report{
+      request.output, guides.width(), guides.height(), request.upsample, request.repeat, request.seed, {}, {}, {}, {}};
   for (std::size_t i = 0; i < state.prepared.size(); ++i) {
     report.styles.push_back(ReportOf(styles.given[i], styles.styles[i], state.prepared[i]));
   }

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/image/hash.h"
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 
 namespace scumble {
 namespace {
@@ -15,7 +15,8 @@ std::uint64_t HashOfGuides(const GuideSet& guides) {
   std::uint64_t hash = Hash(guides.width(), guides.height());
   for (const LayerInfo& info : AllLayers()) {
     if (!guides.Has(info.layer)) continue;
-    for (int c = 0; c < ChannelCount(info.layer); ++c) hash = Hash(hash, HashText(info.name), c, HashBytes(guides.Plane(info.layer, c)));
+    for (int c = 0; c < ChannelCount(info.layer); ++c)
+      hash = Hash(hash, HashText(info.name), c, HashBytes(guides.Plane(info.layer, c)));
   }
   return hash;
 }
@@ -33,13 +34,13 @@ std::uint64_t HashOfExemplar(const Exemplar& exemplar) {
 
 std::string TextOf(const TransferSettings& settings) {
   // All members by name: one more does not compile until it is written below.
-  const auto& [method, nearest, nearest_error, guide_weights, threshold, threshold_metric, levels, jitter, jitter_fps, coherent, blend_radius, edge_aware, crease,
-               depth_tolerance, luminance_weight, luminance_error, colorize, colorize_mode, variety, hybrid,
-               match_step, scale, rim, edge,
-               shadow, reference_height] = settings;
+  const auto& [method, nearest, nearest_error, guide_weights, threshold, threshold_metric, levels, jitter, jitter_fps,
+               coherent, blend_radius, edge_aware, crease, depth_tolerance, luminance_weight, luminance_error, colorize,
+               colorize_mode, variety, hybrid, match_step, scale, rim, edge, shadow, reference_height] = settings;
   std::string text;
-  for (const auto word : {int(method), int(nearest), int(threshold_metric), levels, int(coherent), blend_radius, int(edge_aware),
-                          int(luminance_error), int(colorize_mode), int(edge), int(shadow), reference_height, match_step}) {
+  for (const auto word :
+       {int(method), int(nearest), int(threshold_metric), levels, int(coherent), blend_radius, int(edge_aware),
+        int(luminance_error), int(colorize_mode), int(edge), int(shadow), reference_height, match_step}) {
     text += fmt::format("{} ", word);
   }
   for (const double number : {double(threshold), double(jitter), jitter_fps, crease, depth_tolerance,
@@ -83,7 +84,8 @@ std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHa
 }
 
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known) {
-  const auto& [seed, over, show, upsample, fps, exposure, measured, samples] = settings;  // all: each makes another picture
+  const auto& [seed, over, show, upsample, fps, exposure, measured, samples] =
+      settings;  // all: each makes another picture
   std::string text = fmt::format("scumble {}; style {:016x}; seed {}; over {}; show {}; upsample {}", SCUMBLE_VERSION,
                                  HashOfStyles(styles, styles.chosen, known), seed, over ? "a picture" : "nothing",
                                  show ? ExplanationNames()[std::size_t(*show)] : "result", upsample);

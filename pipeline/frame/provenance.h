@@ -1,4 +1,5 @@
-// What a picture was made with, as text that is kept in its file: --resume makes pictures again that other settings made.
+// What a picture was made with, as text that is kept in its file: --resume makes pictures again that other settings
+// made.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +19,14 @@ using ExemplarHashes = std::map<std::pair<std::size_t, std::size_t>, std::uint64
 
 struct PictureSettings {
   std::uint64_t seed = 0;
-  bool over = false;               // something lies underneath
+  bool over = false;  // something lies underneath
   std::optional<Explanation> show;
   int upsample = 1;
   std::optional<FrameRate> fps;    // where it is known
   std::optional<double> exposure;  // where it is known; counts for styles of several exemplars, as does the next
   std::optional<bool> measured;    // whether --exposure auto found it; empty: the stops alone count
-  std::optional<int> samples;      // of a pixel of light in the guides, where it is known; counts for styles that ask for any
+  std::optional<int>
+      samples;  // of a pixel of light in the guides, where it is known; counts for styles that ask for any
 };
 
 // All settings of the transfer, as text: equal texts, equal settings.
@@ -36,10 +38,11 @@ std::uint64_t HashOfPaint(const Style& style);
 // Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.
 std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known);
 
-// The text: parts "name value" with semicolons between, as core/io/file/existing_output.h compares them; what is not known agrees with
-// all. It holds nothing that stylize and transfer do not both know, and nothing that makes no other picture, so that equal
-// pictures stay equal files; but whether the exposure was measured, as --exposure auto is not known where it is compared.
-// The styles must be at the picture's frame (SetStyleFrame); those that a scene asks for are not told of.
+// The text: parts "name value" with semicolons between, as core/io/existing_output.h compares them; what is not known
+// agrees with all. It holds nothing that stylize and transfer do not both know, and nothing that makes no other
+// picture, so that equal pictures stay equal files; but whether the exposure was measured, as --exposure auto is not
+// known where it is compared. The styles must be at the picture's frame (SetStyleFrame); those that a scene asks for
+// are not told of.
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known);
 
 }  // namespace scumble

@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "guidegen/light/path_layers.h"
 #include "core/style/kit/sphere_template.h"
+#include "guidegen/light/path_layers.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble {
@@ -24,20 +24,20 @@ constexpr Bytes kFormatsModule = 125 * kMega;  // OpenImageIO and what it loads
 constexpr Bytes kDecoded = 16;                 // of a pixel of a JPEG or WebP, beside the picture that comes of it
 constexpr Bytes kTriangle = 340;               // ours, Embree's, and what reading a text of it leaves behind
 constexpr Bytes kVertex = 40;                  // what triangles that share no corners have more, while normals are made
-constexpr Bytes kPlacedTriangle = 220;         // Embree's, of each further instance: corners, hierarchy, that of what shines
-constexpr Bytes kInstance = 2300;              // its node in the file, ours, and Embree's geometry
+constexpr Bytes kPlacedTriangle = 220;  // Embree's, of each further instance: corners, hierarchy, that of what shines
+constexpr Bytes kInstance = 2300;       // its node in the file, ours, and Embree's geometry
 
 // Of transfer/: what one pixel takes.
-constexpr Bytes kSource = 7;                // SourceField and who is painted
-constexpr Bytes kMoved = 13;                // SourceField::moved and who is matched, where not every pixel is
-constexpr Bytes kMatched = 32;              // of one that is matched then
-constexpr Bytes kSlopes = 8;                // DepthSlopes
-constexpr Bytes kSurfaceSeeds = 48;         // MatchCoherent
-constexpr Bytes kBandTile = 110'000;        // seeds of 512 columns, for one thread
-constexpr int kBandRadius = 3;              // up to it sources are kept for a few rows only
-constexpr Bytes kExplained = 24;            // planes that --show is drawn from, and a second picture
-constexpr Bytes kTones = 8 * kMega;         // Alternatives, of an exemplar of any size
-constexpr Bytes kCoherence = 9;             // MeasureCoherence, for --json
+constexpr Bytes kSource = 7;          // SourceField and who is painted
+constexpr Bytes kMoved = 13;          // SourceField::moved and who is matched, where not every pixel is
+constexpr Bytes kMatched = 32;        // of one that is matched then
+constexpr Bytes kSlopes = 8;          // DepthSlopes
+constexpr Bytes kSurfaceSeeds = 48;   // MatchCoherent
+constexpr Bytes kBandTile = 110'000;  // seeds of 512 columns, for one thread
+constexpr int kBandRadius = 3;        // up to it sources are kept for a few rows only
+constexpr Bytes kExplained = 24;      // planes that --show is drawn from, and a second picture
+constexpr Bytes kTones = 8 * kMega;   // SourceVariation, of an exemplar of any size
+constexpr Bytes kCoherence = 9;       // MeasureCoherence, for --json
 
 Bytes PixelsOf(const Size& size) { return Bytes(size.width) * Bytes(size.height); }
 
@@ -65,17 +65,20 @@ bool NeedsModule(const std::string& output) {
 
 // Of a pixel of the picture, to encode it; without the file's module.
 Bytes EncodedBytes(const PictureRequest& options) {
-  if (HasEnding(options.output, {".exr"})) return 8 * kFloat;  // four floats, and as many in the file; or halves and halves
+  if (HasEnding(options.output, {".exr"}))
+    return 8 * kFloat;  // four floats, and as many in the file; or halves and halves
   const Bytes samples = options.bits == 16 ? 8 : 4;
-  // PNG is packed by bands, which are joined; others are turned into the file's own bits, and a file that grows is copied.
+  // PNG is packed by bands, which are joined; others are turned into the file's own bits, and a file that grows is
+  // copied.
   return samples * (NeedsModule(options.output) ? 3 : 2);
 }
 
 // Whether the transfer keeps the sources of the whole picture.
 bool KeepsSources(const Style& style, int radius) {
   const TransferSettings& settings = style.transfer;
-  return settings.method != Method::kStyleBlit || settings.coherent || settings.match_step > 1 || settings.hybrid > 0.0 ||
-         !settings.guide_weights.ArePlain() || settings.edge == EdgeMode::kExemplar || radius > kBandRadius;
+  return settings.method != Method::kStyleBlit || settings.coherent || settings.match_step > 1 ||
+         settings.hybrid > 0.0 || !settings.guide_weights.ArePlain() || settings.edge == EdgeMode::kExemplar ||
+         radius > kBandRadius;
 }
 
 int RadiusOf(const Style& style, int height) {
@@ -87,7 +90,9 @@ int RadiusOf(const Style& style, int height) {
 // A style's pictures as they were read, and what Prepare makes of them for an output of that height.
 void AddStyle(const Style& style, int height, MemoryNeed& need) {
   const TransferSettings& settings = style.transfer;
-  const auto scaled = [&](int side) { return Bytes(ScaledSize(side, settings.scale, settings.reference_height, height)); };
+  const auto scaled = [&](int side) {
+    return Bytes(ScaledSize(side, settings.scale, settings.reference_height, height));
+  };
   Bytes read = 0, prepared = 0, largest = 0;
   for (const Exemplar& exemplar : style.exemplars) {
     const Bytes file = Bytes(exemplar.picture.width) * Bytes(exemplar.picture.height);
@@ -96,16 +101,16 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
     read += kPaint * file;
     if (exemplar.guides) read += kFloat * ChannelsOf(exemplar.guides->layers()) * exemplar.guides->pixel_count();
     Bytes of_texel = kPaint;
-    if (!exemplar.is_sphere) of_texel += 13;                              // normals and what is usable
+    if (!exemplar.is_sphere) of_texel += 13;  // normals and what is usable
     if (!settings.guide_weights.ArePlain()) of_texel += 3 * kFloat * ChannelsOf(settings.guide_weights.Layers());
-    if (settings.hybrid > 0.0) of_texel += kPaint;                        // the tone
-    if (settings.variety > 0.0 && !exemplar.is_sphere) of_texel += 12;    // an index of normals
+    if (settings.hybrid > 0.0) of_texel += kPaint;                      // the tone
+    if (settings.variety > 0.0 && !exemplar.is_sphere) of_texel += 12;  // an index of normals
     if (settings.variety > 0.0) prepared += kTones;
     if (settings.shadow == ShadowMode::kPaint) of_texel += 24;
     if (settings.nearest == NearestSearch::kTree) of_texel += 32;
     prepared += of_texel * texels;
-    // Copies while one is extended, resized along x, turned and resized along y; or of the points of a search, or of the
-    // planes of a blur.
+    // Copies while one is extended, resized along x, turned and resized along y; or of the points of a search, or of
+    // the planes of a blur.
     const Bytes between = width * Bytes(exemplar.picture.height);
     largest = std::max(largest, kPaint * (file + 2 * between + texels) + (exemplar.is_sphere ? 0 : 40 * texels) +
                                     (settings.hybrid > 0.0 ? 32 * texels : 0));
@@ -118,7 +123,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
   }
   need.Take("styles", read);
   need.Take("exemplars", prepared);
-  need.Briefly("preparing exemplars", largest);
+  need.TakeTransient("preparing exemplars", largest);
 }
 
 // The sources of all pixels and what their match and votes look at.
@@ -140,7 +145,7 @@ void AddSources(const PictureWork& work, const PictureRequest& options, const Si
   if (of_pixel > 0) need.Take("sources", of_pixel * pixels);
   const Bytes tiles = (Bytes(size.width) + 511) / 512;
   need.Take("seeds of the threads", ThreadsOf(work.threads) * tiles * kBandTile * work.styles.size());
-  if (briefly > 0) need.Briefly("match and votes", briefly * pixels);
+  if (briefly > 0) need.TakeTransient("match and votes", briefly * pixels);
 }
 
 }  // namespace
@@ -163,7 +168,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   for (const auto& texture : scene.encoded_textures) bytes += texture ? Bytes(texture->bytes) : 0;
   if (more.largest > 0) need.Take("reader", kFormatsModule);
   need.Take("scene", bytes);
-  need.Briefly("decoding a texture", kDecoded * more.largest);
+  need.TakeTransient("decoding a texture", kDecoded * more.largest);
 }
 
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need) {
@@ -175,11 +180,11 @@ void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& opt
   // Lists of pixels that grow: twice what they hold, and the copy that they grew from.
   constexpr Bytes kPathPixel = 40, kSum = 24;
   const bool open_ended = options.noise > 0.0 || options.time_budget_seconds > 0.0;
-  need.Briefly("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
+  need.TakeTransient("light paths", (2 * kPathPixel + (open_ended ? kSum * path_layers : 0)) * pixels);
 }
 
 void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need) {
-  need.Briefly("guide file", PlanesOf(size, Made(layers)));
+  need.TakeTransient("guide file", PlanesOf(size, Made(layers)));
 }
 
 void AddGuidesBehind(const Size& size, const LayerSet& layers, MemoryNeed& need) {
@@ -198,7 +203,7 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
   for (const auto& [name, found] : info.layers) channels += ChannelsOf(found);
   channels = std::max<Bytes>(channels, 1 + Bytes(std::count(info.channels.begin(), info.channels.end(), ',')));
   need.Take("reader", kFormatsModule);
-  need.Briefly("channels of the file", kFloat * channels * pixels);
+  need.TakeTransient("channels of the file", kFloat * channels * pixels);
 }
 
 void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNeed& need) {
@@ -208,15 +213,17 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   if (options.upsample > 1) need.Take("upsampled guides", kFloat * ChannelsOf(Made(work.layers)) * pixels);
   if (!options.over.empty()) {
     need.Take("picture underneath", kPaint * pixels);
-    need.Briefly("reading it", 2 * kPaint * pixels + kFormatsModule);
+    need.TakeTransient("reading it", 2 * kPaint * pixels + kFormatsModule);
   }
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
   AddSources(work, options, size, need);
-  if (options.show) need.Briefly("explaining", kExplained * pixels);
-  else if (work.keeps_field) need.Briefly("figures", kCoherence * pixels);
+  if (options.show)
+    need.TakeTransient("explaining", kExplained * pixels);
+  else if (work.keeps_field)
+    need.TakeTransient("figures", kCoherence * pixels);
   if (NeedsModule(options.output)) need.Take("writer", kFormatsModule);
-  need.Briefly("picture file", encoded * pixels);
+  need.TakeTransient("picture file", encoded * pixels);
 }
 
 void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layers_file, MemoryNeed& need) {
@@ -226,8 +233,8 @@ void AddKit(int size, std::size_t lights, const LayerSet& layers, bool has_layer
   const Bytes files = 4 * (has_layers_file ? 3 : 1);
   need.Take("guides", lights * PlanesOf(square, Made(layers)));
   need.Take("templates", lights * files * pixels);
-  need.Briefly("drawing", (3 * kPaint + 8) * pixels);
-  need.Briefly("guide file", PlanesOf(square, Made(layers)));
+  need.TakeTransient("drawing", (3 * kPaint + 8) * pixels);
+  need.TakeTransient("guide file", PlanesOf(square, Made(layers)));
 }
 
 }  // namespace scumble

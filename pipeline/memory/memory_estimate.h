@@ -1,32 +1,32 @@
-// What the verbs take, term by term: the formula of docs/memory.md. Every term is the most that its part takes, for pictures
-// that are covered from edge to edge and paint that does not pack at all; tests/pipeline/memory_estimate_test.cpp holds it against what
-// the system counted.
+// What the verbs take, term by term: the formula of docs/memory.md. Every term is the most that its part takes, for
+// pictures that are covered from edge to edge and paint that does not pack at all;
+// tests/pipeline/memory_estimate_test.cpp holds it against what the system counted.
 #pragma once
 
 #include <span>
 
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/requests.h"
-#include "guidegen/scene/scene.h"
-#include "guidegen/scene_textures.h"
 #include "core/image/layers.h"
 #include "core/image/style.h"
 #include "core/io/guide_file.h"
+#include "guidegen/scene/scene.h"
+#include "guidegen/scene_textures.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/requests.h"
 
 namespace scumble {
 
 // The program itself, its libraries, and what each thread has for itself. `threads` 0: all.
 void AddProgram(int threads, MemoryNeed& need);
 
-// A scene in memory and Embree's of it, with the pictures that are decoded, the files of those that are not, and pictures
-// that are to be decoded.
+// A scene in memory and Embree's of it, with the pictures that are decoded, the files of those that are not, and
+// pictures that are to be decoded.
 void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need);
 
-// Guides as guidegen makes them: the planes of `layers` and of those that are always there; briefly the pixels whose light
-// paths are followed.
+// Guides as guidegen makes them: the planes of `layers` and of those that are always there; briefly the pixels whose
+// light paths are followed.
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need);
 
-// Briefly a guide file of these layers, packed in memory before it is written.
+// TakeTransient a guide file of these layers, packed in memory before it is written.
 void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need);
 
 // A second set of guides and its file, for a sequence that writes one frame while it makes the next.
@@ -38,9 +38,9 @@ void AddGuidesRead(const GuideFileInfo& info, const GuideReadOptions& read, Memo
 // What turns guides of a size into a picture: styles, their exemplars at the picture's height, picture, sources, file.
 struct PictureWork {
   std::span<const Style> styles;
-  bool has_map = false;    // several styles in one picture
-  Size guides;             // before they are upsampled
-  LayerSet layers;         // that the guides hold
+  bool has_map = false;      // several styles in one picture
+  Size guides;               // before they are upsampled
+  LayerSet layers;           // that the guides hold
   bool is_sequence = false;  // one picture is written while the next is made
   bool keeps_field = false;  // PictureRequest::KeepsField
   int threads = 0;

@@ -29,8 +29,10 @@ std::uint64_t Less(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 0;
 
 void AddPart(std::vector<MemoryNeed::Part>& parts, const std::string& name, std::uint64_t bytes) {
   const auto same = std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.name == name; });
-  if (same == parts.end()) parts.push_back({name, bytes});
-  else same->bytes = Sum(same->bytes, bytes);
+  if (same == parts.end())
+    parts.push_back({name, bytes});
+  else
+    same->bytes = Sum(same->bytes, bytes);
 }
 
 // As --max-memory takes it, rounded up.
@@ -105,7 +107,7 @@ void MemoryNeed::Take(const std::string& name, std::uint64_t bytes) {
   LookForPeak(held_);
 }
 
-void MemoryNeed::Briefly(const std::string& name, std::uint64_t bytes) {
+void MemoryNeed::TakeTransient(const std::string& name, std::uint64_t bytes) {
   std::vector<Part> parts = held_;
   AddPart(parts, name, bytes);
   LookForPeak(parts);
@@ -126,7 +128,8 @@ MemoryLimit LimitFor(const RunContext& context, const fs::path& root) {
   };
   const fs::path status = root / "proc/self/status";
   const std::uint64_t resident = FieldOf(status, "VmRSS:").value_or(0), mapped = FieldOf(status, "VmSize:").value_or(0);
-  if (const auto free = FieldOf(root / "proc/meminfo", "MemAvailable:")) at_most(Sum(*free, resident), "the machine has");
+  if (const auto free = FieldOf(root / "proc/meminfo", "MemAvailable:"))
+    at_most(Sum(*free, resident), "the machine has");
   if (const auto left = LeftInGroups(root)) at_most(Sum(*left, resident), "the control group of this process has");
   rlimit space{};
   // What is mapped and not used, libraries and stacks, is lost to it.
@@ -142,10 +145,10 @@ Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::
   for (const MemoryNeed::Part& part : need.parts()) {
     parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", part.name, BytesToText(part.bytes));
   }
-  const std::string message =
-      fmt::format("this takes up to {} of memory ({}), and {} {}: {}, or {}", BytesToText(need.peak()), parts, limit.who,
-                  BytesToText(limit.bytes), mend,
-                  limit.asked ? "allow more" : "say --max-memory " + BytesToOption(need.peak()) + " to try all the same");
+  const std::string message = fmt::format(
+      "this takes up to {} of memory ({}), and {} {}: {}, or {}", BytesToText(need.peak()), parts, limit.who,
+      BytesToText(limit.bytes), mend,
+      limit.asked ? "allow more" : "say --max-memory " + BytesToOption(need.peak()) + " to try all the same");
   return limit.asked ? UsageError(message) : MemoryError(message);
 }
 
@@ -188,7 +191,8 @@ Expected<std::uint64_t> ParseBytes(const std::string& text) {
   const auto [next, failure] = std::from_chars(text.data(), end, number, std::chars_format::fixed);
   if (failure != std::errc() || !(number > 0.0) || end - next > 1) return wrong;
   if (next != end) {
-    const std::size_t power = std::string("KMGT").find(static_cast<char>(std::toupper(static_cast<unsigned char>(*next))));
+    const std::size_t power =
+        std::string("KMGT").find(static_cast<char>(std::toupper(static_cast<unsigned char>(*next))));
     if (power == std::string::npos) return wrong;
     number *= std::pow(kKibi, static_cast<double>(power + 1));
   }

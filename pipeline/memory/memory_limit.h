@@ -12,7 +12,8 @@
 
 namespace scumble {
 
-// A run's memory, told in the order in which it is taken; docs/memory.md has the formula, pipeline/memory/memory_estimate.h its terms.
+// A run's memory, told in the order in which it is taken; docs/memory.md has the formula,
+// pipeline/memory/memory_estimate.h its terms.
 class MemoryNeed {
  public:
   struct Part {
@@ -23,7 +24,7 @@ class MemoryNeed {
   // Stays until the run ends. Parts of one name are one part.
   void Take(const std::string& name, std::uint64_t bytes);
   // Is given back before the next call.
-  void Briefly(const std::string& name, std::uint64_t bytes);
+  void TakeTransient(const std::string& name, std::uint64_t bytes);
 
   std::uint64_t peak() const { return peak_; }
   // What there is at the peak.
@@ -39,20 +40,20 @@ class MemoryNeed {
 // What a run may take, and who says so.
 struct MemoryLimit {
   std::uint64_t bytes = 0;
-  std::string who;      // "the machine has", "--max-memory allows"
-  bool asked = false;   // it is the user's own, by --max-memory
+  std::string who;     // "the machine has", "--max-memory allows"
+  bool asked = false;  // it is the user's own, by --max-memory
 };
 
 // --max-memory where it was given, else the least of what the machine has (MemAvailable of proc(5)), what the control
-// groups that this process is in leave (memory.max of version 2, memory.limit_in_bytes of 1) and what `ulimit -v` leaves;
-// what this process has already counts as there. `root` is "/", or a folder that stands for it.
+// groups that this process is in leave (memory.max of version 2, memory.limit_in_bytes of 1) and what `ulimit -v`
+// leaves; what this process has already counts as there. `root` is "/", or a folder that stands for it.
 MemoryLimit LimitFor(const RunContext& context, const std::filesystem::path& root = "/");
 
 // Ok, or an error that says how much is needed, for what, how much there is, and what to do: kUsage where it was
 // --max-memory, kMemory otherwise. A machine that does not tell refuses nothing.
 Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& mend);
-// The same for this machine. From kMuchMemory on what fits is said before it is taken: once, and again where a later check of
-// the run comes to half as much more.
+// The same for this machine. From kMuchMemory on what fits is said before it is taken: once, and again where a later
+// check of the run comes to half as much more.
 Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std::string& mend);
 inline constexpr std::uint64_t kMuchMemory = std::uint64_t(4) << 30;
 

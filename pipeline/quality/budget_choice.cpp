@@ -9,122 +9,124 @@
 #include <span>
 #include <utility>
 
-#include "pipeline/variant/trial_painter.h"
-#include "pipeline/file_cache.h"
-#include "pipeline/quality/calibration.h"
-#include "pipeline/machine.h"
-#include "pipeline/memory/memory_estimate.h"
-#include "pipeline/scene/needed_textures.h"
-#include "pipeline/frame/paint_picture.h"
-#include "pipeline/variant/quality_ladder.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/scene/scene_sequence.h"
-#include "pipeline/stage_clock.h"
-#include "pipeline/variant/variant_guides.h"
 #include "core/image/hash.h"
 #include "core/image/stopwatch.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/file_cache.h"
+#include "pipeline/frame/paint_picture.h"
+#include "pipeline/machine.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/quality/calibration.h"
+#include "pipeline/scene/needed_textures.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/scene/scene_sequence.h"
+#include "pipeline/stage_clock.h"
+#include "pipeline/variant/quality_ladder.h"
+#include "pipeline/variant/trial_painter.h"
+#include "pipeline/variant/variant_guides.h"
 
 namespace scumble {
 namespace {
 
-// One frame by the way at a place of the ladder.
-using PaintWay = std::function<Expected<double>(const Way& way)>;
+// One frame by the variant at a place of the ladder.
+using PaintVariant = std::function<Expected<double>(const Variant& variant)>;
 struct Trials {
-  PaintWay paint;  // milliseconds
-  PaintWay judge;  // how far off the picture is: PaintTrial::Judge
+  PaintVariant paint;  // milliseconds
+  PaintVariant judge;  // how far off the picture is: TrialPainter::MeasureError
 };
 
 FileCache TimesCache(const RunContext& context) {
   return FileCache(context.cache_folder.empty() ? std::filesystem::path() : context.cache_folder / "times");
 }
 
-std::string WordsOf(const Way& way) {
-  const std::string options = OptionsOf(way);
+std::string WordsOf(const Variant& variant) {
+  const std::string options = OptionsOf(variant);
   return options.empty() ? "the style as it is" : options;
 }
 
-std::vector<std::string> OptionsListOf(const Way& way) {
+std::vector<std::string> OptionsListOf(const Variant& variant) {
   std::vector<std::string> options;
   const auto add = [&](const char* option, const std::string& value) {
     options.push_back(option), options.push_back(value);
   };
-  if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
-  if (way.samples > 0) add("--samples", std::to_string(way.samples));
-  for (const std::string& setting : way.settings) add("--set", setting);
+  if (UpsampleOf(variant) > 1) add("--upsample", std::to_string(UpsampleOf(variant)));
+  if (variant.samples > 0) add("--samples", std::to_string(variant.samples));
+  for (const std::string& setting : variant.settings) add("--set", setting);
   return options;
 }
 
-Status Take(const Way& way, StyleSet& styles, PictureRequest& picture) {
-  picture.upsample *= UpsampleOf(way);
-  return ApplyWay(way, styles);
+Status Take(const Variant& variant, StyleSet& styles, PictureRequest& picture) {
+  picture.upsample *= UpsampleOf(variant);
+  return ApplyVariant(variant, styles);
 }
 
-Way NamedWay(Quality quality, const LadderFrame& frame, const StyleSet& styles, const RunContext& context,
-             BudgetChoice& choice) {
-  const Way way = WayOf(quality, styles, frame);
-  const bool as_it_is = OptionsOf(way).empty();
+Variant NamedVariant(Quality quality, const LadderFrame& frame, const StyleSet& styles, const RunContext& context,
+                     BudgetChoice& choice) {
+  const Variant variant = VariantOf(quality, styles, frame);
+  const bool as_it_is = OptionsOf(variant).empty();
   choice.quality = QualityNames()[std::size_t(quality)];
-  choice.options = OptionsListOf(way);
-  context.Note(fmt::format("quality {}: {}{}", *choice.quality, WordsOf(way), as_it_is ? "" : ", which repeats it"));
-  return way;
+  choice.options = OptionsListOf(variant);
+  context.Note(
+      fmt::format("quality {}: {}{}", *choice.quality, WordsOf(variant), as_it_is ? "" : ", which repeats it"));
+  return variant;
 }
 
-Expected<Way> WayWithin(const BudgetRequest& options, const LadderFrame& frame, const std::string& circumstances,
-                        const std::string& judged, const StyleSet& styles, const RunContext& context,
-                        const Trials& trials, BudgetChoice& choice) {
-  const std::vector<Way> ways = QualityLadder(styles, frame);
+Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame& frame,
+                                const std::string& circumstances, const std::string& judged, const StyleSet& styles,
+                                const RunContext& context, const Trials& trials, BudgetChoice& choice) {
+  const std::vector<Variant> variants = QualityLadder(styles, frame);
   FileCache cache = TimesCache(context);
   Calibration calibration{circumstances, {}, &cache, options.recalibrate};
-  for (const Way& way : ways) calibration.ways.push_back(way.name);
+  for (const Variant& variant : variants) calibration.variants.push_back(variant.name);
   calibration.judged = judged;
   const bool one_style = styles.styles.size() == 1 && styles.assigned.empty();  // of several no error is known
-  for (std::size_t i = 0; one_style && i < ways.size(); ++i) {
-    for (std::size_t j = i + 1; j < ways.size(); ++j) {
-      if (AreRivals(ways[i], ways[j])) calibration.rivals[i] = j;
+  for (std::size_t i = 0; one_style && i < variants.size(); ++i) {
+    for (std::size_t j = i + 1; j < variants.size(); ++j) {
+      if (AreContenders(variants[i], variants[j])) calibration.contenders[i] = j;
     }
   }
   Progress progress = context.StartProgress("calibration");
-  // Each way once, the one that is taken nine times (its rival, if it has one, too), the last twice more for a cold start; and
-  // two judgements.
-  const double usual_runs = static_cast<double>(ways.size()) + kCalibrationRuns + 2.0 + 2.0;
+  // Each way once, the one that is taken nine times (its contender, if it has one, too), the last twice more for a cold
+  // start; and two judgements.
+  const double usual_runs = static_cast<double>(variants.size()) + kCalibrationRuns + 2.0 + 2.0;
   int runs = 0;
-  const MeasureWay measure = [&](std::size_t place) {
-    if (runs == 0) context.Note(fmt::format("--budget-ms: measuring up to {} ways on this machine, once", ways.size()));
+  const MeasureVariant measure = [&](std::size_t place) {
+    if (runs == 0)
+      context.Note(fmt::format("--budget-ms: measuring up to {} ways on this machine, once", variants.size()));
     const double done = std::min(0.99, runs++ / usual_runs);
     if (progress) progress(done);
-    return trials.paint(ways[place]);
+    return trials.paint(variants[place]);
   };
   bool judges = false;
-  const JudgeWay judge = [&](std::size_t place) {
+  const MeasureErrorOf judge = [&](std::size_t place) {
     if (!std::exchange(judges, true)) {
       context.Note("--budget-ms: two ways fit whose order differs by style; which is nearer is measured here, once");
     }
     const double done = std::min(0.99, runs++ / usual_runs);
     if (progress) progress(done);
-    return trials.judge(ways[place]);
+    return trials.judge(variants[place]);
   };
-  SCUMBLE_ASSIGN(const PickedWay picked, PickWay(calibration, options.budget_ms, measure, judge));
+  SCUMBLE_ASSIGN(const PickedVariant picked, PickVariant(calibration, options.budget_ms, measure, judge));
   progress = nullptr;
   context.EndStage("calibration");
-  const Way& way = ways[picked.way];
-  context.Note(
-      fmt::format("budget {:g} ms: at most {:.0f} ms, nine times of ten, with {}{}", options.budget_ms, std::ceil(picked.predicted_ms),
-                  WordsOf(way), OptionsOf(way).empty() ? "" : ", which repeats it"));
+  const Variant& variant = variants[picked.variant];
+  context.Note(fmt::format("budget {:g} ms: at most {:.0f} ms, nine times of ten, with {}{}", options.budget_ms,
+                           std::ceil(picked.predicted_ms), WordsOf(variant),
+                           OptionsOf(variant).empty() ? "" : ", which repeats it"));
   if (!picked.fits) {
     context.Warn(fmt::format("--budget-ms {:g}: nothing fits; the quickest way is taken, which needs about {:.0f} ms",
-                     options.budget_ms, std::ceil(picked.predicted_ms)));
+                             options.budget_ms, std::ceil(picked.predicted_ms)));
   }
   choice.budget_ms = options.budget_ms;
-  choice.picked = way.name;
+  choice.picked = variant.name;
   choice.predicted_ms = picked.predicted_ms;
   choice.fits = picked.fits;
   choice.measured_runs = picked.measured;
-  choice.options = OptionsListOf(way);
+  choice.options = OptionsListOf(variant);
   for (const auto& [place, off] : picked.compared) {
-    if (std::isfinite(off)) choice.compared[ways[place].name] = off;
+    if (std::isfinite(off)) choice.compared[variants[place].name] = off;
   }
-  return way;
+  return variant;
 }
 
 // Of keys that change over time; 0 where none does.
@@ -142,25 +144,24 @@ std::uint64_t HashOfTracks(const StyleSet& styles) {
   return hash;
 }
 
-// What times depend on in either verb, as text. Frames count by what the styles say of them alone: all frames of a scene are
-// to look alike.
+// What times depend on in either verb, as text. Frames count by what the styles say of them alone: all frames of a
+// scene are to look alike.
 std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture, const RunContext& context) {
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
   const std::uint64_t tracks = HashOfTracks(styles);
   PictureSettings settings = SettingsOf(picture, {}, {}, {});
   settings.measured.reset();  // stops that were measured before take as long as those that are measured now
-  return fmt::format("{}; {}{}{}{}{}", MachineName(context.threads),
-                     SettingsText(styles, settings, hashes),
-                     all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
-                     styles.options.scene_styles ? "" : "; without the scene's styles",
-                     tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "",
-                     picture.KeepsField() ? "; keeps the field" : "");
+  return fmt::format(
+      "{}; {}{}{}{}{}", MachineName(context.threads), SettingsText(styles, settings, hashes),
+      all > styles.chosen ? fmt::format("; with the scene's {:016x}", HashOfStyles(styles, all, hashes)) : "",
+      styles.options.scene_styles ? "" : "; without the scene's styles",
+      tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "", picture.KeepsField() ? "; keeps the field" : "");
 }
 
 // Of the scene's file and of those that it names. What cannot be read counts for nothing: who needs it says so.
 std::uint64_t HashOfFiles(const std::string& scene) {
-  RunFiles files;
+  RunInputs files;
   files.ReadsScene(scene);
   std::uint64_t hash = 0;
   std::vector<char> piece(std::size_t(1) << 20);
@@ -173,8 +174,8 @@ std::uint64_t HashOfFiles(const std::string& scene) {
   return hash;
 }
 
-// Kept beside the times, as it takes reading the scene to know, and as little true as they are of what no circumstance tells:
-// `anew` does not look there.
+// Kept beside the times, as it takes reading the scene to know, and as little true as they are of what no circumstance
+// tells: `anew` does not look there.
 Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunContext& context,
                           const std::function<Expected<bool>()>& find) {
   FileCache cache = TimesCache(context);
@@ -187,10 +188,12 @@ Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunConte
 }
 
 // What is opened when the first way is measured: the frame as the run will have it.
-Expected<SceneAtRest> OpenToMeasure(const SceneRequest& options, std::optional<int> frame, StyleSet& styles,
+Expected<StaticScene> OpenToMeasure(const SceneRequest& options, std::optional<int> frame, StyleSet& styles,
                                     const RunContext& context) {
-  const LayersFor layers = [&](const StyleWishes& wishes) { return RequiredLayers(styles, wishes, options.scene); };
-  SCUMBLE_ASSIGN(SceneAtRest opened, OpenSceneAt(frame, options, layers, context, false));
+  const LayersFor layers = [&](const SceneStyleRequests& wishes) {
+    return RequiredLayers(styles, wishes, options.scene);
+  };
+  SCUMBLE_ASSIGN(StaticScene opened, OpenSceneAt(frame, options, layers, context, false));
   MemoryNeed need;
   AddProgram(context.threads, need);
   AddScene(opened.scene, CountNeededPixels(opened.scene, options, opened.layers), need);
@@ -234,7 +237,7 @@ Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& optio
   BudgetChoice choice;
   const LadderFrame ladder{false, guides.width(), guides.height(), true};
   if (options.quality) {
-    SCUMBLE_RETURN_IF_ERROR(Take(NamedWay(*options.quality, ladder, styles, context, choice), styles, picture));
+    SCUMBLE_RETURN_IF_ERROR(Take(NamedVariant(*options.quality, ladder, styles, context, choice), styles, picture));
     return std::optional(std::move(choice));
   }
   for (Style& style : styles.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame.value_or(0)));
@@ -245,11 +248,13 @@ Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& optio
       fmt::format("transfer; {}x{}; covered {:.0f}/64; layers {}; {}", guides.width(), guides.height(),
                   64.0 * double(covered) / double(std::max<std::size_t>(1, guides.pixel_count())),
                   guides.layers().ToString(), CommonCircumstances(styles, picture, context));
-  PaintTrial trial(styles, picture, frame, name, over, context);
-  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, PictureText(guides, picture), styles, context,
-                                          {[&](const Way& one) { return trial.Paint(one, guides); },
-                                           [&](const Way& one) { return trial.Judge(one, guides); }}, choice));
-  SCUMBLE_RETURN_IF_ERROR(Take(way, styles, picture));
+  TrialPainter trial(styles, picture, frame, name, over, context);
+  SCUMBLE_ASSIGN(const Variant variant,
+                 VariantWithin(options, ladder, circumstances, PictureText(guides, picture), styles, context,
+                               {[&](const Variant& one) { return trial.Paint(one, guides); },
+                                [&](const Variant& one) { return trial.MeasureError(one, guides); }},
+                               choice));
+  SCUMBLE_RETURN_IF_ERROR(Take(variant, styles, picture));
   return std::optional(std::move(choice));
 }
 
@@ -264,21 +269,20 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
   const bool may_have_fewer =
       !scene.samples_given && std::any_of(styles.styles.begin(), styles.styles.end(), AsksForLight);
   LadderFrame ladder{true, size.width, size.height, options.guides_are_fixed, may_have_fewer ? scene.samples : 0};
-  const auto take = [&](const Way& way) {
-    if (way.samples > 0) scene.samples = way.samples;
-    return Take(way, styles, picture);
+  const auto take = [&](const Variant& variant) {
+    if (variant.samples > 0) scene.samples = variant.samples;
+    return Take(variant, styles, picture);
   };
   if (options.quality) {
-    SCUMBLE_RETURN_IF_ERROR(take(NamedWay(*options.quality, ladder, styles, context, choice)));
+    SCUMBLE_RETURN_IF_ERROR(take(NamedVariant(*options.quality, ladder, styles, context, choice)));
     return std::optional(std::move(choice));
   }
-  const std::string circumstances =
-      fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
-                  HashOfFiles(scene.scene), SizeToText(scene.size),
-                  GuideSettings(scene), scene.isa, scene.half, CommonCircumstances(styles, picture, context));
+  const std::string circumstances = fmt::format("stylize; scene {:016x}; {}; {}; isa {}; half {}; {}",
+                                                HashOfFiles(scene.scene), SizeToText(scene.size), GuideSettings(scene),
+                                                scene.isa, scene.half, CommonCircumstances(styles, picture, context));
   const RunContext silent = context.WithoutNotes();
-  std::optional<SceneAtRest> opened;
-  PaintTrial trial(styles, picture, frame, scene.scene, over, context);
+  std::optional<StaticScene> opened;
+  TrialPainter trial(styles, picture, frame, scene.scene, over, context);
   const auto open = [&]() -> Status {
     if (opened) return Ok();
     SCUMBLE_ASSIGN(opened, OpenToMeasure(scene, frame, styles, silent));
@@ -289,33 +293,35 @@ Expected<std::optional<BudgetChoice>> ChooseForScene(const BudgetRequest& option
     return NeedSamples(opened->scene, opened->layers, scene);
   };
   if (ladder.samples > 0) {
-    SCUMBLE_ASSIGN(const bool needed, KeptAnswer("samples; " + circumstances, options.recalibrate, context, needs_samples));
+    SCUMBLE_ASSIGN(const bool needed,
+                   KeptAnswer("samples; " + circumstances, options.recalibrate, context, needs_samples));
     if (!needed) ladder.samples = 0;
   }
   double casting_ms = 0.0;
-  const auto cast = [&](const Way& way) -> Expected<GuideSet> {
+  const auto cast = [&](const Variant& variant) -> Expected<GuideSet> {
     SCUMBLE_RETURN_IF_ERROR(open());
     SceneRequest small = scene;
-    small.size = {size.width / UpsampleOf(way), size.height / UpsampleOf(way)};
-    if (way.samples > 0) small.samples = way.samples;
+    small.size = {size.width / UpsampleOf(variant), size.height / UpsampleOf(variant)};
+    if (variant.samples > 0) small.samples = variant.samples;
     Stopwatch watch;
     SCUMBLE_ASSIGN(SceneGuides made,
                    CastScene(opened->scene, opened->view.camera, nullptr, small, opened->layers, silent, {}, false));
     casting_ms = watch.Lap();
     return std::move(made.guides);
   };
-  const PaintWay paint = [&](const Way& way) -> Expected<double> {
-    SCUMBLE_ASSIGN(const GuideSet guides, cast(way));
-    SCUMBLE_ASSIGN(const double painting, trial.Paint(way, guides));
+  const PaintVariant paint = [&](const Variant& variant) -> Expected<double> {
+    SCUMBLE_ASSIGN(const GuideSet guides, cast(variant));
+    SCUMBLE_ASSIGN(const double painting, trial.Paint(variant, guides));
     return casting_ms + painting;
   };
-  const PaintWay judge = [&](const Way& way) -> Expected<double> {
-    SCUMBLE_ASSIGN(const GuideSet guides, cast(way));
-    return trial.Judge(way, guides);
+  const PaintVariant judge = [&](const Variant& variant) -> Expected<double> {
+    SCUMBLE_ASSIGN(const GuideSet guides, cast(variant));
+    return trial.MeasureError(variant, guides);
   };
-  SCUMBLE_ASSIGN(const Way way, WayWithin(options, ladder, circumstances, "exposure " + ExposureText(picture), styles, context,
-                                          {paint, judge}, choice));
-  SCUMBLE_RETURN_IF_ERROR(take(way));
+  SCUMBLE_ASSIGN(const Variant variant,
+                 VariantWithin(options, ladder, circumstances, "exposure " + ExposureText(picture), styles, context,
+                               {paint, judge}, choice));
+  SCUMBLE_RETURN_IF_ERROR(take(variant));
   return std::optional(std::move(choice));
 }
 

@@ -42,9 +42,9 @@ struct BudgetChoice {
   std::vector<std::string> options;        // of the command line, that repeat it: "--upsample", "4", …
 };
 
-// Chooses, puts the choice into `styles` and `picture`, and notes it; empty where nothing is to be chosen. Of the guides
-// only size and coverage count for times; what they show counts for which of two variants is nearer. `frame` is theirs;
-// none: 0. `over`: the picture underneath theirs; empty: none.
+// Chooses, puts the choice into `styles` and `picture`, and notes it; empty where nothing is to be chosen. Of the
+// guides only size and coverage count for times; what they show counts for which of two variants is nearer. `frame` is
+// theirs; none: 0. `over`: the picture underneath theirs; empty: none.
 Expected<std::optional<BudgetChoice>> ChooseForGuides(const BudgetRequest& options, const GuideSet& guides,
                                                       std::optional<int> frame, const std::string& name,
                                                       const std::string& over, StyleSet& styles,

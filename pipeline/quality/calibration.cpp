@@ -28,8 +28,8 @@ double Median(Runs runs) {
 
 // What is kept between runs.
 struct Known {
-  std::map<std::string, Runs> ways;
-  std::map<std::string, double> off;  // of ways that had rivals; infinity where it cannot be known
+  std::map<std::string, Runs> variants;
+  std::map<std::string, double> off;  // of variants that had contenders; infinity where it cannot be known
   std::string off_of;                 // Calibration::judged
   double cold_ms = 0.0;
 };
@@ -46,7 +46,7 @@ std::string OneLine(std::string text) {
 std::string ToText(const Known& known, const std::string& circumstances) {
   std::string text = fmt::format("{} {}\n{} {}\n{} {}\n", kCircumstances, OneLine(circumstances), kCold, known.cold_ms,
                                  kOffOf, OneLine(known.off_of));
-  for (const auto& [name, runs] : known.ways) {
+  for (const auto& [name, runs] : known.variants) {
     if (!runs.empty()) text += fmt::format("{} {} {} {}\n", kRuns, runs.size(), fmt::join(runs, " "), name);
   }
   for (const auto& [name, off] : known.off) text += fmt::format("{} {} {}\n", kOff, off, name);
@@ -89,7 +89,7 @@ std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::str
       for (double& ms : runs) {
         if (!ReadNumber(line, ms) || !std::isfinite(ms)) return std::nullopt;
       }
-      known.ways[RestOf(line)] = std::move(runs);
+      known.variants[RestOf(line)] = std::move(runs);
     } else if (word == kOff) {
       if (!ReadNumber(line, number)) return std::nullopt;
       known.off[RestOf(line)] = number;
@@ -102,14 +102,14 @@ std::optional<Known> ParseTimes(std::span<const std::byte> bytes, const std::str
 
 class Picker {
  public:
-  Picker(const Calibration& calibration, double budget_ms, const MeasureWay& measure, const JudgeWay& judge)
+  Picker(const Calibration& calibration, double budget_ms, const MeasureVariant& measure, const MeasureErrorOf& judge)
       : calibration_(calibration),
         budget_ms_(budget_ms),
         measure_(measure),
         judge_(judge),
-        runs_(calibration.ways.size()),
-        kept_(calibration.ways.size()),
-        off_(calibration.ways.size()) {}
+        runs_(calibration.variants.size()),
+        kept_(calibration.variants.size()),
+        off_(calibration.variants.size()) {}
 
   void Load() {
     if (!calibration_.cache || calibration_.anew) return;
@@ -118,17 +118,18 @@ class Picker {
     const std::optional<Known> known = ParseTimes(*bytes, calibration_.circumstances);
     if (!known) return;
     cold_ms_ = known->cold_ms;
-    for (std::size_t way = 0; way < runs_.size(); ++way) {
-      const auto found = known->ways.find(calibration_.ways[way]);
-      if (found != known->ways.end()) runs_[way] = found->second, kept_[way] = runs_[way].size();
-      const auto off = known->off.find(calibration_.ways[way]);
-      if (off != known->off.end() && known->off_of == calibration_.judged) off_[way] = off->second;
+    for (std::size_t variant = 0; variant < runs_.size(); ++variant) {
+      const auto found = known->variants.find(calibration_.variants[variant]);
+      if (found != known->variants.end()) runs_[variant] = found->second, kept_[variant] = runs_[variant].size();
+      const auto off = known->off.find(calibration_.variants[variant]);
+      if (off != known->off.end() && known->off_of == calibration_.judged) off_[variant] = off->second;
     }
   }
 
   void Store() const {
     if (!calibration_.cache || (measured_ == 0 && judged_.empty()) || !cold_ms_) return;
-    // Another process may have measured other ways meanwhile, or all of them anew: only what was found out here joins what is kept.
+    // Another process may have measured other variants meanwhile, or all of them anew: only what was found out here
+    // joins what is kept.
     Known known;
     known.cold_ms = *cold_ms_;
     if (const auto bytes = calibration_.cache->Load(Key()); bytes && !calibration_.anew) {
@@ -139,77 +140,80 @@ class Picker {
     }
     if (known.off_of != calibration_.judged) known.off.clear();
     known.off_of = calibration_.judged;
-    for (std::size_t way = 0; way < runs_.size(); ++way) {
-      const std::string& name = calibration_.ways[way];
-      Runs& runs = known.ways[name];
-      for (std::size_t run = kept_[way]; run < runs_[way].size() && runs.size() < std::size_t(kCalibrationRuns); ++run) {
-        runs.push_back(runs_[way][run]);
+    for (std::size_t variant = 0; variant < runs_.size(); ++variant) {
+      const std::string& name = calibration_.variants[variant];
+      Runs& runs = known.variants[name];
+      for (std::size_t run = kept_[variant]; run < runs_[variant].size() && runs.size() < std::size_t(kCalibrationRuns);
+           ++run) {
+        runs.push_back(runs_[variant][run]);
       }
     }
-    for (const std::size_t way : judged_) known.off[calibration_.ways[way]] = *off_[way];
+    for (const std::size_t variant : judged_) known.off[calibration_.variants[variant]] = *off_[variant];
     const std::string text = ToText(known, calibration_.circumstances);
     calibration_.cache->Store(Key(), std::as_bytes(std::span(text)));
   }
 
-  Expected<PickedWay> Pick() {
-    for (std::size_t way = 0; way < runs_.size(); ++way) {
-      SCUMBLE_ASSIGN(const bool fits, Fits(way));
-      if (fits) return NearerOf(way);
+  Expected<PickedVariant> Pick() {
+    for (std::size_t variant = 0; variant < runs_.size(); ++variant) {
+      SCUMBLE_ASSIGN(const bool fits, Fits(variant));
+      if (fits) return NearerOf(variant);
     }
     // What was given up at its first run may have been slow by chance: the least of its runs says how quick it can be.
     const auto least = [](const Runs& runs) { return *std::min_element(runs.begin(), runs.end()); };
     const auto quickest =
         std::min_element(runs_.begin(), runs_.end(), [&](const Runs& a, const Runs& b) { return least(a) < least(b); });
-    const auto way = static_cast<std::size_t>(quickest - runs_.begin());
+    const auto variant = static_cast<std::size_t>(quickest - runs_.begin());
     // What is far over the budget will not fit, however often it is run.
-    const bool hopeless = least(runs_[way]) > 2.0 * budget_ms_;
+    const bool hopeless = least(runs_[variant]) > 2.0 * budget_ms_;
     const auto wanted = static_cast<std::size_t>(hopeless ? kHopelessRuns : kCalibrationRuns);
-    while (runs_[way].size() < wanted) SCUMBLE_RETURN_IF_ERROR(RunOnce(way));
-    return Picked(way, false);
+    while (runs_[variant].size() < wanted) SCUMBLE_RETURN_IF_ERROR(RunOnce(variant));
+    return Picked(variant, false);
   }
 
  private:
   std::string Key() const { return fmt::format("{:016x}", HashText(calibration_.circumstances)); }
 
-  double Predicted(std::size_t way) const { return PredictedMs(runs_[way], cold_ms_.value_or(0.0)); }
-  PickedWay Picked(std::size_t way, bool fits) const { return {way, Predicted(way), fits, measured_, {}}; }
+  double Predicted(std::size_t variant) const { return PredictedMs(runs_[variant], cold_ms_.value_or(0.0)); }
+  PickedVariant Picked(std::size_t variant, bool fits) const {
+    return {variant, Predicted(variant), fits, measured_, {}};
+  }
 
-  // Of a way that fits and its rival, if there is one that does.
-  Expected<PickedWay> NearerOf(std::size_t way) {
-    const auto found = calibration_.rivals.find(way);
-    if (found == calibration_.rivals.end()) return Picked(way, true);
-    const std::size_t rival = found->second;
-    SCUMBLE_CHECK(rival > way && rival < runs_.size());
-    SCUMBLE_ASSIGN(const bool fits, Fits(rival));
-    if (!fits) return Picked(way, true);
-    for (const std::size_t one : {way, rival}) {
+  // Of a variant that fits and its contender, if there is one that does.
+  Expected<PickedVariant> NearerOf(std::size_t variant) {
+    const auto found = calibration_.contenders.find(variant);
+    if (found == calibration_.contenders.end()) return Picked(variant, true);
+    const std::size_t contender = found->second;
+    SCUMBLE_CHECK(contender > variant && contender < runs_.size());
+    SCUMBLE_ASSIGN(const bool fits, Fits(contender));
+    if (!fits) return Picked(variant, true);
+    for (const std::size_t one : {variant, contender}) {
       if (off_[one]) continue;
       SCUMBLE_ASSIGN(off_[one], judge_(one));
       judged_.push_back(one);
     }
-    const bool known = std::isfinite(*off_[way]) && std::isfinite(*off_[rival]);
-    if (!known) return Picked(way, true);
-    PickedWay picked = Picked(*off_[rival] < *off_[way] ? rival : way, true);
-    picked.compared = {{way, *off_[way]}, {rival, *off_[rival]}};
+    const bool known = std::isfinite(*off_[variant]) && std::isfinite(*off_[contender]);
+    if (!known) return Picked(variant, true);
+    PickedVariant picked = Picked(*off_[contender] < *off_[variant] ? contender : variant, true);
+    picked.compared = {{variant, *off_[variant]}, {contender, *off_[contender]}};
     return picked;
   }
 
-  Expected<bool> Fits(std::size_t way) {
-    const Runs& runs = runs_[way];
+  Expected<bool> Fits(std::size_t variant) {
+    const Runs& runs = runs_[variant];
     const auto too_slow = [&] {
       return std::any_of(runs.begin(), runs.end(), [&](double ms) { return ms > budget_ms_; });
     };
-    while (!too_slow() && runs.size() < std::size_t(kCalibrationRuns)) SCUMBLE_RETURN_IF_ERROR(RunOnce(way));
-    return !too_slow() && Predicted(way) <= budget_ms_;
+    while (!too_slow() && runs.size() < std::size_t(kCalibrationRuns)) SCUMBLE_RETURN_IF_ERROR(RunOnce(variant));
+    return !too_slow() && Predicted(variant) <= budget_ms_;
   }
 
-  Status RunOnce(std::size_t way) {
+  Status RunOnce(std::size_t variant) {
     if (!cold_ms_) {
       SCUMBLE_RETURN_IF_ERROR(WarmUp());
     } else if (measured_ == 0) {
       SCUMBLE_RETURN_IF_ERROR(measure_(runs_.size() - 1));  // this process is cold, too
     }
-    return Measure(way);
+    return Measure(variant);
   }
 
   Status WarmUp() {
@@ -222,17 +226,17 @@ class Picker {
     return Ok();
   }
 
-  Status Measure(std::size_t way) {
-    SCUMBLE_ASSIGN(const double ms, measure_(way));
-    runs_[way].push_back(ms);
+  Status Measure(std::size_t variant) {
+    SCUMBLE_ASSIGN(const double ms, measure_(variant));
+    runs_[variant].push_back(ms);
     ++measured_;
     return Ok();
   }
 
   const Calibration& calibration_;
   const double budget_ms_;
-  const MeasureWay& measure_;
-  const JudgeWay& judge_;
+  const MeasureVariant& measure_;
+  const MeasureErrorOf& judge_;
   std::vector<Runs> runs_;                  // by way
   std::vector<std::size_t> kept_;           // likewise: how many of them were known
   std::vector<std::optional<double>> off_;  // likewise, of those that were judged
@@ -250,13 +254,13 @@ double PredictedMs(std::span<const double> runs_ms, double cold_ms) {
   return slowest + (slowest - Median({runs_ms.begin(), runs_ms.end()})) + cold_ms;
 }
 
-Expected<PickedWay> PickWay(const Calibration& calibration, double budget_ms, const MeasureWay& measure,
-                            const JudgeWay& judge) {
-  SCUMBLE_CHECK(!calibration.ways.empty());
-  SCUMBLE_CHECK(judge || calibration.rivals.empty());
+Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure,
+                                    const MeasureErrorOf& judge) {
+  SCUMBLE_CHECK(!calibration.variants.empty());
+  SCUMBLE_CHECK(judge || calibration.contenders.empty());
   Picker picker(calibration, budget_ms, measure, judge);
   picker.Load();
-  Expected<PickedWay> picked = picker.Pick();
+  Expected<PickedVariant> picked = picker.Pick();
   picker.Store();
   return picked;
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
 
@@ -22,7 +22,8 @@ Expected<PictureRequest> RequestAt(const PictureRequest& request, int frame, con
 
 }  // namespace
 
-Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at, const Progress& progress) {
+Status PictureSequence::Begin(const Sequence& sequence, int width, int height, const GuidesAt& guides_at,
+                              const Progress& progress) {
   SCUMBLE_RETURN_IF_ERROR(ReadOverOfAll(width, height));
   if (!MustLookAhead(sequence)) return Ok();
   const int first = sequence.frames.front();
@@ -33,9 +34,10 @@ Status PictureSequence::Begin(const Sequence& sequence, int width, int height, c
   }
   SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, first, request_.output));
   SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles_, *found->guides, one, context_, state_));
-  context_.Warn(fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
-                   "give each --exposure {:.2f}",
-                   first, *state_.exposure));
+  context_.Warn(
+      fmt::format("the exposure of all frames was measured on frame {}: where a sequence is cut into several runs, "
+                  "give each --exposure {:.2f}",
+                  first, *state_.exposure));
   return Ok();
 }
 
@@ -48,9 +50,8 @@ Status PictureSequence::ReadOverOfAll(int width, int height) {
                                 state_.over->width, state_.over->height, width, height));
 }
 
-
 Status PictureSequence::Check(int frame, const std::string& output, int width, int height, std::optional<FrameRate> fps,
-             std::optional<int> samples) {
+                              std::optional<int> samples) {
   for (Style& style : styles_.styles) SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame));
   const std::optional<double> exposure = request_.exposure;
   PictureShape shape{width, height, PictureChannels(output), PictureBits(output, {request_.bits}), {}};
@@ -64,15 +65,12 @@ bool PictureSequence::MustLookAhead(const Sequence& sequence) const {
   return sequence.frames.size() > 1 && MeasuresExposure(styles_, request_);
 }
 
-
-Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at, double guides_share,
-                           const Progress& progress) {
+Expected<FrameWrite> PictureSequence::Make(int frame, const std::string& output, const GuidesAt& guides_at,
+                                           double guides_share, const Progress& progress) {
   SCUMBLE_ASSIGN(const PictureRequest one, RequestAt(request_, frame, output));
   SCUMBLE_ASSIGN(const FrameGuides found, guides_at(frame, Within(progress, 0.0, guides_share)));
-  return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0),
-                       state_);
+  return PaintPicture(styles_, *found.guides, found.source, one, context_, Within(progress, guides_share, 1.0), state_);
 }
-
 
 Expected<RunReport> RunOnePicture(StyleSet& styles, const GuideSet& guides, const GuideSource& source,
                                   const PictureRequest& request, const RunContext& context, const Progress& progress) {
@@ -92,7 +90,7 @@ PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const 
   return {styles.styles, has_map, guides, layers, is_sequence, picture.KeepsField(), context.threads};
 }
 
-Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                   const StyleSet& styles) {
   SCUMBLE_ASSIGN(const auto overs, NamesOf(picture.over, sequence));
   for (const std::string& over : overs) files.Reads("the picture of --over", over);
@@ -101,8 +99,8 @@ Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::opt
   return files.CheckOutputs(outputs);
 }
 
-FilesCheck CheckOfSceneStyles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
-                         const StyleSet& styles) {
+FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+                              const StyleSet& styles) {
   return [&] { return files.KnowsStyles(styles) ? Ok() : CheckFiles(files, picture, sequence, styles); };
 }
 

@@ -9,10 +9,10 @@
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/memory/memory_estimate.h"
 #include "pipeline/requests.h"
-#include "pipeline/scene/run_inputs.h"
 #include "pipeline/run/run_requests.h"
 #include "pipeline/run/sequence.h"
 #include "pipeline/run_context.h"
+#include "pipeline/scene/run_inputs.h"
 #include "pipeline/style/style_set.h"
 
 namespace scumble {
@@ -61,16 +61,16 @@ PictureWork WorkOf(const StyleSet& styles, const PictureRequest& picture, const 
                    bool is_sequence, const RunContext& context);
 
 // Registers the inputs of styles and picture, and checks the outputs against all inputs.
-Status CheckFiles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+Status CheckFiles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                   const StyleSet& styles);
 
 // CheckFiles once more, where scene or guides have asked for styles that were not open then. All are borrowed.
 using FilesCheck = std::function<Status()>;
-FilesCheck CheckOfSceneStyles(RunFiles& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
+FilesCheck CheckOfSceneStyles(RunInputs& files, const PictureRequest& picture, const std::optional<Sequence>& sequence,
                               const StyleSet& styles);
 
-// The picture underneath that trials of a budget paint over: a sequence's first. A plan alone may leave open which frame
-// it is of, and then nothing is underneath.
+// The picture underneath that trials of a budget paint over: a sequence's first. A plan alone may leave open which
+// frame it is of, and then nothing is underneath.
 Expected<std::string> OverOnTrial(const PictureRequest& picture, const std::optional<Sequence>& sequence);
 
 // Fills places for a frame's number in the names of a single picture.

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "core/image/stopwatch.h"
+#include "core/io/existing_output.h"
 #include "core/io/file/atomic_file.h"
-#include "core/io/file/existing_output.h"
 #include "core/io/guide_file.h"
 #include "pipeline/memory/memory_estimate.h"
-#include "pipeline/scene/run_inputs.h"
 #include "pipeline/run/run_requests.h"
+#include "pipeline/scene/run_inputs.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/style/style_set.h"
 
@@ -31,8 +31,9 @@ void NameStylesInPlan(std::vector<PlanItem>& plan, const std::optional<StyleSet>
   for (const Style& style : styles->styles) NameStyleInPlan(plan, style);
 }
 
-Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Sequence& sequence, const LayersFor& layers_for,
-                                    bool motion, const std::optional<StyleSet>& styles, const SequenceListener& listener, const RunContext& context) {
+Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Sequence& sequence,
+                                     const LayersFor& layers_for, bool motion, const std::optional<StyleSet>& styles,
+                                     const SequenceListener& listener, const RunContext& context) {
   const Size& size = request.scene.size;
   SceneFrames scene(request.scene, layers_for, motion, context);
   const std::string settings = GuideSettings(request.scene);
@@ -40,8 +41,9 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
   // What the scene wishes is in the file as well, so that nothing is loaded where nothing is left to make.
   work.check = [&](int, const std::string& output) -> Status {
     const Expected<GuideFileInfo> info = InspectGuides(output);
-    SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? WishesOf(info->header) : StyleWishes()));
-    return CheckWholeGuides(output, {size.width, size.height, layers.Add(AlwaysWritten()), request.scene.half, settings});
+    SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? SceneStyleRequestsOf(info->header) : SceneStyleRequests()));
+    return CheckWholeGuides(output,
+                            {size.width, size.height, layers.Add(AlwaysWritten()), request.scene.half, settings});
   };
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
@@ -65,12 +67,11 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
     });
   };
   RunReport report;
-  SCUMBLE_ASSIGN(report.sequence,
-                 RunSequence(sequence, work, listener, context, context.StartProgress("guidegen")));
+  SCUMBLE_ASSIGN(report.sequence, RunSequence(sequence, work, listener, context, context.StartProgress("guidegen")));
   return report;
 }
 
-Status CheckFiles(RunFiles& files, const GuidegenRequest& request, const std::optional<Sequence>& sequence,
+Status CheckFiles(RunInputs& files, const GuidegenRequest& request, const std::optional<Sequence>& sequence,
                   const std::optional<StyleSet>& styles) {
   files.ReadsScene(request.scene.scene);
   if (styles) files.ReadsStyles(*styles);
@@ -91,13 +92,14 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
   }
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.scene.blender.frame, request.output));
   const bool plan_only = request.output.empty();
-  RunFiles files;
-  const LayersFor layers_for = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
+  RunInputs files;
+  const LayersFor layers_for = [&](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
     LayerSet layers = asked;
     if (!styles) return layers;
     SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, wishes, request.scene.scene));
     // Once more, where the scene has asked for styles.
-    if (!plan_only && !files.KnowsStyles(*styles)) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
+    if (!plan_only && !files.KnowsStyles(*styles))
+      SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
     return layers.Add(read);
   };
   const std::optional<int> frame = request.scene.blender.frame;
@@ -109,11 +111,13 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
     SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.scene.blender.frame));
   }
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
-  request.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+  request.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers,
+                                                                MemoryNeed& need) {
     if (behind) AddGuidesBehind(size, layers, need);
     AddGuideFile(size, layers, need);
   };
-  if (sequence && !plan_only) return GuidegenSequence(request, *sequence, layers_for, motion, styles, listener, context);
+  if (sequence && !plan_only)
+    return GuidegenSequence(request, *sequence, layers_for, motion, styles, listener, context);
   if (sequence && IsBlenderScene(request.scene.scene)) request.scene.blender.frame = sequence->frames.front();
   const Progress progress = context.StartProgress("guidegen");
   SceneGuides made;
@@ -124,8 +128,7 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
     const bool timeless = plan_only && (frame || sequence);
     SceneRequest scene = request.scene;
     if (timeless) scene.animation.clear();
-    SCUMBLE_ASSIGN(made, MakeGuidesAtRest(scene, layers_for, motion && !timeless, context, progress,
-                                          plan_only));
+    SCUMBLE_ASSIGN(made, MakeStaticGuides(scene, layers_for, motion && !timeless, context, progress, plan_only));
   }
   NameStylesInPlan(made.plan, styles);
   if (!plan_only) {

@@ -43,8 +43,8 @@ struct RunReport {
   std::optional<FrameReport> frame;        // of a single picture, or of a single set of guides
   std::optional<SequenceTotals> sequence;  // of a range; each frame went to the listener
   std::optional<BudgetChoice> choice;
-  bool paints = false;                     // pictures, not guides
-  std::vector<std::string> warnings;       // about assignments, where it paints
+  bool paints = false;                // pictures, not guides
+  std::vector<std::string> warnings;  // about assignments, where it paints
   // Of a plan alone:
   std::vector<PlanItem> plan;
   MemoryNeed memory;
@@ -52,9 +52,9 @@ struct RunReport {
 
 // A scene to guide files.
 struct GuidegenRequest {
-  SceneRequest scene;                  // blender.frame is the frame of any moving scene
-  std::optional<StyleRequest> style;   // adds the layers that it reads
-  LayerSet layers;                     // on top of AlwaysWritten()
+  SceneRequest scene;                 // blender.frame is the frame of any moving scene
+  std::optional<StyleRequest> style;  // adds the layers that it reads
+  LayerSet layers;                    // on top of AlwaysWritten()
   GuideWriteOptions write;
   std::string output;  // empty: the plan alone
   SequenceRequest sequence;

@@ -17,7 +17,7 @@ namespace scumble {
 namespace {
 
 LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene, const FilesCheck& check_files) {
-  return [&styles, scene, check_files](const StyleWishes& wishes) -> Expected<LayerSet> {
+  return [&styles, scene, check_files](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
     SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, wishes, scene));
     SCUMBLE_RETURN_IF_ERROR(check_files());
     return layers;
@@ -30,10 +30,11 @@ Status ShrinkGuides(StylizeRequest& request) {
   if (factor == 1) return Ok();
   const Size size = request.scene.size;
   if (size.width % factor || size.height % factor) {
-    return UsageError(fmt::format("--size {} with --upsample {}: the guides are {} times smaller, so both sides must be "
-                                  "multiples of {}; take --size {}x{}",
-                                  SizeToText(size), factor, factor, factor, (size.width + factor - 1) / factor * factor,
-                                  (size.height + factor - 1) / factor * factor));
+    return UsageError(
+        fmt::format("--size {} with --upsample {}: the guides are {} times smaller, so both sides must be "
+                    "multiples of {}; take --size {}x{}",
+                    SizeToText(size), factor, factor, factor, (size.width + factor - 1) / factor * factor,
+                    (size.height + factor - 1) / factor * factor));
   }
   request.scene.size = {size.width / factor, size.height / factor};
   return Ok();
@@ -48,7 +49,8 @@ decltype(SceneRequest::more_memory) PaintingOf(const StyleSet& styles, const Pic
 }
 
 Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequence& sequence, StyleSet& styles,
-                                   const FilesCheck& check_files, const SequenceListener& listener, const RunContext& context) {
+                                    const FilesCheck& check_files, const SequenceListener& listener,
+                                    const RunContext& context) {
   const Size& size = request.scene.size;
   SceneRequest options = request.scene;
   options.seed = request.picture.seed, options.fps = request.picture.fps;
@@ -105,7 +107,7 @@ Expected<RunReport> PlanOf(const StylizeRequest& request, StyleSet& styles, cons
   SceneRequest scene = request.scene;
   scene.animation.clear();  // a plan is the same at any time
   scene.blender.frame = request.picture.frame;
-  SCUMBLE_ASSIGN(SceneGuides made, MakeGuidesAtRest(scene, RequiredOfScene(styles, scene.scene, Ok), false, context,
+  SCUMBLE_ASSIGN(SceneGuides made, MakeStaticGuides(scene, RequiredOfScene(styles, scene.scene, Ok), false, context,
                                                     context.StartProgress("stylize"), true));
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);
   RunReport report;
@@ -115,12 +117,15 @@ Expected<RunReport> PlanOf(const StylizeRequest& request, StyleSet& styles, cons
 }
 
 // --quality and --budget-ms: by the first frame of a sequence.
-Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, const std::optional<Sequence>& sequence, StyleSet& styles, const RunContext& context) {
+Expected<std::optional<BudgetChoice>> ChooseForStylize(StylizeRequest& request, const std::optional<Sequence>& sequence,
+                                                       StyleSet& styles, const RunContext& context) {
   SceneRequest scene = request.scene;
   scene.seed = request.picture.seed, scene.fps = request.picture.fps;
-  scene.more_memory = PaintingOf(styles, request.picture, sequence.has_value(), context);  // pictures are painted on trial
+  scene.more_memory =
+      PaintingOf(styles, request.picture, sequence.has_value(), context);  // pictures are painted on trial
   const std::optional<int> frame = sequence ? sequence->frames.front() : request.picture.frame;
-  if (!frame && request.explain && request.picture.output.empty()) scene.animation.clear();  // a plan is the same at any time
+  if (!frame && request.explain && request.picture.output.empty())
+    scene.animation.clear();  // a plan is the same at any time
   const int before = request.picture.upsample;
   SCUMBLE_ASSIGN(const std::string over, OverOnTrial(request.picture, sequence));
   SCUMBLE_ASSIGN(auto choice, ChooseForScene(request.budget, scene, frame, over, styles, request.picture, context));
@@ -152,7 +157,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
   const double style_ms = watch.Lap();
   context.EndStage("style");
-  RunFiles files;
+  RunInputs files;
   files.ReadsScene(request.scene.scene);
   SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request.picture, sequence, styles));
   const FilesCheck check_files = CheckOfSceneStyles(files, request.picture, sequence, styles);
@@ -168,9 +173,10 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   scene.seed = request.picture.seed, scene.fps = request.picture.fps;
   const LayersFor layers_for = RequiredOfScene(styles, scene.scene, check_files);
   const Progress progress = Within(all, 0.0, 0.5);
-  SCUMBLE_ASSIGN(SceneGuides made, request.picture.frame
-                                       ? MakeGuidesAt(*request.picture.frame, scene, layers_for, false, context, progress)
-                                       : MakeGuidesAtRest(scene, layers_for, false, context, progress, false));
+  SCUMBLE_ASSIGN(SceneGuides made,
+                 request.picture.frame
+                     ? MakeGuidesAt(*request.picture.frame, scene, layers_for, false, context, progress)
+                     : MakeStaticGuides(scene, layers_for, false, context, progress, false));
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene.scene));
   made.times.insert(made.times.begin(), {"style", style_ms});
   for (const Style& style : styles.styles) NameStyleInPlan(made.plan, style);

@@ -24,12 +24,12 @@ GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& sty
   return read;
 }
 
-// Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks for
-// nothing here; reading it says why. Layers that tell of names alone are optional: a render may have one of them.
+// Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks
+// for nothing here; reading it says why. Layers that tell of names alone are optional: a render may have one of them.
 Status RequireOfFile(StyleSet& styles, const std::string& file, GuideReadOptions& read) {
-  StyleWishes wishes;
+  SceneStyleRequests wishes;
   if (styles.options.scene_styles) {
-    if (const Expected<GuideFileInfo> info = InspectGuides(file)) wishes = WishesOf(info->header);
+    if (const Expected<GuideFileInfo> info = InspectGuides(file)) wishes = SceneStyleRequestsOf(info->header);
   }
   SCUMBLE_ASSIGN(read.required, StyleLayers(styles, wishes, file));
   read.optional = styles.LayersOfNames(wishes);
@@ -43,16 +43,18 @@ Expected<MemoryNeed> CheckMemoryOfFile(const TransferRequest& request, const std
   AddProgram(context.threads, need);
   if (const Expected<GuideFileInfo> info = InspectGuides(file)) {
     AddGuidesRead(*info, read, need);
-    AddPicture(WorkOf(styles, request.picture, {info->width, info->height}, read.required, is_sequence, context), request.picture,
-               need);
+    AddPicture(WorkOf(styles, request.picture, {info->width, info->height}, read.required, is_sequence, context),
+               request.picture, need);
   }
-  const std::string mend = request.picture.upsample > 1 ? "take a smaller --upsample, or smaller guides" : "take smaller guides";
+  const std::string mend =
+      request.picture.upsample > 1 ? "take a smaller --upsample, or smaller guides" : "take smaller guides";
   SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context, mend));
   return need;
 }
 
 Expected<RunReport> TransferSequence(const TransferRequest& request, const Sequence& sequence, StyleSet& styles,
-                                    const GuideReadOptions& read, const FilesCheck& check_files, const SequenceListener& listener, const RunContext& context) {
+                                     const GuideReadOptions& read, const FilesCheck& check_files,
+                                     const SequenceListener& listener, const RunContext& context) {
   SCUMBLE_ASSIGN(const FrameName guides_name, FrameName::Parse(request.guides));
   SCUMBLE_ASSIGN(const FrameName camera, FrameName::Parse(request.camera));
   PictureSequence pictures(styles, request.picture, context);
@@ -110,8 +112,9 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
 }
 
 // --quality and --budget-ms of a sequence: by its first frame.
-Expected<std::optional<BudgetChoice>> ChooseForSequence(TransferRequest& request, const Sequence& sequence, StyleSet& styles, GuideReadOptions read,
-                         const RunContext& context) {
+Expected<std::optional<BudgetChoice>> ChooseForSequence(TransferRequest& request, const Sequence& sequence,
+                                                        StyleSet& styles, GuideReadOptions read,
+                                                        const RunContext& context) {
   if (!request.budget.chooses()) return std::optional<BudgetChoice>();
   const int frame = sequence.frames.front();
   SCUMBLE_ASSIGN(const FrameName name, FrameName::Parse(request.guides));
@@ -130,7 +133,8 @@ Expected<std::optional<BudgetChoice>> ChooseForSequence(TransferRequest& request
 
 Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener& listener, const RunContext& context) {
   if (IsScene(request.guides)) {
-    return InputError(request.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
+    return InputError(request.guides +
+                      " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
   }
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.picture.output, {request.picture.bits}));
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.picture.frame, request.picture.output));
@@ -142,7 +146,7 @@ Expected<RunReport> RunTransfer(TransferRequest request, const SequenceListener&
   request.style.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));
   context.EndStage("style");
-  RunFiles files;
+  RunInputs files;
   for (const auto& [what, name] : {std::pair("the guides", &request.guides), {"the .camera file", &request.camera}}) {
     SCUMBLE_ASSIGN(const auto names, NamesOf(*name, sequence));
     for (const std::string& file : names) files.Reads(what, file);

@@ -190,8 +190,8 @@ Expected<SequenceTotals> RunSequence(const Sequence& sequence, const SequenceWor
   if (!frames.empty()) SCUMBLE_RETURN_IF_ERROR(work.begin(frames, Within(progress, 0.0, 1.0 / steps)));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double done = static_cast<double>(i + 1);
-    Expected<FrameWrite> made = work.make(frames[i], sequence.output.At(frames[i]),
-                                          Within(progress, done / steps, (done + 1.0) / steps));
+    Expected<FrameWrite> made =
+        work.make(frames[i], sequence.output.At(frames[i]), Within(progress, done / steps, (done + 1.0) / steps));
     SCUMBLE_RETURN_IF_ERROR(writing.Finish());  // the report of a frame comes before the next one's
     if (made) {
       SCUMBLE_RETURN_IF_ERROR(writing.Begin(frames[i], *made));

@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -17,7 +17,6 @@
 #include <iterator>
 #include <sstream>
 #include <system_error>
-
 
 extern char** environ;
 
@@ -46,10 +45,12 @@ struct sigaction actions_before[std::size(kEndingSignals)];
 // A program that was killed, or works on a disk, may hang in that disk: not for long.
 void AwaitEnd(pid_t program, int most_milliseconds) {
   const timespec millisecond{0, 1000000};
-  for (int wait = 0; wait < most_milliseconds && ::waitpid(program, nullptr, WNOHANG) == 0; ++wait) ::nanosleep(&millisecond, nullptr);
+  for (int wait = 0; wait < most_milliseconds && ::waitpid(program, nullptr, WNOHANG) == 0; ++wait)
+    ::nanosleep(&millisecond, nullptr);
 }
 
-// By another program, as nothing in this one may be called that allocates: fork() would lock the heap, _Fork() does not.
+// By another program, as nothing in this one may be called that allocates: fork() would lock the heap, _Fork() does
+// not.
 void RemoveWithoutHeap(const char* folder) {
   const pid_t child = ::_Fork();
   if (child == 0) {
@@ -287,7 +288,9 @@ Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& tas
                                          ", or say where it is with --blender PATH" + ByHand(task)};
   }
   // A shell that runs Blender tells its signal so.
-  const int signal = ended->signal != 0 ? ended->signal : ended->code > 128 && ended->code <= 128 + SIGRTMAX ? ended->code - 128 : 0;
+  const int signal = ended->signal != 0                                   ? ended->signal
+                     : ended->code > 128 && ended->code <= 128 + SIGRTMAX ? ended->code - 128
+                                                                          : 0;
   if (signal != 0) return InputError(task.scene + ": " + task.program + SignalText(signal));
   const std::string reason = ReasonFrom(LinesOf(log));
   if (ended->code == kExitVersion) return UnavailableError(task.scene + ": " + reason);

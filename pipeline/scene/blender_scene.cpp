@@ -14,10 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/scene/blender_process.h"
+#include "guidegen/load/load_scene.h"
 #include "pipeline/frame_range.h"
 #include "pipeline/requests.h"
-#include "guidegen/load/load_scene.h"
+#include "pipeline/scene/blender_process.h"
 
 namespace scumble {
 
@@ -94,18 +94,19 @@ fs::path In(const ScratchFolder& scratch, const char* name) {
 
 constexpr const char *kStartFile = "start.glb", *kRateFile = "fps";
 
-void AskForFilm(const ScratchFolder& scratch, const BlenderRequest& options, std::vector<std::string>& arguments) {
-  arguments.insert(arguments.end(), {"--fps-file", In(scratch, kRateFile).string(), "--start-file",
-                                     In(scratch, kStartFile).string()});
+void RequestBlenderAnimation(const ScratchFolder& scratch, const BlenderRequest& options,
+                             std::vector<std::string>& arguments) {
+  arguments.insert(arguments.end(),
+                   {"--fps-file", In(scratch, kRateFile).string(), "--start-file", In(scratch, kStartFile).string()});
   if (options.wants_start) arguments.push_back("--start-always");
 }
 
-Status LoadFilm(const ScratchFolder& scratch, const std::string& path, BlenderFilm& film) {
-  std::ifstream(In(scratch, kRateFile)) >> film.fps;
+Status LoadBlenderAnimation(const ScratchFolder& scratch, const std::string& path, BlenderAnimation& animation) {
+  std::ifstream(In(scratch, kRateFile)) >> animation.fps;
   std::error_code failed;
   const fs::path start = In(scratch, kStartFile);
   if (!fs::is_regular_file(start, failed)) return Ok();
-  SCUMBLE_ASSIGN(film.start, LoadExport(start, path));
+  SCUMBLE_ASSIGN(animation.start, LoadExport(start, path));
   fs::remove(start, failed);
   return Ok();
 }
@@ -123,16 +124,16 @@ bool IsBlenderScene(const std::string& path) {
 }
 
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,
-                                 BlenderFilm* film) {
+                                 BlenderAnimation* animation) {
   const ScratchFolder scratch;
   const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
   SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported, context));
-  if (film) AskForFilm(scratch, options, arguments);
+  if (animation) RequestBlenderAnimation(scratch, options, arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   context.Note(path + ": " + arguments.front() + " exports it" +
-                   (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
+               (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
   SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), ExportTask(path, options), log, exported));
-  if (film) SCUMBLE_RETURN_IF_ERROR(LoadFilm(scratch, path, *film));
+  if (animation) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(scratch, path, *animation));
   return LoadExport(exported, path);
 }
 
@@ -153,9 +154,9 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   // With an equals sign: a range that starts at a negative frame would look like an option.
   arguments.push_back("--frames=" + FramesToText(frames));
   arguments.insert(arguments.end(), {"--ahead", std::to_string(kFramesAhead)});
-  AskForFilm(*range->scratch_, options, arguments);
+  RequestBlenderAnimation(*range->scratch_, options, arguments);
   context.Note(path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
-                   FramesToText(frames));
+               FramesToText(frames));
   const fs::path log = In(*range->scratch_, "log");
   auto program = RunningProgram::Start(arguments, log);
   if (!program) return CheckProgramEnd(program.error(), *range->task_, log, {}).error();
@@ -189,7 +190,7 @@ Expected<Scene> BlenderRange::Await(int frame) {
     if (end) SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(*end, *task_, In(*scratch_, "log"), exported));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  if (!has_film_) SCUMBLE_RETURN_IF_ERROR(LoadFilm(*scratch_, task_->scene, film_));
+  if (!has_film_) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(*scratch_, task_->scene, animation_));
   has_film_ = true;
   Expected<Scene> scene = LoadExport(exported, task_->scene);
   fs::remove(exported, failed);

@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
+#include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 #include "pipeline/requests.h"
 #include "pipeline/run_context.h"
-#include "guidegen/scene/scene.h"
-#include "core/image/status.h"
 
 namespace scumble {
 
@@ -21,10 +21,10 @@ class ScratchFolder;
 bool IsBlenderScene(const std::string& path);
 
 // What is the same in all frames of a .blend.
-struct BlenderFilm {
+struct BlenderAnimation {
   std::string fps;             // frames a second, as ParseFrameRate takes them; empty: not told
-  std::optional<Scene> start;  // the scene at its first frame, where that is needed to decide how all frames are seen: it
-                               // has no camera, perhaps no lamp, or it was asked for
+  std::optional<Scene> start;  // the scene at its first frame, where that is needed to decide how all frames are seen:
+                               // it has no camera, perhaps no lamp, or it was asked for
 };
 
 // Runs Blender on blender_scripts/export_scene.py in the background, without the scripts inside the file, and loads the
@@ -32,10 +32,10 @@ struct BlenderFilm {
 // is not supported, kInput where the export fails, with Blender's reason. What the export cannot express is among the
 // scene's warnings.
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,
-                                 BlenderFilm* film = nullptr);  // film: filled where it is not null
+                                 BlenderAnimation* animation = nullptr);  // film: filled where it is not null
 
-// A range of frames of one .blend, exported by one Blender, which is at work while earlier frames are drawn. It is at most
-// some frames ahead, so that the folder for temporary files holds a few of them, however long the range is.
+// A range of frames of one .blend, exported by one Blender, which is at work while earlier frames are drawn. It is at
+// most some frames ahead, so that the folder for temporary files holds a few of them, however long the range is.
 class BlenderRange {
  public:
   // `frames` as they will be asked for. Otherwise as LoadBlenderScene; options.frame does not count.
@@ -50,7 +50,7 @@ class BlenderRange {
   Expected<Scene> Load(int frame);
 
   // Known when the first frame has been loaded.
-  BlenderFilm& film() { return film_; }
+  BlenderAnimation& animation() { return animation_; }
 
  private:
   BlenderRange();
@@ -60,7 +60,7 @@ class BlenderRange {
   std::unique_ptr<BlenderTask> task_;  // for messages
   std::unique_ptr<ScratchFolder> scratch_;
   std::unique_ptr<RunningProgram> program_;
-  BlenderFilm film_;
+  BlenderAnimation animation_;
   bool has_film_ = false;
 };
 

@@ -1,8 +1,8 @@
 // Textures of an open scene, decoded before it is cast.
 #pragma once
 
-#include "pipeline/scene/scene_guides.h"
 #include "guidegen/scene_textures.h"
+#include "pipeline/scene/scene_guides.h"
 
 namespace scumble {
 

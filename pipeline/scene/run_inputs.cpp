@@ -81,8 +81,8 @@ std::optional<std::string> UnescapeJson(std::string_view text) {
   return result;
 }
 
-// Its beginning, where files are named; of a .glb the description, which comes first. Files of /proc, which say that they
-// are empty, name none.
+// Its beginning, where files are named; of a .glb the description, which comes first. Files of /proc, which say that
+// they are empty, name none.
 std::string StartOf(const fs::path& path) {
   constexpr std::uintmax_t kMost = std::uintmax_t(16) << 20;
   std::error_code failed;
@@ -144,7 +144,8 @@ void ForEachLibrary(const std::string& line, const Use& use) {
 std::string WithoutPercents(const std::string& text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool coded = text[i] == '%' && i + 2 < text.size() && std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
+    const bool coded = text[i] == '%' && i + 2 < text.size() &&
+                       std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
                        std::isxdigit(static_cast<unsigned char>(text[i + 2]));
     plain += coded ? static_cast<char>(std::strtol(text.substr(i + 1, 2).c_str(), nullptr, 16)) : text[i];
     if (coded) i += 2;
@@ -154,11 +155,11 @@ std::string WithoutPercents(const std::string& text) {
 
 }  // namespace
 
-void RunFiles::Reads(const std::string& what, const std::string& path) {
+void RunInputs::Reads(const std::string& what, const std::string& path) {
   if (const auto identity = IdentityOf(path)) inputs_.try_emplace(*identity, Input{what, path});
 }
 
-void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder) {
+void RunInputs::ReadsQuoted(const std::string& what, const std::string& file, const std::string& folder) {
   const std::string text = StartOf(file);
   for (std::size_t begin = text.find_first_of("\"'"); begin != std::string::npos;) {
     const std::size_t end = text.find(text[begin], begin + 1);
@@ -170,12 +171,13 @@ void RunFiles::ReadsQuoted(const std::string& what, const std::string& file, con
   }
 }
 
-void RunFiles::ReadsScene(const std::string& scene) {
+void RunInputs::ReadsScene(const std::string& scene) {
   const std::string what = "a file of the scene " + scene, folder = fs::path(scene).parent_path().string();
   Reads("the scene", scene);
   if (Ending(scene) == ".gltf" || Ending(scene) == ".glb") ReadsUris(what, scene, folder);
   if (Ending(scene) != ".obj") return;
-  // "mtllib a.mtl b.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into once.
+  // "mtllib a.mtl b.mtl" there and "map_Kd -s 1 1 1 a.png" in that file. A library that is named twice is looked into
+  // once.
   std::set<Identity> libraries;
   std::istringstream lines(StartOf(scene));
   for (std::string line; std::getline(lines, line);) {
@@ -187,21 +189,23 @@ void RunFiles::ReadsScene(const std::string& scene) {
       Reads(what, library);
       std::istringstream entries(StartOf(library));
       for (std::string entry; std::getline(entries, entry);) {
-        ForEachNameAtEnd(entry, [&](const std::string& picture) { Reads(what, (fs::path(folder) / picture).string()); });
+        ForEachNameAtEnd(entry,
+                         [&](const std::string& picture) { Reads(what, (fs::path(folder) / picture).string()); });
       }
     });
   }
 }
 
-std::vector<std::string> RunFiles::Inputs() const {
+std::vector<std::string> RunInputs::Inputs() const {
   std::vector<std::string> paths;
   for (const auto& [identity, input] : inputs_) paths.push_back(input.path);
   std::sort(paths.begin(), paths.end());
   return paths;
 }
 
-// Of all that a .gltf has in quotes only what stands behind "uri" names a file: a scene of 100,000 nodes has as many names.
-void RunFiles::ReadsUris(const std::string& what, const std::string& file, const std::string& folder) {
+// Of all that a .gltf has in quotes only what stands behind "uri" names a file: a scene of 100,000 nodes has as many
+// names.
+void RunInputs::ReadsUris(const std::string& what, const std::string& file, const std::string& folder) {
   constexpr std::string_view kKey = "\"uri\"", kBlank = " \t\r\n";
   const std::string text = StartOf(file);
   for (std::size_t key = text.find(kKey); key != std::string::npos; key = text.find(kKey, key + 1)) {
@@ -220,7 +224,7 @@ void RunFiles::ReadsUris(const std::string& what, const std::string& file, const
   }
 }
 
-void RunFiles::ReadsStyles(const StyleSet& styles) {
+void RunInputs::ReadsStyles(const StyleSet& styles) {
   styles_ = styles.opened.size();
   std::error_code failed;
   for (const auto& [path, place] : styles.opened) {
@@ -241,7 +245,7 @@ void RunFiles::ReadsStyles(const StyleSet& styles) {
   }
 }
 
-Status RunFiles::CheckOutputs(std::span<const std::string> outputs) const {
+Status RunInputs::CheckOutputs(std::span<const std::string> outputs) const {
   for (const std::string& output : outputs) {
     const auto identity = IdentityOf(output);
     const auto found = identity ? inputs_.find(*identity) : inputs_.end();

@@ -1,5 +1,5 @@
-// What a run reads and what it writes: no output may take the place of an input, and every output must be writable, which
-// is looked at before hours of work.
+// What a run reads and what it writes: no output may take the place of an input, and every output must be writable,
+// which is looked at before hours of work.
 #pragma once
 
 #include <map>
@@ -8,17 +8,18 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/style/style_set.h"
 #include "core/image/status.h"
+#include "pipeline/style/style_set.h"
 
 namespace scumble {
 
-class RunFiles {
+class RunInputs {
  public:
-  // A file that the run reads; `what` is for the message: "the guides". Empty names and files that are not there (reading
-  // them says so) are no matter.
+  // A file that the run reads; `what` is for the message: "the guides". Empty names and files that are not there
+  // (reading them says so) are no matter.
   void Reads(const std::string& what, const std::string& path);
-  // A scene with the files that it names: buffers and pictures of a .gltf or .glb, the .mtl of an .obj and its pictures.
+  // A scene with the files that it names: buffers and pictures of a .gltf or .glb, the .mtl of an .obj and its
+  // pictures.
   void ReadsScene(const std::string& scene);
   // Style files, exemplars, their guides, paper: of every style in the set.
   void ReadsStyles(const StyleSet& styles);
@@ -42,7 +43,7 @@ class RunFiles {
     std::string what, path;
   };
   std::map<std::pair<unsigned long, unsigned long>, Input> inputs_;  // by device and file number
-  std::size_t styles_ = 0;  // opened when they were read
+  std::size_t styles_ = 0;                                           // opened when they were read
 };
 
 }  // namespace scumble

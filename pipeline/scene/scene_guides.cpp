@@ -25,7 +25,8 @@ Status CheckScene(const std::string& scene) {
   if (!fs::exists(scene, failed) && has_ending) {
     const Expected<FrameName> name = FrameName::Parse(scene);
     if (!name || name->must_have_frame()) {
-      return UsageError(scene + ": a scene of one file a frame is not read as a sequence; call scumble once a frame, with " +
+      return UsageError(scene +
+                        ": a scene of one file a frame is not read as a sequence; call scumble once a frame, with " +
                         "its file and --frame N, or export one animated .glb");
     }
   }
@@ -41,10 +42,10 @@ void WarnIfNothingShows(const GuideSet& guides, const std::string& scene, const 
   context.Warn(scene + ": the camera sees nothing, the picture is empty; try --view or another --camera");
 }
 
-Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film) {
+Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation) {
   BlenderRequest blender = options.blender;
   blender.wants_start = options.view.has_value();
-  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, context, film);
+  if (IsBlenderScene(options.scene)) return LoadBlenderScene(options.scene, blender, context, animation);
   return LoadScene(options.scene, TextureLoading::kWhenNeeded);
 }
 
@@ -53,11 +54,13 @@ Expected<Scene> LoadAnyScene(const SceneRequest& options, const RunContext& cont
 bool IsScene(const std::string& path) { return HasEnding(path, {".glb", ".gltf", ".obj", ".ply", ".blend"}); }
 
 std::string ViewToText(const ViewAngles& view) {
-  return fmt::format("{},{}{}", view.azimuth, view.elevation, view.distance > 0.0 ? fmt::format(",{}", view.distance) : "");
+  return fmt::format("{},{}{}", view.azimuth, view.elevation,
+                     view.distance > 0.0 ? fmt::format(",{}", view.distance) : "");
 }
 
-Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film, bool warns) {
-  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, context, film));
+Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation,
+                          bool warns) {
+  SCUMBLE_ASSIGN(Scene scene, LoadAnyScene(options, context, animation));
   if (!warns) return scene;
   for (const std::string& warning : scene.warnings) context.Warn(options.scene + ": " + warning);
   return scene;
@@ -117,9 +120,9 @@ std::string GuideSettings(const SceneRequest& options) {
                             SamplesOf(options), options.max_bounces, options.noise);
 }
 
-Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next,
-                                const SceneRequest& options, const LayerSet& layers, const RunContext& context,
-                                const Progress& progress, bool plan_only) {
+Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
+                                const LayerSet& layers, const RunContext& context, const Progress& progress,
+                                bool plan_only, const RayScene* rays) {
   const Size& size = options.size;
   SceneGuides result;
   GuidegenOptions guidegen;
@@ -148,12 +151,14 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   SCUMBLE_ASSIGN(result.cost, DecodeNeededTextures(scene, options, layers, context));
   const double textures_ms = watch.Lap();
   context.EndStage("scene");
-  SCUMBLE_ASSIGN(GuidegenResult rendered, next ? RenderGuides(scene, camera, *next, guidegen)
-                                               : RenderGuides(scene, camera, guidegen));
+  SCUMBLE_ASSIGN(GuidegenResult rendered, rays && !next ? RenderGuides(*rays, guidegen)
+                                          : next        ? RenderGuides(scene, camera, *next, guidegen)
+                                                        : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);
   result.times.emplace_back("rays", rendered.render_ms);
   result.guides = std::move(rendered.guides);
   result.cost.rays = rendered.rays, result.cost.work = rendered.work;
+  result.builds = rendered.builds;
   result.samples = rendered.samples, result.noise = rendered.noise;
   if (options.half) RoundColorLayersToHalf(result.guides);
   result.guides.attributes["scumble:settings"] = GuideSettings(options);

@@ -35,6 +35,7 @@ struct SceneGuides {
   StepTimes times;
   SceneCost cost;
   int samples = 0;     // of each pixel, in light-path layers
+  int builds = 0;      // of acceleration structures
   double noise = 0.0;  // estimated, where noise or a time budget was asked for
 };
 
@@ -49,7 +50,7 @@ Status CheckSceneRequest(const SceneRequest& request);
 
 // Loads the scene, a .blend by way of Blender; passes on its warnings if `warns`. CastScene decodes its textures, as
 // far as they are needed.
-Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderFilm* film = nullptr,
+Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation = nullptr,
                           bool warns = true);
 
 // Whether a layer needs light, so that a scene without any gets a key light.
@@ -65,10 +66,11 @@ inline constexpr const char* kSamplesKey = "scumble:samples_asked";
 std::string GuideSettings(const SceneRequest& options);
 
 // Casts the guides of a scene that is ready; textures that they need are decoded and stay in it. The layer motion
-// wants `next`, which may be null otherwise.
+// wants `next`, which may be null otherwise. `rays`: of this scene and camera, to cast again without building; null:
+// the acceleration structure is built for this cast.
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
                                 const LayerSet& layers, const RunContext& context, const Progress& progress,
-                                bool plan_only);
+                                bool plan_only, const RayScene* rays = nullptr);
 
 // Casts the guides of an open scene; the key light, where one is needed, stays in it. Notes which camera and light were
 // chosen, and warns of a picture that shows nothing. With `plan_only` the guides stay empty.

@@ -12,10 +12,10 @@ namespace scumble {
 namespace {
 
 // How a frame of a .blend is seen: as the scene's first frame says, where the file leaves camera or light to us.
-Expected<PreparedView> ViewBlender(Scene& scene, BlenderFilm& film, const SceneRequest& options,
+Expected<PreparedView> ViewBlender(Scene& scene, BlenderAnimation& animation, const SceneRequest& options,
                                    const LayerSet& layers) {
-  if (!film.start) return ViewScene(scene, options, layers);
-  Scene& start = *film.start;
+  if (!animation.start) return ViewScene(scene, options, layers);
+  Scene& start = *animation.start;
   const std::size_t lights = start.lights.size();
   SCUMBLE_ASSIGN(PreparedView view, ViewScene(start, options, layers));
   if (start.lights.size() > lights) scene.lights.push_back(start.lights.back());
@@ -40,8 +40,8 @@ std::optional<int> OwnCamera(const Scene& scene, const SceneRequest& options, co
 
 }  // namespace
 
-void StoreFrameRate(const SceneRequest& options, const BlenderFilm& film, GuideSet& guides) {
-  const std::string fps = options.fps ? FrameRateToText(*options.fps) : film.fps;
+void StoreFrameRate(const SceneRequest& options, const BlenderAnimation& animation, GuideSet& guides) {
+  const std::string fps = options.fps ? FrameRateToText(*options.fps) : animation.fps;
   if (!fps.empty()) guides.attributes["scumble:fps"] = fps;
 }
 
@@ -66,15 +66,15 @@ Status SceneFrames::StartBlender(std::span<const int> frames) {
 
 Status SceneFrames::StartFile(const Progress& progress) {
   Stopwatch watch;
-  SCUMBLE_ASSIGN(film_, AnimatedScene::Load(options_.scene, {options_.animation, TextureLoading::kWhenNeeded}));
-  SCUMBLE_ASSIGN(now_, film_->SceneAt(0.0));
+  SCUMBLE_ASSIGN(animation_, AnimatedScene::Load(options_.scene, {options_.animation, TextureLoading::kWhenNeeded}));
+  SCUMBLE_ASSIGN(now_, animation_->SceneAt(0.0));
   WarnOnce(now_);
-  SCUMBLE_ASSIGN(layers_, layers_for_(WishesOf(film_->objects(), film_->rest())));
+  SCUMBLE_ASSIGN(layers_, layers_for_(SceneStyleRequestsOf(animation_->objects(), animation_->rest())));
   SCUMBLE_ASSIGN(const PreparedView view, ViewScene(now_, options_, layers_));
   for (const std::string& note : view.notes) context_.Note(note);
   const double load_ms = watch.Lap();
   camera_ = view.camera;
-  if (film_->moves()) {
+  if (animation_->moves()) {
     by_file_ = OwnCamera(now_, options_, view.camera);
     if (motion_) next_ = now_, next_.textures.clear(), next_.encoded_textures.clear();
     MemoryNeed need;
@@ -90,7 +90,7 @@ Status SceneFrames::StartFile(const Progress& progress) {
   SCUMBLE_ASSIGN(*guides_,
                  CastScene(now_, camera_, motion_ ? &next : nullptr, options_, layers_, context_, progress, false));
   guides_->times.insert(guides_->times.begin(), {"load", load_ms});
-  film_.reset();
+  animation_.reset();
   now_ = {};
   return guides_->guides.Validate(options_.scene);
 }
@@ -104,7 +104,7 @@ Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress
 Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progress) {
   if (used_) guides_->times.clear(), guides_->plan.clear(), guides_->cost = {};
   used_ = false;
-  if ((!blender_ && !film_) || frame_ == frame) return guides_.get();
+  if ((!blender_ && !animation_) || frame_ == frame) return guides_.get();
   frame_.reset();
   guides_ = std::make_shared<SceneGuides>();  // the last one may be being written
   SCUMBLE_ASSIGN(*guides_, blender_ ? CastBlender(frame, progress) : CastFile(frame, progress));
@@ -116,8 +116,8 @@ Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progr
 
 Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress) {
   Stopwatch watch;
-  SCUMBLE_RETURN_IF_ERROR(film_->MoveTo(SecondsAt(frame, rate_), now_));
-  if (motion_) SCUMBLE_RETURN_IF_ERROR(film_->MoveTo(SecondsAt(frame + 1, rate_), next_));
+  SCUMBLE_RETURN_IF_ERROR(animation_->MoveTo(SecondsAt(frame, rate_), now_));
+  if (motion_) SCUMBLE_RETURN_IF_ERROR(animation_->MoveTo(SecondsAt(frame + 1, rate_), next_));
   const double move_ms = watch.Lap();
   const auto camera_of = [this](const Scene& scene) -> const Camera& {
     return by_file_ ? scene.cameras[static_cast<std::size_t>(*by_file_)] : camera_;
@@ -145,21 +145,21 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
                 [&](const auto& kept) { return kept.first != frame + 1 && needed_by_.at(kept.first) <= place; });
   const double load_ms = watch.Lap();
   WarnOnce(scene);
-  SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(WishesOf(scene.instances, scene)));
-  SCUMBLE_ASSIGN(const PreparedView view, ViewBlender(scene, blender_->film(), options_, layers));
+  SCUMBLE_ASSIGN(const LayerSet layers, layers_for_(SceneStyleRequestsOf(scene.instances, scene)));
+  SCUMBLE_ASSIGN(const PreparedView view, ViewBlender(scene, blender_->animation(), options_, layers));
   for (const std::string& note : view.notes) context.Note(note);
   std::optional<Scene> following;
   PreparedView following_view;
   if (motion_) {
     SCUMBLE_ASSIGN(const Scene* const after, BlenderFrame(frame + 1));
     following = *after, following->textures.clear(), following->encoded_textures.clear();
-    SCUMBLE_ASSIGN(following_view, ViewBlender(*following, blender_->film(), options_, layers));
+    SCUMBLE_ASSIGN(following_view, ViewBlender(*following, blender_->animation(), options_, layers));
   }
   std::optional<NextFrame> next;
   if (following) next.emplace(NextFrame{*following, following_view.camera});
   SCUMBLE_ASSIGN(SceneGuides guides,
                  CastScene(scene, view.camera, next ? &*next : nullptr, options_, layers, context, progress, false));
-  StoreFrameRate(options_, blender_->film(), guides.guides);
+  StoreFrameRate(options_, blender_->animation(), guides.guides);
   guides.times.insert(guides.times.begin(), {"load", load_ms});
   return guides;
 }
@@ -189,7 +189,7 @@ Expected<SceneGuides> MakeGuidesAt(int frame, const SceneRequest& options, const
   if (IsBlenderScene(options.scene) && !motion) {
     SceneRequest at = options;
     at.blender.frame = frame;
-    return MakeGuidesAtRest(at, layers_for, motion, context, progress, false);
+    return MakeStaticGuides(at, layers_for, motion, context, progress, false);
   }
   SceneFrames scene(options, layers_for, motion, context);
   SCUMBLE_RETURN_IF_ERROR(scene.Start(std::span(&frame, 1), progress));
@@ -197,72 +197,72 @@ Expected<SceneGuides> MakeGuidesAt(int frame, const SceneRequest& options, const
   return scene.Take();
 }
 
-Expected<SceneAtRest> OpenSceneAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+Expected<StaticScene> OpenStaticScene(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                       const RunContext& context, bool plan_only, bool warns) {
   const std::string mend = ": give --frame N, or --frames for several where the verb has it";
   if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options));
   if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
   Stopwatch watch;
-  SceneAtRest rest;
-  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, context, plan_only ? nullptr : &rest.film, warns));
-  SCUMBLE_ASSIGN(rest.layers, layers_for(WishesOf(rest.scene.instances, rest.scene)));
+  StaticScene rest;
+  SCUMBLE_ASSIGN(rest.scene, OpenScene(options, context, plan_only ? nullptr : &rest.animation, warns));
+  SCUMBLE_ASSIGN(rest.layers, layers_for(SceneStyleRequestsOf(rest.scene.instances, rest.scene)));
   rest.load_ms = watch.Lap();
-  SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, rest.layers));
+  SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.animation, options, rest.layers));
   for (const std::string& note : rest.view.notes) context.Note(note);
   return rest;
 }
 
-Expected<SceneAtRest> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
+Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
                                   const RunContext& context, bool warns) {
   if (!frame || IsBlenderScene(options.scene)) {
     SceneRequest at = options;
     at.blender.frame = frame;
-    return OpenSceneAtRest(at, layers_for, false, context, false, warns);
+    return OpenStaticScene(at, layers_for, false, context, false, warns);
   }
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options));
   Stopwatch watch;
-  SCUMBLE_ASSIGN(const AnimatedScene film,
+  SCUMBLE_ASSIGN(const AnimatedScene animation,
                  AnimatedScene::Load(options.scene, {options.animation, TextureLoading::kWhenNeeded}));
-  SCUMBLE_ASSIGN(SceneAtRest result, PoseScene(film, frame, options, layers_for, context, warns));
+  SCUMBLE_ASSIGN(StaticScene result, PoseScene(animation, frame, options, layers_for, context, warns));
   result.load_ms = watch.Lap();
   return result;
 }
 
-Expected<SceneAtRest> PoseScene(const AnimatedScene& film, std::optional<int> frame, const SceneRequest& options,
+Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<int> frame, const SceneRequest& options,
                                 const LayersFor& layers_for, const RunContext& context, bool warns) {
-  SceneAtRest result;
-  result.scene = film.rest();
+  StaticScene result;
+  result.scene = animation.rest();
   if (frame) {
-    SCUMBLE_ASSIGN(result.scene, film.SceneAt(0.0));
+    SCUMBLE_ASSIGN(result.scene, animation.SceneAt(0.0));
   }
   if (warns) {
     for (const std::string& warning : result.scene.warnings) context.Warn(options.scene + ": " + warning);
   }
-  SCUMBLE_ASSIGN(result.layers, layers_for(WishesOf(film.objects(), film.rest())));
+  SCUMBLE_ASSIGN(result.layers, layers_for(SceneStyleRequestsOf(animation.objects(), animation.rest())));
   SCUMBLE_ASSIGN(result.view, ViewScene(result.scene, options, result.layers));
   for (const std::string& note : result.view.notes) context.Note(note);
-  if (frame && film.moves()) {
+  if (frame && animation.moves()) {
     const std::optional<int> own = OwnCamera(result.scene, options, result.view.camera);
-    SCUMBLE_RETURN_IF_ERROR(film.MoveTo(SecondsAt(*frame, options.fps.value_or(FrameRate())), result.scene));
+    SCUMBLE_RETURN_IF_ERROR(animation.MoveTo(SecondsAt(*frame, options.fps.value_or(FrameRate())), result.scene));
     if (own) result.view.camera = result.scene.cameras[static_cast<std::size_t>(*own)];
   }
   return result;
 }
 
-Status ViewAgain(SceneAtRest& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers) {
+Status ViewAgain(StaticScene& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers) {
   rest.scene.lights.resize(lights);
-  SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.film, options, layers));
+  SCUMBLE_ASSIGN(rest.view, ViewBlender(rest.scene, rest.animation, options, layers));
   rest.layers = layers;
   return Ok();
 }
 
-Expected<SceneGuides> MakeGuidesAtRest(const SceneRequest& options, const LayersFor& layers_for, bool motion,
+Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                        const RunContext& context, const Progress& progress, bool plan_only) {
-  SCUMBLE_ASSIGN(SceneAtRest rest, OpenSceneAtRest(options, layers_for, motion, context, plan_only));
+  SCUMBLE_ASSIGN(StaticScene rest, OpenStaticScene(options, layers_for, motion, context, plan_only));
   SCUMBLE_ASSIGN(SceneGuides result,
                  CastScene(rest.scene, rest.view.camera, nullptr, options, rest.layers, context, progress, plan_only));
-  StoreFrameRate(options, rest.film, result.guides);
+  StoreFrameRate(options, rest.animation, result.guides);
   result.times.insert(result.times.begin(), {"load", rest.load_ms});
   return result;
 }

@@ -13,11 +13,12 @@ namespace scumble {
 struct Assignment {
   std::string pattern;  // name of an object or material, * stands for any text
   std::string style;
-  std::string where;    // "--assign Tree*=charcoal", or "sheet.txt:12: Tree* = charcoal"
+  std::string where;  // "--assign Tree*=charcoal", or "sheet.txt:12: Tree* = charcoal"
 };
 
-// In the order given, a file's lines in place of it. "@FILE" names a file: one assignment a line, blanks around name and
-// style left out, empty lines and those that begin with # passed over. A mistake in an option is kUsage, in a file kInput.
+// In the order given, a file's lines in place of it. "@FILE" names a file: one assignment a line, blanks around name
+// and style left out, empty lines and those that begin with # passed over. A mistake in an option is kUsage, in a file
+// kInput.
 Expected<std::vector<Assignment>> ReadAssignments(const std::vector<std::string>& options);
 
 // Whether the name fits a pattern in which * stands for any text.
@@ -26,8 +27,8 @@ bool FitsPattern(const std::string& name, const std::string& pattern);
 // Up to 12 of them, in their order, with commas between; "none" if there are none.
 std::string SomeOf(const std::vector<std::string>& names);
 
-// Which names there are, sorted, and which of them was probably meant by a pattern that fits none: "its objects are Ball,
-// Floor; its materials are Grey; did you mean Ball?"
+// Which names there are, sorted, and which of them was probably meant by a pattern that fits none: "its objects are
+// Ball, Floor; its materials are Grey; did you mean Ball?"
 std::string DescribeNames(const std::string& pattern, const std::map<std::uint32_t, std::string>& objects,
                           const std::map<std::uint32_t, std::string>& materials);
 

@@ -5,10 +5,10 @@
 #include <glm/glm.hpp>
 #include <utility>
 
-#include "guidegen/guidegen.h"
 #include "core/image/direction.h"
 #include "core/io/guide_file.h"
 #include "core/style/kit/sphere_kit.h"
+#include "guidegen/guidegen.h"
 
 namespace scumble {
 namespace {

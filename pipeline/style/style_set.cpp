@@ -6,10 +6,10 @@
 #include <system_error>
 #include <utility>
 
-#include "pipeline/style/assignments.h"
-#include "pipeline/style/style_locations.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/style/assignments.h"
+#include "pipeline/style/style_locations.h"
 
 namespace scumble {
 namespace {
@@ -45,8 +45,8 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
 
 // The same, or what the reserved words mean.
 Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
-  if (name == kRendered) return StyleMap::kLeave;
-  if (name == kCatcher) return StyleMap::kCatch;
+  if (name == kRendered) return StyleMap::kPassThrough;
+  if (name == kCatcher) return StyleMap::kShadowCatcher;
   return PlaceOf(set, name, base);
 }
 
@@ -56,20 +56,20 @@ bool IsAssigned(const StyleSet& set, const std::string& name) {
 }
 
 // Opens them, and adds the places of their styles to `read`.
-Status AddWishes(StyleSet& set, const std::map<std::string, std::string>& wishes, const std::string& kind,
-                 const std::string& file, std::set<std::size_t>& read) {
+Status OpenStyleRequests(StyleSet& set, const std::map<std::string, std::string>& wishes, const std::string& kind,
+                         const std::string& file, std::set<std::size_t>& read) {
   for (const auto& [name, wish] : wishes) {
     if (IsAssigned(set, name)) continue;
     if (const auto known = set.wanted.find(wish); known != set.wanted.end()) {
       read.insert(known->second);
       continue;
     }
-    const std::string who = file + ": " + kind + " '" + name + "' wants the style '" + wish +
-                            "' (property scumble_style)";
+    const std::string who =
+        file + ": " + kind + " '" + name + "' wants the style '" + wish + "' (property scumble_style)";
     const std::string mend = "; mend the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
     const Expected<std::uint16_t> place = PlaceOrWord(set, wish, std::filesystem::path(file).parent_path());
     if (!place) return Error{place.error().kind, who + ": " + place.error().message + mend};
-    if (*place == StyleMap::kCatch && !PaintsShadows(set.first())) {
+    if (*place == StyleMap::kShadowCatcher && !PaintsShadows(set.first())) {
       return InputError(who + ", and the style of the picture paints no shadows that it could catch: give --set " +
                         "transfer.shadow=paint" + mend);
     }
@@ -79,7 +79,8 @@ Status AddWishes(StyleSet& set, const std::map<std::string, std::string>& wishes
   return Ok();
 }
 
-std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set, const std::map<std::uint32_t, std::string>& wishes) {
+std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set,
+                                               const std::map<std::uint32_t, std::string>& wishes) {
   std::map<std::uint32_t, std::uint16_t> styles;
   for (const auto& [id, wish] : wishes) {
     if (const auto found = set.wanted.find(wish); found != set.wanted.end()) styles[id] = found->second;
@@ -87,8 +88,8 @@ std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set, const std::m
   return styles;
 }
 
-void NameWishes(const std::map<std::uint32_t, std::string>& styles, const std::map<std::uint32_t, std::string>& names,
-                std::map<std::string, std::string>& wishes) {
+void NameStyleRequests(const std::map<std::uint32_t, std::string>& styles,
+                       const std::map<std::uint32_t, std::string>& names, std::map<std::string, std::string>& wishes) {
   for (const auto& [id, style] : styles) {
     const auto name = names.find(id);
     wishes[name != names.end() ? name->second : "id " + std::to_string(id)] = style;
@@ -99,13 +100,14 @@ void NameWishes(const std::map<std::uint32_t, std::string>& styles, const std::m
 
 bool StyleSet::NeedsMap(const GuideSet& guides) const {
   const auto any = [this](const auto& wishes) {
-    return std::any_of(wishes.begin(), wishes.end(), [this](const auto& wish) { return wanted.count(wish.second) > 0; });
+    return std::any_of(wishes.begin(), wishes.end(),
+                       [this](const auto& wish) { return wanted.count(wish.second) > 0; });
   };
   return !assigned.empty() || any(guides.object_styles) || any(guides.material_styles);
 }
 
-StyleWishes WishesOf(std::span<const Instance> instances, const Scene& scene) {
-  StyleWishes wishes;
+SceneStyleRequests SceneStyleRequestsOf(std::span<const Instance> instances, const Scene& scene) {
+  SceneStyleRequests wishes;
   for (const Instance& instance : instances) {
     if (!instance.style.empty()) wishes.objects[instance.object] = instance.style;
     const Material& material = scene.materials[scene.meshes[instance.mesh].material];
@@ -114,24 +116,24 @@ StyleWishes WishesOf(std::span<const Instance> instances, const Scene& scene) {
   return wishes;
 }
 
-StyleWishes WishesOf(const GuideSet& guides) {
-  StyleWishes wishes;
-  NameWishes(guides.object_styles, guides.object_names, wishes.objects);
-  NameWishes(guides.material_styles, guides.material_names, wishes.materials);
+SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides) {
+  SceneStyleRequests wishes;
+  NameStyleRequests(guides.object_styles, guides.object_names, wishes.objects);
+  NameStyleRequests(guides.material_styles, guides.material_names, wishes.materials);
   return wishes;
 }
 
-LayerSet StyleSet::LayersOfNames(const StyleWishes& wishes) const {
+LayerSet StyleSet::LayersOfNames(const SceneStyleRequests& wishes) const {
   const bool wished = options.scene_styles && (!wishes.objects.empty() || !wishes.materials.empty());
   return wished || !assigned.empty() ? LayerSet{Layer::kObject, Layer::kMaterial} : LayerSet();
 }
 
-Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file) {
   std::set<std::size_t> read;
   for (std::size_t i = 0; i < set.chosen; ++i) read.insert(i);
   if (set.options.scene_styles) {
-    SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.objects, "object", file, read));
-    SCUMBLE_RETURN_IF_ERROR(AddWishes(set, wishes.materials, "material", file, read));
+    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, wishes.objects, "object", file, read));
+    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, wishes.materials, "material", file, read));
   }
   LayerSet layers;
   for (const std::size_t i : read) {
@@ -142,7 +144,7 @@ Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const s
   return layers;
 }
 
-Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file) {
+Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file) {
   SCUMBLE_ASSIGN(LayerSet layers, StyleLayers(set, wishes, file));
   return layers.Add(set.LayersOfNames(wishes));
 }
@@ -191,7 +193,7 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
     }
     const std::uint16_t place = by_name[name];
     set.assigned.push_back({pattern, place, where});
-    if (place == StyleMap::kCatch && !PaintsShadows(set.first())) {
+    if (place == StyleMap::kShadowCatcher && !PaintsShadows(set.first())) {
       return UsageError(where + ": the style paints no shadows that it could catch; give --set " +
                         "transfer.shadow=paint, or " + pattern + "=rendered to leave it out");
     }
@@ -220,7 +222,8 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
   for (std::size_t rank = 0; rank < set.assigned.size(); ++rank) {
     StyleSet::Assigned& one = set.assigned[rank];
     bool fits = false;
-    for (const auto& [names, styles] : {std::pair(&objects, &assignment.of_object), {&materials, &assignment.of_material}}) {
+    for (const auto& [names, styles] :
+         {std::pair(&objects, &assignment.of_object), {&materials, &assignment.of_material}}) {
       for (const auto& [id, name] : *names) {
         if (!FitsPattern(name, one.pattern)) continue;
         (*styles)[id] = {rank, one.style};
@@ -228,7 +231,9 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
       }
     }
     if (!fits && (!has_objects || !has_materials)) {
-      const std::string lacks = has_objects ? "layer material" : has_materials ? "layer object" : "layers object and material";
+      const std::string lacks = has_objects     ? "layer material"
+                                : has_materials ? "layer object"
+                                                : "layers object and material";
       return InputError(one.where + ": " + file + " names no such object or material: " +
                         DescribeNames(one.pattern, objects, materials) + "; it lacks the " + lacks +
                         ", which may know more: make guides with scumble guidegen, or render with that Cryptomatte");
@@ -243,8 +248,8 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
   const auto wished = [&](bool has, const auto& wishes) {
     return has ? Granted(set, wishes) : std::map<std::uint32_t, std::uint16_t>();
   };
-  StyleMap map = MapStyles(
-      guides, {wished(has_objects, guides.object_styles), wished(has_materials, guides.material_styles), 0});
+  StyleMap map =
+      MapStyles(guides, {wished(has_objects, guides.object_styles), wished(has_materials, guides.material_styles), 0});
   std::vector<std::size_t> pixels(set.assigned.size());
   AssignStyles(guides, assignment, map, pixels);
   for (std::size_t rank = 0; rank < pixels.size(); ++rank) set.assigned[rank].pixels += pixels[rank];

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/requests.h"
-#include "pipeline/run_context.h"
-#include "guidegen/scene/scene.h"
 #include "core/image/guides.h"
 #include "core/image/style.h"
+#include "guidegen/scene/scene.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
 #include "transfer/frame/style_map.h"
 
 namespace scumble {
 
-struct StyleWishes;
+struct SceneStyleRequests;
 
 struct StyleSet {
   struct Assigned {
@@ -47,32 +47,32 @@ struct StyleSet {
   // Whether any of these guides' pixels may have another style than the default.
   bool NeedsMap(const GuideSet& guides) const;
   // The layers that say which object or material a pixel belongs to, where that matters. One of them may do.
-  LayerSet LayersOfNames(const StyleWishes& wishes) const;
+  LayerSet LayersOfNames(const SceneStyleRequests& wishes) const;
 };
 
 // What a scene's author wants painted otherwise, by name. From a scene: of the instances, and of materials in use.
-struct StyleWishes {
+struct SceneStyleRequests {
   std::map<std::string, std::string> objects;
   std::map<std::string, std::string> materials;
 };
-StyleWishes WishesOf(std::span<const Instance> instances, const Scene& scene);
-StyleWishes WishesOf(const GuideSet& guides);
+SceneStyleRequests SceneStyleRequestsOf(std::span<const Instance> instances, const Scene& scene);
+SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides);
 
-// Opens what is wished for and not opened yet, except for what --assign settles and under --no-scene-styles, and returns
-// everything that the user's styles and these read, in any frame. Paths are relative to the folder of `file`, the scene
-// or guide file that the wishes are from. A kInput error names the object.
-Expected<LayerSet> StyleLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file);
+// Opens what is wished for and not opened yet, except for what --assign settles and under --no-scene-styles, and
+// returns everything that the user's styles and these read, in any frame. Paths are relative to the folder of `file`,
+// the scene or guide file that the wishes are from. A kInput error names the object.
+Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file);
 
 // The same with LayersOfNames: what guides must be made with.
-Expected<LayerSet> RequiredLayers(StyleSet& set, const StyleWishes& wishes, const std::string& file);
+Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file);
 
 // Opens the default style and every assigned one, each once. "rendered" leaves objects as they are,
 // "catcher" shows nothing of them but the shadows on them.
 Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context);
 
-// Which style paints which pixel, by the names in the guides, which are `file`'s; the last assignment that fits a pixel's
-// object or material wins, and any before what the scene says, an object's before its material's. Warns, once in all
-// frames, of a pattern that fits nothing; it is kInput where the guides lack the layer in which it might.
+// Which style paints which pixel, by the names in the guides, which are `file`'s; the last assignment that fits a
+// pixel's object or material wins, and any before what the scene says, an object's before its material's. Warns, once
+// in all frames, of a pattern that fits nothing; it is kInput where the guides lack the layer in which it might.
 Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file);
 
 // After the last frame: warns of assignments that have painted no pixel. Returns all warnings about assignments.

@@ -34,7 +34,7 @@ class Grid {
   }
 
   TradeGrid Make() {
-    grid_.ways.push_back({"the style", kStyleAxis, "", {}});
+    grid_.variants.push_back({"the style", kStyleAxis, "", {}});
     AddExact();
     AddMethods();
     AddChunks();
@@ -53,10 +53,11 @@ class Grid {
   bool HalfFits() const { return options_.width % 2 == 0 && options_.height % 2 == 0; }
   bool IsPlain() const { return style_.guide_weights.ArePlain(); }
 
-  Way& Add(const std::string& axis, const std::string& value, std::vector<std::string> settings = {}) {
-    Way way;
-    way.name = axis + " " + value, way.axis = axis, way.value = value, way.settings = std::move(settings);
-    return grid_.ways.emplace_back(std::move(way));
+  Variant& Add(const std::string& axis, const std::string& value, std::vector<std::string> settings = {}) {
+    Variant variant;
+    variant.name = axis + " " + value, variant.axis = axis, variant.value = value,
+    variant.settings = std::move(settings);
+    return grid_.variants.emplace_back(std::move(variant));
   }
   // One key, which gives the axis its name.
   void AddKey(const std::string& axis, const std::string& value) {
@@ -64,22 +65,22 @@ class Grid {
   }
 
   void AddExact() {
-    Way way;
-    way.name = "the exact way", way.axis = kExactAxis, way.value = "";
+    Variant variant;
+    variant.name = "the exact way", variant.axis = kExactAxis, variant.value = "";
     if (style_.method == Method::kStyleBlit) {
       if (BruteForceFits()) {
-        way.settings.push_back("transfer.method=bruteforce");
+        variant.settings.push_back("transfer.method=bruteforce");
       } else {
         grid_.left_out.push_back(fmt::format("brute force in the exact way, which is for pictures of at most {} pixels",
                                              kMostBruteForcePixels));
       }
     }
     // The nearest by comparison: a ball's formula is exact to a pixel only.
-    if (IsPlain() && style_.nearest != NearestSearch::kTree) way.settings.push_back("transfer.nearest=tree");
-    if (style_.nearest_error > 0.0) way.settings.push_back("transfer.nearest_error=0");
-    if (style_.match_step > 1) way.settings.push_back("transfer.match_step=1");
-    if (options_.chance && options_.samples < kConverged) way.samples = kConverged;
-    grid_.ways.push_back(std::move(way));
+    if (IsPlain() && style_.nearest != NearestSearch::kTree) variant.settings.push_back("transfer.nearest=tree");
+    if (style_.nearest_error > 0.0) variant.settings.push_back("transfer.nearest_error=0");
+    if (style_.match_step > 1) variant.settings.push_back("transfer.match_step=1");
+    if (options_.chance && options_.samples < kConverged) variant.samples = kConverged;
+    grid_.variants.push_back(std::move(variant));
   }
 
   void AddMethods() {
@@ -142,8 +143,8 @@ class Grid {
     for (const int resolution : {32, 64, 128, 256, 512, 1024}) {
       const bool usual = resolution == LookUpTable::kResolution;
       if ((own == NearestSearch::kTable && usual) || (options_.quick && resolution != 64 && !usual)) continue;
-      Way& way = Add("nearest", fmt::format("table {}", resolution), {"transfer.nearest=table"});
-      way.table_resolution = resolution;
+      Variant& variant = Add("nearest", fmt::format("table {}", resolution), {"transfer.nearest=table"});
+      variant.table_resolution = resolution;
     }
     if (own != NearestSearch::kTree) AddKey("nearest", "tree");
     AddErrors({"transfer.nearest=tree"});
@@ -214,43 +215,44 @@ TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options) {
   TradeGridOptions all = options;
   all.quick = false;
   const TradeGrid whole = Grid(style, all).Make();
-  const std::vector<std::string> kept = AxesOf(grid.ways);
-  std::vector<std::string> gone = AxesOf(whole.ways);
+  const std::vector<std::string> kept = AxesOf(grid.variants);
+  std::vector<std::string> gone = AxesOf(whole.variants);
   std::erase_if(gone, [&](const std::string& axis) { return std::find(kept.begin(), kept.end(), axis) != kept.end(); });
   grid.left_out.push_back(fmt::format("by --quick {} of {} ways: the axes {}, and values of the others",
-                                      whole.ways.size() - grid.ways.size(), whole.ways.size(), fmt::join(gone, ", ")));
+                                      whole.variants.size() - grid.variants.size(), whole.variants.size(),
+                                      fmt::join(gone, ", ")));
   return grid;
 }
 
-std::vector<std::string> AxesOf(const std::vector<Way>& ways) {
+std::vector<std::string> AxesOf(const std::vector<Variant>& variants) {
   std::vector<std::string> axes;
-  for (const Way& way : ways) {
-    if (std::find(axes.begin(), axes.end(), way.axis) == axes.end()) axes.push_back(way.axis);
+  for (const Variant& variant : variants) {
+    if (std::find(axes.begin(), axes.end(), variant.axis) == axes.end()) axes.push_back(variant.axis);
   }
   return axes;
 }
 
-Expected<std::vector<Way>> ChooseWays(const std::vector<Way>& ways, const std::string& only) {
-  if (only.empty()) return ways;
-  std::vector<bool> chosen(ways.size(), false);
+Expected<std::vector<Variant>> ChooseVariants(const std::vector<Variant>& variants, const std::string& only) {
+  if (only.empty()) return variants;
+  std::vector<bool> chosen(variants.size(), false);
   for (std::size_t begin = 0; begin <= only.size();) {
     const std::size_t end = std::min(only.find(',', begin), only.size());
     const std::string part = only.substr(begin, end - begin);
     begin = end + 1;
     bool any = false;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      if (ways[i].axis != part && !FitsPattern(ways[i].name, part)) continue;
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      if (variants[i].axis != part && !FitsPattern(variants[i].name, part)) continue;
       chosen[i] = any = true;
     }
     if (!any) {
       return UsageError(
           fmt::format("--only {}: no axis and no way is called '{}'; the axes of this style and scene are {}", only,
-                      part, fmt::join(AxesOf(ways), ", ")));
+                      part, fmt::join(AxesOf(variants), ", ")));
     }
   }
-  std::vector<Way> result;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    if (chosen[i] || ways[i].axis == kStyleAxis) result.push_back(ways[i]);
+  std::vector<Variant> result;
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    if (chosen[i] || variants[i].axis == kStyleAxis) result.push_back(variants[i]);
   }
   return result;
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/variant/variant.h"
 #include "core/image/style.h"
+#include "pipeline/variant/variant.h"
 
 namespace scumble {
 
@@ -17,7 +17,7 @@ struct TradeGridOptions {
 };
 
 struct TradeGrid {
-  std::vector<Way> ways;              // "the style" first, then "the exact way", then axis by axis
+  std::vector<Variant> variants;      // "the style" first, then "the exact variant", then axis by axis
   std::vector<std::string> left_out;  // in words, with why
 };
 
@@ -25,16 +25,16 @@ struct TradeGrid {
 inline constexpr const char* kStyleAxis = "style";
 inline constexpr const char* kExactAxis = "exact";
 
-// One axis at a time around the style; without --quick also every combination of method, blend_radius, levels and resolution
-// of a few values, and the style itself with other seeds. What the style has anyway is left out of its axis, and so is what would change nothing: levels of the Lit
-// Sphere, tables where guides of light are weighed.
+// One axis at a time around the style; without --quick also every combination of method, blend_radius, levels and
+// resolution of a few values, and the style itself with other seeds. What the style has anyway is left out of its axis,
+// and so is what would change nothing: levels of the Lit Sphere, tables where guides of light are weighed.
 TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options);
 
 // The axes in the grid's order, each once.
-std::vector<std::string> AxesOf(const std::vector<Way>& ways);
+std::vector<std::string> AxesOf(const std::vector<Variant>& variants);
 
-// The ways that --only names, "levels,nearest*": those of an axis of that name, and those whose own name fits; with the style
-// in any case. A kUsage error lists the axes where a part names nothing.
-Expected<std::vector<Way>> ChooseWays(const std::vector<Way>& ways, const std::string& only);
+// The ways that --only names, "levels,nearest*": those of an axis of that name, and those whose own name fits; with the
+// style in any case. A kUsage error lists the axes where a part names nothing.
+Expected<std::vector<Variant>> ChooseVariants(const std::vector<Variant>& variants, const std::string& only);
 
 }  // namespace scumble

@@ -1,13 +1,13 @@
-// What `scumble tradeoff` does: each way is made and measured.
+// What `scumble tradeoff` does: each variant is made and measured.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
 
-#include "pipeline/run_context.h"
-#include "pipeline/requests.h"
 #include "measure/tradeoff/report.h"
+#include "pipeline/requests.h"
+#include "pipeline/run_context.h"
 
 namespace scumble {
 
@@ -18,24 +18,25 @@ struct TradeSetup {
   bool quick = false;
   bool memory = true;
   std::string only;
-  std::optional<int> frame;       // as stylize has it
+  std::optional<int> frame;        // as stylize has it
   std::optional<double> exposure;  // stops, likewise; empty: measured
-  bool writes = false;            // the report is to be written too, which counts in the estimate of memory
+  bool writes = false;             // the report is to be written too, which counts in the estimate of memory
 };
 
 // A run that takes longer than this is not repeated.
 inline constexpr double kSlowMs = 5000.0;
 
-// Everything that was measured. Guides are timed first, all ways' in turn, then transfers, those of a few ways in turn, quick ones
-// before slow ones: what else the machine does then is spread over ways. Each run is one of a single picture (WayPainter::Paint).
-// Wrong options are kUsage; a scene that shows nothing is kInput; what would take more memory than there is, as CheckMemory.
+// Everything that was measured. Guides are timed first, all variants' in turn, then transfers, those of a few variants
+// in turn, quick ones before slow ones: what else the machine does then is spread over ways. Each run is one of a
+// single picture (VariantPainter::Paint). Wrong options are kUsage; a scene that shows nothing is kInput; what would
+// take more memory than there is, as CheckMemory.
 Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const RunContext& context);
 
 // The command line that measures all this again.
 std::string TradeCommand(const TradeSetup& setup, const RunContext& context);
 
-// Makes the picture of one way, once, and returns the memory that this process has held at most, in bytes; for a process of
-// its own.
-Expected<std::size_t> PeakOfWay(const TradeSetup& setup, const std::string& name, const RunContext& context);
+// Makes the picture of one variant, once, and returns the memory that this process has held at most, in bytes; for a
+// process of its own.
+Expected<std::size_t> PeakOfVariant(const TradeSetup& setup, const std::string& name, const RunContext& context);
 
 }  // namespace scumble

@@ -8,9 +8,9 @@ namespace {
 
 // Of a pixel of picture and exemplars: TradeReference, measure/energy/energy.h.
 constexpr std::uint64_t kReference = 100, kEnergy = 250;
-constexpr std::uint64_t kPng = 4;    // of a pixel, of which no compression makes less
-constexpr std::uint64_t kPage = 4;   // of a byte of a PNG: in Base64 it is 4/3, and text that grows is there three times
-constexpr std::uint64_t kPaint = 8;  // of a pixel of a Picture
+constexpr std::uint64_t kPng = 4;   // of a pixel, of which no compression makes less
+constexpr std::uint64_t kPage = 4;  // of a byte of a PNG: in Base64 it is 4/3, and text that grows is there three times
+constexpr std::uint64_t kPaint = 8;                  // of a pixel of a Picture
 constexpr std::uint64_t kCell = 4, kTreePoint = 32;  // of a look-up table, and of the tree that it is filled by
 
 }  // namespace
@@ -28,28 +28,28 @@ std::uint64_t TradeMemory::Places() const {
   return places;
 }
 
-void TradeMemory::AddReport(std::size_t ways, MemoryNeed& need) const {
+void TradeMemory::AddReport(std::size_t variants, MemoryNeed& need) const {
   const Size size{stage_.width, stage_.height};
   AddPicture({{&stage_.style, 1}, false, size, stage_.scene.layers, false, true, context_.threads}, {}, need);
-  const std::uint64_t pictures = kPng * Pixels() * ways;
+  const std::uint64_t pictures = kPng * Pixels() * variants;
   need.Take("reference", kReference * Places());
   need.Take("pictures of all ways", pictures);
-  if (setup_.writes) need.Briefly("page", kPage * pictures);
+  if (setup_.writes) need.TakeTransient("page", kPage * pictures);
 }
 
-void TradeMemory::AddWay(const Way& way, const Style& style, const LayerSet& layers, bool own_guides,
-                         MemoryNeed& need) const {
-  const int super = SupersampleOf(way), up = UpsampleOf(way);
+void TradeMemory::AddVariant(const Variant& variant, const Style& style, const LayerSet& layers, bool own_guides,
+                             MemoryNeed& need) const {
+  const int super = SupersampleOf(variant), up = UpsampleOf(variant);
   const Size size{stage_.width * super, stage_.height * super};
   if (own_guides) AddGuides(size, layers, setup_.scene, need);
   if (own_guides && up > 1) AddGuides({size.width / up, size.height / up}, layers, setup_.scene, need);
   AddPicture({{&style, 1}, false, size, layers, false, true, context_.threads}, {}, need);
   if (super > 1) need.Take("picture", kPaint * Pixels());  // averaged
   if (style.transfer.nearest == NearestSearch::kTable) {
-    need.Take("exemplars", kCell * std::uint64_t(way.table_resolution) * std::uint64_t(way.table_resolution));
-    need.Briefly("preparing exemplars", kTreePoint * Places());
+    need.Take("exemplars", kCell * std::uint64_t(variant.table_resolution) * std::uint64_t(variant.table_resolution));
+    need.TakeTransient("preparing exemplars", kTreePoint * Places());
   }
-  need.Briefly("energy", kEnergy * Places());
+  need.TakeTransient("energy", kEnergy * Places());
 }
 
 }  // namespace scumble

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pipeline/run_context.h"
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/tradeoff/stage.h"
 #include "core/image/layers.h"
 #include "core/image/style.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/run_context.h"
+#include "pipeline/tradeoff/stage.h"
 
 namespace scumble {
 
@@ -19,12 +19,13 @@ class TradeMemory {
       : setup_(setup), stage_(stage), context_(context) {}
 
   // Adds what there is whichever ways are at work: the style and what all are measured against, one more picture, made
-  // without the scene's colours, and the pictures of so many ways, as files and in the page. `need` has the program, the
-  // scene and the guides that last already.
-  void AddReport(std::size_t ways, MemoryNeed& need) const;
+  // without the scene's colours, and the pictures of so many variants, as files and in the page. `need` has the
+  // program, the scene and the guides that last already.
+  void AddReport(std::size_t variants, MemoryNeed& need) const;
 
-  // Adds a way that is at work, and the energy of its picture. `own_guides`: no other that is there has the same.
-  void AddWay(const Way& way, const Style& style, const LayerSet& layers, bool own_guides, MemoryNeed& need) const;
+  // Adds a variant that is at work, and the energy of its picture. `own_guides`: no other that is there has the same.
+  void AddVariant(const Variant& variant, const Style& style, const LayerSet& layers, bool own_guides,
+                  MemoryNeed& need) const;
 
  private:
   std::uint64_t Pixels() const { return std::uint64_t(stage_.width) * std::uint64_t(stage_.height); }

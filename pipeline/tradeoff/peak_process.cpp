@@ -61,14 +61,14 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContex
   return words;
 }
 
-Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const RunContext& context) {
+Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& variant, const RunContext& context) {
   const ScratchFolder scratch;
   if (scratch.path().empty()) return std::size_t(0);
   std::error_code failed;
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe", failed).string()};
   if (failed) return std::size_t(0);
   for (std::string& word : TradeArguments(setup, context)) words.push_back(std::move(word));
-  words.push_back("--peak-of=" + way);
+  words.push_back("--peak-of=" + variant);
   words.push_back("--quiet");
   const std::filesystem::path log = scratch.path() / "log";
   const Expected<ProgramEnd> end = RunProgram(words, log);

@@ -1,5 +1,5 @@
-// The memory that a way takes, measured in a process of its own: in one that has made other pictures before, memory is
-// already there.
+// The memory that a variant takes, measured in a process of its own: in one that has made other pictures before, memory
+// is already there.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,15 @@
 
 namespace scumble {
 
-// Options that say when, whence, how and in how bright a light the scene is seen, with their values; only those that are not the
-// usual ones.
+// Options that say when, whence, how and in how bright a light the scene is seen, with their values; only those that
+// are not the usual ones.
 std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup);
 
 // The verb's arguments that set this up, behind the program's name. No option of output is among them.
 std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContext& context);
 
-// Runs this program again for one way. 0 where that fails: memory is not worth an error. kCancelled where a signal has come.
-Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& way, const RunContext& context);
+// Runs this program again for one variant. 0 where that fails: memory is not worth an error. kCancelled where a signal
+// has come.
+Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& variant, const RunContext& context);
 
 }  // namespace scumble

@@ -6,13 +6,13 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/variant/quality_ladder.h"
+#include "core/image/stopwatch.h"
+#include "core/style/style_keyframes.h"
+#include "pipeline/frame/frame_painter.h"
 #include "pipeline/shell_quote.h"
 #include "pipeline/style/style_set.h"
 #include "pipeline/tradeoff/peak_process.h"
-#include "pipeline/frame/frame_painter.h"
-#include "core/image/stopwatch.h"
-#include "core/style/style_keyframes.h"
+#include "pipeline/variant/quality_ladder.h"
 
 namespace scumble {
 namespace {
@@ -30,8 +30,8 @@ Expected<Style> OpenStyleWith(const TradeSetup& setup, const std::vector<std::st
   return style;
 }
 
-std::uint64_t SeedOf(const TradeSetup& setup, const Way& way) {
-  return setup.scene.seed + std::uint64_t(way.more_seed);
+std::uint64_t SeedOf(const TradeSetup& setup, const Variant& variant) {
+  return setup.scene.seed + std::uint64_t(variant.more_seed);
 }
 
 // What --quality names, where it is not the style itself.
@@ -42,19 +42,19 @@ Status AddQualities(const TradeSetup& setup, const RunContext& context, TradeSta
   const int samples = stage.chance && !setup.scene.samples_given ? setup.scene.samples : 0;
   const std::pair<const char*, Quality> kNamed[] = {{"preview", Quality::kPreview}, {"draft", Quality::kDraft}};
   for (const auto& [name, quality] : kNamed) {
-    Way way = WayOf(quality, styles,
-                    {.casts = true, .width = stage.width, .height = stage.height, .samples = samples});
-    if (way.settings.empty() && way.guide_scale == 1.0 && way.samples == 0) continue;
-    way.axis = "quality", way.value = name, way.name = std::string("quality ") + name;
-    stage.grid.ways.push_back(std::move(way));
+    Variant variant =
+        VariantOf(quality, styles, {.casts = true, .width = stage.width, .height = stage.height, .samples = samples});
+    if (variant.settings.empty() && variant.guide_scale == 1.0 && variant.samples == 0) continue;
+    variant.axis = "quality", variant.value = name, variant.name = std::string("quality ") + name;
+    stage.grid.variants.push_back(std::move(variant));
   }
   return Ok();
 }
 
 }  // namespace
 
-Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way, const RunContext& context) {
-  std::vector<std::string> settings = way.settings;
+Expected<Style> StyleOfVariant(const TradeSetup& setup, const Variant& variant, const RunContext& context) {
+  std::vector<std::string> settings = variant.settings;
   settings.push_back(kNoPaper);
   return OpenStyleWith(setup, settings, context);
 }
@@ -67,7 +67,7 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& c
   stage.style.paper = {};
   const Size& size = setup.scene.size;
   stage.width = size.width, stage.height = size.height;
-  const auto layers = [&](const StyleWishes& wishes) -> Expected<LayerSet> {
+  const auto layers = [&](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
     stage.has_wishes = !wishes.objects.empty() || !wishes.materials.empty();
     return LayersOverTime(stage.style);
   };
@@ -78,13 +78,14 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& c
   return stage;
 }
 
-RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const Way& way) {
-  if (way.precision != GuidePrecision::kFloat) return {"", "stylize has its guides as floats, but for colours with --half"};
-  if (way.guide_scale > 1.0) {
+RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, const Variant& variant) {
+  if (variant.precision != GuidePrecision::kFloat)
+    return {"", "stylize has its guides as floats, but for colours with --half"};
+  if (variant.guide_scale > 1.0) {
     return {"", fmt::format("stylize with --size {}x{}, then each 2 x 2 pixels averaged", 2 * stage.width,
                             2 * stage.height)};
   }
-  if (way.table_resolution != LookUpTable::kResolution) {
+  if (variant.table_resolution != LookUpTable::kResolution) {
     return {"", fmt::format("tables of stylize have {} cells a side", LookUpTable::kResolution)};
   }
   std::string text = "--style " + Quoted(setup.style.style);
@@ -92,45 +93,47 @@ RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const 
     text += " " + option + " " + Quoted(value);
   };
   for (const std::string& set : setup.style.sets) add("--set", set);
-  for (const std::string& set : way.settings) add("--set", set);
+  for (const std::string& set : variant.settings) add("--set", set);
   if (stage.has_paper) add("--set", kNoPaper);
   add("--size", fmt::format("{}x{}", stage.width, stage.height));
   for (const auto& [option, value] : SceneArguments(setup)) add(option, value);
-  if (UpsampleOf(way) > 1) add("--upsample", std::to_string(UpsampleOf(way)));
-  const int samples = way.samples > 0 ? way.samples : setup.scene.samples;
+  if (UpsampleOf(variant) > 1) add("--upsample", std::to_string(UpsampleOf(variant)));
+  const int samples = variant.samples > 0 ? variant.samples : setup.scene.samples;
   if (stage.chance && samples != SceneRequest().samples) add("--samples", std::to_string(samples));
   if (setup.scene.max_bounces != SceneRequest().max_bounces) {
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   }
-  if (!way.robust) text += " --no-robust";
+  if (!variant.robust) text += " --no-robust";
   if (stage.has_wishes) text += " --no-scene-styles";
-  if (const std::uint64_t seed = SeedOf(setup, way); seed != 0) add("--seed", std::to_string(seed));
+  if (const std::uint64_t seed = SeedOf(setup, variant); seed != 0) add("--seed", std::to_string(seed));
   return {text, ""};
 }
 
-Expected<WayPainter> WayPainter::Prepare(const TradeSetup& setup, const Way& way, const Style& style,
-                                         std::shared_ptr<const WayGuides> guides, const RunContext& context) {
-  WayPainter painter;
+Expected<VariantPainter> VariantPainter::Prepare(const TradeSetup& setup, const Variant& variant, const Style& style,
+                                                 std::shared_ptr<const VariantGuides> guides,
+                                                 const RunContext& context) {
+  VariantPainter painter;
   painter.guides_ = std::move(guides);
   PrepareOptions prepare;
-  prepare.table_resolution = way.table_resolution;
+  prepare.table_resolution = variant.table_resolution;
   prepare.cache = nullptr;  // what a table costs would not be seen where it is kept
   prepare.threads = context.threads;
   Stopwatch watch;
   SCUMBLE_ASSIGN(painter.prepared_, scumble::Prepare(style, painter.guides_->guides.height(), prepare));
   painter.prepare_ms_ = watch.Lap();
-  painter.settings_ = {SeedOf(setup, way),
-                       setup.frame.value_or(0),
-                       RateOf(setup.scene.fps, painter.guides_->guides),
-                       ExposureOf(setup.exposure, {&painter.prepared_, 1}, painter.guides_->ForExposure(), context.threads),
-                       nullptr,
-                       false};
+  painter.settings_ = {
+      SeedOf(setup, variant),
+      setup.frame.value_or(0),
+      RateOf(setup.scene.fps, painter.guides_->guides),
+      ExposureOf(setup.exposure, {&painter.prepared_, 1}, painter.guides_->ForExposure(), context.threads),
+      nullptr,
+      false};
   painter.context_ = context;
-  painter.factor_ = SupersampleOf(way);
+  painter.factor_ = SupersampleOf(variant);
   return painter;
 }
 
-Expected<double> WayPainter::Paint(bool keep_field) {
+Expected<double> VariantPainter::Paint(bool keep_field) {
   settings_.keep_field = keep_field;
   scratch_ = TransferScratch(), picture_ = Picture();  // what the run before leaves would be a sequence's
   Stopwatch watch;
@@ -140,7 +143,7 @@ Expected<double> WayPainter::Paint(bool keep_field) {
   return watch.Lap();
 }
 
-Expected<Picture> WayPainter::PaintUntinted() {
+Expected<Picture> VariantPainter::PaintUntinted() {
   PreparedStyle untinted = prepared_;
   untinted.settings.colorize = 0.0;
   FrameSettings settings = settings_;

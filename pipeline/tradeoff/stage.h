@@ -4,19 +4,19 @@
 #include <memory>
 #include <string>
 
+#include "pipeline/frame/frame_painter.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/tradeoff/grid.h"
-#include "pipeline/variant/variant_guides.h"
 #include "pipeline/tradeoff/measure.h"
-#include "pipeline/frame/frame_painter.h"
+#include "pipeline/variant/variant_guides.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
 
 // The scene and the grid around the style, both opened once.
 struct TradeStage {
-  SceneAtRest scene;
-  Style style;        // as it is, but for its paper
+  StaticScene scene;
+  Style style;  // as it is, but for its paper
   bool has_paper = false;
   bool has_wishes = false;  // the scene asks for other styles
   bool chance = false;
@@ -25,25 +25,25 @@ struct TradeStage {
 };
 Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& context);
 
-// The style with what the way changes of it, without paper.
-Expected<Style> StyleOfWay(const TradeSetup& setup, const Way& way, const RunContext& context);
+// The style with what the variant changes of it, without paper.
+Expected<Style> StyleOfVariant(const TradeSetup& setup, const Variant& variant, const RunContext& context);
 
-// The options of stylize that make the way's picture again; or none, and why.
+// The options of stylize that make the variant's picture again; or none, and why.
 struct RepeatOptions {
   std::string options;
   std::string note;
 };
-RepeatOptions RepeatWay(const TradeSetup& setup, const TradeStage& stage, const Way& way);
+RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, const Variant& variant);
 
-// The picture of a way, painted as often as asked for. Not for several threads at once.
-class WayPainter {
+// The picture of a variant, painted as often as asked for. Not for several threads at once.
+class VariantPainter {
  public:
   // `guides` are those of this way, and are kept.
-  static Expected<WayPainter> Prepare(const TradeSetup& setup, const Way& way, const Style& style,
-                                      std::shared_ptr<const WayGuides> guides, const RunContext& context);
+  static Expected<VariantPainter> Prepare(const TradeSetup& setup, const Variant& variant, const Style& style,
+                                          std::shared_ptr<const VariantGuides> guides, const RunContext& context);
 
-  // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the first
-  // picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
+  // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the
+  // first picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
   Expected<double> Paint(bool keep_field = false);
 
   // The same without base colours of the scene, which no exemplar has. Only for measures of the paint.
@@ -53,14 +53,14 @@ class WayPainter {
   const Picture& picture() const { return factor_ > 1 ? small_ : picture_; }
   const SourceField* field() const { return factor_ > 1 ? nullptr : &scratch_.field; }  // after keep_field
   const PreparedStyle& prepared() const { return prepared_; }
-  const WayGuides& guides() const { return *guides_; }
+  const VariantGuides& guides() const { return *guides_; }
   double exposure() const { return settings_.exposure; }
   double prepare_ms() const { return prepare_ms_; }
 
  private:
-  WayPainter() = default;
+  VariantPainter() = default;
 
-  std::shared_ptr<const WayGuides> guides_;
+  std::shared_ptr<const VariantGuides> guides_;
   PreparedStyle prepared_;
   FrameSettings settings_;
   RunContext context_;

@@ -14,8 +14,8 @@
 namespace scumble {
 namespace {
 
-// A key of the style that a rung may set, and where that would change something.
-struct Lever {
+// A key of the style that a step may set, and where that would change something.
+struct VariantSetting {
   const char* key;
   const char* text;
   KeyValue value;
@@ -23,8 +23,8 @@ struct Lever {
   bool (*raises)(const TransferSettings& settings) = nullptr;  // to more than the style itself has; null: never
 };
 
-std::span<const Lever> Levers() {
-  static const std::vector<Lever> kLevers = {
+std::span<const VariantSetting> VariantSettings() {
+  static const std::vector<VariantSetting> kSettings = {
       {"transfer.method", "styleblit", std::string("styleblit"),
        [](const TransferSettings& settings) { return settings.method == Method::kBruteForce; },
        [](const TransferSettings& settings) { return settings.method == Method::kLitSphere; }},
@@ -34,22 +34,22 @@ std::span<const Lever> Levers() {
        [](const TransferSettings& settings) { return settings.blend_radius != 0; }},
       {"transfer.hybrid", "0", 0.0, [](const TransferSettings& settings) { return settings.hybrid != 0.0; }},
   };
-  return kLevers;
+  return kSettings;
 }
 
-const Lever& LeverOf(const std::string& setting) {
-  for (const Lever& lever : Levers()) {
-    if (setting == fmt::format("{}={}", lever.key, lever.text)) return lever;
+const VariantSetting& SettingOf(const std::string& text) {
+  for (const VariantSetting& setting : VariantSettings()) {
+    if (text == fmt::format("{}={}", setting.key, setting.text)) return setting;
   }
   SCUMBLE_CHECK(false);
-  return Levers().front();
+  return VariantSettings().front();
 }
 
 // Of a pixel: what they cost is noise that the energy does not see, so they go before all else, but for those that the
 // eye sees.
 constexpr int kManySamples = std::numeric_limits<int>::max(), kSomeSamples = 16, kFewSamples = 4;
 
-struct Rung {
+struct LadderStep {
   int upsample;
   std::vector<std::string> settings;
   int samples = kFewSamples;  // at most
@@ -60,8 +60,8 @@ constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "t
 
 // By rising energy, the mean over scenes and styles: docs/budget.md. But for guides of an eighth, whose steps it hardly
 // sees: they stand below no blending and the Lit Sphere, which have whole outlines.
-const std::vector<Rung>& Rungs() {
-  static const std::vector<Rung> kRungs = {
+const std::vector<LadderStep>& LadderSteps() {
+  static const std::vector<LadderStep> kSteps = {
       {1, {}, kManySamples},
       {1, {}, kSomeSamples},
       {1, {}},
@@ -77,7 +77,7 @@ const std::vector<Rung>& Rungs() {
       {1, {kLitSphere, kUnsplit, kCrisp}},
       {8, {kLitSphere, kUnsplit, kCrisp}},
   };
-  return kRungs;
+  return kSteps;
 }
 
 bool IsSetByUser(const StyleSet& styles, std::size_t style, const std::string& key) {
@@ -93,17 +93,18 @@ bool HasTrack(const Style& style, const std::string& key) {
   return std::any_of(style.tracks.begin(), style.tracks.end(), [&](const StyleTrack& one) { return one.name == key; });
 }
 
-bool ChangesSomething(const Lever& lever, const StyleSet& styles) {
+bool ChangesSomething(const VariantSetting& setting, const StyleSet& styles) {
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
-    if (IsSetByUser(styles, i, lever.key)) continue;
-    if (HasTrack(styles.styles[i], lever.key) || lever.changes(styles.styles[i].transfer)) return true;
+    if (IsSetByUser(styles, i, setting.key)) continue;
+    if (HasTrack(styles.styles[i], setting.key) || setting.changes(styles.styles[i].transfer)) return true;
   }
   return false;
 }
 
-bool RaisesSomething(const Lever& lever, const StyleSet& styles) {
+bool RaisesSomething(const VariantSetting& setting, const StyleSet& styles) {
   for (std::size_t i = 0; i < styles.styles.size(); ++i) {
-    if (lever.raises && !IsSetByUser(styles, i, lever.key) && lever.raises(styles.styles[i].transfer)) return true;
+    if (setting.raises && !IsSetByUser(styles, i, setting.key) && setting.raises(styles.styles[i].transfer))
+      return true;
   }
   return false;
 }
@@ -121,78 +122,80 @@ int SmallerBy(int upsample, const LadderFrame& frame) {
   return upsample;
 }
 
-Way MakeWay(const Rung& rung, const StyleSet& styles, const LadderFrame& frame) {
-  Way way;
-  way.guide_scale = 1.0 / SmallerBy(rung.upsample, frame);
-  if (rung.samples < frame.samples) way.samples = rung.samples;
+Variant MakeVariant(const LadderStep& rung, const StyleSet& styles, const LadderFrame& frame) {
+  Variant variant;
+  variant.guide_scale = 1.0 / SmallerBy(rung.upsample, frame);
+  if (rung.samples < frame.samples) variant.samples = rung.samples;
   for (std::string setting : rung.settings) {
     if (setting == kLitSphere && WeighGuides(styles)) setting = kStyleBlit;
-    if (!ChangesSomething(LeverOf(setting), styles)) continue;
+    if (!ChangesSomething(SettingOf(setting), styles)) continue;
     // All styles take one setting, and none may come to more than it has: then all take the least.
-    if (RaisesSomething(LeverOf(setting), styles)) setting = kLitSphere;
-    way.settings.push_back(std::move(setting));
+    if (RaisesSomething(SettingOf(setting), styles)) setting = kLitSphere;
+    variant.settings.push_back(std::move(setting));
   }
-  way.name = way.value = OptionsOf(way);
-  way.axis = "quality";
-  if (way.name.empty()) way.name = way.value = "the style";
-  return way;
+  variant.name = variant.value = OptionsOf(variant);
+  variant.axis = "quality";
+  if (variant.name.empty()) variant.name = variant.value = "the style";
+  return variant;
 }
 
 }  // namespace
 
-std::vector<Way> QualityLadder(const StyleSet& styles, const LadderFrame& frame) {
-  std::vector<Way> ways;
-  for (const Rung& rung : Rungs()) {
-    Way way = MakeWay(rung, styles, frame);
-    const bool known = std::any_of(ways.begin(), ways.end(), [&](const Way& other) { return other.name == way.name; });
-    if (!known) ways.push_back(std::move(way));
+std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& frame) {
+  std::vector<Variant> variants;
+  for (const LadderStep& rung : LadderSteps()) {
+    Variant variant = MakeVariant(rung, styles, frame);
+    const bool known =
+        std::any_of(variants.begin(), variants.end(), [&](const Variant& other) { return other.name == variant.name; });
+    if (!known) variants.push_back(std::move(variant));
   }
-  return ways;
+  return variants;
 }
 
-bool AreRivals(const Way& a, const Way& b) {
-  const auto has = [](const Way& way, const char* setting) {
-    return std::find(way.settings.begin(), way.settings.end(), setting) != way.settings.end();
+bool AreContenders(const Variant& a, const Variant& b) {
+  const auto has = [](const Variant& variant, const char* setting) {
+    return std::find(variant.settings.begin(), variant.settings.end(), setting) != variant.settings.end();
   };
   const bool same_guides = a.guide_scale == b.guide_scale && a.samples == b.samples;
   return same_guides && has(a, kCrisp) != has(a, kLitSphere) && has(b, kCrisp) != has(b, kLitSphere) &&
          has(a, kCrisp) != has(b, kCrisp);
 }
 
-Way WayOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
-  if (quality == Quality::kFinal) return MakeWay(Rungs().front(), styles, frame);
-  Rung rung{4, {kLitSphere, kUnsplit}};
+Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
+  if (quality == Quality::kFinal) return MakeVariant(LadderSteps().front(), styles, frame);
+  LadderStep rung{4, {kLitSphere, kUnsplit}};
   if (quality == Quality::kPreview) rung = {2, {kStyleBlit, kUnsplit}};
   // Guides of normals alone take so little that nothing is gained which would not be seen.
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-  const bool drafts_guides = quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks: that is all there is
-  if (frame.casts && !lit && !drafts_guides) return MakeWay({1, rung.settings}, styles, frame);
+  const bool drafts_guides =
+      quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks: that is all there is
+  if (frame.casts && !lit && !drafts_guides) return MakeVariant({1, rung.settings}, styles, frame);
   if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
-  return MakeWay(rung, styles, frame);
+  return MakeVariant(rung, styles, frame);
 }
 
-std::string OptionsOf(const Way& way) {
+std::string OptionsOf(const Variant& variant) {
   std::string text;
   const auto add = [&](const std::string& option) { text += (text.empty() ? "" : " ") + option; };
-  if (UpsampleOf(way) > 1) add(fmt::format("--upsample {}", UpsampleOf(way)));
-  if (way.samples > 0) add(fmt::format("--samples {}", way.samples));
-  for (const std::string& setting : way.settings) add("--set " + setting);
+  if (UpsampleOf(variant) > 1) add(fmt::format("--upsample {}", UpsampleOf(variant)));
+  if (variant.samples > 0) add(fmt::format("--samples {}", variant.samples));
+  for (const std::string& setting : variant.settings) add("--set " + setting);
   return text;
 }
 
-Status ApplyWay(const Way& way, StyleSet& styles) {
-  for (const std::string& setting : way.settings) {
-    const Lever& lever = LeverOf(setting);
-    const StyleKey* const key = FindStyleKey(lever.key);
+Status ApplyVariant(const Variant& variant, StyleSet& styles) {
+  for (const std::string& text : variant.settings) {
+    const VariantSetting& setting = SettingOf(text);
+    const StyleKey* const key = FindStyleKey(setting.key);
     SCUMBLE_CHECK(key != nullptr);
     for (std::size_t i = 0; i < styles.styles.size(); ++i) {
-      if (IsSetByUser(styles, i, lever.key)) continue;
-      RemoveTrack(styles.styles[i], lever.key);
-      SCUMBLE_RETURN_IF_ERROR(key->set(styles.styles[i], lever.value, {}));
+      if (IsSetByUser(styles, i, setting.key)) continue;
+      RemoveTrack(styles.styles[i], setting.key);
+      SCUMBLE_RETURN_IF_ERROR(key->set(styles.styles[i], setting.value, {}));
     }
   }
   std::vector<StyleSet::Override> first;
-  for (const std::string& setting : way.settings) first.push_back({"", "", setting});
+  for (const std::string& setting : variant.settings) first.push_back({"", "", setting});
   styles.overrides.insert(styles.overrides.begin(), first.begin(), first.end());
   return Ok();
 }

@@ -3,14 +3,14 @@
 #include <limits>
 #include <memory>
 
-#include "pipeline/memory/memory_limit.h"
-#include "pipeline/variant/quality_ladder.h"
-#include "pipeline/frame/frame_painter.h"
-#include "pipeline/variant/variant_error.h"
 #include "core/image/check.h"
 #include "core/image/stopwatch.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_keyframes.h"
+#include "pipeline/frame/frame_painter.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/variant/quality_ladder.h"
+#include "pipeline/variant/variant_error.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -22,8 +22,8 @@ std::size_t PixelsOf(const PreparedStyle& style) {
   return std::size_t(exemplar.width()) * std::size_t(exemplar.height()) * std::size_t(exemplar.count());
 }
 
-// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy/energy.h), and the planes
-// that it is made of.
+// What the energy takes beside all that this process has: 250 bytes for each place (measure/energy/energy.h), and the
+// planes that it is made of.
 bool HasMemoryFor(std::size_t places, const RunContext& context) {
   constexpr std::uint64_t kEachPlace = 250 + 100;
   const MemoryLimit limit = LimitFor(context);
@@ -33,11 +33,11 @@ bool HasMemoryFor(std::size_t places, const RunContext& context) {
 }  // namespace
 
 // `bare`: without paper, and without the scene's colours, which no exemplar has.
-Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample, bool bare) {
-  const std::string wanted = way.name + (bare ? ", bare" : "");
+Status TrialPainter::Prepare(const Variant& variant, const GuideSet& guides, int upsample, bool bare) {
+  const std::string wanted = variant.name + (bare ? ", bare" : "");
   if (prepared_for_ == wanted) return Ok();
   StyleSet styles = styles_;
-  SCUMBLE_RETURN_IF_ERROR(ApplyWay(way, styles));
+  SCUMBLE_RETURN_IF_ERROR(ApplyVariant(variant, styles));
   prepared_.clear();
   for (Style& style : styles.styles) {
     SCUMBLE_RETURN_IF_ERROR(SetStyleFrame(style, frame_.value_or(0)));
@@ -50,7 +50,7 @@ Status PaintTrial::Prepare(const Way& way, const GuideSet& guides, int upsample,
   return Ok();
 }
 
-Expected<const Picture*> PaintTrial::Over(const GuideSet& guides) {
+Expected<const Picture*> TrialPainter::Over(const GuideSet& guides) {
   if (over_file_.empty()) return static_cast<const Picture*>(nullptr);
   if (!over_) {
     SCUMBLE_ASSIGN(over_, ReadPicture(over_file_));
@@ -59,27 +59,28 @@ Expected<const Picture*> PaintTrial::Over(const GuideSet& guides) {
   return fits ? &*over_ : nullptr;
 }
 
-Status PaintTrial::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture, double& ms) {
+Status TrialPainter::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture,
+                              double& ms) {
   const bool needs_map = styles_.NeedsMap(guides);
   StyleMap map;
   if (needs_map) {
     SCUMBLE_ASSIGN(map, MapStyles(styles_, guides, name_));
   }
-  FrameSettings settings{picture_.seed, frame_.value_or(0), RateOf(picture_.fps, guides), exposure_, nullptr,
-                         bare || picture_.KeepsField()};
+  FrameSettings settings{picture_.seed, frame_.value_or(0),           RateOf(picture_.fps, guides), exposure_,
+                         nullptr,       bare || picture_.KeepsField()};
   if (!bare) {
     SCUMBLE_ASSIGN(settings.over, Over(guides));
   }
   Stopwatch watch;
-  SCUMBLE_RETURN_IF_ERROR(PaintFrame(prepared_, needs_map ? &map : nullptr, guides, settings, context_, {}, scratch,
-                                     picture));
+  SCUMBLE_RETURN_IF_ERROR(
+      PaintFrame(prepared_, needs_map ? &map : nullptr, guides, settings, context_, {}, scratch, picture));
   ms += watch.Lap();
   return Ok();
 }
 
-Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
-  const int upsample = picture_.upsample * UpsampleOf(way);
-  SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample, false));
+Expected<double> TrialPainter::Paint(const Variant& variant, const GuideSet& given) {
+  const int upsample = picture_.upsample * UpsampleOf(variant);
+  SCUMBLE_RETURN_IF_ERROR(Prepare(variant, given, upsample, false));
   Stopwatch watch;
   std::optional<GuideSet> larger;
   if (upsample > 1) {
@@ -92,8 +93,8 @@ Expected<double> PaintTrial::Paint(const Way& way, const GuideSet& given) {
   return ms;
 }
 
-Expected<double> PaintTrial::Judge(const Way& way, const GuideSet& given) {
-  SCUMBLE_CHECK_EQ(UpsampleOf(way), 1);
+Expected<double> TrialPainter::MeasureError(const Variant& variant, const GuideSet& given) {
+  SCUMBLE_CHECK_EQ(UpsampleOf(variant), 1);
   constexpr double kNotKnown = std::numeric_limits<double>::infinity();
   if (styles_.styles.size() > 1 || styles_.NeedsMap(given)) return kNotKnown;
   const int upsample = picture_.upsample;
@@ -102,11 +103,11 @@ Expected<double> PaintTrial::Judge(const Way& way, const GuideSet& given) {
     SCUMBLE_ASSIGN(larger, UpsampleGuides(given, upsample, context_.threads));
   }
   const GuideSet& guides = larger ? *larger : given;
-  SCUMBLE_RETURN_IF_ERROR(Prepare(Way(), given, upsample, true));
+  SCUMBLE_RETURN_IF_ERROR(Prepare(Variant(), given, upsample, true));
   const PreparedStyle exact = prepared_.front();
   if (!HasMemoryFor(guides.pixel_count() + PixelsOf(exact), context_)) return kNotKnown;
   const double exposure = exposure_;
-  SCUMBLE_RETURN_IF_ERROR(Prepare(way, given, upsample, true));
+  SCUMBLE_RETURN_IF_ERROR(Prepare(variant, given, upsample, true));
   TransferScratch scratch;
   Picture picture;
   double ms = 0.0;
@@ -115,7 +116,7 @@ Expected<double> PaintTrial::Judge(const Way& way, const GuideSet& given) {
   const TradeReference reference(std::shared_ptr<const GuideSet>(std::shared_ptr<void>(), &guides), exact, exposure,
                                  context_.threads);
   EnergyOptions options;
-  options.samples = kJudgedPatches;
+  options.samples = kErrorPatches;
   TradeMeasure measure;
   // Guides that are no numbers can be painted by, but not be measured.
   if (!reference.MeasurePaint(picture, &scratch.field, options, measure).ok()) return kNotKnown;

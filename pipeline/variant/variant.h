@@ -1,5 +1,5 @@
 // A way to stylise a scene: what it changes of the style's own settings and of the guides. The grid that `tradeoff`
-// measures is a list of ways, and so is the ladder that --quality and --budget-ms choose from.
+// measures is a list of variants, and so is the ladder that --quality and --budget-ms choose from.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace scumble {
 
-struct Way {
+struct Variant {
   std::string name;                   // unique in its list, "levels 3"; "the style" changes nothing
   std::string axis;                   // what it changes, "levels"
   std::string value;                  // to what, "3"
@@ -24,9 +24,13 @@ struct Way {
   int table_resolution = LookUpTable::kResolution;  // cells a side, where nearest neighbours come from a table
 };
 
-// The guides' size against the picture's in whole steps: smaller guides are upsampled so many times, larger ones painted as
-// they are and averaged.
-inline int UpsampleOf(const Way& way) { return way.guide_scale < 1.0 ? static_cast<int>(std::lround(1.0 / way.guide_scale)) : 1; }
-inline int SupersampleOf(const Way& way) { return way.guide_scale > 1.0 ? static_cast<int>(std::lround(way.guide_scale)) : 1; }
+// The guides' size against the picture's in whole steps: smaller guides are upsampled so many times, larger ones
+// painted as they are and averaged.
+inline int UpsampleOf(const Variant& variant) {
+  return variant.guide_scale < 1.0 ? static_cast<int>(std::lround(1.0 / variant.guide_scale)) : 1;
+}
+inline int SupersampleOf(const Variant& variant) {
+  return variant.guide_scale > 1.0 ? static_cast<int>(std::lround(variant.guide_scale)) : 1;
+}
 
 }  // namespace scumble

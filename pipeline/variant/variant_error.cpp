@@ -7,15 +7,16 @@
 #include <utility>
 
 #include "core/image/exact_math.h"
-#include "measure/mosaic/coherence.h"
-#include "measure/energy/flat_surfaces.h"
 #include "measure/compare/flip.h"
+#include "measure/energy/flat_surfaces.h"
+#include "measure/mosaic/coherence.h"
 #include "measure/mosaic/repetition.h"
 
 namespace scumble {
 namespace {
 
-// What light counts, at most, in the choice between lighting conditions: beyond, a wrong one is beyond redemption anyway.
+// What light counts, at most, in the choice between lighting conditions: beyond, a wrong one is beyond redemption
+// anyway.
 constexpr float kMostOfLight = 4.0f;
 
 std::size_t PixelsOf(const PreparedExemplar& exemplar) { return std::size_t(exemplar.width()) * exemplar.height(); }
@@ -74,7 +75,8 @@ double RootMean(const GuideSet& a, const GuideSet& b, const Off& off) {
 
 }  // namespace
 
-TradeReference::TradeReference(std::shared_ptr<const GuideSet> guides, PreparedStyle style, double exposure, int threads)
+TradeReference::TradeReference(std::shared_ptr<const GuideSet> guides, PreparedStyle style, double exposure,
+                               int threads)
     : guides_(std::move(guides)), style_(std::move(style)), exposure_(exposure), threads_(threads) {
   const PreparedExemplar& exemplar = *style_.exemplar;
   for (auto& plane : normal_) plane.resize(PixelsOf(exemplar));
@@ -99,7 +101,7 @@ void TradeReference::AddWeighedGuides() {
   more_.assign(count, std::vector<float>(guides_->pixel_count()));
   const auto brightness = static_cast<float>(Exp2(exposure_));
   const auto coverage = guides_->Plane(Layer::kCoverage);
-  float rest[GuideSpace::kMaxRest];
+  float rest[GuideSpace::kMaxExtra];
   for (std::size_t i = 0; i < guides_->pixel_count(); ++i) {
     if (!(coverage[i] > 0.0f)) continue;
     space.Read(*guides_, i, brightness, rest);
@@ -115,7 +117,8 @@ void TradeReference::AddWeighedGuides() {
   }
 }
 
-// Of several lighting conditions a pixel's is the one that suits its light; another counts by how much its light differs.
+// Of several lighting conditions a pixel's is the one that suits its light; another counts by how much its light
+// differs.
 void TradeReference::AddConditions() {
   const Illumination& light = style_.illumination;
   const float weight = std::min(light.weight(), kMostOfLight);
@@ -135,7 +138,8 @@ void TradeReference::AddFreedom() {
   const auto chord = static_cast<float>(2.0 * std::sin(0.5 * glm::radians(style_.settings.variety)));
   const std::vector<std::uint8_t> flat = FlatSurfaces(*guides_, style_.flat_reach);
   free_.resize(flat.size());
-  std::transform(flat.begin(), flat.end(), free_.begin(), [chord](std::uint8_t is_flat) { return is_flat ? chord : 0.0f; });
+  std::transform(flat.begin(), flat.end(), free_.begin(),
+                 [chord](std::uint8_t is_flat) { return is_flat ? chord : 0.0f; });
 }
 
 EnergyTarget TradeReference::Target(const Picture& picture) const {
@@ -206,7 +210,8 @@ Expected<GuideDifference> TradeReference::CompareNormals(const GuideSet& guides)
 }
 
 Expected<GuideDifference> TradeReference::CompareLight(const GuideSet& guides, Layer layer, float white) const {
-  // One exposure for both: each one's own is rounded to a hundredth of a stop, which is more than the noise of many samples.
+  // One exposure for both: each one's own is rounded to a hundredth of a stop, which is more than the noise of many
+  // samples.
   const auto factor = static_cast<float>(Exp2(exposure_)) / white;
   const LinearColors exact = LightAsColors(*guides_, layer, factor), other = LightAsColors(guides, layer, factor);
   FlipOptions options;

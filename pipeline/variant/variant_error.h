@@ -1,4 +1,5 @@
-// What the ways of `scumble tradeoff` are measured against: the guides of the exact way, and the exemplars as they are used.
+// What the variants of `scumble tradeoff` are measured against: the guides of the exact variant, and the exemplars as
+// they are used.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@
 
 namespace scumble {
 
-// How far guides are from those of the exact way.
+// How far guides are from those of the exact variant.
 struct GuideDifference {
   double rms = 0.0;
   double flip = 0.0;
@@ -26,15 +27,16 @@ class TradeReference {
 
   const GuideSet& guides() const { return *guides_; }
 
-  // Fills in the energies of a picture of the guides' size, which take the most time; where `field` is not null they take
-  // less. `options` as they are but for `sources` and `threads`.
-  Status MeasurePaint(const Picture& picture, const SourceField* field, EnergyOptions options, TradeMeasure& measure) const;
+  // Fills in the energies of a picture of the guides' size, which take the most time; where `field` is not null they
+  // take less. `options` as they are but for `sources` and `threads`.
+  Status MeasurePaint(const Picture& picture, const SourceField* field, EnergyOptions options,
+                      TradeMeasure& measure) const;
   // Fills in what the field says of the mosaic.
   Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
 
-  // Over pixels that both cover: of normals the root of the mean squared distance, and FLIP of (n + 1) / 2 as a picture;
-  // where the style weighs light, of its layer that is farthest off instead, both exposed as the exact guides are, so that 1 is the
-  // exemplar's brightest tenth, and cut there. The guides must have one size.
+  // Over pixels that both cover: of normals the root of the mean squared distance, and FLIP of (n + 1) / 2 as a
+  // picture; where the style weighs light, of its layer that is farthest off instead, both exposed as the exact guides
+  // are, so that 1 is the exemplar's brightest tenth, and cut there. The guides must have one size.
   Expected<GuideDifference> Compare(const GuideSet& guides) const;
 
  private:
@@ -50,9 +52,9 @@ class TradeReference {
   PreparedStyle style_;
   double exposure_;
   int threads_;
-  std::array<std::vector<float>, 3> normal_;                         // of exemplars, by pixel
-  std::vector<std::uint8_t> usable_;                                 // likewise
-  std::vector<std::vector<float>> more_;                             // guides beside normals, of the scene
+  std::array<std::vector<float>, 3> normal_;                        // of exemplars, by pixel
+  std::vector<std::uint8_t> usable_;                                // likewise
+  std::vector<std::vector<float>> more_;                            // guides beside normals, of the scene
   std::vector<std::vector<std::vector<float>>> more_of_exemplars_;  // by exemplar
   std::vector<float> free_;  // of normals, what `variety` grants; empty without it
 };

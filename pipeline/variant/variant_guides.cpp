@@ -6,9 +6,9 @@
 #include <span>
 #include <utility>
 
-#include "guidegen/light/path_layers.h"
 #include "core/image/stopwatch.h"
 #include "core/io/guides/guide_precision.h"
+#include "guidegen/light/path_layers.h"
 #include "transfer/upsample_guides.h"
 
 namespace scumble {
@@ -21,22 +21,22 @@ bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneRequest&
   return !follower.empty() && follower.NeedsSamples();
 }
 
-Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneRequest& options, const Way& way,
-                                  const LayerSet& layers, const RunContext& context) {
+Expected<VariantGuides> MakeVariantGuides(StaticScene& scene, const SceneRequest& options, const Variant& variant,
+                                          const LayerSet& layers, const RunContext& context) {
   const Size& size = options.size;
   SceneRequest one = options;
-  const int up = UpsampleOf(way), super = SupersampleOf(way);
+  const int up = UpsampleOf(variant), super = SupersampleOf(variant);
   one.size = {size.width * super / up, size.height * super / up};
-  one.robust = way.robust;
-  one.seed += static_cast<std::uint64_t>(way.more_seed);
-  if (way.samples > 0) one.samples = way.samples;
+  one.robust = variant.robust;
+  one.seed += static_cast<std::uint64_t>(variant.more_seed);
+  if (variant.samples > 0) one.samples = variant.samples;
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(scene.scene, scene.view.camera, nullptr, one, layers, context, {}, false));
-  WayGuides result;
+  VariantGuides result;
   for (const auto& [step, ms] : made.times) {
     if (step != "textures") result.ms += ms;  // decoded once, whatever is cast first
   }
-  StoreFrameRate(options, scene.film, made.guides);
-  RoundGuides(way.precision, made.guides);
+  StoreFrameRate(options, scene.animation, made.guides);
+  RoundGuides(variant.precision, made.guides);
   if (up == 1) {
     result.guides = std::move(made.guides);
     return result;
@@ -89,9 +89,9 @@ GuideSet AveragedGuides(const GuideSet& guides, int factor) {
   return small;
 }
 
-std::string GuidesKey(const Way& way, const LayerSet& layers, bool rounded) {
-  std::string key = fmt::format("{} {} {} {}", way.guide_scale, way.samples, way.robust, layers.ToString());
-  if (rounded) key += fmt::format(" {} {}", int(way.precision), way.more_seed);
+std::string GuidesKey(const Variant& variant, const LayerSet& layers, bool rounded) {
+  std::string key = fmt::format("{} {} {} {}", variant.guide_scale, variant.samples, variant.robust, layers.ToString());
+  if (rounded) key += fmt::format(" {} {}", int(variant.precision), variant.more_seed);
   return key;
 }
 

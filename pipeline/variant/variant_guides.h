@@ -1,19 +1,19 @@
-// The guides of the ways that `scumble tradeoff` measures: made as `stylize` would make them.
+// The guides of the variants that `scumble tradeoff` measures: made as `stylize` would make them.
 #pragma once
 
 #include <string>
 
+#include "core/image/guides.h"
 #include "pipeline/requests.h"
 #include "pipeline/scene/scene_sequence.h"
 #include "pipeline/variant/variant.h"
-#include "core/image/guides.h"
 
 namespace scumble {
 
 // Whether guides of these layers need chance there, so that their samples matter.
 bool NeedSamples(const Scene& scene, const LayerSet& layers, const SceneRequest& options);
 
-struct WayGuides {
+struct VariantGuides {
   GuideSet guides;  // as the transfer reads them
   GuideSet given;   // before they were upsampled, by which the exposure is measured; empty where they were not
   double ms = 0.0;  // of wall clock: building the acceleration structure, casting, upsampling; not rounding
@@ -22,8 +22,8 @@ struct WayGuides {
 };
 
 // `options.size` is the picture's.
-Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneRequest& options, const Way& way,
-                                  const LayerSet& layers, const RunContext& context);
+Expected<VariantGuides> MakeVariantGuides(StaticScene& scene, const SceneRequest& options, const Variant& variant,
+                                          const LayerSet& layers, const RunContext& context);
 
 // Guides of 1/factor the sides, to be compared with guides of that size: of every block of factor × factor pixels the
 // mean coverage, and of its covered pixels the mean light and colours and the mean normal, at unit length again.
@@ -31,8 +31,8 @@ Expected<WayGuides> MakeWayGuides(SceneAtRest& scene, const SceneRequest& option
 // multiples of `factor`.
 GuideSet AveragedGuides(const GuideSet& guides, int factor);
 
-// Ways with equal text have equal guides; with `rounded` false, guides that take the same time: no rounding and no
+// Variants with equal text have equal guides; with `rounded` false, guides that take the same time: no rounding and no
 // seed is asked for.
-std::string GuidesKey(const Way& way, const LayerSet& layers, bool rounded);
+std::string GuidesKey(const Variant& variant, const LayerSet& layers, bool rounded);
 
 }  // namespace scumble

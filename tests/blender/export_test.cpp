@@ -10,9 +10,9 @@
 #include <set>
 #include <vector>
 
-#include "guidegen/rays/camera_rays.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/rays/camera_rays.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/cycles_passes.h"
 
@@ -34,7 +34,8 @@ class Cases : public testing::Environment {
   void SetUp() override {
     folder_ = new TemporaryFolder;
     Shell(kBlender + ("-P " + Source("tests/blender/make_cases.py")) + " -- --output " + folder_->path().string());
-    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken"}) Export(name, "", name);
+    for (const char* name : {"lamps", "materials", "objects", "deformed", "cameras", "rendered", "broken"})
+      Export(name, "", name);
     Export("objects", " --frame 6", "objects6");
     Export("deformed", " --frame 6", "deformed6");
     expected_ = nlohmann::json::parse(std::ifstream(*folder_ / "expected.json"), nullptr, false);
@@ -174,10 +175,11 @@ TEST(BlenderLamps, TheWorldAndWhatIsLeftOut) {
   const Scene scene = Loaded("lamps");
   ExpectColor(scene.world_radiance, {0.5f, 1.0f, 2.0f}, "world");
   EXPECT_EQ(scene.lights.size(), 12u) << "all but the hidden one";
-  EXPECT_THAT(scene.warnings, testing::UnorderedElementsAre(AllOf(HasSubstr("OddPoint"), HasSubstr("TEX_NOISE")),
-                                                            AllOf(HasSubstr("'Shy'"), HasSubstr("glossy surfaces")),
-                                                            AllOf(HasSubstr("'Shy'"), HasSubstr("after 0 bounces")),
-                                                            AllOf(HasSubstr("'World'"), HasSubstr("diffuse surfaces"))));
+  EXPECT_THAT(scene.warnings,
+              testing::UnorderedElementsAre(AllOf(HasSubstr("OddPoint"), HasSubstr("TEX_NOISE")),
+                                            AllOf(HasSubstr("'Shy'"), HasSubstr("glossy surfaces")),
+                                            AllOf(HasSubstr("'Shy'"), HasSubstr("after 0 bounces")),
+                                            AllOf(HasSubstr("'World'"), HasSubstr("diffuse surfaces"))));
 }
 
 TEST(BlenderMaterials, PureShaders) {
@@ -499,7 +501,8 @@ TEST_F(BlenderVerbs, ARangeIsItsFramesByteForByte) {
   }
   EXPECT_NE(Bytes("range.06.exr"), Bytes("range.02.exr")) << "nothing moves";
   // With nothing to make there is no Blender to miss.
-  const Arguments again = With(guidegen, {"--frames", "1-6", "-o", "range.##.exr", "--resume", "--blender", "no/blender"});
+  const Arguments again =
+      With(guidegen, {"--frames", "1-6", "-o", "range.##.exr", "--resume", "--blender", "no/blender"});
   const CommandResult kept = RunHere(again);
   EXPECT_EQ(kept.code, 0) << kept.err;
   EXPECT_THAT(kept.out, HasSubstr("0 made, 6 kept"));

@@ -27,7 +27,8 @@ long double EncodedTruly(long double linear) {
 template <class F, class Truth>
 double LargestError(const F& f, const Truth& truth, float first, float last, std::uint32_t step) {
   double largest = 0.0;
-  for (std::uint32_t bits = std::bit_cast<std::uint32_t>(first); bits <= std::bit_cast<std::uint32_t>(last); bits += step) {
+  for (std::uint32_t bits = std::bit_cast<std::uint32_t>(first); bits <= std::bit_cast<std::uint32_t>(last);
+       bits += step) {
     const float x = std::bit_cast<float>(bits);
     const long double expected = truth(static_cast<long double>(x));
     largest = std::max(largest, static_cast<double>(std::fabs(f(x) / expected - 1.0L)));

@@ -259,8 +259,8 @@ TEST(Ids, ACollisionMovesTheLaterName) {
 
 GuideSet ValidGuides(int width = 4, int height = 3) {
   GuideSet guides(width, height);
-  for (Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial,
-                      Layer::kAlbedo, Layer::kLuminance})
+  for (Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kMaterial, Layer::kAlbedo,
+                      Layer::kLuminance})
     guides.Add(layer);
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     guides.Plane(Layer::kCoverage)[i] = 1.0f;

@@ -1,11 +1,11 @@
 // The paint program's evenly spaced lines, against distances measured one by one.
+#include "exemplars/paint/engine/even_lines.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include "exemplars/paint/engine/even_lines.h"
 
 namespace scumble::paint {
 namespace {

@@ -1,11 +1,12 @@
 // The paint program's families of lines, against the formula of a circle of latitude; and a stick that has one colour.
+#include "exemplars/paint/engine/families.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "exemplars/paint/engine/families.h"
 #include "exemplars/paint/engine/media.h"
 #include "exemplars/paint/sphere.h"
 

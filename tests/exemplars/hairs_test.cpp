@@ -1,10 +1,10 @@
 // The hairs of the paint program's ink brush: where they may go, and what wet, dry and one-sided mean.
+#include "exemplars/paint/engine/hairs.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
-
-#include "exemplars/paint/engine/hairs.h"
 
 namespace scumble::paint {
 namespace {

@@ -1,7 +1,8 @@
 // Targets for inputs that nobody made with care. A target is a function of any bytes: it may do nothing but return;
 // memory errors, undefined behaviour, exceptions that come out of it and broken promises (SCUMBLE_CHECK) are faults.
 // Each stands in a file of its own, tests/fuzz/NAME_fuzz.cpp. With libFuzzer (SCUMBLE_FUZZ) each file is a program;
-// without, all of them are in one table, which tests/fuzz/fuzz_regression_test.cpp runs over seeds, crashes and mutations.
+// without, all of them are in one table, which tests/fuzz/fuzz_regression_test.cpp runs over seeds, crashes and
+// mutations.
 #pragma once
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// The texts in a guide file's header: Cryptomatte's manifests, names, matrices, and the names of channels; and the texts
-// beside a render, which --camera names.
+// The texts in a guide file's header: Cryptomatte's manifests, names, matrices, and the names of channels; and the
+// texts beside a render, which --camera names.
 #include <algorithm>
 #include <map>
 

@@ -2,16 +2,15 @@
 // given to all that read text in options, and all of them are the lines of an @FILE of --assign.
 #include <CLI/CLI.hpp>
 
-#include "pipeline/style/assignments.h"
-#include "pipeline/frame_range.h"
 #include "apps/cli/app/help_format.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/run/sequence.h"
-#include "pipeline/style/style_set.h"
-#include "pipeline/frame/paint_frame.h"
 #include "apps/cli/app/verbs.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/print_page.h"
+#include "pipeline/frame_range.h"
+#include "pipeline/run/sequence.h"
+#include "pipeline/style/assignments.h"
+#include "pipeline/style/style_set.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {
@@ -41,7 +40,7 @@ const std::string& SmallStyle() {
 void ReadValue(const std::string& text) {
   CheckRefusal(ParseSize(text), 1000 + text.size());
   CheckRefusal(ParseNumbers(text, 1, 4, "--numbers"), 1000 + text.size());
-  CheckRefusal(ParseFps(text), 1000 + text.size());
+  CheckRefusal(ParseFrameRate(text), 1000 + text.size());
   CheckRefusal(ParseExposure(text), 1000 + text.size());
   CheckRefusal(ParsePaperSize(text), 1000 + text.size());
   CheckRefusal(ParseLengthMm(text), 1000 + text.size());
@@ -52,9 +51,10 @@ void ReadValue(const std::string& text) {
   const auto name = FrameName::Parse(text);
   CheckRefusal(name, 1000 + 2 * text.size());
   if (name) SCUMBLE_CHECK(!name->At(-5).empty() || text.empty());
-  StyleOptions style;
+  StyleRequest style;
   style.style = SmallStyle(), style.sets = {text, SmallStyle() + ":" + text};
-  if (text.find('=') != text.npos) CheckRefusal(OpenStyles(style), 3000 + 3 * text.size() + 3 * SmallStyle().size());
+  if (text.find('=') != text.npos)
+    CheckRefusal(OpenStyles(style, RunContext()), 3000 + 3 * text.size() + 3 * SmallStyle().size());
   static_cast<void>(FitsPattern(text.substr(0, text.size() / 2), text.substr(text.size() / 2)));
 }
 

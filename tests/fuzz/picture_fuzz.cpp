@@ -1,8 +1,8 @@
-// Pictures of every format but EXR, PNG and layers, which have targets of their own: from memory, as in a .glb, and from a
-// file. What counts their pixels beforehand must agree with what reading makes.
-#include "core/io/picture_file.h"
-#include "core/io/picture/format_detection.h"
+// Pictures of every format but EXR, PNG and layers, which have targets of their own: from memory, as in a .glb, and
+// from a file. What counts their pixels beforehand must agree with what reading makes.
 #include "core/io/file/zip_archive.h"
+#include "core/io/picture/format_detection.h"
+#include "core/io/picture_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

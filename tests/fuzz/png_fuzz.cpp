@@ -2,8 +2,8 @@
 #include <array>
 
 #include "core/io/picture_file.h"
-#include "core/io/png/png_reader.h"
 #include "core/io/png/png_integrity.h"
+#include "core/io/png/png_reader.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

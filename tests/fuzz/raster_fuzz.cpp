@@ -1,7 +1,7 @@
 // Zip archives: pictures in layers (.ora, .kra), and every entry whatever it is called.
+#include "core/io/file/zip_archive.h"
 #include "core/io/picture/open_raster.h"
 #include "core/io/picture_file.h"
-#include "core/io/file/zip_archive.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

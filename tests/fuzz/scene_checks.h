@@ -6,6 +6,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace scumble::fuzz {

@@ -11,10 +11,10 @@
 
 #include "core/image/guides.h"
 #include "core/io/channel_file.h"
-#include "tests/support/temporary_folder.h"
-#include "measure/mosaic/coherence.h"
 #include "measure/compare/compare.h"
 #include "measure/compare/heat_map.h"
+#include "measure/mosaic/coherence.h"
+#include "tests/support/temporary_folder.h"
 
 namespace scumble {
 namespace {

@@ -1,11 +1,10 @@
 // Baselines of the cross-check: written, read, tightening and never loosening.
-#include "measure/crosscheck/baseline.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "measure/crosscheck/baseline.h"
 #include "tests/support/crosscheck_fixtures.h"
 
 namespace scumble {

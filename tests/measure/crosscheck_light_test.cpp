@@ -123,7 +123,8 @@ TEST(CrosscheckLight, NoiseIsNotTakenForLightInTheWrongPlace) {
   for (CrosscheckLight& count : light) {
     for (std::size_t i = 0; i < count.ours.pixel_count(); ++i) {
       const float noise = UnitFloat(Hash(i, count.samples)) - 0.5f;
-      for (int c = 0; c < 3; ++c) count.ours.Plane(Layer::kLpeLDE, c)[i] *= 1.0f + noise * 4.0f / std::sqrt(float(count.samples));
+      for (int c = 0; c < 3; ++c)
+        count.ours.Plane(Layer::kLpeLDE, c)[i] *= 1.0f + noise * 4.0f / std::sqrt(float(count.samples));
     }
   }
   const CrosscheckReport report = CheckLight(light);

@@ -16,7 +16,8 @@ namespace {
 // Two objects side by side before an empty left edge, all layers that are compared.
 GuideSet TwoObjects() {
   GuideSet guides(40, 20);
-  for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo}) {
+  for (const Layer layer :
+       {Layer::kCoverage, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPosition, Layer::kAlbedo}) {
     guides.Add(layer);
   }
   for (int y = 0; y < 20; ++y) {

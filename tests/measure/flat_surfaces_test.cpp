@@ -33,7 +33,8 @@ TEST(FlatSurfaces, OfAWallAreAllItsPixels) {
   for (std::size_t i = 0; i < flat.size(); ++i) EXPECT_EQ(flat[i], 1) << i;
 }
 
-// A cylinder's normal turns by more than half a degree over four pixels anywhere: sin(0.5°) of its radius are 0.3 pixels.
+// A cylinder's normal turns by more than half a degree over four pixels anywhere: sin(0.5°) of its radius are 0.3
+// pixels.
 TEST(FlatSurfaces, OfACylinderAreNone) {
   constexpr int kSize = 64;
   GuideSet guides = Empty(kSize, kSize);
@@ -63,14 +64,16 @@ TEST(FlatSurfaces, EndWhereTheNormalOrTheObjectChanges) {
       for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 40; ++x) {
           const bool is_strip = x >= 14 && x < 14 + strip;
-          EXPECT_EQ(flat[guides.Index(x, y)], !is_strip || strip > kReach) << x << ", " << y << " of a strip of " << strip;
+          EXPECT_EQ(flat[guides.Index(x, y)], !is_strip || strip > kReach)
+              << x << ", " << y << " of a strip of " << strip;
         }
       }
     }
   }
 }
 
-// A board of three reaches on nothing, which has its normal and object but covers no pixel: all of the board, its corners too, and no more.
+// A board of three reaches on nothing, which has its normal and object but covers no pixel: all of the board, its
+// corners too, and no more.
 TEST(FlatSurfaces, OfABoardAreItsPixelsUpToTheCorners) {
   GuideSet guides = Empty(30, 26);
   const auto on_board = [](int x, int y) { return x >= 8 && x < 20 && y >= 7 && y < 20; };

@@ -70,7 +70,8 @@ TEST(Flicker, StandingStillUnderAMotionScoresTheDifference) {
 TEST(Flicker, HalfPixelsScoreTheFloor) {
   const GuideSet half = Moving(40, 30, 0.5f, 0.0f);
   const Picture ramp = Painted(40, 30, [](int x, int) { return 5.0 * x; });
-  const FlickerReport smooth = Must(ramp, Painted(40, 30, [](int x, int) { return 5.0 * std::max(0.0, x - 0.5); }), half);
+  const FlickerReport smooth =
+      Must(ramp, Painted(40, 30, [](int x, int) { return 5.0 * std::max(0.0, x - 0.5); }), half);
   EXPECT_NEAR(smooth.mean, 0.0, 0.01);
   EXPECT_NEAR(smooth.floor, 0.0, 0.01);
   const Picture stripes = Painted(40, 30, [](int x, int) { return x % 2 * 100.0; });
@@ -101,7 +102,8 @@ TEST(Flicker, WhatIsHiddenInTheNextFrameDoesNotCount) {
     }
     return next;
   };
-  for (const auto& [layer, value] : {std::pair{Layer::kObject, 2.0f}, {Layer::kDepth, 3.0f}, {Layer::kCoverage, 0.5f}}) {
+  for (const auto& [layer, value] :
+       {std::pair{Layer::kObject, 2.0f}, {Layer::kDepth, 3.0f}, {Layer::kCoverage, 0.5f}}) {
     const GuideSet next = change(layer, value);
     const FlickerReport report = Must(a, b, guides, &next);
     EXPECT_EQ(report.pixels, left);

@@ -13,7 +13,8 @@
 namespace scumble {
 namespace {
 
-std::vector<PaintFault> Faults(const Picture& picture, const PaintFaultContext& context = {}, const Picture* bare = nullptr) {
+std::vector<PaintFault> Faults(const Picture& picture, const PaintFaultContext& context = {},
+                               const Picture* bare = nullptr) {
   return FindPaintFaults(MeasurePaint(ExemplarOf(picture), 2.0, bare), context);
 }
 
@@ -31,9 +32,11 @@ std::string Said(const std::vector<PaintFault>& faults) {
 }
 
 // Exactly one fault, with all of `words` in it. Returns it, with a place in any case.
-PaintFault ExpectOne(const std::vector<PaintFault>& faults, const std::string& code, const std::vector<std::string>& words) {
+PaintFault ExpectOne(const std::vector<PaintFault>& faults, const std::string& code,
+                     const std::vector<std::string>& words) {
   EXPECT_EQ(Codes(faults), code) << Said(faults);
-  for (const std::string& word : words) EXPECT_NE(Said(faults).find(word), std::string::npos) << word << "\n" << Said(faults);
+  for (const std::string& word : words)
+    EXPECT_NE(Said(faults).find(word), std::string::npos) << word << "\n" << Said(faults);
   PaintFault first = faults.empty() ? PaintFault() : faults.front();
   if (!first.place) first.place = {-1000, -1000};
   return first;
@@ -92,7 +95,8 @@ TEST(PaintFaults, OffCentre) {
   PaintedSphere shifted = Clean();
   shifted.x = 0.53, shifted.y = 0.48;
   // 15.4 and 10.2 pixels of 512: 3.6%.
-  ExpectOne(Faults(PaintSphere(shifted)), "off-centre", {"3.6% of its diameter", "pixels to the left and 10 pixels down"});
+  ExpectOne(Faults(PaintSphere(shifted)), "off-centre",
+            {"3.6% of its diameter", "pixels to the left and 10 pixels down"});
   shifted.x = 0.485, shifted.y = 0.5;
   ExpectOne(Faults(PaintSphere(shifted)), "off-centre", {"1.5% of its diameter", "pixels to the right"});
   shifted.x = 0.506;
@@ -113,7 +117,8 @@ TEST(PaintFaults, SmallSphere) {
 TEST(PaintFaults, Holes) {
   Picture picture = PaintSphere({});
   ForDisc(picture, 300, 200, 20, [&](int x, int y) { picture.At(x, y)[3] = 0; });
-  const PaintFault hole = ExpectOne(Faults(picture), "holes", {"0.6% of the sphere is transparent", "1 hole", "around x=", "fill the holes"});
+  const PaintFault hole = ExpectOne(Faults(picture), "holes",
+                                    {"0.6% of the sphere is transparent", "1 hole", "around x=", "fill the holes"});
   EXPECT_NEAR(hole.place->first, 300, 1);
   EXPECT_NEAR(hole.place->second, 200, 1);
   // Places are those of the file.
@@ -121,7 +126,9 @@ TEST(PaintFaults, Holes) {
   cut.margin = 64;
   EXPECT_NEAR(ExpectOne(Faults(picture, cut), "holes", {}).place->first, 364, 1);
   // A soft edge belongs to the hole.
-  ForDisc(picture, 300, 200, 21, [&](int x, int y) { if (picture.At(x, y)[3]) picture.At(x, y)[3] = 30000; });
+  ForDisc(picture, 300, 200, 21, [&](int x, int y) {
+    if (picture.At(x, y)[3]) picture.At(x, y)[3] = 30000;
+  });
   EXPECT_EQ(Codes(Faults(picture)), "holes");
   // Outside the sphere transparency is nothing.
   Picture outside = PaintSphere({});
@@ -137,7 +144,8 @@ TEST(PaintFaults, SeeThroughPaint) {
   Picture all = PaintSphere({});
   for (int i = 0; i < 512 * 512; ++i) all.At(i % 512, i / 512)[3] = 180 * 257;
   ExpectOne(Faults(all), "see-through", {"100% of the sphere is half see-through"});
-  const PaintTraits traits = MeasurePaint(ExemplarOf(all), 2.0, nullptr), opaque = MeasurePaint(ExemplarOf(PaintSphere({})), 2.0, nullptr);
+  const PaintTraits traits = MeasurePaint(ExemplarOf(all), 2.0, nullptr),
+                    opaque = MeasurePaint(ExemplarOf(PaintSphere({})), 2.0, nullptr);
   EXPECT_GT(traits.covered_percent, 99.0);
   EXPECT_GT(traits.tone.darkest, opaque.tone.darkest + 10.0);
   EXPECT_GT(traits.tone.range(), 25.0);
@@ -152,7 +160,8 @@ TEST(PaintFaults, PremultipliedColours) {
   Picture picture = PaintSphere(light);
   ForDisc(picture, 300, 200, 30, [&](int x, int y) {
     const double alpha = std::min(1.0, std::hypot(x - 299.5, y - 199.5) / 30.0);
-    for (int c = 0; c < 3; ++c) picture.At(x, y)[c] = static_cast<std::uint16_t>(picture.At(x, y)[c] * (0.3 + 0.7 * alpha));
+    for (int c = 0; c < 3; ++c)
+      picture.At(x, y)[c] = static_cast<std::uint16_t>(picture.At(x, y)[c] * (0.3 + 0.7 * alpha));
     picture.At(x, y)[3] = static_cast<std::uint16_t>(65535 * (0.3 + 0.7 * alpha));
   });
   ExpectOne(Faults(picture), "premultiplied", {"straight"});
@@ -167,14 +176,16 @@ TEST(PaintFaults, PremultipliedColours) {
 }
 
 TEST(PaintFaults, PercentagesAreNumbers) {
-  for (const auto& [radius, words] : {std::pair{600.0, "100% of the sphere"}, {40.0, "2.5% of the sphere"}, {4.0, "less than 0.1% of the sphere"}}) {
+  for (const auto& [radius, words] :
+       {std::pair{600.0, "100% of the sphere"}, {40.0, "2.5% of the sphere"}, {4.0, "less than 0.1% of the sphere"}}) {
     Picture picture = PaintSphere({});
     ForDisc(picture, 256, 256, radius, [&](int x, int y) { picture.At(x, y)[3] = 0; });
     EXPECT_NE(Said(Faults(picture)).find(words), std::string::npos) << Said(Faults(picture));
   }
 }
 
-// The page's sphere, scanned with some noise: whole, and between paint; its lights are paper and cannot be told from it.
+// The page's sphere, scanned with some noise: whole, and between paint; its lights are paper and cannot be told from
+// it.
 TEST(PaintFaults, BarePrintedTemplate) {
   PaintedSphere pale = Clean();
   pale.dark = 0.85, pale.light = 1.0, pale.paper = 1.0, pale.grain = 0.0;
@@ -210,7 +221,8 @@ TEST(PaintFaults, BareTemplate) {
   EXPECT_EQ(Codes(Faults(PaintSphere({}), {}, &bare)), "");
   Picture holed = PaintSphere({});
   ForDisc(holed, 180, 300, 25, [&](int x, int y) { std::copy_n(bare.At(x, y), 4, holed.At(x, y)); });
-  const PaintFault patch = ExpectOne(Faults(holed, {}, &bare), "bare-template", {"of the sphere is still the template's own grey", "around x=", "paint over it"});
+  const PaintFault patch = ExpectOne(Faults(holed, {}, &bare), "bare-template",
+                                     {"of the sphere is still the template's own grey", "around x=", "paint over it"});
   EXPECT_NEAR(patch.place->first, 180, 2);
   EXPECT_NEAR(patch.place->second, 300, 2);
   Picture speck = PaintSphere({});
@@ -225,7 +237,8 @@ TEST(PaintFaults, BarePaper) {
     ForDisc(picture, x, y, radius, [&](int i, int j) { SetGrey(picture, i, j, sphere.paper); });
   };
   leave_out(shade, 390, 390, 20);
-  const PaintFault patch = ExpectOne(Faults(shade), "bare-paper", {"in the shade", "around x=", "leave paper for lights"});
+  const PaintFault patch =
+      ExpectOne(Faults(shade), "bare-paper", {"in the shade", "around x=", "leave paper for lights"});
   EXPECT_NEAR(patch.place->first, 390, 8);
   leave_out(light, 180, 170, 20);
   EXPECT_EQ(Codes(Faults(light)), "") << "a highlight";
@@ -263,12 +276,14 @@ TEST(PaintFaults, Light) {
   PaintFaultContext kit;
   kit.knows_guides = true;
   ExpectOne(Faults(PaintSphere(mirrored), kit, &bare), "other-light", {"azimuth 3", "azimuth -", "mirror"});
-  EXPECT_EQ(ExpectOne(Faults(PaintSphere(mirrored), {}, &bare), "other-light", {"nothing if that is wanted"}).weight, PaintFault::Weight::kRemark);
+  EXPECT_EQ(ExpectOne(Faults(PaintSphere(mirrored), {}, &bare), "other-light", {"nothing if that is wanted"}).weight,
+            PaintFault::Weight::kRemark);
   mirrored.azimuth = -10.0;
   EXPECT_EQ(Codes(Faults(PaintSphere(mirrored), kit, &bare)), "") << "painters are no instruments";
   // Light and dark without form.
   Picture patches(512, 512);
-  for (int i = 0; i < 512 * 512; ++i) SetGrey(patches, i % 512, i / 512, 0.2 + 0.6 * UnitFloat(Hash(i % 512 / 9, i / 512 / 9)));
+  for (int i = 0; i < 512 * 512; ++i)
+    SetGrey(patches, i % 512, i / 512, 0.2 + 0.6 * UnitFloat(Hash(i % 512 / 9, i / 512 / 9)));
   ExpectOne(Faults(patches), "no-light", {"do not follow the form"});
 }
 
@@ -282,9 +297,15 @@ TEST(PaintFaults, RegularPatterns) {
     return Faults(picture);
   };
   const auto checker = [](double x, double y) { return (int(x / 12) + int(y / 12)) % 2 ? 1.0 : 0.7; };
-  const auto dots = [](double x, double y) { return std::hypot(std::fmod(x, 14.0) - 7.0, std::fmod(y, 14.0) - 7.0) < 4.0 ? 0.6 : 1.0; };
-  const auto hatching = [kTurn](double x, double y) { return std::cos(kTurn * (0.8 * x + 0.6 * y) / 9.0) > 0.3 ? 0.6 : 1.0; };
-  const auto weave = [kTurn](double x, double y) { return 1.0 + 0.25 * std::cos(kTurn * x / 8.0) * std::cos(kTurn * y / 8.0); };
+  const auto dots = [](double x, double y) {
+    return std::hypot(std::fmod(x, 14.0) - 7.0, std::fmod(y, 14.0) - 7.0) < 4.0 ? 0.6 : 1.0;
+  };
+  const auto hatching = [kTurn](double x, double y) {
+    return std::cos(kTurn * (0.8 * x + 0.6 * y) / 9.0) > 0.3 ? 0.6 : 1.0;
+  };
+  const auto weave = [kTurn](double x, double y) {
+    return 1.0 + 0.25 * std::cos(kTurn * x / 8.0) * std::cos(kTurn * y / 8.0);
+  };
   for (const auto& grid : {std::function<double(double, double)>(checker), {dots}, {weave}}) {
     ExpectOne(with(grid), "regular-pattern", {"dots, squares or weave", "around x=", "halftone"});
   }

@@ -26,12 +26,14 @@ TEST(PaintTone, PercentilesOfLightness) {
 }
 
 TEST(PaintTone, TheLightThatAPaintingHas) {
-  for (const auto& [azimuth, elevation] : {std::pair{-40.0, 40.0}, {0.0, 0.0}, {75.0, -20.0}, {150.0, 30.0}, {0.0, 88.0}}) {
+  for (const auto& [azimuth, elevation] :
+       {std::pair{-40.0, 40.0}, {0.0, 0.0}, {75.0, -20.0}, {150.0, 30.0}, {0.0, 88.0}}) {
     PaintedSphere sphere;
     sphere.size = 256, sphere.azimuth = azimuth, sphere.elevation = elevation;
     const Exemplar exemplar = ExemplarOf(PaintSphere(sphere));
     const PaintedLight light = FindPaintedLight(PaintSheet(exemplar, 2.0));
-    SCOPED_TRACE(testing::Message() << azimuth << ", " << elevation << ": " << light.azimuth << ", " << light.elevation);
+    SCOPED_TRACE(testing::Message() << azimuth << ", " << elevation << ": " << light.azimuth << ", "
+                                    << light.elevation);
     EXPECT_LT(AngleBetween(light, {azimuth, elevation, 1.0}), azimuth > 90.0 ? 15.0 : 6.0);
     EXPECT_GT(light.correlation, 0.9);
   }
@@ -57,7 +59,8 @@ TEST(PaintedDisc, NoFringeWhereTheRimTakesAll) {
 }
 
 TEST(PaintedDisc, CentreAndRadius) {
-  for (const auto& [x, y, radius] : {std::tuple{0.5, 0.5, 0.5}, {0.52, 0.5, 0.5}, {0.47, 0.51, 0.49}, {0.5, 0.5, 0.4}}) {
+  for (const auto& [x, y, radius] :
+       {std::tuple{0.5, 0.5, 0.5}, {0.52, 0.5, 0.5}, {0.47, 0.51, 0.49}, {0.5, 0.5, 0.4}}) {
     PaintedSphere sphere;
     sphere.x = x, sphere.y = y, sphere.radius = radius, sphere.reach = 1.0, sphere.waver = 0.0;
     const Exemplar exemplar = ExemplarOf(PaintSphere(sphere));
@@ -76,7 +79,8 @@ TEST(PaintedDisc, CentreAndRadius) {
 // Splashes outside and a light side that is left as paper do not pull the circle.
 TEST(PaintedDisc, OutlineWithErrors) {
   PaintedSphere sphere;
-  sphere.x = 0.49, sphere.radius = 0.45, sphere.reach = 1.0, sphere.waver = 0.0, sphere.light = 0.93, sphere.grain = 0.02;
+  sphere.x = 0.49, sphere.radius = 0.45, sphere.reach = 1.0, sphere.waver = 0.0, sphere.light = 0.93,
+  sphere.grain = 0.02;
   Picture picture = PaintSphere(sphere);
   for (int i = 0; i < 40; ++i) {
     const int x = static_cast<int>(Hash(i, 1) % 500), y = static_cast<int>(Hash(i, 2) % 40);

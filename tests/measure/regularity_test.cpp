@@ -32,9 +32,8 @@ TEST(Regularity, PeriodAndDirectionOfLines) {
   for (const double degrees : {0.0, 30.0, 90.0, 150.0}) {
     for (const double period : {6.0, 10.0, 16.0}) {
       const double angle = degrees / 360.0 * kTurn;
-      const RegularityReport report = Measure([&](int x, int y) {
-        return std::cos(kTurn * (x * std::cos(angle) - y * std::sin(angle)) / period);
-      });
+      const RegularityReport report =
+          Measure([&](int x, int y) { return std::cos(kTurn * (x * std::cos(angle) - y * std::sin(angle)) / period); });
       SCOPED_TRACE(testing::Message() << degrees << " degrees, " << period);
       EXPECT_GT(report.peak, 0.9);
       EXPECT_GT(report.local_echo, 0.9);
@@ -116,8 +115,10 @@ TEST(Regularity, AgreesWithThePlainCorrelation) {
   Picture picture(64, 64);
   std::vector<float> plane;
   for (int i = 0; i < 64 * 64; ++i) {
-    const double tone = 0.5 + 0.2 * std::cos(kTurn * (i % 64) / 8.0) * std::cos(kTurn * (i / 64) / 8.0) + 0.05 * Noise(i % 64, i / 64, 9);
-    for (int c = 0; c < 4; ++c) picture.rgba[std::size_t(4 * i + c)] = c == 3 ? 65535 : static_cast<std::uint16_t>(65535 * tone);
+    const double tone = 0.5 + 0.2 * std::cos(kTurn * (i % 64) / 8.0) * std::cos(kTurn * (i / 64) / 8.0) +
+                        0.05 * Noise(i % 64, i / 64, 9);
+    for (int c = 0; c < 4; ++c)
+      picture.rgba[std::size_t(4 * i + c)] = c == 3 ? 65535 : static_cast<std::uint16_t>(65535 * tone);
     plane.push_back(static_cast<float>(100.0 * tone));
   }
   RegularityOptions options;

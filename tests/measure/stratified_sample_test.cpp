@@ -68,7 +68,8 @@ TEST(StratifiedSample, IsUnbiased) {
   const double variance = squares / kSeeds;
   EXPECT_LT(std::fabs(sum / kSeeds), 5 * std::sqrt(variance / kSeeds));
   // Twice: the estimated variances spread no more than the squares themselves.
-  EXPECT_LT(std::fabs(estimated / kSeeds - variance), 5 * std::sqrt(2 * (fourths / kSeeds - variance * variance) / kSeeds));
+  EXPECT_LT(std::fabs(estimated / kSeeds - variance),
+            5 * std::sqrt(2 * (fourths / kSeeds - variance * variance) / kSeeds));
 }
 
 }  // namespace

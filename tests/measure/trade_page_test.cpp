@@ -143,11 +143,11 @@ TEST(TradePage, EveryWayHasAFigureALineAndPointsThatLeadToIt) {
   const std::string html = TradeHtml(report);
   const Markup page(html);
   const std::set<std::string> ids = IdsOf(page);
-  EXPECT_EQ(page.All("figure").size(), report.ways.size());
-  EXPECT_EQ(page.All("tr", "tbody").size(), report.ways.size());
+  EXPECT_EQ(page.All("figure").size(), report.variants.size());
+  EXPECT_EQ(page.All("tr", "tbody").size(), report.variants.size());
   const std::vector<Tag> points = page.All("a", "svg");
-  EXPECT_EQ(points.size(), 9 * report.ways.size()) << "three times three charts";
-  for (std::size_t i = 1; i <= report.ways.size(); ++i) {
+  EXPECT_EQ(points.size(), 9 * report.variants.size()) << "three times three charts";
+  for (std::size_t i = 1; i <= report.variants.size(); ++i) {
     const std::string id = "way-" + std::to_string(i);
     EXPECT_TRUE(ids.count(id)) << id;
     EXPECT_EQ(
@@ -174,12 +174,12 @@ TEST(TradePage, EveryChoiceHasItsStyle) {
 TEST(TradePage, PicturesAreTheBytesGivenAndEqualOnesAreThereOnce) {
   TradeReport report = MadeUpReport();
   // RFC 4648's own examples: "f", "fo", "foo", "foobar".
-  report.ways[0].picture_png = {'f'};
-  report.ways[1].picture_png = {'f', 'o'};
-  report.ways[2].picture_png = {'f', 'o', 'o'};
-  report.ways[3].picture_png = {'f', 'o', 'o', 'b', 'a', 'r'};
-  report.ways[4].picture_png = {'f', 'o', 'o'};
-  report.ways[5].picture_png = {};
+  report.variants[0].picture_png = {'f'};
+  report.variants[1].picture_png = {'f', 'o'};
+  report.variants[2].picture_png = {'f', 'o', 'o'};
+  report.variants[3].picture_png = {'f', 'o', 'o', 'b', 'a', 'r'};
+  report.variants[4].picture_png = {'f', 'o', 'o'};
+  report.variants[5].picture_png = {};
   const std::string html = TradeHtml(report);
   const Markup page(html);
   std::vector<std::string> images;
@@ -197,16 +197,16 @@ TEST(TradePage, SaysWhatIsFasterAndNoWorseThanTheStyle) {
             std::string::npos);
   EXPECT_NE(html.find("<p>5 of 6 ways are on the front"), std::string::npos);
   TradeReport report = MadeUpReport();
-  report.ways[0].total_ms.median = 25.0;
+  report.variants[0].total_ms.median = 25.0;
   EXPECT_NE(TradeHtml(report).find(", and is on the front."), std::string::npos);
 }
 
 TEST(TradePage, AnEmptyReportAndOneWithoutFiguresAreWholePages) {
   TradeReport bare;
-  bare.ways.resize(1);
+  bare.variants.resize(1);
   for (const TradeReport& report : {TradeReport{}, bare}) {
     const std::string html = TradeHtml(report), svg = TradeChart(report);
-    EXPECT_EQ(Markup(html).All("figure").size(), report.ways.size());
+    EXPECT_EQ(Markup(html).All("figure").size(), report.variants.size());
     EXPECT_EQ(Markup(svg).All("svg").size(), 1u);
     EXPECT_EQ(html.find("nan"), std::string::npos);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
@@ -220,7 +220,7 @@ TEST(TradeChart, IsWellFormedOnItsOwnAndShowsEveryWayAndTheFront) {
   const std::string svg = TradeChart(report);
   const Markup chart(svg);
   EXPECT_EQ(chart.All("svg")[0].attributes.at("xmlns"), "http://www.w3.org/2000/svg");
-  EXPECT_EQ(chart.All("g").size(), report.ways.size());
+  EXPECT_EQ(chart.All("g").size(), report.variants.size());
   EXPECT_EQ(chart.All("circle", "svg g").size(), FrontOf(report).size());
   EXPECT_EQ(chart.All("a").size(), 0u) << "it has no page to lead to";
   EXPECT_NE(svg.find("&lt;axis&gt;"), std::string::npos);
@@ -229,7 +229,8 @@ TEST(TradeChart, IsWellFormedOnItsOwnAndShowsEveryWayAndTheFront) {
 // A decade is as wide wherever it is, errors are to scale, and less of either is to the left and below.
 TEST(TradeChart, PointsStandWhereTheirFiguresPutThem) {
   TradeReport report;
-  report.ways = {MadeUpWay("a", "1", 1.0, 4.0), MadeUpWay("a", "2", 10.0, 3.0), MadeUpWay("a", "3", 100.0, 1.0)};
+  report.variants = {MadeUpVariant("a", "1", 1.0, 4.0), MadeUpVariant("a", "2", 10.0, 3.0),
+                     MadeUpVariant("a", "3", 100.0, 1.0)};
   const std::string svg = TradeChart(report);
   const std::vector<Tag> rings = Markup(svg).All("circle", "svg g");
   ASSERT_EQ(rings.size(), 3u);
@@ -244,11 +245,11 @@ TEST(TradeChart, PointsStandWhereTheirFiguresPutThem) {
 
 TEST(TradeChart, WaysWithoutTimeOrErrorAreNotDrawn) {
   TradeReport report = MadeUpReport();
-  report.ways[1].total_ms = {};
-  report.ways[2].both.mean = kNoNumber;
-  report.ways[3].both.mean = std::numeric_limits<double>::infinity();
-  report.ways[4].both.standard_error = kNoNumber;
-  report.ways[4].total_ms.upper = std::numeric_limits<double>::infinity();
+  report.variants[1].total_ms = {};
+  report.variants[2].both.mean = kNoNumber;
+  report.variants[3].both.mean = std::numeric_limits<double>::infinity();
+  report.variants[4].both.standard_error = kNoNumber;
+  report.variants[4].total_ms.upper = std::numeric_limits<double>::infinity();
   const std::string svg = TradeChart(report);
   EXPECT_EQ(Markup(svg).All("g").size(), 3u);
   for (const char* word : {"\"nan", "\"inf", "\"-inf"}) EXPECT_EQ(svg.find(word), std::string::npos) << word;

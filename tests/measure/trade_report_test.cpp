@@ -49,14 +49,14 @@ Rows ParseCsv(const std::string& csv) {
   return rows;
 }
 
-std::string FieldOf(const Rows& rows, std::size_t way, const std::string& column) {
+std::string FieldOf(const Rows& rows, std::size_t variant, const std::string& column) {
   const auto at = std::find(rows[0].begin(), rows[0].end(), column);
   if (at == rows[0].end()) ADD_FAILURE() << "no column " << column;
-  return at == rows[0].end() ? "" : rows[way + 1][static_cast<std::size_t>(at - rows[0].begin())];
+  return at == rows[0].end() ? "" : rows[variant + 1][static_cast<std::size_t>(at - rows[0].begin())];
 }
 
-double NumberOf(const Rows& rows, std::size_t way, const std::string& column) {
-  const std::string text = FieldOf(rows, way, column);
+double NumberOf(const Rows& rows, std::size_t variant, const std::string& column) {
+  const std::string text = FieldOf(rows, variant, column);
   double value = 0.0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
   EXPECT_TRUE(read.ec == std::errc{} && read.ptr == text.data() + text.size()) << column << ": " << text;
@@ -66,10 +66,12 @@ double NumberOf(const Rows& rows, std::size_t way, const std::string& column) {
 // Straight from the definition: nothing is better in one and as good in the other.
 std::set<std::size_t> PlainFront(const TradeReport& report) {
   std::set<std::size_t> front;
-  const auto counts = [](const TradeMeasure& way) { return way.total_ms.median > 0.0 && !std::isnan(way.both.mean); };
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const TradeMeasure& a = report.ways[i];
-    const bool beaten = std::any_of(report.ways.begin(), report.ways.end(), [&](const TradeMeasure& b) {
+  const auto counts = [](const TradeMeasure& variant) {
+    return variant.total_ms.median > 0.0 && !std::isnan(variant.both.mean);
+  };
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
+    const TradeMeasure& a = report.variants[i];
+    const bool beaten = std::any_of(report.variants.begin(), report.variants.end(), [&](const TradeMeasure& b) {
       return counts(b) && b.total_ms.median <= a.total_ms.median && b.both.mean <= a.both.mean &&
              (b.total_ms.median < a.total_ms.median || b.both.mean < a.both.mean);
     });
@@ -94,18 +96,19 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
   std::uint32_t state = 1;
   const auto next = [&state] { return (state = state * 1664525u + 1013904223u) >> 28; };
   for (int round = 0; round < 50; ++round) {
-    report.ways.clear();
+    report.variants.clear();
     // Few different values, so that many tie; 0 ms and NaN were not measured.
-    for (int i = 0; i < 12; ++i) report.ways.push_back(MadeUpWay("axis", std::to_string(i), next() % 8, next() % 8));
-    report.ways[3].both.mean = kNoNumber;
+    for (int i = 0; i < 12; ++i)
+      report.variants.push_back(MadeUpVariant("axis", std::to_string(i), next() % 8, next() % 8));
+    report.variants[3].both.mean = kNoNumber;
     const std::vector<std::size_t> front = FrontOf(report);
     EXPECT_EQ(std::set<std::size_t>(front.begin(), front.end()), PlainFront(report));
     EXPECT_TRUE(std::is_sorted(front.begin(), front.end(), [&](std::size_t a, std::size_t b) {
-      return report.ways[a].total_ms.median < report.ways[b].total_ms.median;
+      return report.variants[a].total_ms.median < report.variants[b].total_ms.median;
     }));
     // The best of all, by chance alone: it is not there, and pushes nothing off.
-    report.ways.push_back(MadeUpWay("seed", "+1", 1, 0));
-    report.ways.back().by_chance = true;
+    report.variants.push_back(MadeUpVariant("seed", "+1", 1, 0));
+    report.variants.back().by_chance = true;
     EXPECT_EQ(FrontOf(report), front);
   }
 }
@@ -114,32 +117,34 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
 // quartile of its total is below the first's lower one.
 TEST(TradeReport, TheFrontHasAPictureOnce) {
   TradeReport report;
-  for (const char* name : {"style", "again", "other"}) report.ways.push_back(MadeUpWay("axis", name, 10.0, 1.0));
-  report.ways[2].both.mean = 2.0;
-  report.ways[0].total_ms = {10.0, 9.0, 11.0};
-  report.ways[1].same_as = 0;
-  report.ways[1].total_ms = {8.5, 8.4, 9.1};
-  report.ways[2].total_ms = {9.8, 9.7, 9.9};
+  for (const char* name : {"style", "again", "other"})
+    report.variants.push_back(MadeUpVariant("axis", name, 10.0, 1.0));
+  report.variants[2].both.mean = 2.0;
+  report.variants[0].total_ms = {10.0, 9.0, 11.0};
+  report.variants[1].same_as = 0;
+  report.variants[1].total_ms = {8.5, 8.4, 9.1};
+  report.variants[2].total_ms = {9.8, 9.7, 9.9};
   EXPECT_EQ(FrontOf(report), (std::vector<std::size_t>{2, 0})) << "not pushed off by the one that is not there";
-  report.ways[1].total_ms = {8.5, 8.5, 8.5};
+  report.variants[1].total_ms = {8.5, 8.5, 8.5};
   EXPECT_EQ(FrontOf(report), (std::vector<std::size_t>{2, 0})) << "one run says nothing";
-  report.ways[1].total_ms = {8.5, 8.4, 8.6};
+  report.variants[1].total_ms = {8.5, 8.4, 8.6};
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
 }
 
 // A method that draws the same picture in half the time of the transfer, from the very same guides, is what to choose.
 TEST(TradeReport, AQuickerTransferOfTheSamePictureCounts) {
   TradeReport report;
-  for (const char* name : {"slow", "quick", "quickest"}) report.ways.push_back(MadeUpWay("axis", name, 20.0, 1.0));
-  for (TradeMeasure& way : report.ways) way.guides_ms = {10.0, 9.0, 11.0};
-  report.ways[0].total_ms = {20.0, 19.0, 21.0};
-  report.ways[1].same_as = report.ways[2].same_as = 0;
-  report.ways[1].total_ms = {15.0, 14.0, 16.0};
-  report.ways[2].total_ms = {20.0, 19.0, 21.0};
+  for (const char* name : {"slow", "quick", "quickest"})
+    report.variants.push_back(MadeUpVariant("axis", name, 20.0, 1.0));
+  for (TradeMeasure& variant : report.variants) variant.guides_ms = {10.0, 9.0, 11.0};
+  report.variants[0].total_ms = {20.0, 19.0, 21.0};
+  report.variants[1].same_as = report.variants[2].same_as = 0;
+  report.variants[1].total_ms = {15.0, 14.0, 16.0};
+  report.variants[2].total_ms = {20.0, 19.0, 21.0};
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
-  report.ways[2].total_ms = {13.0, 12.0, 13.9};
+  report.variants[2].total_ms = {13.0, 12.0, 13.9};
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{2}) << "the quickest, and no other of that picture";
-  report.ways[2].total_ms = {13.0, 12.0, 14.1};
+  report.variants[2].total_ms = {13.0, 12.0, 14.1};
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1}) << "too near to call: the first of the two";
 }
 
@@ -147,33 +152,34 @@ TEST(TradeReport, AQuickerTransferOfTheSamePictureCounts) {
 // on the front, though it is the slower of them.
 TEST(TradeReport, APictureIsStoodForByAWayThatCanBeChosen) {
   TradeReport report;
-  for (const char* name : {"style", "256", "512", "again"}) report.ways.push_back(MadeUpWay("nearest", name, 10.0, 1.0));
-  report.ways[0].both.mean = 2.0;
-  report.ways[1].options.clear();
-  report.ways[1].total_ms = {5.0, 4.9, 5.1};
-  report.ways[2].same_as = report.ways[3].same_as = 1;
+  for (const char* name : {"style", "256", "512", "again"})
+    report.variants.push_back(MadeUpVariant("nearest", name, 10.0, 1.0));
+  report.variants[0].both.mean = 2.0;
+  report.variants[1].options.clear();
+  report.variants[1].total_ms = {5.0, 4.9, 5.1};
+  report.variants[2].same_as = report.variants[3].same_as = 1;
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{2});
   EXPECT_EQ(internal::MayBeOnFront(report), (std::vector<bool>{true, false, true, false}));
-  report.ways[2].by_chance = true;
+  report.variants[2].by_chance = true;
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{3}) << "nor does chance stand for anything";
-  report.ways[2].by_chance = false;
-  report.ways[2].total_ms = {};
+  report.variants[2].by_chance = false;
+  report.variants[2].total_ms = {};
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{3}) << "nor what was not timed";
 }
 
 // Table, JSON and chart tell of one front: each ringed point is one of it, and of memory there is none.
 TEST(TradeReport, TheChartRingsTheFront) {
   TradeReport report = MadeUpReport();
-  report.ways.push_back(MadeUpWay("levels", "9", 4.0, 0.5));
-  report.ways.back().same_as = 2;
-  report.ways.back().total_ms.upper = report.ways[2].total_ms.upper;  // not surely quicker
-  report.ways.push_back(MadeUpWay("precision", "8 bits", 3.0, 0.4));
-  report.ways.back().options.clear();  // nothing makes it
+  report.variants.push_back(MadeUpVariant("levels", "9", 4.0, 0.5));
+  report.variants.back().same_as = 2;
+  report.variants.back().total_ms.upper = report.variants[2].total_ms.upper;  // not surely quicker
+  report.variants.push_back(MadeUpVariant("precision", "8 bits", 3.0, 0.4));
+  report.variants.back().options.clear();  // nothing makes it
   const std::vector<bool> front = internal::OnFront(report);
   const auto ringed = [&report](internal::ChartTime time) {
     const std::string svg = internal::DrawTradeChart(report, {time, internal::ChartError::kBoth, true});
     std::vector<bool> rings;
-    for (std::size_t i = 0; i < report.ways.size(); ++i) {
+    for (std::size_t i = 0; i < report.variants.size(); ++i) {
       const std::size_t begin = svg.find(fmt::format("<a href=\"#way-{}\"", i + 1)), end = svg.find("</a>", begin);
       rings.push_back(svg.substr(begin, end - begin).find("class=\"ring\"") != std::string::npos);
     }
@@ -181,8 +187,8 @@ TEST(TradeReport, TheChartRingsTheFront) {
   };
   EXPECT_EQ(ringed(internal::ChartTime::kTotal), front);
   EXPECT_FALSE(front[6] || front[7]);
-  EXPECT_EQ(ringed(internal::ChartTime::kMemory), std::vector<bool>(report.ways.size(), false));
-  report.ways[7].options = "--anything";
+  EXPECT_EQ(ringed(internal::ChartTime::kMemory), std::vector<bool>(report.variants.size(), false));
+  report.variants[7].options = "--anything";
   EXPECT_EQ(ringed(internal::ChartTime::kTotal), internal::OnFront(report));
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{7}) << "otherwise it would be the best of all";
 }
@@ -197,10 +203,10 @@ TEST(TradeReport, TheChartRingsNothingThatIsChance) {
     return count;
   };
   const int before = rings();
-  report.ways.push_back(MadeUpWay("seed", "+1", 1, 0));
-  report.ways.back().by_chance = true;
+  report.variants.push_back(MadeUpVariant("seed", "+1", 1, 0));
+  report.variants.back().by_chance = true;
   EXPECT_EQ(rings(), before);
-  report.ways.back().by_chance = false;
+  report.variants.back().by_chance = false;
   EXPECT_LT(rings(), before) << "it would be better than all";
 }
 
@@ -210,10 +216,10 @@ TEST(TradeReport, AxesComeInTheOrderInWhichTheyAreFirstNamed) {
 
 TEST(TradeReport, PictureNamesAreUniqueAndSafeForEveryFileSystem) {
   TradeReport report = HostileReport();
-  report.ways.push_back(report.ways[1]);
-  report.ways[2].name = "../..";
+  report.variants.push_back(report.variants[1]);
+  report.variants[2].name = "../..";
   std::set<std::string> names;
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
     const std::string name = TradePictureName(report, i);
     EXPECT_TRUE(names.insert(name).second) << name;
     EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-."), std::string::npos) << name;
@@ -227,48 +233,48 @@ TEST(TradeReport, PictureNamesAreUniqueAndSafeForEveryFileSystem) {
 TEST(TradeReport, CsvReadsBackToTheSameTextsAndValues) {
   const TradeReport report = HostileReport();
   const Rows rows = ParseCsv(TradeCsv(report));
-  ASSERT_EQ(rows.size(), report.ways.size() + 1);
+  ASSERT_EQ(rows.size(), report.variants.size() + 1);
   const std::set<std::size_t> front = PlainFront(report);
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
     ASSERT_EQ(rows[i + 1].size(), rows[0].size());
-    const TradeMeasure& way = report.ways[i];
-    EXPECT_EQ(FieldOf(rows, i, "way"), way.name);
-    EXPECT_EQ(FieldOf(rows, i, "axis"), way.axis);
-    EXPECT_EQ(FieldOf(rows, i, "value"), way.value);
-    EXPECT_EQ(FieldOf(rows, i, "options"), way.options);
-    EXPECT_EQ(FieldOf(rows, i, "note"), way.note);
+    const TradeMeasure& variant = report.variants[i];
+    EXPECT_EQ(FieldOf(rows, i, "way"), variant.name);
+    EXPECT_EQ(FieldOf(rows, i, "axis"), variant.axis);
+    EXPECT_EQ(FieldOf(rows, i, "value"), variant.value);
+    EXPECT_EQ(FieldOf(rows, i, "options"), variant.options);
+    EXPECT_EQ(FieldOf(rows, i, "note"), variant.note);
     EXPECT_EQ(FieldOf(rows, i, "front"), front.count(i) ? "1" : "0");
     EXPECT_EQ(FieldOf(rows, i, "chosen"), i == 0 ? "1" : "0");
     EXPECT_EQ(FieldOf(rows, i, "exact"), i == 5 ? "1" : "0");
-    EXPECT_EQ(NumberOf(rows, i, "guides_ms_median"), way.guides_ms.median);
-    EXPECT_EQ(NumberOf(rows, i, "transfer_ms_lower_quartile"), way.transfer_ms.lower);
-    EXPECT_EQ(NumberOf(rows, i, "total_ms_upper_quartile"), way.total_ms.upper);
-    EXPECT_EQ(NumberOf(rows, i, "prepare_ms"), way.prepare_ms);
-    EXPECT_EQ(NumberOf(rows, i, "memory_bytes"), double(way.memory_bytes));
-    EXPECT_EQ(NumberOf(rows, i, "both"), way.both.mean);
-    EXPECT_EQ(NumberOf(rows, i, "both_standard_error"), way.both.standard_error);
-    EXPECT_EQ(NumberOf(rows, i, "energy"), way.energy.mean);
-    EXPECT_EQ(NumberOf(rows, i, "missing_standard_error"), way.missing.standard_error);
-    EXPECT_EQ(NumberOf(rows, i, "guide_degrees"), *way.guide_degrees);
-    EXPECT_EQ(NumberOf(rows, i, "coherence"), *way.coherence);
-    EXPECT_EQ(NumberOf(rows, i, "chunk_area_pixels"), *way.chunk_area);
-    EXPECT_EQ(NumberOf(rows, i, "seam_excess"), *way.seam_excess);
-    EXPECT_EQ(NumberOf(rows, i, "repetition"), *way.repetition);
+    EXPECT_EQ(NumberOf(rows, i, "guides_ms_median"), variant.guides_ms.median);
+    EXPECT_EQ(NumberOf(rows, i, "transfer_ms_lower_quartile"), variant.transfer_ms.lower);
+    EXPECT_EQ(NumberOf(rows, i, "total_ms_upper_quartile"), variant.total_ms.upper);
+    EXPECT_EQ(NumberOf(rows, i, "prepare_ms"), variant.prepare_ms);
+    EXPECT_EQ(NumberOf(rows, i, "memory_bytes"), double(variant.memory_bytes));
+    EXPECT_EQ(NumberOf(rows, i, "both"), variant.both.mean);
+    EXPECT_EQ(NumberOf(rows, i, "both_standard_error"), variant.both.standard_error);
+    EXPECT_EQ(NumberOf(rows, i, "energy"), variant.energy.mean);
+    EXPECT_EQ(NumberOf(rows, i, "missing_standard_error"), variant.missing.standard_error);
+    EXPECT_EQ(NumberOf(rows, i, "guide_degrees"), *variant.guide_degrees);
+    EXPECT_EQ(NumberOf(rows, i, "coherence"), *variant.coherence);
+    EXPECT_EQ(NumberOf(rows, i, "chunk_area_pixels"), *variant.chunk_area);
+    EXPECT_EQ(NumberOf(rows, i, "seam_excess"), *variant.seam_excess);
+    EXPECT_EQ(NumberOf(rows, i, "repetition"), *variant.repetition);
     EXPECT_EQ(FieldOf(rows, i, "guide_rms"), i == 3 ? "0.001" : "");
     EXPECT_EQ(FieldOf(rows, i, "guide_flip"), i == 3 ? "0.02" : "");
     EXPECT_EQ(FieldOf(rows, i, "picture"), TradePictureName(report, i));
   }
 }
 
-// What was not measured, in all ways to say so; and what was measured and is no number.
+// What was not measured, in all variants to say so; and what was measured and is no number.
 TradeReport HalfMeasured() {
   TradeReport report = MadeUpReport();
-  TradeMeasure& way = report.ways[1];
-  way = {};
-  way.name = way.axis = "untimed";
-  way.both.mean = way.energy.mean = way.missing.mean = kNoNumber;
-  report.ways[2].repetition = kNoNumber;
-  report.ways[2].chunk_area = -std::numeric_limits<double>::infinity();
+  TradeMeasure& variant = report.variants[1];
+  variant = {};
+  variant.name = variant.axis = "untimed";
+  variant.both.mean = variant.energy.mean = variant.missing.mean = kNoNumber;
+  report.variants[2].repetition = kNoNumber;
+  report.variants[2].chunk_area = -std::numeric_limits<double>::infinity();
   return report;
 }
 
@@ -310,27 +316,27 @@ TEST(TradeReport, JsonHasTheFiguresOfTheCsv) {
   EXPECT_EQ(json["width"], 960);
   EXPECT_EQ(json["lambda"], 10.0);
   EXPECT_EQ(json["command"], report.command);
-  ASSERT_EQ(json["ways"].size(), report.ways.size());
+  ASSERT_EQ(json["ways"].size(), report.variants.size());
   std::vector<std::string> front;
-  for (const std::size_t i : FrontOf(report)) front.push_back(report.ways[i].name);
+  for (const std::size_t i : FrontOf(report)) front.push_back(report.variants[i].name);
   EXPECT_EQ(json["front"], front);
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const auto& way = json["ways"][i];
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
+    const auto& variant = json["ways"][i];
     for (const char* text : {"way", "axis", "value", "options", "note", "picture"})
-      EXPECT_EQ(way[text], FieldOf(rows, i, text));
-    for (const char* flag : {"chosen", "exact", "front"}) EXPECT_EQ(way[flag], FieldOf(rows, i, flag) == "1");
+      EXPECT_EQ(variant[text], FieldOf(rows, i, text));
+    for (const char* flag : {"chosen", "exact", "front"}) EXPECT_EQ(variant[flag], FieldOf(rows, i, flag) == "1");
     for (const std::string time : {"guides_ms", "transfer_ms", "total_ms"}) {
-      EXPECT_EQ(way[time]["median"], NumberOf(rows, i, time + "_median"));
-      EXPECT_EQ(way[time]["lower_quartile"], NumberOf(rows, i, time + "_lower_quartile"));
-      EXPECT_EQ(way[time]["upper_quartile"], NumberOf(rows, i, time + "_upper_quartile"));
+      EXPECT_EQ(variant[time]["median"], NumberOf(rows, i, time + "_median"));
+      EXPECT_EQ(variant[time]["lower_quartile"], NumberOf(rows, i, time + "_lower_quartile"));
+      EXPECT_EQ(variant[time]["upper_quartile"], NumberOf(rows, i, time + "_upper_quartile"));
     }
     for (const std::string error : {"both", "energy", "missing"}) {
-      EXPECT_EQ(way[error]["mean"], NumberOf(rows, i, error));
-      EXPECT_EQ(way[error]["standard_error"], NumberOf(rows, i, error + "_standard_error"));
+      EXPECT_EQ(variant[error]["mean"], NumberOf(rows, i, error));
+      EXPECT_EQ(variant[error]["standard_error"], NumberOf(rows, i, error + "_standard_error"));
     }
-    for (const char* figure :
-         {"prepare_ms", "memory_bytes", "guide_degrees", "coherence", "chunk_area_pixels", "seam_excess", "repetition"}) {
-      EXPECT_EQ(way[figure], NumberOf(rows, i, figure)) << figure;
+    for (const char* figure : {"prepare_ms", "memory_bytes", "guide_degrees", "coherence", "chunk_area_pixels",
+                               "seam_excess", "repetition"}) {
+      EXPECT_EQ(variant[figure], NumberOf(rows, i, figure)) << figure;
     }
   }
   EXPECT_EQ(json["ways"][3]["guide_rms"], 0.001);
@@ -361,12 +367,12 @@ TEST(TradeReport, JsonTakesNamesThatAreNotUtf8) {
 
 TEST(TradeReport, TheTableHasALineForEachWayMarksTheFrontAndFitsATerminal) {
   TradeReport report = MadeUpReport();
-  report.ways[4].name = "a name that is longer than any way has ever had and so is cut – somewhere here";
-  report.ways[1].total_ms = {10.0, 9.99e3, 1.0e4};
+  report.variants[4].name = "a name that is longer than any way has ever had and so is cut – somewhere here";
+  report.variants[1].total_ms = {10.0, 9.99e3, 1.0e4};
   const std::vector<std::string> lines = LinesOf(TradeTable(report));
   for (const std::string& line : lines) EXPECT_LE(Characters(line), 120u) << line;
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
-    const std::string start = report.ways[i].name.substr(0, 8);
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
+    const std::string start = report.variants[i].name.substr(0, 8);
     const auto line =
         std::find_if(lines.begin(), lines.end(), [&](const std::string& each) { return each.find(start) == 2; });
     ASSERT_NE(line, lines.end()) << start;
@@ -381,8 +387,8 @@ TEST(TradeReport, TheTableHasALineForEachWayMarksTheFrontAndFitsATerminal) {
 
 TEST(TradeReport, TheTableSaysNotesAndTheErrorOfGuides) {
   TradeReport report = MadeUpReport();
-  report.ways[2].note = "left out";
-  report.ways[2].guide_rms = report.ways[2].guide_flip = 0.0;  // the exact ones themselves need no line
+  report.variants[2].note = "left out";
+  report.variants[2].guide_rms = report.variants[2].guide_flip = 0.0;  // the exact ones themselves need no line
   const std::string table = TradeTable(report);
   EXPECT_NE(table.find("  radius 0: left out\n"), std::string::npos);
   EXPECT_NE(table.find("0.0200"), std::string::npos) << "FLIP";

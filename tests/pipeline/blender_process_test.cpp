@@ -1,5 +1,5 @@
-// How Blender is run: in whose environment, what a signal leaves behind, and what a failure says. Scripts of a few lines
-// stand in for it.
+// How Blender is run: in whose environment, what a signal leaves behind, and what a failure says. Scripts of a few
+// lines stand in for it.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -95,8 +95,8 @@ TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
   EXPECT_FALSE(Exists("g.exr"));
 }
 
-// While a frame of a range is cast, nobody waits for Blender, which may be at work or have ended. The casting alone would
-// take longer than the test has patience.
+// While a frame of a range is cast, nobody waits for Blender, which may be at work or have ended. The casting alone
+// would take longer than the test has patience.
 TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
   fs::create_directory(At("tmp"));
   const Setting temporary("TMPDIR", At("tmp").string());
@@ -110,8 +110,11 @@ TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
   for (const auto& [last_words, signal] : {std::pair("sleep 50", SIGTERM), {"exit 0", SIGINT}}) {
     WriteProgram("blender",
                  "while [ \"$1\" != --output ]; do shift; done; folder=$(dirname \"$2\")\n"
-                 "for frame in 1 2; do cp " + Scene("suzanne.glb") + " \"$folder/part\"; "
-                 "mv \"$folder/part\" \"$folder/scene.$frame.glb\"; done; echo $$ > self; " + last_words);
+                 "for frame in 1 2; do cp " +
+                     Scene("suzanne.glb") +
+                     " \"$folder/part\"; "
+                     "mv \"$folder/part\" \"$folder/scene.$frame.glb\"; done; echo $$ > self; " +
+                     last_words);
     fs::remove(At("self"));
     const pid_t child = Start({"guidegen", "shot.blend", "--blender", "./blender", "--frames", "1-2", "--size", "1024",
                                "--layers", "lpe.full", "--samples", "65536", "-o", "g.#.exr"});

@@ -35,30 +35,31 @@ class MemoryCache : public TableCache {
   int stores = 0;
 };
 
-// Ways whose runs take what is listed, over and over.
+// Variants whose runs take what is listed, over and over.
 struct FakeClock {
   std::vector<std::vector<double>> ms;
   std::vector<int> runs = std::vector<int>(ms.size(), 0);
 
-  MeasureWay Measure() {
-    return [this](std::size_t way) -> Expected<double> {
-      const auto run = static_cast<std::size_t>(runs[way]++);
-      return ms[way][run % ms[way].size()];
+  MeasureVariant Measure() {
+    return [this](std::size_t variant) -> Expected<double> {
+      const auto run = static_cast<std::size_t>(runs[variant]++);
+      return ms[variant][run % ms[variant].size()];
     };
   }
   int Total() const { return std::accumulate(runs.begin(), runs.end(), 0); }
 };
 
-Calibration Ladder(std::size_t ways, TableCache* cache = nullptr) {
+Calibration Ladder(std::size_t variants, TableCache* cache = nullptr) {
   Calibration calibration{"a machine and a scene", {}, cache, false};
-  for (std::size_t way = 0; way < ways; ++way) calibration.ways.push_back("way " + std::to_string(way));
+  for (std::size_t variant = 0; variant < variants; ++variant)
+    calibration.variants.push_back("way " + std::to_string(variant));
   return calibration;
 }
 
-PickedWay MustPick(const Calibration& calibration, double budget_ms, FakeClock& clock) {
-  const auto picked = PickWay(calibration, budget_ms, clock.Measure());
+PickedVariant MustPick(const Calibration& calibration, double budget_ms, FakeClock& clock) {
+  const auto picked = PickVariant(calibration, budget_ms, clock.Measure());
   EXPECT_TRUE(picked.ok());
-  return picked.ok() ? *picked : PickedWay();
+  return picked.ok() ? *picked : PickedVariant();
 }
 
 // slowest + (slowest − median) + what a cold start adds, by hand.
@@ -72,15 +73,15 @@ TEST(Calibration, WhatIsPredictedLiesAsFarBeyondTheSlowestAsThatIsBeyondTheMedia
   EXPECT_EQ(PredictedMs({}, 1.0), std::numeric_limits<double>::infinity());
 }
 
-// The last way's first run takes 35 ms, its later ones 10: 25 ms are the process's, and come to any way's time.
+// The last variant's first run takes 35 ms, its later ones 10: 25 ms are the process's, and come to any way's time.
 TEST(Calibration, AProcessThatHasJustBegunTakesLonger) {
   std::vector<double> last(30, 10.0);
   last.front() = 35.0;
   FakeClock clock{{{20.0}, last}};
   EXPECT_EQ(MustPick(Ladder(2), 45.0, clock).predicted_ms, 45.0);
   FakeClock again{clock.ms};
-  const PickedWay picked = MustPick(Ladder(2), 44.0, again);
-  EXPECT_EQ(picked.way, 1u);
+  const PickedVariant picked = MustPick(Ladder(2), 44.0, again);
+  EXPECT_EQ(picked.variant, 1u);
   EXPECT_EQ(picked.predicted_ms, 35.0);
   EXPECT_EQ(again.runs[1], 1 + kCalibrationRuns) << "the cold one is not one of the nine";
 }
@@ -120,34 +121,34 @@ TEST(Calibration, NineRunsOfTenAreWithinTheSlowestOfNineWhateverTheirSpread) {
 
 TEST(Calibration, TheMostAccurateThatFitsIsTakenAndNothingBelowItIsMeasured) {
   FakeClock clock{{{50.0}, {30.0}, {20.0}, {5.0}}};
-  const PickedWay picked = MustPick(Ladder(4), 30.0, clock);
-  EXPECT_EQ(picked.way, 1u);
+  const PickedVariant picked = MustPick(Ladder(4), 30.0, clock);
+  EXPECT_EQ(picked.variant, 1u);
   EXPECT_TRUE(picked.fits);
   EXPECT_EQ(picked.predicted_ms, 30.0);
   EXPECT_EQ(picked.measured, 1 + kCalibrationRuns + 2) << "what is too slow costs one run";
   EXPECT_EQ(clock.runs, (std::vector<int>{1, kCalibrationRuns, 0, 3})) << "the last one tells what a cold start costs";
 }
 
-// Times need not fall along the ladder: a way further down that is slower is passed over like any other.
+// Times need not fall along the ladder: a variant further down that is slower is passed over like any other.
 TEST(Calibration, ASlowerWayFurtherDownIsPassedOver) {
   FakeClock clock{{{50.0}, {70.0}, {20.0}}};
-  EXPECT_EQ(MustPick(Ladder(3), 40.0, clock).way, 2u);
+  EXPECT_EQ(MustPick(Ladder(3), 40.0, clock).variant, 2u);
 }
 
 TEST(Calibration, AWayThatFitsButForItsSpreadIsTooSlow) {
   // Nine runs: 20 seven times, 29 twice; slowest 29, median 20, predicted 38.
   FakeClock clock{{{20.0, 20.0, 20.0, 29.0, 20.0, 20.0, 29.0, 20.0, 20.0}, {10.0}}};
-  EXPECT_EQ(MustPick(Ladder(2), 30.0, clock).way, 1u);
+  EXPECT_EQ(MustPick(Ladder(2), 30.0, clock).variant, 1u);
   FakeClock again{clock.ms};
-  const PickedWay enough = MustPick(Ladder(2), 38.0, again);
-  EXPECT_EQ(enough.way, 0u);
+  const PickedVariant enough = MustPick(Ladder(2), 38.0, again);
+  EXPECT_EQ(enough.variant, 0u);
   EXPECT_EQ(enough.predicted_ms, 38.0);
 }
 
 TEST(Calibration, WhereNothingFitsTheQuickestIsTakenAndItsTimeNamed) {
   FakeClock clock{{{50.0}, {9.0}, {20.0}}};
-  const PickedWay picked = MustPick(Ladder(3), 5.0, clock);
-  EXPECT_EQ(picked.way, 1u) << "the quickest, wherever it stands";
+  const PickedVariant picked = MustPick(Ladder(3), 5.0, clock);
+  EXPECT_EQ(picked.variant, 1u) << "the quickest, wherever it stands";
   EXPECT_FALSE(picked.fits);
   EXPECT_EQ(picked.predicted_ms, 9.0);
   EXPECT_EQ(clock.runs[1], kCalibrationRuns);
@@ -156,47 +157,48 @@ TEST(Calibration, WhereNothingFitsTheQuickestIsTakenAndItsTimeNamed) {
   EXPECT_EQ(slow.runs[1], kHopelessRuns) << "over twice the budget: more runs would change nothing";
 }
 
-// What another process keeps while this one measures is not lost: it had a larger budget, and has measured the first way.
+// What another process keeps while this one measures is not lost: it had a larger budget, and has measured the first
+// way.
 TEST(Calibration, TimesOfTwoProcessesAreJoined) {
   MemoryCache cache;
   FakeClock one{{{50.0}, {30.0}, {5.0}}}, other{one.ms};
   bool begun = false;
-  const MeasureWay measure = [&](std::size_t way) -> Expected<double> {
+  const MeasureVariant measure = [&](std::size_t variant) -> Expected<double> {
     if (!std::exchange(begun, true)) {
-      EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, other).way, 0u);
+      EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, other).variant, 0u);
     }
-    return one.Measure()(way);
+    return one.Measure()(variant);
   };
-  const auto picked = PickWay(Ladder(3, &cache), 30.0, measure);
+  const auto picked = PickVariant(Ladder(3, &cache), 30.0, measure);
   ASSERT_TRUE(picked.ok());
-  EXPECT_EQ(picked->way, 1u);
+  EXPECT_EQ(picked->variant, 1u);
   FakeClock later{one.ms};
-  EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, later).way, 0u);
-  EXPECT_EQ(MustPick(Ladder(3, &cache), 30.0, later).way, 1u);
+  EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, later).variant, 0u);
+  EXPECT_EQ(MustPick(Ladder(3, &cache), 30.0, later).variant, 1u);
   EXPECT_EQ(later.Total(), 0);
 }
 
-// Times were kept on a busy machine. While one process measures one more way, another measures all of them anew: what was known
-// before, the cost of a first run too, does not come back.
+// Times were kept on a busy machine. While one process measures one more way, another measures all of them anew: what
+// was known before, the cost of a first run too, does not come back.
 TEST(Calibration, WhatAnotherProcessMeasuresAnewStays) {
   MemoryCache cache;
   FakeClock busy{{{90.0}, {30.0}, {25.0, 5.0, 5.0}}}, quiet{{{40.0}, {10.0}, {4.0}}};
   EXPECT_EQ(MustPick(Ladder(3, &cache), 60.0, busy).predicted_ms, 50.0) << "30, and 20 for the first run";
   bool begun = false;
-  const MeasureWay measure = [&](std::size_t way) -> Expected<double> {
+  const MeasureVariant measure = [&](std::size_t variant) -> Expected<double> {
     if (!std::exchange(begun, true)) {
       Calibration anew = Ladder(3, &cache);
       anew.anew = true;
-      EXPECT_EQ(MustPick(anew, 20.0, quiet).way, 1u);
+      EXPECT_EQ(MustPick(anew, 20.0, quiet).variant, 1u);
     }
-    return busy.Measure()(way);
+    return busy.Measure()(variant);
   };
-  const auto picked = PickWay(Ladder(3, &cache), 200.0, measure);
+  const auto picked = PickVariant(Ladder(3, &cache), 200.0, measure);
   ASSERT_TRUE(picked.ok());
-  EXPECT_EQ(picked->way, 0u);
+  EXPECT_EQ(picked->variant, 0u);
   FakeClock never{{{1e9}, {1e9}, {1e9}}};
-  const PickedWay later = MustPick(Ladder(3, &cache), 20.0, never);
-  EXPECT_EQ(later.way, 1u);
+  const PickedVariant later = MustPick(Ladder(3, &cache), 20.0, never);
+  EXPECT_EQ(later.variant, 1u);
   EXPECT_EQ(later.predicted_ms, 10.0);
   EXPECT_EQ(never.Total(), 0);
 }
@@ -206,18 +208,18 @@ TEST(Calibration, KnownTimesAreNotMeasuredAgain) {
   FakeClock clock{{{50.0}, {30.0}, {5.0}}};
   MustPick(Ladder(3, &cache), 30.0, clock);
   const int first = clock.Total();
-  const PickedWay again = MustPick(Ladder(3, &cache), 30.0, clock);
-  EXPECT_EQ(again.way, 1u);
+  const PickedVariant again = MustPick(Ladder(3, &cache), 30.0, clock);
+  EXPECT_EQ(again.variant, 1u);
   EXPECT_EQ(again.predicted_ms, 30.0);
   EXPECT_EQ(again.measured, 0);
   EXPECT_EQ(clock.Total(), first);
   EXPECT_EQ(cache.stores, 1) << "nothing new, nothing written";
   // A larger budget: what was given up at its first run is measured to the end, the others are known.
-  const PickedWay more = MustPick(Ladder(3, &cache), 60.0, clock);
-  EXPECT_EQ(more.way, 0u);
+  const PickedVariant more = MustPick(Ladder(3, &cache), 60.0, clock);
+  EXPECT_EQ(more.variant, 0u);
   EXPECT_EQ(more.measured, kCalibrationRuns - 1);
   // A smaller one: 30 is known to be too much.
-  EXPECT_EQ(MustPick(Ladder(3, &cache), 10.0, clock).way, 2u);
+  EXPECT_EQ(MustPick(Ladder(3, &cache), 10.0, clock).variant, 2u);
 }
 
 TEST(Calibration, OtherCircumstancesHaveOtherTimes) {
@@ -227,7 +229,7 @@ TEST(Calibration, OtherCircumstancesHaveOtherTimes) {
   MustPick(ladder, 40.0, clock);
   FakeClock quicker{{{20.0}, {10.0}}};
   ladder.circumstances = "another machine";
-  EXPECT_EQ(MustPick(ladder, 40.0, quicker).way, 0u);
+  EXPECT_EQ(MustPick(ladder, 40.0, quicker).variant, 0u);
   EXPECT_EQ(cache.kept.size(), 2u);
 }
 
@@ -235,85 +237,88 @@ TEST(Calibration, AnewForgetsWhatWasKept) {
   MemoryCache cache;
   FakeClock slow{{{50.0}, {30.0}}}, quick{{{20.0}, {10.0}}};
   Calibration ladder = Ladder(2, &cache);
-  EXPECT_EQ(MustPick(ladder, 40.0, slow).way, 1u);
-  EXPECT_EQ(MustPick(ladder, 40.0, quick).way, 1u) << "times are kept";
+  EXPECT_EQ(MustPick(ladder, 40.0, slow).variant, 1u);
+  EXPECT_EQ(MustPick(ladder, 40.0, quick).variant, 1u) << "times are kept";
   ladder.anew = true;
-  EXPECT_EQ(MustPick(ladder, 40.0, quick).way, 0u);
+  EXPECT_EQ(MustPick(ladder, 40.0, quick).variant, 0u);
   ladder.anew = false;
   FakeClock never{{{1e9}, {1e9}}};
-  EXPECT_EQ(MustPick(ladder, 40.0, never).way, 0u) << "the new times are kept";
+  EXPECT_EQ(MustPick(ladder, 40.0, never).variant, 0u) << "the new times are kept";
   EXPECT_EQ(never.Total(), 0);
 }
 
 TEST(Calibration, ABrokenCacheIsMeasuredOver) {
   const std::string runs10 = "[1,1,1,1,1,1,1,1,1,1]";
-  for (const std::string& text :
-       {std::string(), std::string("{"), std::string("[]"), std::string("{\"ways\": {}}"),
-        std::string(R"({"circumstances": "others", "cold_ms": 0, "off": {}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "off": {}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "off": {}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": 1}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {"way 0": -1}, "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": [], "ways": {"way 0": [1]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": ["x"]}})"),
-        std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": [-1]}})"),
-        R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": )" + runs10 + "}}"}) {
+  for (
+      const std::string& text :
+      {std::string(), std::string("{"), std::string("[]"), std::string("{\"ways\": {}}"),
+       std::string(R"({"circumstances": "others", "cold_ms": 0, "off": {}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "off": {}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": -1, "off": {}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": 1}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "ways": {"way 0": [1]}})"),
+       std::string(
+           R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {"way 0": -1}, "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": [], "ways": {"way 0": [1]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": ["x"]}})"),
+       std::string(R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": [-1]}})"),
+       R"({"circumstances": "a machine and a scene", "cold_ms": 0, "off": {}, "ways": {"way 0": )" + runs10 + "}}"}) {
     MemoryCache cache;
     FakeClock clock{{{50.0}, {30.0}}};
     MustPick(Ladder(2, &cache), 40.0, clock);
     cache.Overwrite(text);
     FakeClock again{{{20.0}, {10.0}}};
-    EXPECT_EQ(MustPick(Ladder(2, &cache), 40.0, again).way, 0u) << text;
+    EXPECT_EQ(MustPick(Ladder(2, &cache), 40.0, again).variant, 0u) << text;
     EXPECT_EQ(again.runs[0], kCalibrationRuns) << text;
   }
 }
 
-// Ways 1 and 2 take 30 and 32 ms and are rivals; whichever is nearer is taken where both fit, and what was found is kept.
+// Variants 1 and 2 take 30 and 32 ms and are contenders; whichever is nearer is taken where both fit, and what was
+// found is kept.
 TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
   MemoryCache cache;
   Calibration ladder = Ladder(4, &cache);
-  ladder.rivals = {{1, 2}};
+  ladder.contenders = {{1, 2}};
   std::vector<double> off = {0.0, 0.5, 0.4, 0.0};
   int judged = 0;
-  const JudgeWay judge = [&](std::size_t way) -> Expected<double> { return ++judged, off[way]; };
+  const MeasureErrorOf judge = [&](std::size_t variant) -> Expected<double> { return ++judged, off[variant]; };
   FakeClock clock{{{50.0}, {30.0}, {32.0}, {5.0}}};
   const auto pick = [&](double budget_ms) {
-    const auto picked = PickWay(ladder, budget_ms, clock.Measure(), judge);
+    const auto picked = PickVariant(ladder, budget_ms, clock.Measure(), judge);
     EXPECT_TRUE(picked.ok());
-    return picked.ok() ? *picked : PickedWay();
+    return picked.ok() ? *picked : PickedVariant();
   };
-  const PickedWay nearer = pick(40.0);
-  EXPECT_EQ(nearer.way, 2u);
+  const PickedVariant nearer = pick(40.0);
+  EXPECT_EQ(nearer.variant, 2u);
   EXPECT_EQ(nearer.predicted_ms, 32.0);
   EXPECT_EQ(nearer.compared, (std::map<std::size_t, double>{{1, 0.5}, {2, 0.4}}));
   EXPECT_EQ(judged, 2);
   const int runs = clock.Total();
-  EXPECT_EQ(pick(40.0).way, 2u);
+  EXPECT_EQ(pick(40.0).variant, 2u);
   EXPECT_EQ(judged, 2) << "it is kept";
   EXPECT_EQ(clock.Total(), runs);
-  EXPECT_EQ(pick(31.0).way, 1u) << "the rival is too slow";
+  EXPECT_EQ(pick(31.0).variant, 1u) << "the rival is too slow";
   EXPECT_TRUE(pick(31.0).compared.empty());
-  EXPECT_EQ(pick(60.0).way, 0u) << "what is above both is above the nearer, too";
+  EXPECT_EQ(pick(60.0).variant, 0u) << "what is above both is above the nearer, too";
   ladder.anew = true;
   off = {0.0, 0.4, 0.5, 0.0};
-  EXPECT_EQ(pick(40.0).way, 1u);
+  EXPECT_EQ(pick(40.0).variant, 1u);
   off = {0.0, 0.4, 0.4, 0.0};
-  EXPECT_EQ(pick(40.0).way, 1u) << "as near: the ladder's order";
+  EXPECT_EQ(pick(40.0).variant, 1u) << "as near: the ladder's order";
   const double unknown = std::numeric_limits<double>::infinity();
   off = {0.0, unknown, unknown, 0.0};
-  EXPECT_EQ(pick(40.0).way, 1u) << "not known: the ladder's order";
+  EXPECT_EQ(pick(40.0).variant, 1u) << "not known: the ladder's order";
   EXPECT_TRUE(pick(40.0).compared.empty());
   off = {0.0, unknown, 0.4, 0.0};
-  EXPECT_EQ(pick(40.0).way, 1u) << "one alone says nothing";
+  EXPECT_EQ(pick(40.0).variant, 1u) << "one alone says nothing";
   ladder.anew = false;
   judged = 0, off = {0.0, 0.5, 0.4, 0.0};
-  EXPECT_EQ(pick(40.0).way, 1u);
+  EXPECT_EQ(pick(40.0).variant, 1u);
   EXPECT_EQ(judged, 0) << "that it cannot be known is kept";
   ladder.judged = "another picture of the same cost";
   const int before = clock.Total();
-  EXPECT_EQ(pick(40.0).way, 2u);
+  EXPECT_EQ(pick(40.0).variant, 2u);
   EXPECT_EQ(judged, 2);
   EXPECT_EQ(clock.Total(), before) << "times are the same";
 }
@@ -324,15 +329,15 @@ TEST(Calibration, TimesOfWaysThatThereAreNoMoreDoNotCount) {
   FakeClock clock{{{50.0}, {30.0}, {5.0}}};
   MustPick(Ladder(3, &cache), 10.0, clock);
   Calibration less = Ladder(3, &cache);
-  less.ways = {"way 1"};
+  less.variants = {"way 1"};
   FakeClock one{{{30.0}}};
-  EXPECT_EQ(MustPick(less, 100.0, one).way, 0u);
+  EXPECT_EQ(MustPick(less, 100.0, one).variant, 0u);
 }
 
 TEST(Calibration, WhatCannotBeMeasuredIsAnError) {
   MemoryCache cache;
   int left = 3;
-  const auto picked = PickWay(Ladder(2, &cache), 10.0, [&](std::size_t) -> Expected<double> {
+  const auto picked = PickVariant(Ladder(2, &cache), 10.0, [&](std::size_t) -> Expected<double> {
     if (--left < 0) return InputError("the scene is gone");
     return 5.0;
   });

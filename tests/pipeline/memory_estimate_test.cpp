@@ -15,8 +15,9 @@ namespace {
 
 class MemoryNeedTest : public CliTest {
  protected:
-  // The estimate is the most that there may be: pixels that are covered from edge to edge, paint and guides that do not pack at
-  // all, threads that are all at work. So what is counted is below it. It is no idle one either: above a quarter.
+  // The estimate is the most that there may be: pixels that are covered from edge to edge, paint and guides that do not
+  // pack at all, threads that are all at work. So what is counted is below it. It is no idle one either: above a
+  // quarter.
   void ExpectHonest(const Arguments& arguments) {
     const nlohmann::json json = RunOk(With(arguments, {"--json", "--threads", "2"})).Json()["memory"];
     ASSERT_TRUE(json.is_object()) << Joined(arguments);
@@ -30,7 +31,8 @@ class MemoryNeedTest : public CliTest {
 #endif
   }
 
-  // Within the addresses of one plane of 16384² floats, as a shell limits them. Two threads, whose stacks take few of them.
+  // Within the addresses of one plane of 16384² floats, as a shell limits them. Two threads, whose stacks take few of
+  // them.
   void ExpectErrorInOnePlane(const Arguments& arguments, int code, const std::vector<std::string>& parts) {
     constexpr int kPlaneKilobytes = 16384 / 1024 * 16384 * 4;
     CommandSettings shell;
@@ -47,8 +49,10 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
     ExpectHonest({"transfer", "g.exr", "--style", "style", "-o", "p.png"});
     ExpectHonest({"stylize", Scene("suzanne.glb"), "--size", size, "--style", "style", "-o", "p.exr"});
   }
-  ExpectHonest({"guidegen", Scene("ball.glb"), "--size", "700", "--compression", "none", "--layers", "albedo,position", "-o", "g.exr"});
-  ExpectHonest({"guidegen", Scene("ball.glb"), "--size", "400", "--layers", "lpe.full", "--samples", "1", "-o", "g.exr"});
+  ExpectHonest({"guidegen", Scene("ball.glb"), "--size", "700", "--compression", "none", "--layers", "albedo,position",
+                "-o", "g.exr"});
+  ExpectHonest(
+      {"guidegen", Scene("ball.glb"), "--size", "400", "--layers", "lpe.full", "--samples", "1", "-o", "g.exr"});
   const Arguments stylize = {"stylize", Scene("ball.glb"), "--size", "800", "--style", "style"};
   ExpectHonest(With(stylize, {"-o", "p.tif"}));
   ExpectHonest(With(stylize, {"-o", "p.png", "--upsample", "2"}));
@@ -58,9 +62,9 @@ TEST_F(MemoryNeedTest, NothingTakesMoreThanItSays) {
   ExpectHonest({"sphere", "--size", "500", "-o", "kit"});
 }
 
-// A mesh of 8,192 triangles 48 times, and one of two 20,000 times: Embree has corners and a hierarchy for each of them. The
-// estimate has 340 bytes for a triangle and 40 for a vertex, of which triangles may share none, 220 for each further
-// instance of a triangle, and 2300 for an instance.
+// A mesh of 8,192 triangles 48 times, and one of two 20,000 times: Embree has corners and a hierarchy for each of them.
+// The estimate has 340 bytes for a triangle and 40 for a vertex, of which triangles may share none, 220 for each
+// further instance of a triangle, and 2300 for an instance.
 TEST_F(MemoryNeedTest, EveryInstanceTakesItsTriangles) {
   const auto bytes_of = [&](const std::string& scene) -> std::uint64_t {
     return RunOk({"guidegen", scene, "--explain", "--json"}).Json()["memory"]["parts"]["scene"];
@@ -135,18 +139,22 @@ TEST_F(MemoryNeedTest, ThePlanSaysHowMuchAndForWhat) {
   EXPECT_NE(RunOk({"guidegen", Scene("suzanne.glb"), "--explain"}).out.find("guides"), std::string::npos);
 }
 
-// The largest picture that there may be, under a gigabyte: 16384² pixels of guides alone are 7.5 GB. It is refused before
-// they are taken, which is why this test is quick, and nothing is written. Planes are taken without being touched, so what is
-// resident would not show that one was: but of 1 GiB of addresses, which is one plane of floats, the program itself has some,
-// and no plane has room. Told to try all the same, it does take one, and ends for want of memory.
+// The largest picture that there may be, under a gigabyte: 16384² pixels of guides alone are 7.5 GB. It is refused
+// before they are taken, which is why this test is quick, and nothing is written. Planes are taken without being
+// touched, so what is resident would not show that one was: but of 1 GiB of addresses, which is one plane of floats,
+// the program itself has some, and no plane has room. Told to try all the same, it does take one, and ends for want of
+// memory.
 TEST_F(MemoryNeedTest, TheLargestPictureIsRefusedUnderAGigabyte) {
   WriteStyle("style");
   WriteText("p.png", "old");
-  const Arguments huge = {"stylize", Scene("suzanne.glb"), "--size", "16384", "--style", "style", "-o", "p.png", "--max-memory", "1G"};
-  ExpectError(huge, 2, {"this takes up to ", " GiB of memory (program ", "guides 7.0 GiB", "picture 2.0 GiB", "--max-memory allows 1.0 GiB",
-                        "take a smaller --size, or fewer layers, or allow more"});
+  const Arguments huge = {"stylize", Scene("suzanne.glb"), "--size", "16384", "--style", "style", "-o",
+                          "p.png",   "--max-memory",       "1G"};
+  ExpectError(huge, 2,
+              {"this takes up to ", " GiB of memory (program ", "guides 7.0 GiB", "picture 2.0 GiB",
+               "--max-memory allows 1.0 GiB", "take a smaller --size, or fewer layers, or allow more"});
   EXPECT_EQ(Bytes("p.png"), "old");
-  ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "16384", "-o", "g.exr", "--max-memory", "1G"}, 2, {"guides 7.0 GiB"});
+  ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "16384", "-o", "g.exr", "--max-memory", "1G"}, 2,
+              {"guides 7.0 GiB"});
   EXPECT_FALSE(Exists("g.exr"));
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take terabytes of addresses
   ExpectErrorInOnePlane(huge, 2, {"guides 7.0 GiB", "--max-memory allows 1.0 GiB"});
@@ -158,13 +166,15 @@ TEST_F(MemoryNeedTest, TheLargestPictureIsRefusedUnderAGigabyte) {
 #endif
   ExpectError({"sphere", "--size", "8192", "-o", "kit", "--max-memory", "1G"}, 2, {"guides ", "--only png"});
   EXPECT_FALSE(Exists("kit"));
-  ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "9000", "--frames", "1-3", "-o", "f.#.exr", "--max-memory", "1G"}, 2,
-              {"frame that is written"});
+  ExpectError(
+      {"guidegen", Scene("suzanne.glb"), "--size", "9000", "--frames", "1-3", "-o", "f.#.exr", "--max-memory", "1G"}, 2,
+      {"frame that is written"});
   EXPECT_FALSE(Exists("f.1.exr"));
 }
 
-// An exemplar of 2048² pixels, 8 bytes each, in a few kilobytes that are damaged at their end: whether it is refused for its
-// size or its damage tells whether it was read. Guides of 300² have four floats a pixel, their picture has 8 bytes.
+// An exemplar of 2048² pixels, 8 bytes each, in a few kilobytes that are damaged at their end: whether it is refused
+// for its size or its damage tells whether it was read. Guides of 300² have four floats a pixel, their picture has 8
+// bytes.
 TEST_F(MemoryNeedTest, ExemplarsAreCountedBeforeTheyAreRead) {
   WriteStyle("style");
   std::vector<std::byte> png = *EncodePng(Picture(2048, 2048));
@@ -175,7 +185,8 @@ TEST_F(MemoryNeedTest, ExemplarsAreCountedBeforeTheyAreRead) {
   WriteGuideFile("ball.exr", Ball(300));
   for (const Arguments& arguments : {guidegen, stylize, {"transfer", "ball.exr", "--style", "style", "-o", "p.png"}}) {
     ExpectError(With(arguments, {"--max-memory", "31M"}), 2,
-                {"this takes up to 32 MiB of memory (styles 32 MiB), and --max-memory allows 31 MiB: take smaller exemplars, or allow more"});
+                {"this takes up to 32 MiB of memory (styles 32 MiB), and --max-memory allows 31 MiB: take smaller "
+                 "exemplars, or allow more"});
     ExpectError(With(arguments, {"--max-memory", "1G"}), 3, {"lit.png", "ends before its picture does"});
   }
   EXPECT_FALSE(Exists("p.png"));
@@ -184,8 +195,9 @@ TEST_F(MemoryNeedTest, ExemplarsAreCountedBeforeTheyAreRead) {
   WriteText("scene/style.toml", "[[exemplar]]\nimage = \"lit.png\"\nguides = \"../ball.exr\"\n");
   ExpectError({"transfer", "ball.exr", "--style", "scene", "-o", "p.png", "--max-memory", "1M"}, 2,
               {"(styles 2.1 MiB)", "take smaller exemplars"});
-  ExpectError({"transfer", "ball.exr", "--style", "scene", "--assign", "Nobody=style", "-o", "p.png", "--max-memory", "3M"}, 2,
-              {"(styles 34 MiB)"});
+  ExpectError(
+      {"transfer", "ball.exr", "--style", "scene", "--assign", "Nobody=style", "-o", "p.png", "--max-memory", "3M"}, 2,
+      {"(styles 34 MiB)"});
 }
 
 TEST_F(MemoryNeedTest, GuidesOfAFileAreLookedAtBeforeTheyAreRead) {
@@ -198,8 +210,8 @@ TEST_F(MemoryNeedTest, GuidesOfAFileAreLookedAtBeforeTheyAreRead) {
   RunOk(With(transfer, {"--max-memory", "1G"}));
 }
 
-// Pictures of materials are counted by their headers, eight bytes a pixel, where a layer needs them, and refused before they
-// are decoded.
+// Pictures of materials are counted by their headers, eight bytes a pixel, where a layer needs them, and refused before
+// they are decoded.
 TEST_F(MemoryNeedTest, TexturesAreCountedBeforeTheyAreDecoded) {
   WriteText("t.obj", "mtllib t.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
   WriteText("t.mtl", "newmtl m\nmap_Kd t.png\n");
@@ -213,7 +225,8 @@ TEST_F(MemoryNeedTest, TexturesAreCountedBeforeTheyAreDecoded) {
   EXPECT_LT(bare, 8 * pixels);
   EXPECT_EQ(scene_bytes("albedo") - bare, 8 * pixels);
   const Arguments guidegen = {"guidegen", "t.obj", "--size", "64", "-o", "g.exr", "--threads", "2"};
-  ExpectError(With(guidegen, {"--layers", "albedo", "--max-memory", "50M"}), 2, {"scene 23 MiB", "--max-memory allows"});
+  ExpectError(With(guidegen, {"--layers", "albedo", "--max-memory", "50M"}), 2,
+              {"scene 23 MiB", "--max-memory allows"});
   EXPECT_FALSE(Exists("g.exr"));
   RunOk(With(guidegen, {"--max-memory", "50M"}));
   WriteText("t.mtl", "newmtl m\nmap_Kd t.jpg\n");
@@ -223,8 +236,8 @@ TEST_F(MemoryNeedTest, TexturesAreCountedBeforeTheyAreDecoded) {
 TEST_F(MemoryNeedTest, AmountsThatAreNone) {
   WriteStyle("style");
   for (const char* wrong : {"0", "-1G", "4X", "", "nan"}) {
-    ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "16", "-o", "g.exr", "--max-memory=" + std::string(wrong)}, 2,
-                {"--max-memory"});
+    ExpectError({"guidegen", Scene("suzanne.glb"), "--size", "16", "-o", "g.exr", "--max-memory=" + std::string(wrong)},
+                2, {"--max-memory"});
   }
 }
 

@@ -26,9 +26,9 @@ class MemoryLimitTest : public testing::Test {
     Write("proc/self/status", "Name:\tscumble\nVmSize:\t  204800 kB\nVmHWM:\t  120000 kB\nVmRSS:\t  102400 kB\n");
   }
   MemoryLimit Limit(std::uint64_t asked = 0) const {
-    Globals globals;
-    globals.max_memory = asked;
-    return LimitFor(globals, root_ / "");
+    RunContext context;
+    context.max_memory = asked;
+    return LimitFor(context, root_ / "");
   }
   TemporaryFolder root_;
 };
@@ -79,7 +79,7 @@ TEST_F(MemoryLimitTest, DamagedFilesTellNothing) {
 TEST(MemoryNeed, ThePeakIsTheLargestSum) {
   MemoryNeed need;
   need.Take("a", 100);
-  need.Briefly("b", 50);
+  need.TakeTransient("b", 50);
   EXPECT_EQ(need.peak(), 150u);
   need.Take("c", 30);
   EXPECT_EQ(need.peak(), 150u) << "b was given back before";
@@ -100,9 +100,10 @@ TEST(MemoryNeed, TheRefusalSaysHowMuchWhatForHowMuchThereIsAndWhatToDo) {
   const Status asked = CheckMemory(need, MemoryLimit{kGiga, "--max-memory allows", true}, "take a smaller --size");
   ASSERT_FALSE(asked);
   EXPECT_EQ(asked.error().kind, ErrorKind::kUsage);
-  EXPECT_EQ(asked.error().message,
-            "this takes up to 4.0 GiB of memory (guides 3.0 GiB, picture 1.0 GiB), and --max-memory allows 1.0 GiB: take a "
-            "smaller --size, or allow more");
+  EXPECT_EQ(
+      asked.error().message,
+      "this takes up to 4.0 GiB of memory (guides 3.0 GiB, picture 1.0 GiB), and --max-memory allows 1.0 GiB: take a "
+      "smaller --size, or allow more");
   const Status machine = CheckMemory(need, MemoryLimit{kGiga, "the machine has", false}, "take a smaller --size");
   ASSERT_FALSE(machine);
   EXPECT_EQ(machine.error().kind, ErrorKind::kMemory);
@@ -118,7 +119,8 @@ TEST(MemoryAmounts, AreReadInPowersOf1024) {
   EXPECT_EQ(bytes("64k"), 65536u);
   EXPECT_EQ(bytes("2T"), 2048 * kGiga);
   EXPECT_EQ(bytes("123456"), 123456u);
-  for (const char* wrong : {"", "0", "-1G", "4X", "4GB", "G", "1e99", "nan", "inf", "0.1", "99999999999T", " 4G", "4 G"}) {
+  for (const char* wrong :
+       {"", "0", "-1G", "4X", "4GB", "G", "1e99", "nan", "inf", "0.1", "99999999999T", " 4G", "4 G"}) {
     EXPECT_FALSE(ParseBytes(wrong)) << wrong;
   }
 }
@@ -134,23 +136,24 @@ TEST(MemoryAmounts, AreSaidWithTwoDigits) {
 
 // What takes much says so before it takes it; frames that take the same do not say it again.
 TEST(MuchMemory, IsSaidOnceBeforeItIsTaken) {
-  Globals globals;
-  globals.max_memory = 1024 * kGiga;
-  const auto said = [&](std::uint64_t bytes) {
+  std::string notes;
+  RunContext loud;
+  loud.max_memory = 1024 * kGiga;
+  loud.on_message = [&](const Message& message) { notes += message.text; };
+  const RunContext quiet = loud.WithoutNotes();
+  const auto noted = [&](const RunContext& context, std::uint64_t bytes) {
     MemoryNeed need;
     need.Take("guides", bytes);
-    testing::internal::CaptureStderr();
-    EXPECT_TRUE(CheckMemory(need, globals, "").ok());
-    return testing::internal::GetCapturedStderr();
+    notes.clear();
+    EXPECT_TRUE(CheckMemory(need, context, "").ok());
+    return notes;
   };
-  EXPECT_EQ(said(kMuchMemory - 1), "");
-  globals.quiet = true;
-  EXPECT_EQ(said(8 * kGiga), "");
-  globals.quiet = false;
-  EXPECT_EQ(said(8 * kGiga), "takes up to 8.0 GiB of memory; --max-memory allows 1.0 TiB\n");
-  EXPECT_EQ(said(8 * kGiga), "");
-  EXPECT_EQ(said(11 * kGiga), "");
-  EXPECT_EQ(said(12 * kGiga), "takes up to 12 GiB of memory; --max-memory allows 1.0 TiB\n");
+  EXPECT_EQ(noted(loud, kMuchMemory - 1), "");
+  EXPECT_EQ(noted(quiet, 8 * kGiga), "");
+  EXPECT_EQ(noted(loud, 8 * kGiga), "takes up to 8.0 GiB of memory; --max-memory allows 1.0 TiB");
+  EXPECT_EQ(noted(loud, 8 * kGiga), "");
+  EXPECT_EQ(noted(loud, 11 * kGiga), "");
+  EXPECT_EQ(noted(loud, 12 * kGiga), "takes up to 12 GiB of memory; --max-memory allows 1.0 TiB");
 }
 
 }  // namespace

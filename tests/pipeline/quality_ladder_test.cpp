@@ -1,4 +1,4 @@
-// The rungs of --quality and --budget-ms, by style and by what the user has decided.
+// The steps of --quality and --budget-ms, by style and by what the user has decided.
 #include "pipeline/variant/quality_ladder.h"
 
 #include <gtest/gtest.h>
@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/variant/trial_painter.h"
-#include "pipeline/frame/provenance.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
+#include "pipeline/frame/provenance.h"
+#include "pipeline/variant/trial_painter.h"
 
 namespace scumble {
 namespace {
@@ -20,22 +21,22 @@ namespace {
 constexpr LadderFrame kCast{true, 1280, 720, false}, kGiven{false, 1280, 720, true};
 
 StyleSet Open(const std::string& style, const std::vector<std::string>& sets = {}) {
-  StyleOptions options;
+  StyleRequest options;
   options.style = std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/" + style, options.sets = sets;
-  auto opened = OpenStyles(options);
+  auto opened = OpenStyles(options, RunContext());
   EXPECT_TRUE(opened.ok()) << (opened.ok() ? "" : opened.error().message);
   return opened.ok() ? std::move(*opened) : StyleSet();
 }
 
-std::vector<std::string> Names(const std::vector<Way>& ways) {
+std::vector<std::string> Names(const std::vector<Variant>& variants) {
   std::vector<std::string> names;
-  for (const Way& way : ways) names.push_back(way.name);
+  for (const Variant& variant : variants) names.push_back(variant.name);
   return names;
 }
 
-bool Sets(const std::vector<Way>& ways, const std::string& key) {
-  return std::any_of(ways.begin(), ways.end(), [&](const Way& way) {
-    return std::any_of(way.settings.begin(), way.settings.end(),
+bool Sets(const std::vector<Variant>& variants, const std::string& key) {
+  return std::any_of(variants.begin(), variants.end(), [&](const Variant& variant) {
+    return std::any_of(variant.settings.begin(), variant.settings.end(),
                        [&](const std::string& setting) { return setting.starts_with(key + "="); });
   });
 }
@@ -44,11 +45,11 @@ TEST(QualityLadder, BeginsWithTheStyleItselfAndNamesEachWayOnce) {
   for (const char* const style : {"oil", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
     const StyleSet styles = Open(style);
     for (const LadderFrame& frame : {kCast, kGiven}) {
-      const std::vector<Way> ways = QualityLadder(styles, frame);
-      ASSERT_GE(ways.size(), 2u) << style;
-      EXPECT_EQ(ways.front().name, "the style");
-      EXPECT_EQ(OptionsOf(ways.front()), "");
-      std::vector<std::string> names = Names(ways);
+      const std::vector<Variant> variants = QualityLadder(styles, frame);
+      ASSERT_GE(variants.size(), 2u) << style;
+      EXPECT_EQ(variants.front().name, "the style");
+      EXPECT_EQ(OptionsOf(variants.front()), "");
+      std::vector<std::string> names = Names(variants);
       std::sort(names.begin(), names.end());
       EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end()) << style;
     }
@@ -60,7 +61,7 @@ TEST(QualityLadder, GuidesAreSmallerOnlyWhereTheyMayBe) {
   const StyleSet styles = Open("oil");
   const auto factors = [&](const LadderFrame& frame) {
     std::vector<int> all;
-    for (const Way& way : QualityLadder(styles, frame)) all.push_back(UpsampleOf(way));
+    for (const Variant& variant : QualityLadder(styles, frame)) all.push_back(UpsampleOf(variant));
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
@@ -72,22 +73,22 @@ TEST(QualityLadder, GuidesAreSmallerOnlyWhereTheyMayBe) {
   EXPECT_EQ(factors(kGiven), (std::vector<int>{1}));
 }
 
-// Where light takes samples, sixteen and four of them stand right below the style as it is, and four in all that is below:
-// what they leave is noise, which lies far below a style's own error, and they take most of the time there is.
+// Where light takes samples, sixteen and four of them stand right below the style as it is, and four in all that is
+// below: what they leave is noise, which lies far below a style's own error, and they take most of the time there is.
 TEST(QualityLadder, SamplesGoFirstWhereThereAreAny) {
   LadderFrame frame = kCast;
   frame.samples = 64;
-  const std::vector<Way> ways = QualityLadder(Open("chiaroscuro"), frame);
-  ASSERT_GE(ways.size(), 5u);
-  EXPECT_EQ(ways[0].samples, 0) << "as many as the verb has";
-  EXPECT_EQ(ways[1].name, "--samples 16");
-  EXPECT_EQ(ways[2].name, "--samples 4");
-  EXPECT_EQ(ways[3].name, "--upsample 2 --samples 4");
-  for (std::size_t i = 2; i < ways.size(); ++i) EXPECT_EQ(ways[i].samples, 4) << ways[i].name;
+  const std::vector<Variant> variants = QualityLadder(Open("chiaroscuro"), frame);
+  ASSERT_GE(variants.size(), 5u);
+  EXPECT_EQ(variants[0].samples, 0) << "as many as the verb has";
+  EXPECT_EQ(variants[1].name, "--samples 16");
+  EXPECT_EQ(variants[2].name, "--samples 4");
+  EXPECT_EQ(variants[3].name, "--upsample 2 --samples 4");
+  for (std::size_t i = 2; i < variants.size(); ++i) EXPECT_EQ(variants[i].samples, 4) << variants[i].name;
   const auto most = [&](int samples) {
     frame.samples = samples;
     int all = 0;
-    for (const Way& way : QualityLadder(Open("chiaroscuro"), frame)) all = std::max(all, way.samples);
+    for (const Variant& variant : QualityLadder(Open("chiaroscuro"), frame)) all = std::max(all, variant.samples);
     return all;
   };
   EXPECT_EQ(most(17), 16);
@@ -95,9 +96,9 @@ TEST(QualityLadder, SamplesGoFirstWhereThereAreAny) {
   EXPECT_EQ(most(4), 0);
   EXPECT_EQ(most(0), 0) << "no choice";
   frame.samples = 64;
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kFinal, Open("chiaroscuro"), frame)), "");
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kPreview, Open("chiaroscuro"), frame)), "--upsample 2 --samples 4");
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, Open("chiaroscuro"), frame)),
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kFinal, Open("chiaroscuro"), frame)), "");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kPreview, Open("chiaroscuro"), frame)), "--upsample 2 --samples 4");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("chiaroscuro"), frame)),
             "--upsample 4 --samples 4 --set transfer.method=litsphere");
 }
 
@@ -108,7 +109,7 @@ TEST(QualityLadder, StylesThatAskForLight) {
   EXPECT_TRUE(AsksForLight(Open("oil", {"transfer.shadow=paint"}).styles.front()));
 }
 
-// Rungs hold nothing that the style has anyway, and nothing that makes its look.
+// LadderSteps hold nothing that the style has anyway, and nothing that makes its look.
 TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
   EXPECT_FALSE(Sets(QualityLadder(Open("oil"), kCast), "transfer.hybrid")) << "oil is not split";
   EXPECT_TRUE(Sets(QualityLadder(Open("sumi-e"), kCast), "transfer.hybrid"));
@@ -129,16 +130,16 @@ TEST(QualityLadder, RungsSetWhatTheStyleHasNotAndLeaveItsLookAlone) {
 TEST(QualityLadder, StylesThatWeighGuidesKeepTheirChunks) {
   StyleSet weighed = Open("scene-oil");
   EXPECT_FALSE(Sets(QualityLadder(weighed, kCast), "transfer.method"));
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, weighed, kCast)), "--upsample 4");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, weighed, kCast)), "--upsample 4");
   weighed.styles.front().transfer.method = Method::kBruteForce;
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, weighed, kCast)), "--upsample 4 --set transfer.method=styleblit");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, weighed, kCast)), "--upsample 4 --set transfer.method=styleblit");
 }
 
 // With normals alone smaller guides take as long, and their outlines are steps.
 TEST(QualityLadder, DraftsOfNormalsAloneKeepTheirGuides) {
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, Open("oil"), kCast)), "--set transfer.method=litsphere");
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kPreview, Open("oil"), kCast)), "");
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, Open("chiaroscuro"), kCast)),
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("oil"), kCast)), "--set transfer.method=litsphere");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kPreview, Open("oil"), kCast)), "");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, Open("chiaroscuro"), kCast)),
             "--upsample 4 --set transfer.method=litsphere");
 }
 
@@ -146,18 +147,18 @@ TEST(QualityLadder, StylesThatWeighGuidesWithoutLightAreDraftedBySmallerOnes) {
   StyleSet weighed = Open("oil");
   weighed.styles.front().transfer.guide_weights[Layer::kNormal] = 2.0f;
   ASSERT_FALSE(weighed.styles.front().transfer.guide_weights.ArePlain());
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kPreview, weighed, kCast)), "");
-  EXPECT_EQ(OptionsOf(WayOf(Quality::kDraft, weighed, kCast)), "--upsample 4");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kPreview, weighed, kCast)), "");
+  EXPECT_EQ(OptionsOf(VariantOf(Quality::kDraft, weighed, kCast)), "--upsample 4");
 }
 
-// One setting is for all styles of a picture: a rung that takes from one must not give to another.
+// One setting is for all styles of a picture: a step that takes from one must not give to another.
 TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
   StyleSet two = Open("oil");
   two.styles.push_back(Open("charcoal").styles.front());
   two.styles[0].transfer.method = Method::kBruteForce;
   const auto has = [&](const char* setting) {
-    for (const Way& way : QualityLadder(two, kGiven)) {
-      if (std::find(way.settings.begin(), way.settings.end(), setting) != way.settings.end()) return true;
+    for (const Variant& variant : QualityLadder(two, kGiven)) {
+      if (std::find(variant.settings.begin(), variant.settings.end(), setting) != variant.settings.end()) return true;
     }
     return false;
   };
@@ -166,8 +167,9 @@ TEST(QualityLadder, NoStyleComesToMoreThanItHas) {
   EXPECT_FALSE(has("transfer.method=styleblit")) << "charcoal would be painted by chunks, which takes more time";
   EXPECT_TRUE(has("transfer.method=litsphere"));
   for (const Quality quality : {Quality::kPreview, Quality::kDraft}) {
-    const Way way = WayOf(quality, two, kGiven);
-    EXPECT_NE(std::find(way.settings.begin(), way.settings.end(), "transfer.method=litsphere"), way.settings.end())
+    const Variant variant = VariantOf(quality, two, kGiven);
+    EXPECT_NE(std::find(variant.settings.begin(), variant.settings.end(), "transfer.method=litsphere"),
+              variant.settings.end())
         << "the other one would stay at brute force";
   }
 }
@@ -188,14 +190,14 @@ TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
     for (const std::vector<std::string>& sets :
          {std::vector<std::string>{"transfer.threshold=0.2"}, {"transfer.blend_radius=2"}}) {
       const StyleSet opened = Open(style, sets);
-      for (const Way& way : QualityLadder(opened, kGiven)) {
+      for (const Variant& variant : QualityLadder(opened, kGiven)) {
         StyleSet applied = opened;
-        ASSERT_TRUE(ApplyWay(way, applied).ok());
-        std::vector<std::string> all = way.settings;
+        ASSERT_TRUE(ApplyVariant(variant, applied).ok());
+        std::vector<std::string> all = variant.settings;
         all.insert(all.end(), sets.begin(), sets.end());
         const StyleSet given = Open(style, all);
         ExemplarHashes one, other;
-        EXPECT_EQ(SettingsText(applied, {}, one), SettingsText(given, {}, other)) << style << " " << way.name;
+        EXPECT_EQ(SettingsText(applied, {}, one), SettingsText(given, {}, other)) << style << " " << variant.name;
       }
     }
   }
@@ -204,13 +206,14 @@ TEST(QualityLadder, AWayAppliedIsTheSameAsItsOptions) {
 TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
   for (const char* const style : {"oil", "ink", "sumi-e", "chiaroscuro", "scene-oil"}) {
     const StyleSet styles = Open(style);
-    for (const LadderFrame& frame : {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false},
-                                     LadderFrame{true, 1280, 720, false, 64}, LadderFrame{true, 961, 541, true, 8}}) {
+    for (const LadderFrame& frame :
+         {kCast, kGiven, LadderFrame{true, 961, 541, false}, LadderFrame{true, 960, 540, false},
+          LadderFrame{true, 1280, 720, false, 64}, LadderFrame{true, 961, 541, true, 8}}) {
       const std::vector<std::string> names = Names(QualityLadder(styles, frame));
       const auto place = [&](Quality quality) {
-        const Way way = WayOf(quality, styles, frame);
-        const auto found = std::find(names.begin(), names.end(), way.name);
-        EXPECT_NE(found, names.end()) << style << " " << way.name;
+        const Variant variant = VariantOf(quality, styles, frame);
+        const auto found = std::find(names.begin(), names.end(), variant.name);
+        EXPECT_NE(found, names.end()) << style << " " << variant.name;
         return found - names.begin();
       };
       EXPECT_EQ(place(Quality::kFinal), 0);
@@ -224,7 +227,7 @@ TEST(QualityLadder, NamedPointsAreOfTheLadderAndFinalIsTheStyle) {
 // guides that are there are painted without blending.
 TEST(QualityLadder, PreviewTakesWhatIsDear) {
   const auto preview = [](const char* style, const LadderFrame& frame) {
-    return OptionsOf(WayOf(Quality::kPreview, Open(style), frame));
+    return OptionsOf(VariantOf(Quality::kPreview, Open(style), frame));
   };
   EXPECT_EQ(preview("oil", kCast), "");
   EXPECT_EQ(preview("sumi-e", kCast), "--set transfer.hybrid=0");
@@ -235,16 +238,17 @@ TEST(QualityLadder, PreviewTakesWhatIsDear) {
 
 TEST(QualityLadder, RivalsAreNoBlendingAndTheLitSphereOfOneSize) {
   for (const LadderFrame& frame : {kCast, kGiven}) {
-    const std::vector<Way> ways = QualityLadder(Open("sumi-e"), frame);
-    std::vector<std::string> rivals;
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-      for (std::size_t j = 0; j < ways.size(); ++j) {
-        EXPECT_EQ(AreRivals(ways[i], ways[j]), AreRivals(ways[j], ways[i]));
-        if (i < j && AreRivals(ways[i], ways[j])) rivals.push_back(ways[i].name + " / " + ways[j].name);
+    const std::vector<Variant> variants = QualityLadder(Open("sumi-e"), frame);
+    std::vector<std::string> contenders;
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      for (std::size_t j = 0; j < variants.size(); ++j) {
+        EXPECT_EQ(AreContenders(variants[i], variants[j]), AreContenders(variants[j], variants[i]));
+        if (i < j && AreContenders(variants[i], variants[j]))
+          contenders.push_back(variants[i].name + " / " + variants[j].name);
       }
     }
-    EXPECT_EQ(rivals, (std::vector<std::string>{"--set transfer.hybrid=0 --set transfer.blend_radius=0 / "
-                                                "--set transfer.method=litsphere --set transfer.hybrid=0"}));
+    EXPECT_EQ(contenders, (std::vector<std::string>{"--set transfer.hybrid=0 --set transfer.blend_radius=0 / "
+                                                    "--set transfer.method=litsphere --set transfer.hybrid=0"}));
   }
 }
 
@@ -262,21 +266,21 @@ GuideSet GuidesOf(const std::string& scene_name, int width, int height) {
   return made ? std::move(made->guides) : GuideSet();
 }
 
-Globals WithMemory(std::uint64_t bytes) {
-  Globals globals;
-  globals.max_memory = bytes;
-  return globals;
+RunContext WithMemory(std::uint64_t bytes) {
+  RunContext context;
+  context.max_memory = bytes;
+  return context;
 }
 
 // Whatever the machine has.
-double JudgedAs(StyleSet& styles, const std::string& rung, const GuideSet& guides,
-                const Globals& globals = WithMemory(std::uint64_t(1) << 40)) {
-  const PictureOptions picture;
+double MeasuredAs(StyleSet& styles, const std::string& rung, const GuideSet& guides,
+                  const RunContext& context = WithMemory(std::uint64_t(1) << 40)) {
+  const PictureRequest picture;
   const std::string name = "guides", none;
-  PaintTrial trial(styles, picture, {}, name, none, globals);
-  for (const Way& way : QualityLadder(styles, kGiven)) {
-    if (way.name != rung) continue;
-    const auto off = trial.Judge(way, guides);
+  TrialPainter trial(styles, picture, {}, name, none, context);
+  for (const Variant& variant : QualityLadder(styles, kGiven)) {
+    if (variant.name != rung) continue;
+    const auto off = trial.MeasureError(variant, guides);
     EXPECT_TRUE(off.ok()) << (off.ok() ? "" : off.error().message);
     return off.ok() ? *off : -1.0;
   }
@@ -288,42 +292,42 @@ constexpr const char *kCrisp = "--set transfer.blend_radius=0", *kLitSphere = "-
 
 // docs/budget.md: on suzanne oil is nearer by the Lit Sphere (1.06 against 1.29 of the style's own) and woodcut without
 // blending (1.24 against 2.05).
-TEST(PaintTrial, StylesDisagreeWhichRivalIsNearer) {
+TEST(TrialPainter, StylesDisagreeWhichRivalIsNearer) {
   const GuideSet guides = GuidesOf("suzanne", 640, 360);
   StyleSet oil = Open("oil"), woodcut = Open("woodcut");
-  EXPECT_LT(JudgedAs(oil, kLitSphere, guides), JudgedAs(oil, kCrisp, guides));
-  EXPECT_LT(JudgedAs(woodcut, kCrisp, guides), JudgedAs(woodcut, kLitSphere, guides));
-  EXPECT_LT(JudgedAs(woodcut, "the style", guides), JudgedAs(woodcut, kCrisp, guides));
+  EXPECT_LT(MeasuredAs(oil, kLitSphere, guides), MeasuredAs(oil, kCrisp, guides));
+  EXPECT_LT(MeasuredAs(woodcut, kCrisp, guides), MeasuredAs(woodcut, kLitSphere, guides));
+  EXPECT_LT(MeasuredAs(woodcut, "the style", guides), MeasuredAs(woodcut, kCrisp, guides));
 }
 
 // What lies behind is no part of the painting, and judging is by the same patches each time.
-TEST(PaintTrial, JudgesThePaintAloneAndTheSameEachTime) {
+TEST(TrialPainter, JudgesThePaintAloneAndTheSameEachTime) {
   const GuideSet guides = GuidesOf("suzanne", 320, 180);
   StyleSet plain = Open("oil", {"transfer.paper="}), papered = Open("oil", {"transfer.paper=#204060"});
-  const double off = JudgedAs(plain, kCrisp, guides);
+  const double off = MeasuredAs(plain, kCrisp, guides);
   EXPECT_GT(off, 0.0);
-  EXPECT_EQ(JudgedAs(papered, kCrisp, guides), off);
+  EXPECT_EQ(MeasuredAs(papered, kCrisp, guides), off);
   StyleSet tinted = Open("oil", {"transfer.paper=", "transfer.colorize=1"});
   GuideSet colored = guides;
   colored.Add(Layer::kAlbedo);
-  EXPECT_EQ(JudgedAs(tinted, kCrisp, colored), off) << "no exemplar has the scene's colours";
-  EXPECT_EQ(JudgedAs(plain, kCrisp, guides), off);
+  EXPECT_EQ(MeasuredAs(tinted, kCrisp, colored), off) << "no exemplar has the scene's colours";
+  EXPECT_EQ(MeasuredAs(plain, kCrisp, guides), off);
 }
 
-TEST(PaintTrial, WhatCannotBeJudgedIsNotAnError) {
+TEST(TrialPainter, WhatCannotBeJudgedIsNotAnError) {
   const double unknown = std::numeric_limits<double>::infinity();
   GuideSet guides = GuidesOf("suzanne", 320, 180);
   StyleSet two = Open("oil");
   two.styles.push_back(Open("charcoal").styles.front());
-  EXPECT_EQ(JudgedAs(two, kCrisp, guides), unknown) << "several styles";
+  EXPECT_EQ(MeasuredAs(two, kCrisp, guides), unknown) << "several styles";
   StyleSet oil = Open("oil");
-  EXPECT_EQ(JudgedAs(oil, kCrisp, guides, WithMemory(1 << 20)), unknown) << "no memory";
+  EXPECT_EQ(MeasuredAs(oil, kCrisp, guides, WithMemory(1 << 20)), unknown) << "no memory";
   std::fill(guides.Plane(Layer::kCoverage).begin(), guides.Plane(Layer::kCoverage).end(), 0.0f);
-  EXPECT_EQ(JudgedAs(oil, kCrisp, guides), 0.0) << "nothing covered";
+  EXPECT_EQ(MeasuredAs(oil, kCrisp, guides), 0.0) << "nothing covered";
 }
 
 // What lies underneath is part of a trial's work.
-TEST(PaintTrial, ReadsWhatLiesUnderneath) {
+TEST(TrialPainter, ReadsWhatLiesUnderneath) {
   StyleSet styles = Open("oil");
   GuideSet guides(32, 32);
   for (const LayerInfo& info : AllLayers()) {
@@ -331,13 +335,13 @@ TEST(PaintTrial, ReadsWhatLiesUnderneath) {
   }
   for (float& a : guides.Plane(Layer::kCoverage)) a = 1.0f;
   for (float& z : guides.Plane(Layer::kNormal, 2)) z = 1.0f;
-  const Way plain = QualityLadder(styles, kGiven).front();
-  const PictureOptions picture;
-  const Globals globals;
+  const Variant plain = QualityLadder(styles, kGiven).front();
+  const PictureRequest picture;
+  const RunContext context;
   const std::string name = "guides", none, missing = "nowhere/under.png";  // they are borrowed
-  PaintTrial bare(styles, picture, {}, name, none, globals);
+  TrialPainter bare(styles, picture, {}, name, none, context);
   EXPECT_TRUE(bare.Paint(plain, guides).ok());
-  PaintTrial over(styles, picture, {}, name, missing, globals);
+  TrialPainter over(styles, picture, {}, name, missing, context);
   const auto painted = over.Paint(plain, guides);
   ASSERT_FALSE(painted.ok());
   EXPECT_NE(painted.error().message.find(missing), std::string::npos) << painted.error().message;

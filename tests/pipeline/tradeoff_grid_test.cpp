@@ -1,6 +1,4 @@
-// Which ways `scumble tradeoff` measures, and what it does to guides and pictures on the way.
-#include "pipeline/tradeoff/grid.h"
-
+// Which ways `scumble tradeoff` measures, and what it does to guides and pictures on the variant.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "pipeline/tradeoff/stage.h"
-#include "guidegen/guidegen.h"
 #include "core/image/hash.h"
 #include "core/io/guides/guide_precision.h"
+#include "guidegen/guidegen.h"
+#include "pipeline/tradeoff/grid.h"
+#include "pipeline/tradeoff/stage.h"
 #include "tests/support/refusal.h"
 
 namespace scumble {
@@ -45,19 +44,20 @@ TradeGridOptions Sized(int width = 960, int height = 540) {
 
 std::vector<std::string> ValuesOf(const TradeGrid& grid, const std::string& axis) {
   std::vector<std::string> values;
-  for (const Way& way : grid.ways) {
-    if (way.axis == axis) values.push_back(way.value);
+  for (const Variant& variant : grid.variants) {
+    if (variant.axis == axis) values.push_back(variant.value);
   }
   return values;
 }
 
 using Values = std::vector<std::string>;
 
-const Way& Named(const TradeGrid& grid, const std::string& name) {
-  static const Way none;
-  const auto found = std::find_if(grid.ways.begin(), grid.ways.end(), [&](const Way& way) { return way.name == name; });
-  EXPECT_NE(found, grid.ways.end()) << name;
-  return found == grid.ways.end() ? none : *found;
+const Variant& Named(const TradeGrid& grid, const std::string& name) {
+  static const Variant none;
+  const auto found = std::find_if(grid.variants.begin(), grid.variants.end(),
+                                  [&](const Variant& variant) { return variant.name == name; });
+  EXPECT_NE(found, grid.variants.end()) << name;
+  return found == grid.variants.end() ? none : *found;
 }
 
 // The table of a ball is no reference: its cells are wider than pixels.
@@ -65,7 +65,7 @@ TEST(TradeGrid, TheExactWaySearchesByComparisonWhateverTheStyleDoes) {
   for (const NearestSearch nearest : {NearestSearch::kAnalytic, NearestSearch::kTable, NearestSearch::kTree}) {
     Style style = SphereStyle();
     style.transfer.nearest = nearest;
-    const Values exact = MakeTradeGrid(style, Sized()).ways[1].settings;
+    const Values exact = MakeTradeGrid(style, Sized()).variants[1].settings;
     EXPECT_EQ(std::count(exact.begin(), exact.end(), "transfer.nearest=tree"), nearest == NearestSearch::kTree ? 0 : 1);
   }
 }
@@ -91,11 +91,11 @@ TEST(TradeGrid, OtherSeedsChangeNothingElse) {
 
 TEST(TradeGrid, OfASphereIsEveryAxisWithoutTheStylesOwnValues) {
   const TradeGrid grid = MakeTradeGrid(SphereStyle(), Sized());
-  ASSERT_GE(grid.ways.size(), 2u);
-  EXPECT_EQ(grid.ways[0].axis, kStyleAxis);
-  EXPECT_TRUE(grid.ways[0].settings.empty()) << "the style changes nothing";
-  EXPECT_EQ(grid.ways[1].axis, kExactAxis);
-  EXPECT_EQ(grid.ways[1].settings, (Values{"transfer.method=bruteforce", "transfer.nearest=tree"}))
+  ASSERT_GE(grid.variants.size(), 2u);
+  EXPECT_EQ(grid.variants[0].axis, kStyleAxis);
+  EXPECT_TRUE(grid.variants[0].settings.empty()) << "the style changes nothing";
+  EXPECT_EQ(grid.variants[1].axis, kExactAxis);
+  EXPECT_EQ(grid.variants[1].settings, (Values{"transfer.method=bruteforce", "transfer.nearest=tree"}))
       << "the formula is exact to a pixel, guides are floats";
   EXPECT_EQ(ValuesOf(grid, "method"), (Values{"litsphere", "bruteforce"}));
   EXPECT_EQ(ValuesOf(grid, "levels"), (Values{"1", "2", "3", "4", "5", "6", "8", "9"})) << "the style's are 7";
@@ -126,7 +126,7 @@ TEST(TradeGrid, CombinationsDifferInTwoThingsOrMore) {
   // 2 scales × (3 radii of the Lit Sphere + 3 levels × 3 radii), less the style itself and what differs in one thing:
   // of the full size 2 radii, 2 levels and the Lit Sphere with the style's radius, of the half size the style's own.
   EXPECT_EQ(ValuesOf(grid, "grid").size(), 24u - 1u - 2u - 2u - 1u - 1u);
-  const Way& one = Named(grid, "grid styleblit 3 levels radius 4 half size");
+  const Variant& one = Named(grid, "grid styleblit 3 levels radius 4 half size");
   EXPECT_EQ(one.guide_scale, 0.5);
   EXPECT_EQ(one.settings, (Values{"transfer.method=styleblit", "transfer.levels=3", "transfer.blend_radius=4"}));
 }
@@ -137,7 +137,7 @@ TEST(TradeGrid, OfAPaintedSceneSearchesWithoutTheFormula) {
   EXPECT_FALSE(std::count(nearest.begin(), nearest.end(), "analytic"));
   EXPECT_FALSE(std::count(nearest.begin(), nearest.end(), "table 512")) << "the style's own";
   EXPECT_TRUE(std::count(nearest.begin(), nearest.end(), "tree"));
-  EXPECT_EQ(grid.ways[1].settings, (Values{"transfer.method=bruteforce", "transfer.nearest=tree"}));
+  EXPECT_EQ(grid.variants[1].settings, (Values{"transfer.method=bruteforce", "transfer.nearest=tree"}));
 }
 
 TEST(TradeGrid, OfGuidesOfLightHasNoTablesAndAsksForSamplesWhereTheyCount) {
@@ -148,8 +148,8 @@ TEST(TradeGrid, OfGuidesOfLightHasNoTablesAndAsksForSamplesWhereTheyCount) {
   EXPECT_EQ(ValuesOf(grid, "samples"), (Values{"1", "4", "16", "256", "1024"})) << "64 are the style's";
   EXPECT_EQ(ValuesOf(grid, "nearest"), (Values{"tree within 10%", "tree within 50%", "tree within 200%"}));
   EXPECT_EQ(Named(grid, "samples 4").samples, 4);
-  EXPECT_EQ(grid.ways[1].samples, 1024) << "converged";
-  EXPECT_EQ(grid.ways[1].settings, Values{"transfer.method=bruteforce"});
+  EXPECT_EQ(grid.variants[1].samples, 1024) << "converged";
+  EXPECT_EQ(grid.variants[1].settings, Values{"transfer.method=bruteforce"});
 }
 
 TEST(TradeGrid, LeavesOutWhatCannotBeAndSaysSo) {
@@ -157,12 +157,12 @@ TEST(TradeGrid, LeavesOutWhatCannotBeAndSaysSo) {
       MakeTradeGrid(SphereStyle(), Sized(1025, 1025));  // odd, and 2049 pixels too many for brute force
   EXPECT_EQ(ValuesOf(large, "method"), Values{"litsphere"});
   EXPECT_EQ(ValuesOf(large, "resolution"), Values{"2"});
-  EXPECT_EQ(large.ways[1].settings, Values{"transfer.nearest=tree"});
+  EXPECT_EQ(large.variants[1].settings, Values{"transfer.nearest=tree"});
   ASSERT_EQ(large.left_out.size(), 3u);
   EXPECT_NE(large.left_out[0].find("brute force in the exact way"), std::string::npos);
   EXPECT_NE(large.left_out[1].find("bruteforce"), std::string::npos);
   EXPECT_NE(large.left_out[2].find("even"), std::string::npos);
-  for (const Way& way : large.ways) EXPECT_NE(way.guide_scale, 0.5) << way.name;
+  for (const Variant& variant : large.variants) EXPECT_NE(variant.guide_scale, 0.5) << variant.name;
   const TradeGrid whole = MakeTradeGrid(SphereStyle(), Sized(1024, 1024));  // a megapixel exactly
   EXPECT_EQ(ValuesOf(whole, "method"), (Values{"litsphere", "bruteforce"}));
   Style single = SphereStyle();
@@ -181,33 +181,33 @@ TEST(TradeGrid, NamesAreUniqueAndTheQuickGridIsPartOfTheWhole) {
     options.chance = true;
     const TradeGrid whole = MakeTradeGrid(style, options);
     std::set<std::string> names;
-    for (const Way& way : whole.ways) EXPECT_TRUE(names.insert(way.name).second) << way.name;
+    for (const Variant& variant : whole.variants) EXPECT_TRUE(names.insert(variant.name).second) << variant.name;
     options.quick = true;
     const TradeGrid quick = MakeTradeGrid(style, options);
-    EXPECT_LE(quick.ways.size(), 24u);
-    EXPECT_GE(quick.ways.size(), 10u);
-    for (const Way& way : quick.ways) EXPECT_TRUE(names.count(way.name)) << way.name;
+    EXPECT_LE(quick.variants.size(), 24u);
+    EXPECT_GE(quick.variants.size(), 10u);
+    for (const Variant& variant : quick.variants) EXPECT_TRUE(names.count(variant.name)) << variant.name;
   }
 }
 
-TEST(ChooseWays, TakesAxesAndNamesAndAlwaysTheStyle) {
+TEST(ChooseVariants, TakesAxesAndNamesAndAlwaysTheStyle) {
   const TradeGrid grid = MakeTradeGrid(SphereStyle(), Sized());
   const auto names = [&](const std::string& only) {
     Values all;
-    const auto chosen = ChooseWays(grid.ways, only);
+    const auto chosen = ChooseVariants(grid.variants, only);
     EXPECT_TRUE(chosen.ok()) << only;
-    for (const Way& way : chosen.ok() ? *chosen : std::vector<Way>()) all.push_back(way.name);
+    for (const Variant& variant : chosen.ok() ? *chosen : std::vector<Variant>()) all.push_back(variant.name);
     return all;
   };
-  EXPECT_EQ(names("").size(), grid.ways.size());
+  EXPECT_EQ(names("").size(), grid.variants.size());
   EXPECT_EQ(names("robust"), (Values{"the style", "robust no"}));
   EXPECT_EQ(names("match_step,robust"), (Values{"the style", "match_step 2", "match_step 4", "robust no"}));
   EXPECT_EQ(names("levels *,robust").size(), 1u + 8u + 1u);
   EXPECT_EQ(names("nearest table 1*"), (Values{"the style", "nearest table 128", "nearest table 1024"}));
   EXPECT_EQ(names("exact"), (Values{"the style", "the exact way"}));
-  ExpectRefusal(ChooseWays(grid.ways, "levles"), ErrorKind::kUsage,
+  ExpectRefusal(ChooseVariants(grid.variants, "levles"), ErrorKind::kUsage,
                 {"--only levles", "'levles'", "levels", "nearest", "precision"});
-  ExpectRefusal(ChooseWays(grid.ways, "levels,"), ErrorKind::kUsage, {"''"});
+  ExpectRefusal(ChooseVariants(grid.variants, "levels,"), ErrorKind::kUsage, {"''"});
 }
 
 // ---- what ways do to guides and pictures ----

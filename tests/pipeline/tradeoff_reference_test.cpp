@@ -1,6 +1,4 @@
 // What pictures are measured against, where the figures are known.
-#include "pipeline/variant/variant_error.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,8 +7,9 @@
 #include <memory>
 #include <utility>
 
-#include "pipeline/variant/variant_guides.h"
 #include "guidegen/guidegen.h"
+#include "pipeline/variant/variant_error.h"
+#include "pipeline/variant/variant_guides.h"
 #include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
@@ -182,7 +181,8 @@ TEST(TradeReference, OfAStyleWithLightItIsTheLight) {
   EXPECT_EQ(lit.Compare(bright)->rms, 0.0) << "twice as bright is cut all the same";
   for (float& value : bright.Plane(Layer::kLuminance)) value = 0.125f;
   EXPECT_EQ(lit.Compare(bright)->rms, 0.75) << "a quarter of 0.5";
-  EXPECT_EQ(TradeReference(all, painted.style, 1.0, 0).Compare(bright)->rms, 0.5) << "0.125 a stop brighter is half of 0.5";
+  EXPECT_EQ(TradeReference(all, painted.style, 1.0, 0).Compare(bright)->rms, 0.5)
+      << "0.125 a stop brighter is half of 0.5";
 }
 
 // The wrong condition costs λ times the weighed difference of luminances, however well the paint fits.

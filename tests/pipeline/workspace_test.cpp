@@ -117,6 +117,22 @@ TEST(Workspace, AChangedViewLoadsNoFile) {
   EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("oil")).rgba, before.rgba);
 }
 
+TEST(Workspace, AnotherSizeOrSeedBuildsNoAccelerationStructure) {
+  Workspace workspace(Context());
+  SceneRequest scene = SceneOf("ball");
+  const Picture small = Painted(workspace, scene, StyleOf("chiaroscuro"));
+  EXPECT_EQ(workspace.counters().structures_built, 1u);
+  PictureRequest picture;
+  picture.seed = 5;
+  EXPECT_NE(Painted(workspace, scene, StyleOf("chiaroscuro"), picture).rgba, small.rgba);
+  scene.size = {192, 108};
+  const Picture large = Painted(workspace, scene, StyleOf("chiaroscuro"));
+  EXPECT_EQ(workspace.counters().guides_cast, 3u);
+  EXPECT_EQ(workspace.counters().structures_built, 1u);
+  Workspace fresh(Context());
+  EXPECT_EQ(large.rgba, Painted(fresh, scene, StyleOf("chiaroscuro")).rgba);
+}
+
 TEST(Workspace, AFrameOfAnAnimationLoadsNoFile) {
   Workspace workspace(Context());
   PictureRequest first, later;

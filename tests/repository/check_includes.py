@@ -16,15 +16,20 @@ import sys
 LIBRARIES = {
     "public": ("include/scumble", set(), []),
     "image": ("core/image", {"public"}, []),
-    "io": ("core/io", {"public", "image"}, []),
+    "io": ("core/io", {"public", "image"}, ["file", "png", "exr", "picture", "guides", "blender", "oiio"]),
     "filter": ("core/filter", {"public", "image"}, []),
-    "guidegen": ("guidegen", {"public", "image", "io"}, []),
-    "style": ("core/style", {"public", "image", "io"}, []),
-    "transfer": ("transfer", {"public", "image", "filter"}, []),
-    "measure": ("measure", {"public", "image", "io", "filter"}, []),
+    "style": ("core/style", {"public", "image", "io"}, ["kit", "scan"]),
+    "guidegen": ("guidegen", {"public", "image", "io"},
+                 ["scene", "load", "load/gltf", "surface", "rays", "light", "cast"]),
+    "transfer": ("transfer", {"public", "image", "filter"},
+                 ["field", "nearest", "exemplar", "seeds", "match", "vote", "vote/edge", "vote/wide", "tint", "frame",
+                  "outline", "shadow"]),
+    "measure": ("measure", {"public", "image", "io", "filter"},
+                ["report", "compare", "mosaic", "energy", "painting", "crosscheck", "tradeoff"]),
     "pipeline": ("pipeline", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure"},
-                 ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff"]),
-    "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"}, ["app", "verbs"]),
+                 ["style", "memory", "scene", "frame", "variant", "quality", "run", "tradeoff", "crosscheck"]),
+    "cli": ("apps/cli", {"public", "image", "io", "filter", "guidegen", "style", "transfer", "measure", "pipeline"},
+            ["app", "verbs"]),
 }
 
 # Third parties by the start of the included path, and the libraries that may name them.

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/support/gltf_builder.h"
 #include "guidegen/load/load_scene.h"
+#include "tests/support/gltf_builder.h"
 
 namespace scumble {
 

@@ -13,8 +13,8 @@
 
 #include "core/image/guides.h"
 #include "core/image/hash.h"
-#include "scumble/picture.h"
 #include "measure/energy/energy.h"
+#include "scumble/picture.h"
 
 namespace scumble::testing {
 

@@ -10,8 +10,8 @@
 
 namespace scumble::testing {
 
-// From the best to the least: that is the one which code may use without asking the processor, HWY_SCALAR or HWY_EMU128 (later
-// versions of Highway have the SSE2 of every x86-64 instead).
+// From the best to the least: that is the one which code may use without asking the processor, HWY_SCALAR or HWY_EMU128
+// (later versions of Highway have the SSE2 of every x86-64 instead).
 inline std::vector<std::int64_t> InstructionSets() {
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   EXPECT_EQ(targets.back(), HWY_STATIC_TARGET) << hwy::TargetName(targets.back());

@@ -21,7 +21,7 @@ struct PaintedSphere {
   double reach = 1.12;                    // paint goes on to so many radii, wavering, and then there is paper
   double waver = 0.05;
   double azimuth = kKeyLightAzimuth, elevation = kKeyLightElevation;
-  double dark = 0.12, light = 0.8;        // grey, encoded, 0 … 1
+  double dark = 0.12, light = 0.8;  // grey, encoded, 0 … 1
   double grain = 0.06;
   double paper = 0.93;
 };
@@ -32,7 +32,8 @@ inline void SetGrey(Picture& picture, int x, int y, double grey) {
   texel[3] = 65535;
 }
 
-// Shaded in the light, with specks of four pixels each of which is lighter or darker by chance. Shades are warmer than lights.
+// Shaded in the light, with specks of four pixels each of which is lighter or darker by chance. Shades are warmer than
+// lights.
 inline Picture PaintSphere(const PaintedSphere& sphere) {
   Picture picture(sphere.size, sphere.size);
   const glm::dvec3 to_light = DirectionFromAngles(sphere.azimuth, sphere.elevation);
@@ -40,7 +41,9 @@ inline Picture PaintSphere(const PaintedSphere& sphere) {
     for (int x = 0; x < sphere.size; ++x) {
       const double u = ((x + 0.5) / sphere.size - sphere.x) / sphere.radius;
       const double v = (sphere.y - (y + 0.5) / sphere.size) / sphere.radius, r = std::hypot(u, v);
-      const double edge = sphere.reach + sphere.waver * (std::sin(7.0 * std::atan2(v, u)) + std::sin(17.0 * std::atan2(v, u) + 1.0)) / 2.0;
+      const double edge =
+          sphere.reach +
+          sphere.waver * (std::sin(7.0 * std::atan2(v, u)) + std::sin(17.0 * std::atan2(v, u) + 1.0)) / 2.0;
       if (r > edge) {
         SetGrey(picture, x, y, sphere.paper);
         continue;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/style.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/seeds/seeds.h"
 
@@ -24,7 +24,8 @@ inline constexpr std::uint64_t kPlainSeed = 21;
 // threshold's square is not rounded: double holds it.
 inline bool PlainAlike(const glm::vec3& d, const TransferSettings& settings) {
   const double threshold = settings.threshold;
-  if (settings.threshold_metric == ThresholdMetric::kL1) return std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) < threshold;
+  if (settings.threshold_metric == ThresholdMetric::kL1)
+    return std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) < threshold;
   return d.x * d.x + d.y * d.y + d.z * d.z < threshold * threshold;
 }
 
@@ -33,8 +34,8 @@ struct PlainSource {
 };
 
 // Section 3.2 of the StyleBlit paper, pixel by pixel.
-inline PlainSource PlainSourceAt(const GuideSet& guides, const PreparedExemplar& exemplar, const TransferSettings& settings, int x,
-                     int y, std::uint64_t seed = kPlainSeed) {
+inline PlainSource PlainSourceAt(const GuideSet& guides, const PreparedExemplar& exemplar,
+                                 const TransferSettings& settings, int x, int y, std::uint64_t seed = kPlainSeed) {
   const auto coverage = guides.Plane(Layer::kCoverage);
   const glm::vec3 normal = guides.Vec3(Layer::kNormal, guides.Index(x, y));
   for (int level = settings.levels - 1; level >= 1; --level) {
@@ -59,9 +60,9 @@ inline PlainSource PlainSourceAt(const GuideSet& guides, const PreparedExemplar&
   return {own.x, own.y, 0};
 }
 
-// A random seed by which a level whose cells are larger than the picture offers its paint: the seed of its first cell, the only
-// one that may stand in the picture, does, on a covered pixel with a finite normal. One in 4^level / pixels does so; this
-// is the first, on every machine.
+// A random seed by which a level whose cells are larger than the picture offers its paint: the seed of its first cell,
+// the only one that may stand in the picture, does, on a covered pixel with a finite normal. One in 4^level / pixels
+// does so; this is the first, on every machine.
 inline std::uint64_t SeedThatReaches(int level, const GuideSet& guides) {
   constexpr std::uint64_t kMost = std::uint64_t(1) << 24;  // fifteen times what level 15 takes with 1,000 pixels
   for (std::uint64_t seed = 0; seed < kMost; ++seed) {

@@ -1,5 +1,5 @@
-// The main() of every test program. It fails where no case was selected, and with SCUMBLE_CASE_SECONDS set where a case takes
-// more processor time than that. XML and JSON reports have each case's processor time as `processor_seconds`.
+// The main() of every test program. It fails where no case was selected, and with SCUMBLE_CASE_SECONDS set where a case
+// takes more processor time than that. XML and JSON reports have each case's processor time as `processor_seconds`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>

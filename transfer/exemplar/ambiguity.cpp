@@ -82,7 +82,8 @@ AmbiguityReport MeasureAmbiguity(const PreparedExemplar& exemplar) {
   return report;
 }
 
-SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar& exemplar, int k, const GuideTest& test) {
+SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar& exemplar, int k,
+                                const GuideTest& test) {
   SpaceAmbiguity report;
   constexpr int kSide = 32;  // of the grid of directions
   std::size_t covered = 0, asked = 0;
@@ -107,9 +108,8 @@ SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar&
   std::size_t pixels = 0;
   for (const Source& source : exemplar.UsablePixels()) {
     std::vector<int> cell;
-    space.ForEachCoordinate(k, source, [&](float value) {
-      cell.push_back(static_cast<int>(std::floor(value / kGuideCell)));
-    });
+    space.ForEachCoordinate(k, source,
+                            [&](float value) { cell.push_back(static_cast<int>(std::floor(value / kGuideCell))); });
     report.most_repeats = std::max(report.most_repeats, ++cells[std::move(cell)]);
     ++pixels;
   }

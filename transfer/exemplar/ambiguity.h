@@ -31,8 +31,8 @@ inline constexpr double kCellDegrees = 2.5;
 // The same for what a style with weights matches in: all of its guides together.
 struct SpaceAmbiguity {
   // Of the directions that face the viewer, each at kLightSteps even steps from the least to the largest value that the
-  // exemplar shows in every layer: nearer than the threshold to the guides of the source they are given. A sphere under one
-  // lamp shows each direction in one light only, and covers little of this.
+  // exemplar shows in every layer: nearer than the threshold to the guides of the source they are given. A sphere under
+  // one lamp shows each direction in one light only, and covers little of this.
   double covered_percent = 0;
   double mean_error = 0;  // distance, weighted
   // The space in cubes of side kGuideCell: those that hold some usable pixel, and how many they hold.
@@ -45,7 +45,8 @@ inline constexpr int kLightSteps = 8;
 inline constexpr double kGuideCell = 0.0436;  // kCellDegrees, as a chord of the unit sphere
 
 // Of exemplar k. Some 6000 searches and O(usable pixels · log).
-SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar& exemplar, int k, const GuideTest& test);
+SpaceAmbiguity MeasureAmbiguity(const GuideSpace& space, const PreparedExemplar& exemplar, int k,
+                                const GuideTest& test);
 
 // O(usable pixels + cells). The result does not depend on threads.
 AmbiguityReport MeasureAmbiguity(const PreparedExemplar& exemplar);

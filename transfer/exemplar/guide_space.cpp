@@ -67,7 +67,7 @@ Expected<GuideSpace> GuideSpace::Build(const GuideWeights& weights, std::span<co
                         ", and transfer.guide_weights asks for it: make guides that hold it, or leave its weight at 0");
     }
   }
-  SCUMBLE_CHECK(space.dimensions() > 0 && space.rest_ <= kMaxRest);
+  SCUMBLE_CHECK(space.dimensions() > 0 && space.rest_ <= kMaxExtra);
   for (const Layer layer : kExposedBy) {
     if (!(weights[layer] > 0.0f)) continue;
     space.has_radiance_ = true, space.radiance_ = layer;
@@ -116,7 +116,7 @@ GuideSpace::Tree GuideSpace::PlantTree(int k) const {
 }
 
 Source GuideSpace::Nearest(int k, glm::vec3 normal, const float* rest) const {
-  std::array<float, 3 + kMaxRest> query;
+  std::array<float, 3 + kMaxExtra> query;
   std::size_t n = 0;
   if (normal_weight_ > 0.0f) {
     const glm::vec3 facing = normal_weight_ * FacingDirection(normal);

@@ -1,17 +1,19 @@
-// The space that a style matches in where transfer.guide_weights asks for more than normals: every pixel, of the scene as
-// of the exemplar, is a point of it, and paint is taken from the nearest. Guides of light say what normals cannot: which
-// part of a flat wall is lit, and where a shadow ends (Fišer et al., "StyLit: Illumination-Guided Example-Based Stylization
-// of 3D Renderings", SIGGRAPH 2016).
+// The space that a style matches in where transfer.guide_weights asks for more than normals: every pixel, of the scene
+// as of the exemplar, is a point of it, and paint is taken from the nearest. Guides of light say what normals cannot:
+// which part of a flat wall is lit, and where a shadow ends (Fišer et al., "StyLit: Illumination-Guided Example-Based
+// Stylization of 3D Renderings", SIGGRAPH 2016).
 //
 // A point's coordinates are what each layer holds, times the layer's weight:
-//   normal        x, y, z. To be looked up, a normal that faces away is turned to the rim (FacingDirection), as in a tree
+//   normal        x, y, z. To be looked up, a normal that faces away is turned to the rim (FacingDirection), as in a
+//   tree
 //                 of normals alone.
 //   albedo        r, g, b, between 0 and 1; 1 above.
 //   shadow        between 0 and 1.
-//   luminance,    L / (1 + L) of each channel: 0 is darkness, 0.5 what is as bright as the exemplar's 90th percentile (the
-//   lpe.*         `white`), and nothing is above 1. Radiance has no upper bound, and a highlight must not outweigh all the
-//                 rest. L is the exemplar's radiance / white; the scene's is exposed, · 2^stops / white. With the exposure
-//                 that MeasureExposure gives, both are shares of their own 90th percentile.
+//   luminance,    L / (1 + L) of each channel: 0 is darkness, 0.5 what is as bright as the exemplar's 90th percentile
+//   (the lpe.*         `white`), and nothing is above 1. Radiance has no upper bound, and a highlight must not outweigh
+//   all the
+//                 rest. L is the exemplar's radiance / white; the scene's is exposed, · 2^stops / white. With the
+//                 exposure that MeasureExposure gives, both are shares of their own 90th percentile.
 // NaN and what is below 0 count as 0, infinite radiance as 1.
 #pragma once
 
@@ -24,10 +26,10 @@
 #include "core/image/guides.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
-#include "transfer/nearest/guide_distance.h"
-#include "transfer/nearest/guide_tree.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/field/source.h"
+#include "transfer/nearest/guide_distance.h"
+#include "transfer/nearest/guide_tree.h"
 
 namespace scumble {
 
@@ -35,11 +37,12 @@ namespace scumble {
 class GuideSpace {
  public:
   // The most coordinates beside the normal's.
-  static constexpr int kMaxRest = 20;
+  static constexpr int kMaxExtra = 20;
 
   // Over the usable pixels of each exemplar, which must hold the layers that have a weight above 0: their guides are
-  // sampled at pixel centres. What Nearest finds may be (1 + nearest_error) times as far as the nearest. A kInput error names an exemplar whose guides lack one. One thread, O(pixels · log) an
-  // exemplar; 4 bytes a coordinate of each pixel, and a PointTree.
+  // sampled at pixel centres. What Nearest finds may be (1 + nearest_error) times as far as the nearest. A kInput error
+  // names an exemplar whose guides lack one. One thread, O(pixels · log) an exemplar; 4 bytes a coordinate of each
+  // pixel, and a PointTree.
   static Expected<GuideSpace> Build(const GuideWeights& weights, std::span<const Exemplar> exemplars,
                                     std::shared_ptr<const PreparedExemplar> prepared, double nearest_error = 0.0);
 
@@ -81,8 +84,8 @@ class GuideSpace {
   // Those of a pixel of exemplar k.
   const float* RestAt(int k, Source at) const { return values_[std::size_t(k)].data() + Offset(at); }
 
-  // The usable pixel of exemplar k that is nearest, exactly unless an error is allowed; ties to the lowest (y, x). `normal` has no weight yet, `rest`
-  // has.
+  // The usable pixel of exemplar k that is nearest, exactly unless an error is allowed; ties to the lowest (y, x).
+  // `normal` has no weight yet, `rest` has.
   Source Nearest(int k, glm::vec3 normal, const float* rest) const;
 
   // Whether the test accepts `at` for a pixel, as GuideTest does; `extra` is what light adds.

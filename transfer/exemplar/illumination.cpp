@@ -74,7 +74,8 @@ class CoveredLight {
     is_color_ = ChannelCount(layer) == 3;
   }
 
-  // Calls what visit() returns with the bits of every covered pixel; from several threads, each of which asks for its own.
+  // Calls what visit() returns with the bits of every covered pixel; from several threads, each of which asks for its
+  // own.
   template <class Visit>
   void ForEach(const Visit& visit) const {
     constexpr std::size_t kPixels = 1 << 15;
@@ -107,9 +108,7 @@ double BrightPercentile(const GuideSet& guides, Layer layer) {
     std::array<std::size_t, (1u << (32 - kLowerBits))> of{};
   };
   tbb::enumerable_thread_specific<Counts> counted;
-  light.ForEach([&] {
-    return [&counts = counted.local().of](std::uint32_t bits) { ++counts[bits >> kLowerBits]; };
-  });
+  light.ForEach([&] { return [&counts = counted.local().of](std::uint32_t bits) { ++counts[bits >> kLowerBits]; }; });
   Counts counts;
   std::size_t total = 0;
   for (const Counts& some : counted) {

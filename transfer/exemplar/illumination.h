@@ -25,8 +25,9 @@ class Illumination {
   LuminanceError form() const { return form_; }
   float brightest() const { return brightest_; }
 
-  // The exemplar whose luminance is nearest; ties to the first. NaN and what is negative count as darkness, and all that is
-  // brighter than the brightest exemplar is as bright as it: far from all of them, differences to them would be rounded away.
+  // The exemplar whose luminance is nearest; ties to the first. NaN and what is negative count as darkness, and all
+  // that is brighter than the brightest exemplar is as bright as it: far from all of them, differences to them would be
+  // rounded away.
   int Choose(float luminance) const;
 
   // What painting a pixel of this luminance with exemplar `chosen` adds to its guide distance: 0 or more.
@@ -48,8 +49,8 @@ double MeasuredLuminance(const Picture& picture, double rim);
 double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> mask);
 
 // The 90th percentile of a layer of light over the covered pixels, by the luminance of its colours; what is not above 0
-// counts as 0. 0 where nothing is covered. Runs on all threads of the caller's oneTBB arena; the result does not depend on
-// them.
+// counts as 0. 0 where nothing is covered. Runs on all threads of the caller's oneTBB arena; the result does not depend
+// on them.
 double BrightPercentile(const GuideSet& guides, Layer layer);
 
 // The exposure, in stops to the hundredth, that maps the 90th percentile of the luminance of covered pixels to the

@@ -22,13 +22,13 @@ int NormalCell(float coordinate) {
   return std::clamp(static_cast<int>(std::floor((coordinate * 0.5f + 0.5f) * kNormalCells)), 0, kNormalCells - 1);
 }
 
-// 0 … count - 1 by the hash's upper half. Unlike the remainder it is the same share of any count, so a preview of half the
-// size draws where the final picture does.
+// 0 … count - 1 by the hash's upper half. Unlike the remainder it is the same share of any count, so a preview of half
+// the size draws where the final picture does.
 std::uint64_t ShareOf(std::uint64_t hash, std::uint64_t count) { return (hash >> 32) * count >> 32; }
 
 }  // namespace
 
-Alternatives::Alternatives(const PreparedExemplar& exemplar)
+SourceVariation::SourceVariation(const PreparedExemplar& exemplar)
     : shift_(std::max(0, static_cast<int>(std::bit_width(static_cast<unsigned>(exemplar.size()))) - 8)),
       cell_(1 << shift_),
       columns_((exemplar.width() + cell_ - 1) / cell_),
@@ -80,7 +80,7 @@ Alternatives::Alternatives(const PreparedExemplar& exemplar)
   }
 }
 
-std::optional<Alternatives::Tone> Alternatives::ToneOf(int picture, int x0, int y0, int x1, int y1) const {
+std::optional<SourceVariation::Tone> SourceVariation::ToneOf(int picture, int x0, int y0, int x1, int y1) const {
   const auto cell = [&](int at, int cells) { return std::clamp((at + cell_ / 2) / cell_, 0, cells); };
   int c0 = cell(std::max(0, x0), columns_), c1 = cell(std::max(0, x1), columns_);
   int r0 = cell(std::max(0, y0), rows_), r1 = cell(std::max(0, y1), rows_);
@@ -92,16 +92,17 @@ std::optional<Alternatives::Tone> Alternatives::ToneOf(int picture, int x0, int 
   const std::int64_t count = a.count - b.count - c.count + d.count;
   if (count == 0) return std::nullopt;
   Tone tone;
-  for (int i = 0; i < 4; ++i) tone[i] = static_cast<std::int32_t>((a.color[i] - b.color[i] - c.color[i] + d.color[i]) / count);
+  for (int i = 0; i < 4; ++i)
+    tone[i] = static_cast<std::int32_t>((a.color[i] - b.color[i] - c.color[i] + d.color[i]) / count);
   return tone;
 }
 
-std::optional<Alternatives::Tone> Alternatives::ToneAround(Source source, int picture, int half_width) const {
+std::optional<SourceVariation::Tone> SourceVariation::ToneAround(Source source, int picture, int half_width) const {
   const int half = std::max(half_width, cell_);
   return ToneOf(picture, source.x - half, source.y - half, source.x + half, source.y + half);
 }
 
-Alternatives::Tone Alternatives::ToneAt(Source source, int picture) const {
+SourceVariation::Tone SourceVariation::ToneAt(Source source, int picture) const {
   const int column = source.x >> shift_, row = source.y >> shift_;
   // Twice the distance of the pixel's centre from the left and upper corners.
   const std::int64_t fx = 2 * (source.x - column * cell_) + 1, fy = 2 * (source.y - row * cell_) + 1, whole = 2 * cell_;
@@ -117,7 +118,7 @@ Alternatives::Tone Alternatives::ToneAt(Source source, int picture) const {
 }
 
 // The mean squared distance of the quarters' tones from `tone`.
-std::int64_t Alternatives::Unlikeness(Source source, const Wish& wish, const Tone& tone) const {
+std::int64_t SourceVariation::Unlikeness(Source source, const Wanted& wish, const Tone& tone) const {
   const int half = std::max(wish.half_width, cell_);
   std::int64_t sum = 0, quarters = 0;
   for (const int dx : {-half, 0}) {
@@ -136,8 +137,8 @@ std::int64_t Alternatives::Unlikeness(Source source, const Wish& wish, const Ton
 }
 
 // One pixel of those around the cone, evenly; nothing where it is outside.
-std::optional<Source> Alternatives::Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine,
-                                         std::uint64_t a, std::uint64_t b) const {
+std::optional<Source> SourceVariation::Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine,
+                                            std::uint64_t a, std::uint64_t b) const {
   const glm::vec3 normal = exemplar.Normal(own.x, own.y);
   Source source;
   if (exemplar.is_sphere()) {
@@ -171,7 +172,7 @@ std::optional<Source> Alternatives::Draw(const PreparedExemplar& exemplar, Sourc
   return source;
 }
 
-Source Alternatives::Choose(const PreparedExemplar& exemplar, const Wish& wish) const {
+Source SourceVariation::Choose(const PreparedExemplar& exemplar, const Wanted& wish) const {
   const std::optional<Tone> tone = ToneAround(wish.own, wish.picture, wish.half_width);
   if (!tone) return wish.own;
   constexpr auto kMost = static_cast<std::int64_t>(kTolerance * 65535 * kTolerance * 65535);

@@ -13,16 +13,16 @@ namespace scumble {
 class PreparedExemplar;
 
 // Immutable once made; concurrent reads are safe. It does not keep the exemplar, which is given to every call.
-class Alternatives {
+class SourceVariation {
  public:
   // Sums over all usable pixels of all pictures. O(pixels · pictures).
-  explicit Alternatives(const PreparedExemplar& exemplar);
+  explicit SourceVariation(const PreparedExemplar& exemplar);
 
-  struct Wish {
-    Source own;           // what else would be taken; usable
-    int picture = 0;      // of the exemplar
-    double degrees = 0;   // how far from own's normal, 0 … 90
-    int half_width = 1;   // of the square of paint around a source whose tone counts, in pixels
+  struct Wanted {
+    Source own;          // what else would be taken; usable
+    int picture = 0;     // of the exemplar
+    double degrees = 0;  // how far from own's normal, 0 … 90
+    int half_width = 1;  // of the square of paint around a source whose tone counts, in pixels
     std::uint64_t hash = 0;
   };
 
@@ -30,14 +30,15 @@ class Alternatives {
   // exemplar's pixels, it is the first whose square has in its four quarters about the tone of the square around `own`;
   // if none has, the one that comes nearest to it. (Quarters: paint that is light here and dark there would show its
   // border although its mean is right.) `own` where chance finds nothing.
-  Source Choose(const PreparedExemplar& exemplar, const Wish& wish) const;
+  Source Choose(const PreparedExemplar& exemplar, const Wanted& wish) const;
 
   // The mean colour (times alpha) and alpha of the usable pixels in a square around a source, to whole cells: 0 … 65535
   // each; nothing where no pixel there is usable. All arithmetic is of integers.
   using Tone = std::array<std::int32_t, 4>;
   std::optional<Tone> ToneAround(Source source, int picture, int half_width) const;
 
-  // The same of what is near a usable source, some 1/64 of the exemplar wide and without steps: for each pixel, quickly.
+  // The same of what is near a usable source, some 1/64 of the exemplar wide and without steps: for each pixel,
+  // quickly.
   Tone ToneAt(Source source, int picture) const;
 
  private:
@@ -46,13 +47,14 @@ class Alternatives {
     std::int64_t count = 0;
   };
   std::optional<Tone> ToneOf(int picture, int x0, int y0, int x1, int y1) const;
-  std::int64_t Unlikeness(Source source, const Wish& wish, const Tone& tone) const;
+  std::int64_t Unlikeness(Source source, const Wanted& wish, const Tone& tone) const;
   std::optional<Source> Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine, std::uint64_t a,
                              std::uint64_t b) const;
 
-  int shift_ = 0, cell_ = 1;               // pixels a side of what is summed at once: 2^shift
-  int columns_ = 0, rows_ = 0;            // cells
-  std::vector<std::vector<Sums>> tables_;  // by picture: sums of everything above and to the left, (columns + 1) × (rows + 1)
+  int shift_ = 0, cell_ = 1;    // pixels a side of what is summed at once: 2^shift
+  int columns_ = 0, rows_ = 0;  // cells
+  std::vector<std::vector<Sums>>
+      tables_;  // by picture: sums of everything above and to the left, (columns + 1) × (rows + 1)
   std::vector<std::vector<Tone>> corners_;  // by picture: tones around the cells' corners
 
   // Scenes only: usable pixels by the cell that their normal's (x, y) is in, and where each cell begins.

@@ -6,13 +6,13 @@
 #include <mutex>
 #include <optional>
 
+#include "core/filter/resample.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
 #include "transfer/exemplar/paint_by_normal.h"
+#include "transfer/exemplar/usable_mask.h"
 #include "transfer/nearest/guide_tree.h"
 #include "transfer/nearest/lookup_table.h"
-#include "core/filter/resample.h"
-#include "transfer/exemplar/usable_mask.h"
 
 namespace scumble {
 
@@ -34,7 +34,8 @@ class ExemplarSearch {
 
 namespace {
 
-// The least integer not below a value of 0 or more. std::ceil is a call where the processor's oldest instructions must do.
+// The least integer not below a value of 0 or more. std::ceil is a call where the processor's oldest instructions must
+// do.
 int RoundedUp(float value) {
   const int down = static_cast<int>(value);
   return down + (static_cast<float>(down) < value);
@@ -75,12 +76,12 @@ Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
 
 }  // namespace
 
-struct PreparedExemplar::LateAlternatives {
+struct PreparedExemplar::LazySourceVariation {
   std::once_flag made;
-  std::optional<Alternatives> value;
+  std::optional<SourceVariation> value;
 };
 
-PreparedExemplar::PreparedExemplar() : alternatives_(std::make_shared<LateAlternatives>()) {}
+PreparedExemplar::PreparedExemplar() : alternatives_(std::make_shared<LazySourceVariation>()) {}
 
 PreparedExemplar::PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size)
     : PreparedExemplar() {
@@ -151,7 +152,7 @@ Expected<PreparedExemplar> PreparedExemplar::OfScene(std::span<const Picture* co
   return exemplar;
 }
 
-const Alternatives& PreparedExemplar::alternatives() const {
+const SourceVariation& PreparedExemplar::alternatives() const {
   std::call_once(alternatives_->made, [this] { alternatives_->value.emplace(*this); });
   return *alternatives_->value;
 }

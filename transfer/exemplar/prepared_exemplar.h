@@ -11,25 +11,25 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/status.h"
 #include "core/image/style.h"
+#include "scumble/picture.h"
 #include "transfer/field/source.h"
 #include "transfer/nearest/table_cache.h"
 
 namespace scumble {
 
-class Alternatives;
+class SourceVariation;
 class ExemplarSearch;
 
-// An exemplar's guides by rows, for code that looks at sixteen pixels at once: kPad values before the first and after the
-// last of each array may be read too, and mean nothing. Valid as long as the exemplar.
+// An exemplar's guides by rows, for code that looks at sixteen pixels at once: kPad values before the first and after
+// the last of each array may be read too, and mean nothing. Valid as long as the exemplar.
 struct ExemplarRows {
   static constexpr int kPad = 16;
   int width = 0, height = 0;
   bool is_sphere = false;
-  // Spheres: pixel index → [-1, 1], as x of the normal and as -y; and a row's first and last usable pixel (first > last:
-  // there is none).
+  // Spheres: pixel index → [-1, 1], as x of the normal and as -y; and a row's first and last usable pixel (first >
+  // last: there is none).
   const float* coordinate = nullptr;
   const std::int16_t* first = nullptr;
   const std::int16_t* last = nullptr;
@@ -58,15 +58,17 @@ class PreparedExemplar {
 
   // How NearestNeighbour searches from now on, before the exemplar is shared: kAuto is the formula for a sphere and a
   // table for a scene. kAnalytic is a kUsage error for a scene. Tables have `resolution`² cells and are looked for in
-  // `cache` first, which may be null. Sources of a tree may be (1 + error) times as far as the nearest. O(usable pixels · log)
-  // where something is built.
+  // `cache` first, which may be null. Sources of a tree may be (1 + error) times as far as the nearest. O(usable pixels
+  // · log) where something is built.
   Status SearchBy(NearestSearch search, int resolution, TableCache* cache, double error = 0.0);
 
   bool is_sphere() const { return !scene_; }
   int width() const { return scene_ ? scene_->width : size_; }
   int height() const { return scene_ ? scene_->height : size_; }
   int size() const { return size_; }  // the longer side
-  std::int64_t usable_limit() const { return limit_; }  // of a sphere: squared radius of the usable disc, in half pixels
+  std::int64_t usable_limit() const {
+    return limit_;
+  }  // of a sphere: squared radius of the usable disc, in half pixels
   int count() const { return static_cast<int>(pictures_.size()); }
   const Picture& picture(int index = 0) const { return pictures_[std::size_t(index)]; }
 
@@ -99,7 +101,7 @@ class PreparedExemplar {
   glm::vec2 OnDisc(glm::vec3 normal) const;
 
   // Where else there is paint for a normal; made at the first call, by whichever thread is first.
-  const Alternatives& alternatives() const;
+  const SourceVariation& alternatives() const;
 
   ExemplarRows Rows() const;
 
@@ -124,7 +126,7 @@ class PreparedExemplar {
     }
   };
 
-  struct LateAlternatives;
+  struct LazySourceVariation;
 
   PreparedExemplar();
   float Coordinate(int index) const { return coordinate_[std::size_t(index) + ExemplarRows::kPad]; }
@@ -135,14 +137,14 @@ class PreparedExemplar {
   std::string TableKey(std::span<const Source> sources, int resolution) const;
 
   int size_ = 0;
-  std::int64_t limit_ = 0;         // squared usable radius in half pixels
-  float usable_radius_ = 0;        // the same as a fraction of the sphere's
-  std::vector<float> coordinate_;  // pixel index → [-1, 1], padded
+  std::int64_t limit_ = 0;                                // squared usable radius in half pixels
+  float usable_radius_ = 0;                               // the same as a fraction of the sphere's
+  std::vector<float> coordinate_;                         // pixel index → [-1, 1], padded
   std::vector<std::int16_t> first_usable_, last_usable_;  // by row, of a sphere
   std::vector<Picture> pictures_;
   std::shared_ptr<const Scene> scene_;            // null: the sphere
   std::shared_ptr<const ExemplarSearch> search_;  // null: analytic
-  std::shared_ptr<LateAlternatives> alternatives_;
+  std::shared_ptr<LazySourceVariation> alternatives_;
 };
 
 // N for a picture of `size` pixels at `scale`, for an output of `output_height` pixels; `reference_height` 0 means that

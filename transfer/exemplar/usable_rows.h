@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "transfer/exemplar/prepared_exemplar.h"
 #include "core/filter/region.h"
+#include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble::internal {
 

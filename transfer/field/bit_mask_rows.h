@@ -8,14 +8,14 @@
 namespace scumble::internal {
 
 // The rows and words of a mask; both may reach beyond the picture.
-struct MarkedTile {
+struct MaskedTile {
   int first_row = 0, rows = 0;
   int first_word = 0, words = 0;
 };
 
 // Marks of rows [first_row, first_row + rows) and of `words` words from `first_word` on, which may be -1: bit i of word
 // w is column 64·w + i of the picture. One word more stands on either side, so that every word has neighbours.
-class BitRows {
+class BitMaskRows {
  public:
   static constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
@@ -24,7 +24,7 @@ class BitRows {
     first_row_ = first_row, first_word_ = first_word - 1, stride_ = words + 2;
     bits_.assign(std::size_t(rows) * stride_, fill);
   }
-  void Reset(const MarkedTile& tile, std::uint64_t fill) {
+  void Reset(const MaskedTile& tile, std::uint64_t fill) {
     Reset(tile.first_row, tile.rows, tile.first_word, tile.words, fill);
   }
   // Words from `first_word` on.
@@ -50,7 +50,7 @@ class BitRows {
 
 // Bits [begin, end) of a word, clamped to it.
 inline std::uint64_t BitRange(int begin, int end) {
-  const auto below = [](int i) { return i <= 0 ? 0 : i >= 64 ? BitRows::kAll : (std::uint64_t{1} << i) - 1; };
+  const auto below = [](int i) { return i <= 0 ? 0 : i >= 64 ? BitMaskRows::kAll : (std::uint64_t{1} << i) - 1; };
   return below(end) & ~below(begin);
 }
 

@@ -12,12 +12,13 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kStep = 24;        // rows that are started, matched and voted on together; what they need stays in the second cache
+constexpr int kStep =
+    24;  // rows that are started, matched and voted on together; what they need stays in the second cache
 constexpr int kLeastShare = 16;  // rows of a stretch that another thread may take over
 
-// The rows that are left, shared out over workers. Each goes down its own stretch; who is done takes the lower half of the
-// longest that is left, so stretches are as long as can be: each begins with seeds that must be made, and ends with rows
-// that are matched twice.
+// The rows that are left, shared out over workers. Each goes down its own stretch; who is done takes the lower half of
+// the longest that is left, so stretches are as long as can be: each begins with seeds that must be made, and ends with
+// rows that are matched twice.
 class RowShares {
  public:
   RowShares(int y0, int y1, int workers) {
@@ -91,7 +92,8 @@ class Band {
   void Paint(RowShares& shares, int worker, RowProgress& progress) {
     watch_.Lap();
     int last = -1;
-    for (RowShares::Rows rows; !progress.cancelled() && (rows = shares.Take(worker, kStep)).size() > 0; last = rows.end) {
+    for (RowShares::Rows rows; !progress.cancelled() && (rows = shares.Take(worker, kStep)).size() > 0;
+         last = rows.end) {
       if (rows.begin != last) Begin(rows.begin);
       own_.y1 = rows.sure;
       Paint(rows.begin, rows.end);
@@ -187,8 +189,12 @@ class Band {
 
   void Vote(int s, const Region& painted, std::span<const std::uint8_t> active) {
     const SharedStyle& shared = styles_[static_cast<std::size_t>(s)];
-    VoteInput votes{field_, active, shared.style.match.exemplar, shared.style.radius,
-                    shared.style.edges ? &*shared.style.edges : nullptr, painted};
+    VoteInput votes{field_,
+                    active,
+                    shared.style.match.exemplar,
+                    shared.style.radius,
+                    shared.style.edges ? &*shared.style.edges : nullptr,
+                    painted};
     const ColorizeInput tint{frame_.guides, active, shared.style.tint, field_.first_row};
     if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { ColorizeRow(tint, y, x0, x1, out_); };
     std::vector<std::uint8_t>& words = memory_.words;  // that have pixels of the style

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "scumble/picture.h"
-#include "core/image/style.h"
 #include "core/filter/parallel.h"
+#include "core/image/style.h"
+#include "scumble/picture.h"
 
 namespace scumble::internal {
 
@@ -17,12 +17,13 @@ struct Background {
   bool empty() const { return !over && !paper.picture && !paper.color; }
 };
 
-// Porter and Duff's "over" with straight alpha, colours blended in linear light: `front` becomes it laid over `back`. Where
-// front is opaque, or only one of them is there, colours pass through untouched.
+// Porter and Duff's "over" with straight alpha, colours blended in linear light: `front` becomes it laid over `back`.
+// Where front is opaque, or only one of them is there, colours pass through untouched.
 void BlendOver(std::uint16_t* front, const std::uint16_t* back);
 
-// Multiplies `coverage`, 0 … 1 by pixel of the picture, into the alpha of `picture`, then blends it over the background in linear light. Where the
-// result is opaque or nothing is behind, colours pass through untouched. False: asked to stop.
+// Multiplies `coverage`, 0 … 1 by pixel of the picture, into the alpha of `picture`, then blends it over the background
+// in linear light. Where the result is opaque or nothing is behind, colours pass through untouched. False: asked to
+// stop.
 bool Compose(std::span<const float> coverage, const Background& background, const Region& region, Picture& picture,
              RowProgress& progress);
 

@@ -100,7 +100,7 @@ class Starter {
       while (end < x1 - x0 && style[end] == here) ++end;
       const int first = i;
       i = end;
-      if (here == StyleMap::kLeave || here == StyleMap::kCatch) continue;
+      if (here == StyleMap::kPassThrough || here == StyleMap::kShadowCatcher) continue;
       int own = 0;
       for (int k = first; k < end; ++k) own += covered[k];
       if (own == 0) continue;
@@ -150,7 +150,7 @@ void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& covere
   Starter(input, nullptr, &covered, out).Start(y0, y1, rows);
 }
 
-FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out) {
+FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out) {
   const int width = input.guides.width(), height = input.guides.height();
   field.Resize(width, height);
   active.resize(input.guides.pixel_count());
@@ -165,7 +165,7 @@ FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<s
     if (input.map) std::fill_n(all.At(0, y0), std::size_t(y1 - y0) * width, std::uint8_t{0});
     Starter(input, &field, input.map ? nullptr : &all, out).Start(y0, y1, rows);
   });
-  FrameStart start;
+  FrameSetup start;
   for (const StartedRows& band : bands) start.softly_covered = start.softly_covered || band.soft;
   if (!input.map) {
     start.extents = {Region{0, 0, width, height}};

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/filter/region.h"
 #include "core/image/guides.h"
 #include "scumble/picture.h"
-#include "core/filter/region.h"
 #include "transfer/field/source_field.h"
 #include "transfer/frame/style_map.h"
 
@@ -19,7 +19,7 @@ struct FrameInput {
   Region region;  // of the picture that is made; within it
 };
 
-struct FrameStart {
+struct FrameSetup {
   std::vector<Region> extents;             // the rectangle around each style's covered pixels
   std::vector<std::vector<Region>> tiles;  // by style, with a map only: small rectangles that hold all its pixels
   bool softly_covered = false;             // somewhere that is painted coverage is between 0 and 1
@@ -37,21 +37,22 @@ struct ActiveRows {
 // already.
 // - `active`: without a map 1 where coverage is above 0; with one 0 everywhere, see Activate.
 // - The field says kNoSource wherever no style paints and outside the region, and may say anything elsewhere.
-// - `out` is 0 wherever in the region no style paints, and may hold anything where one does; outside the region it is left
+// - `out` is 0 wherever in the region no style paints, and may hold anything where one does; outside the region it is
+// left
 //   alone if it had its size.
 // Runs in the caller's arena.
-FrameStart StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);
+FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);
 
 // `active` tells the covered pixels of a style in these tiles, or none any more.
 void Activate(const FrameInput& input, int style, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
 void Deactivate(const FrameInput& input, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
 
-// The same of some rows alone, by one thread, without a field: what StartFrame says of `out` holds for these rows, `out`
-// having its size, and `covered` is 1 where coverage is above 0. Adds to `rows`.
+// The same of some rows alone, by one thread, without a field: what StartFrame says of `out` holds for these rows,
+// `out` having its size, and `covered` is 1 where coverage is above 0. Adds to `rows`.
 struct StartedRows {
-  std::vector<Region> extents;                           // by style, as many as the caller made room for, who asks for none by leaving it empty
+  std::vector<Region> extents;  // by style, as many as the caller made room for, who asks for none by leaving it empty
   std::vector<std::pair<std::uint16_t, Region>> tiles;  // styles, without a map 0, and where in these rows they are
-  bool soft = false;                                     // somewhere that is painted coverage is between 0 and 1
+  bool soft = false;                                    // somewhere that is painted coverage is between 0 and 1
 };
 void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& covered, Picture& out, StartedRows& rows);
 

@@ -48,7 +48,8 @@ void ForEachPixel(const GuideSet& guides, const Assignment& assignment, const Be
     Finder material(assignment.of_material);
     auto visit = begin();
     for (std::size_t i = stretch.begin(); i != stretch.end(); ++i) {
-      visit(i, objects.empty() ? nullptr : object.At(objects[i]), materials.empty() ? nullptr : material.At(materials[i]));
+      visit(i, objects.empty() ? nullptr : object.At(objects[i]),
+            materials.empty() ? nullptr : material.At(materials[i]));
     }
   });
 }
@@ -59,8 +60,10 @@ StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment) {
   StyleMap map{std::vector<std::uint16_t>(guides.pixel_count(), assignment.otherwise)};
   ForEachPixel(guides, assignment, [&] {
     return [&](std::size_t i, const std::uint16_t* object, const std::uint16_t* material) {
-      if (object) map.style[i] = *object;
-      else if (material) map.style[i] = *material;
+      if (object)
+        map.style[i] = *object;
+      else if (material)
+        map.style[i] = *material;
     };
   });
   return map;

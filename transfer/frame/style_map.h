@@ -13,14 +13,15 @@ namespace scumble {
 
 // Per pixel the index of its style, rows from the top.
 struct StyleMap {
-  static constexpr std::uint16_t kLeave = 0xffff;  // left as it is: the picture underneath shows, or nothing
+  static constexpr std::uint16_t kPassThrough = 0xffff;  // left as it is: the picture underneath shows, or nothing
   // Not painted either, but catches shadows: see transfer.shadow of the first style.
-  static constexpr std::uint16_t kCatch = 0xfffe;
+  static constexpr std::uint16_t kShadowCatcher = 0xfffe;
   static constexpr int kMaxStyles = 0xfffe;
   std::vector<std::uint16_t> style;
 };
 
-// Styles by the ids of objects and of materials; an object's own goes before its material's, and both before the default.
+// Styles by the ids of objects and of materials; an object's own goes before its material's, and both before the
+// default.
 struct StyleAssignment {
   std::map<std::uint32_t, std::uint16_t> of_object;
   std::map<std::uint32_t, std::uint16_t> of_material;

@@ -4,8 +4,8 @@
 namespace scumble::internal {
 namespace {
 
-// Offers the anchor's source to every free pixel near enough to land inside the exemplar.
-void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Offer& offer, SourceField& field) {
+// Candidates the anchor's source to every free pixel near enough to land inside the exemplar.
+void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Candidate& offer, SourceField& field) {
   const Source anchor = offer.source;
   PixelGuide of_anchor;
   input.ReadGuide(input.guides.Index(anchor_x, anchor_y), of_anchor);
@@ -35,14 +35,15 @@ bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& p
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (input.Wants(i)) field.level[i] = SourceField::kNoSource;  // free; what the field held before counts for nothing
+      if (input.Wants(i))
+        field.level[i] = SourceField::kNoSource;  // free; what the field held before counts for nothing
     }
   }
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
       if (field.level[i] != SourceField::kNoSource || !input.Wants(i)) continue;
-      const Offer own = OwnOffer(input, i);
+      const Candidate own = OwnCandidate(input, i);
       field.Set(i, own.source.x, own.source.y, own.exemplar, 0);
       GrowChunk(input, x, y, own, field);
     }

@@ -33,7 +33,8 @@ int BlockBefore(int position, int step) { return FloorDivide(2 * position + 1 - 
 class MatchedGrid {
  public:
   MatchedGrid(const MatchInput& input, const CoarseGrid& grid, const SourceField& field)
-      : first_column_(BlockBefore(input.region.x0, grid.step())), first_row_(BlockBefore(input.region.y0, grid.step())) {
+      : first_column_(BlockBefore(input.region.x0, grid.step())),
+        first_row_(BlockBefore(input.region.y0, grid.step())) {
     columns_ = BlockBefore(input.region.x1 - 1, grid.step()) + 2 - first_column_;
     const int rows = BlockBefore(input.region.y1 - 1, grid.step()) + 2 - first_row_;
     matched_.resize(std::size_t(columns_) * rows);
@@ -82,7 +83,8 @@ std::array<PixelPosition, 4> BlocksAround(int x, int y, int column, int row, int
 }
 
 // What p takes from a block, if its guide is like p's there.
-std::optional<Offer> Accept(const MatchInput& input, const Matched& matched, int x, int y, const PixelGuide& guide) {
+std::optional<Candidate> Accept(const MatchInput& input, const Matched& matched, int x, int y,
+                                const PixelGuide& guide) {
   const Source candidate{matched.source.x + (x - matched.pixel.x), matched.source.y + (y - matched.pixel.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   if (matched.off) {
@@ -91,17 +93,17 @@ std::optional<Offer> Accept(const MatchInput& input, const Matched& matched, int
     of_block.normal += matched.moved;
     input.MoveAs(of_block, matched.source, matched.exemplar, moved);
     if (!input.Alike(moved, matched.moved, candidate, matched.exemplar)) return std::nullopt;
-    return Offer{candidate, matched.exemplar, matched.moved};
+    return Candidate{candidate, matched.exemplar, matched.moved};
   }
   if (!input.Alike(guide, matched.moved, candidate, matched.exemplar)) return std::nullopt;
-  return Offer{candidate, matched.exemplar, matched.moved};
+  return Candidate{candidate, matched.exemplar, matched.moved};
 }
 
 // What p takes from the blocks around it, and the level of that.
-std::optional<Offer> Best(const MatchInput& input, const MatchedGrid& matched,
-                          const std::array<PixelPosition, 4>& blocks, int x, int y, const PixelGuide& guide,
-                          int& level) {
-  std::optional<Offer> best;
+std::optional<Candidate> Best(const MatchInput& input, const MatchedGrid& matched,
+                              const std::array<PixelPosition, 4>& blocks, int x, int y, const PixelGuide& guide,
+                              int& level) {
+  std::optional<Candidate> best;
   float least = 0.0f;
   for (const PixelPosition& block : blocks) {
     const std::optional<Matched>& there = matched.At(block.x, block.y);
@@ -164,7 +166,7 @@ bool UpsampleField(const MatchInput& input, const CoarseGrid& grid, SourceField&
       if (!input.active[i]) continue;
       PixelGuide guide;
       input.ReadGuide(i, guide);
-      std::optional<Offer> best;
+      std::optional<Candidate> best;
       int level = 0;
       if (matched.InOnePiece(column, row)) {
         const Matched& one = *matched.At(column, row);
@@ -172,7 +174,7 @@ bool UpsampleField(const MatchInput& input, const CoarseGrid& grid, SourceField&
       } else {
         best = Best(input, matched, BlocksAround(x, y, column, row, step), x, y, guide, level);
       }
-      if (!best) best = OwnOffer(input, guide), level = 0;
+      if (!best) best = OwnCandidate(input, guide), level = 0;
       field.Set(i, best->source.x, best->source.y, best->exemplar, level);
     }
   });

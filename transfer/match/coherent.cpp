@@ -1,12 +1,14 @@
 // StyleBlit (Sýkora et al. 2019, section 3.2) with seeds on surfaces instead of the screen; surface_seeds.h tells where
 // they are. Two things differ from styleblit.cpp:
 //
-//   - A pixel belongs to one piece of each level by its place on the surface, and the piece's seed is found by all of its
+//   - A pixel belongs to one piece of each level by its place on the surface, and the piece's seed is found by all of
+//   its
 //     pixels together: the nearest to the piece's point, whatever the order in which threads come by.
-//   - The nearest neighbour of a seed that turns with its object wanders over the painting, and the paint would slide over
+//   - The nearest neighbour of a seed that turns with its object wanders over the painting, and the paint would slide
+//   over
 //     the surface. So the seed's normal is rounded to a grid, and the paint stands still until the seed has turned by a
-//     cell of it; then this one piece changes. The grid of each piece is moved by a hash, so that they do not all change
-//     at once. Acceptance is the usual one, so no pixel is less like its paint than in StyleBlit.
+//     cell of it; then this one piece changes. The grid of each piece is moved by a hash, so that they do not all
+//     change at once. Acceptance is the usual one, so no pixel is less like its paint than in StyleBlit.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -21,8 +23,8 @@
 namespace scumble::internal {
 namespace {
 
-// The cell's side as a share of the threshold. Without rounding, a figure that turns flickers nearly as much as with seeds
-// that are frozen to the screen (bench/flicker_bench.cpp); with 1, small highlights get lost.
+// The cell's side as a share of the threshold. Without rounding, a figure that turns flickers nearly as much as with
+// seeds that are frozen to the screen (bench/flicker_bench.cpp); with 1, small highlights get lost.
 constexpr float kSteadiness = 0.5f;
 constexpr float kLargestCell = 0.25f;
 
@@ -51,8 +53,8 @@ glm::vec3 Steady(const glm::vec3& normal, float cell, std::uint64_t key) {
   return {x * from_map, y * from_map, 1.0f - squared / 2.0f};
 }
 
-// The seeds of the pieces of one exponent: from a piece's key to the pixel nearest to its point. Any thread may add; what
-// is found does not depend on the order.
+// The seeds of the pieces of one exponent: from a piece's key to the pixel nearest to its point. Any thread may add;
+// what is found does not depend on the order.
 class SeedTable {
  public:
   // For at most `pieces` different keys.
@@ -117,7 +119,7 @@ class CoherentMatch {
       for (int x = region.x0; x < region.x1; ++x) {
         const std::size_t i = field_.Index(x, y);
         if (!input_.Wants(i) || settled_[i]) continue;
-        const Offer own = OwnOffer(input_, i);
+        const Candidate own = OwnCandidate(input_, i);
         field_.Set(i, own.source.x, own.source.y, own.exemplar, 0);
         if (!field_.moved.empty()) field_.moved[i] = own.moved;
       }
@@ -162,7 +164,7 @@ class CoherentMatch {
     Rows(whole, [&](int y) { runs.fetch_add(FindPieces(exponent, y), std::memory_order_relaxed); });
     SeedTable seeds(runs);
     Rows(whole, [&](int y) { AddSeeds(y, seeds); });
-    Rows(input_.region, [&](int y) { OfferRow(exponent, y, seeds); });
+    Rows(input_.region, [&](int y) { CandidateRow(exponent, y, seeds); });
   }
 
   bool IsWanted(int exponent) const {
@@ -206,7 +208,7 @@ class CoherentMatch {
     }
   }
 
-  void OfferRow(int exponent, int y, SeedTable& seeds) {
+  void CandidateRow(int exponent, int y, SeedTable& seeds) {
     std::uint64_t last = 0;
     std::optional<Seed> seed;
     for (int x = input_.region.x0; x < input_.region.x1; ++x) {
@@ -216,7 +218,7 @@ class CoherentMatch {
       if (!seed) continue;
       PixelGuide guide;
       input_.ReadGuide(i, guide);
-      const auto taken = TakeOffer(input_, seed->made, seed->q, {x, y}, guide);
+      const auto taken = TryCandidate(input_, seed->made, seed->q, {x, y}, guide);
       if (!taken) continue;
       field_.Set(i, taken->source.x, taken->source.y, taken->exemplar, seed->level);
       if (!field_.moved.empty()) field_.moved[i] = taken->moved;
@@ -225,7 +227,7 @@ class CoherentMatch {
   }
 
   struct Seed {
-    SeedOffer made;
+    SeedCandidate made;
     PixelPosition q;
     int level = 0;
   };
@@ -239,8 +241,10 @@ class CoherentMatch {
     input_.ReadGuide(pixel, guide);
     PixelGuide steady = guide;
     steady.normal = Steady(guide.normal, cell_, key);
-    Seed seed{SeedOf(input_, guide, OwnOffer(input_, steady)), {static_cast<int>(pixel % width), static_cast<int>(pixel / width)}, level};
-    Vary(input_, level, seed.q, Hash(key, 0x7a), seed.made);
+    Seed seed{SeedOf(input_, guide, OwnCandidate(input_, steady)),
+              {static_cast<int>(pixel % width), static_cast<int>(pixel / width)},
+              level};
+    VarySource(input_, level, seed.q, Hash(key, 0x7a), seed.made);
     return seed;
   }
 

@@ -4,15 +4,15 @@
 
 namespace scumble::internal {
 
-Offer OwnOffer(const MatchInput& input, const PixelGuide& guide) {
+Candidate OwnCandidate(const MatchInput& input, const PixelGuide& guide) {
   const int chosen = input.illumination.Choose(guide.light);
   return {input.NearestTo(guide, chosen), chosen};
 }
 
-Offer OwnOffer(const MatchInput& input, std::size_t pixel) {
+Candidate OwnCandidate(const MatchInput& input, std::size_t pixel) {
   PixelGuide guide;
   input.ReadGuide(pixel, guide);
-  return OwnOffer(input, guide);
+  return OwnCandidate(input, guide);
 }
 
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress) {
@@ -20,7 +20,7 @@ bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& pr
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
       if (!input.Wants(i)) continue;
-      const Offer own = OwnOffer(input, i);
+      const Candidate own = OwnCandidate(input, i);
       field.Set(i, own.source.x, own.source.y, own.exemplar, 0);
     }
   });

@@ -1,33 +1,33 @@
-// Ways to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that are
-// wanted, and leave the others as they are. False: the progress callback asked to stop.
+// Variants to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that
+// are wanted, and leave the others as they are. False: the progress callback asked to stop.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "core/filter/parallel.h"
 #include "core/image/guides.h"
-#include "transfer/nearest/guide_distance.h"
 #include "transfer/exemplar/guide_space.h"
 #include "transfer/exemplar/illumination.h"
-#include "core/filter/parallel.h"
 #include "transfer/exemplar/prepared_exemplar.h"
-#include "transfer/seeds/seeds.h"
 #include "transfer/field/source_field.h"
+#include "transfer/nearest/guide_distance.h"
+#include "transfer/seeds/seeds.h"
 
 namespace scumble::internal {
 
 // What is compared of one pixel of the scene.
 struct PixelGuide {
   glm::vec3 normal;
-  float light;                      // exposed luminance, for the choice of exemplars
-  float rest[GuideSpace::kMaxRest];  // only where a GuideSpace is matched in
+  float light;                        // exposed luminance, for the choice of exemplars
+  float rest[GuideSpace::kMaxExtra];  // only where a GuideSpace is matched in
 };
 
 // What a match looks at. `field` has the picture's size already.
 struct MatchInput {
   const GuideSet& guides;
-  // 1: a pixel that this style paints. Empty where there is no such plane: then `covered` says it, and Paints alone must be
-  // asked.
+  // 1: a pixel that this style paints. Empty where there is no such plane: then `covered` says it, and Paints alone
+  // must be asked.
   std::span<const std::uint8_t> active;
   const PreparedExemplar& exemplar;
   const Illumination& illumination;
@@ -39,9 +39,9 @@ struct MatchInput {
   int flat_reach = 16;  // pixels around a seed that must be flat for `variety`
   Region region;
   std::span<const std::uint8_t> wanted = {};  // 1: active pixels that are to be matched; empty: all of them are
-  int least_level = 1;  // finer grids of seeds are left out
-  const GuideSpace* space = nullptr;  // null: normals alone are matched by, each counting 1
-  float brightness = 1.0f;            // of the scene's radiance in that space
+  int least_level = 1;                        // finer grids of seeds are left out
+  const GuideSpace* space = nullptr;          // null: normals alone are matched by, each counting 1
+  float brightness = 1.0f;                    // of the scene's radiance in that space
   // Pixels of coverage above 0 that this style paints; without painters it paints all.
   struct Covered {
     std::span<const float> coverage;
@@ -73,10 +73,10 @@ struct MatchInput {
     if (space) return space->Alike(test, k, guide.normal + moved, guide.rest, at, extra);
     return test.Alike(guide.normal + moved, exemplar.Normal(at.x, at.y), extra);
   }
-  // Whether nothing in the exemplar is like a seed within the threshold, `best` being the nearest: a shadow on what faces
-  // the lamp, where the exemplar shows all that faces it lit. Its pieces would end where they begin; instead the pixels
-  // around it are compared as if their guides were off by as much as the seed's (MoveAs). Normals alone are always
-  // compared as they are.
+  // Whether nothing in the exemplar is like a seed within the threshold, `best` being the nearest: a shadow on what
+  // faces the lamp, where the exemplar shows all that faces it lit. Its pieces would end where they begin; instead the
+  // pixels around it are compared as if their guides were off by as much as the seed's (MoveAs). Normals alone are
+  // always compared as they are.
   bool IsOff(const PixelGuide& seed, Source best, int k) const {
     return space && space->rest() > 0 && !space->Alike(test, k, seed.normal, seed.rest, best, 0.0f);
   }
@@ -95,29 +95,29 @@ struct MatchInput {
 };
 
 // A piece of an exemplar: its nearest neighbour to a pixel's guide, and the exemplar that suits the pixel's light.
-struct Offer {
+struct Candidate {
   Source source;
   int exemplar = 0;
   glm::vec3 moved{0.0f};  // by what the seed moved the source's guide: a pixel's own counts as if moved by the same
 };
-Offer OwnOffer(const MatchInput& input, std::size_t pixel);
-Offer OwnOffer(const MatchInput& input, const PixelGuide& guide);  // the same for what was read of the pixel
+Candidate OwnCandidate(const MatchInput& input, std::size_t pixel);
+Candidate OwnCandidate(const MatchInput& input, const PixelGuide& guide);  // the same for what was read of the pixel
 
 // Every pixel takes its own nearest neighbour.
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress);
 
 // Parallel StyleBlit: from coarse to fine, the nearest seed q offers its u*; pixel p takes u* + (p - q) where that is
 // usable and its guide is like p's, light included. A seed outside the picture or on a pixel that is not active fails
-// its level. If no level accepts, p takes its own u*. The plain form is written for reading and does everything; the other
-// looks at sixteen pixels at once, cannot match in a GuideSpace, and gives the same bytes.
+// its level. If no level accepts, p takes its own u*. The plain form is written for reading and does everything; the
+// other looks at sixteen pixels at once, cannot match in a GuideSpace, and gives the same bytes.
 bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgress& progress);
 bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgress& progress);
 inline bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress) {
   return input.space ? MatchStyleBlitPlain(input, field, progress) : MatchStyleBlitTiles(input, field, progress);
 }
 
-// The same with seeds that live on the surface (transfer/seeds/surface_seeds.h): guides need pref, depth and object ids. Seeds
-// depend on all active pixels of the picture, whatever the region.
+// The same with seeds that live on the surface (transfer/seeds/surface_seeds.h): guides need pref, depth and object
+// ids. Seeds depend on all active pixels of the picture, whatever the region.
 bool MatchCoherent(const MatchInput& input, SourceField& field, RowProgress& progress);
 
 // Sýkora's algorithm 1: the first free pixel in row order is the next anchor; its u* is offered to every free pixel of

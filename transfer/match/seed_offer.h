@@ -9,8 +9,8 @@
 
 namespace scumble::internal {
 
-struct SeedOffer {
-  Offer offer;
+struct SeedCandidate {
+  Candidate offer;
   // What `variety` moved the source's guide by: a pixel is compared as if its own guide were moved by the same.
   glm::vec3 moved{0.0f};
   bool off = false;  // MatchInput::IsOff, by `best`
@@ -18,14 +18,14 @@ struct SeedOffer {
 };
 
 // The seed of a pixel whose guide was read, before `variety`.
-SeedOffer SeedOf(const MatchInput& input, const PixelGuide& guide, const Offer& offer);
+SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Candidate& offer);
 
 // `variety` may choose another source by the hash, where the surface around q is flat; whether it is.
-bool Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made);
+bool VarySource(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedCandidate& made);
 
 // What p may take of the seed at q, if anything: u + (p - q), where that is usable and its guide like p's, light
 // included.
-std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, PixelPosition q, PixelPosition p,
-                               const PixelGuide& guide);
+std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q,
+                                      PixelPosition p, const PixelGuide& guide);
 
 }  // namespace scumble::internal

@@ -65,9 +65,9 @@ void TileSeeds::ForEachColumn(std::uint64_t parts, const Visit& visit) const {
   }
 }
 
-void TileSeeds::MakeOffers(int cell_row, std::uint64_t parts) {
-  TileOffer* const offers = offers_.data() + std::size_t(Slot(cell_row)) * columns_;
-  ForEachColumn(parts, [&](int c) { offers[c].state = TileOffer::kUnknown; });
+void TileSeeds::MakeCandidates(int cell_row, std::uint64_t parts) {
+  TileCandidate* const offers = offers_.data() + std::size_t(Slot(cell_row)) * columns_;
+  ForEachColumn(parts, [&](int c) { offers[c].state = TileCandidate::kUnknown; });
 }
 
 void TileSeeds::MakePlaces(int cell_row, std::uint64_t parts) {
@@ -82,8 +82,8 @@ void TileSeeds::MakePlaces(int cell_row, std::uint64_t parts) {
   });
 }
 
-void TileSeeds::Fill(int index, TileOffer& offer) {
-  offer.state = TileOffer::kNone;
+void TileSeeds::Fill(int index, TileCandidate& offer) {
+  offer.state = TileCandidate::kNone;
   const PixelPosition q = Position(index);
   if (q.x < 0 || q.y < 0 || q.x >= input_->guides.width() || q.y >= input_->guides.height()) return;
   const std::size_t i = input_->guides.Index(q.x, q.y);
@@ -91,15 +91,14 @@ void TileSeeds::Fill(int index, TileOffer& offer) {
   PixelGuide guide;
   guide.normal = {normal_[0][i], normal_[1][i], normal_[2][i]};
   guide.light = input_->LuminanceAt(i);
-  internal::Offer own = OwnOffer(*input_, guide);
+  internal::Candidate own = OwnCandidate(*input_, guide);
   offer.is_free = false;
   if (!freedoms_.empty()) {
     const int column = index % columns_;
-    const std::uint64_t hash =
-        Hash(input_->seeds.seed, input_->seeds.time_step, level_ + input_->seeds.level_offset, first_column_ + column,
-             offered_.row[index / columns_], 0x7a);
-    SeedOffer made = SeedOf(*input_, guide, own);
-    if (Vary(*input_, level_, q, hash, made)) {
+    const std::uint64_t hash = Hash(input_->seeds.seed, input_->seeds.time_step, level_ + input_->seeds.level_offset,
+                                    first_column_ + column, offered_.row[index / columns_], 0x7a);
+    SeedCandidate made = SeedOf(*input_, guide, own);
+    if (VarySource(*input_, level_, q, hash, made)) {
       offer.is_free = true;
       freedoms_[static_cast<std::size_t>(index)] = {made.moved, WantedTone(*input_, own, level_)};
       own = made.offer;
@@ -107,7 +106,7 @@ void TileSeeds::Fill(int index, TileOffer& offer) {
   }
   offer.offset_x = own.source.x - q.x, offer.offset_y = own.source.y - q.y;
   offer.exemplar = static_cast<std::uint8_t>(own.exemplar);
-  offer.state = TileOffer::kOffers;
+  offer.state = TileCandidate::kCandidates;
 }
 
 TileSeeds::Two TileSeeds::NearestTwo(int x, int y) const {

@@ -1,6 +1,6 @@
-// Seeds for the fast form of StyleBlit (styleblit_tiles.cpp): those that the pixels of one column of tiles can be near to, on one
-// level. Rows of cells are made when a pixel first asks for them and are forgotten when others need the room; a seed's
-// offer is made when a pixel first asks for it. Most seeds of fine levels are never asked.
+// Seeds for the fast form of StyleBlit (styleblit_tiles.cpp): those that the pixels of one column of tiles can be near
+// to, on one level. Rows of cells are made when a pixel first asks for them and are forgotten when others need the
+// room; a seed's offer is made when a pixel first asks for it. Most seeds of fine levels are never asked.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace scumble::internal {
 
-// Tiles that the fast match works by (styleblit_tiles.h); the first begins at the picture's corner. Wide enough that seeds
-// of coarse levels are shared by many pixels, small enough that threads have enough to share.
+// Tiles that the fast match works by (styleblit_tiles.h); the first begins at the picture's corner. Wide enough that
+// seeds of coarse levels are shared by many pixels, small enough that threads have enough to share.
 inline constexpr int kTileWidth = 512, kTileHeight = 128;
 inline constexpr int kBlock = 16;  // pixels of a row that are matched at once
 static_assert(kTileWidth % kBlock == 0);
@@ -21,8 +21,8 @@ static_assert(kTileWidth % kBlock == 0);
 inline constexpr int kMaxSpreadLevel = 6;
 
 // What a seed at q offers: a pixel p may take `offset` + p of an exemplar.
-struct TileOffer {
-  enum State : std::uint8_t { kUnknown, kNone, kOffers };
+struct TileCandidate {
+  enum State : std::uint8_t { kUnknown, kNone, kCandidates };
   std::int32_t offset_x = 0, offset_y = 0;  // u* - q
   State state = kUnknown;
   std::uint8_t exemplar = 0;
@@ -31,13 +31,13 @@ struct TileOffer {
 
 // What belongs to a seed on a flat surface.
 struct SeedFreedom {
-  glm::vec3 moved{0.0f};    // by what the source's guide was moved
-  Alternatives::Tone tone;  // what is wanted here
+  glm::vec3 moved{0.0f};       // by what the source's guide was moved
+  SourceVariation::Tone tone;  // what is wanted here
 };
 
 // One level's seeds of one tile. A seed has an index, below kSlots · columns, that holds as long as its row of cells.
-// For one thread; rows must be asked for from the top down. On levels up to kMaxSpreadLevel their places are also laid out
-// pixel by pixel, for vector code.
+// For one thread; rows must be asked for from the top down. On levels up to kMaxSpreadLevel their places are also laid
+// out pixel by pixel, for vector code.
 class TileSeeds {
  public:
   // Rows of cells that are kept at once: the three around a pixel, to a power of two.
@@ -49,18 +49,20 @@ class TileSeeds {
   int columns() const { return columns_; }
   int left() const { return left_; }  // x of the first column's cells
 
-  // Makes the cells in the row `cell_row` and those above and below, as far as pixels [x, x + width) can be near to them:
-  // so that they can be asked for offers, and with Need for their places too.
-  void NeedOffers(int cell_row, int x, int width) { NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeOffers); }
+  // Makes the cells in the row `cell_row` and those above and below, as far as pixels [x, x + width) can be near to
+  // them: so that they can be asked for offers, and with Need for their places too.
+  void NeedCandidates(int cell_row, int x, int width) {
+    NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeCandidates);
+  }
   void Need(int cell_row, int x, int width) {
-    NeedOffers(cell_row, x, width);
+    NeedCandidates(cell_row, x, width);
     NeedIn(placed_, cell_row, x, width, &TileSeeds::MakePlaces);
   }
   static int Slot(int cell_row) { return cell_row & (kSlots - 1); }
   int FirstOf(int cell_row) const { return Slot(cell_row) * columns_; }
 
-  // By pixel from left(), of a row that was needed: the seed of the pixel's cell, x from left(), and y from the top of the
-  // cell. Only for levels up to kMaxSpreadLevel.
+  // By pixel from left(), of a row that was needed: the seed of the pixel's cell, x from left(), and y from the top of
+  // the cell. Only for levels up to kMaxSpreadLevel.
   const std::uint16_t* SpreadX(int cell_row) const { return spread_x_.data() + std::size_t(Slot(cell_row)) * spread_; }
   const std::uint16_t* SpreadY(int cell_row) const { return spread_y_.data() + std::size_t(Slot(cell_row)) * spread_; }
 
@@ -72,14 +74,15 @@ class TileSeeds {
   }
 
   // What a seed offers; made now if nobody asked before.
-  const TileOffer& Offer(int index) {
-    TileOffer& offer = offers_[static_cast<std::size_t>(index)];
-    if (offer.state == TileOffer::kUnknown) Fill(index, offer);
+  const TileCandidate& Candidate(int index) {
+    TileCandidate& offer = offers_[static_cast<std::size_t>(index)];
+    if (offer.state == TileCandidate::kUnknown) Fill(index, offer);
     return offer;
   }
   const SeedFreedom& Freedom(int index) const { return freedoms_[static_cast<std::size_t>(index)]; }
 
-  // The seed nearest to pixel (x, y) among the 3 × 3 cells around its own, and the second nearest, as SeedGrid has them.
+  // The seed nearest to pixel (x, y) among the 3 × 3 cells around its own, and the second nearest, as SeedGrid has
+  // them.
   struct Two {
     int nearest, second;
     std::int64_t excess;
@@ -120,9 +123,9 @@ class TileSeeds {
   }
   template <class Visit>
   void ForEachColumn(std::uint64_t parts, const Visit& visit) const;
-  void MakeOffers(int cell_row, std::uint64_t parts);
+  void MakeCandidates(int cell_row, std::uint64_t parts);
   void MakePlaces(int cell_row, std::uint64_t parts);
-  void Fill(int index, TileOffer& offer);
+  void Fill(int index, TileCandidate& offer);
 
   const MatchInput* input_ = nullptr;
   const float* normal_[3] = {};
@@ -132,7 +135,7 @@ class TileSeeds {
   Made offered_, placed_;
   std::vector<std::uint64_t> column_hashes_;
   std::vector<PixelPosition> in_cell_;
-  std::vector<TileOffer> offers_;
+  std::vector<TileCandidate> offers_;
   std::vector<SeedFreedom> freedoms_;  // empty without variety
   std::vector<std::uint16_t> spread_x_, spread_y_;
 };

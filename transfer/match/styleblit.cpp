@@ -15,7 +15,7 @@ namespace scumble::internal {
 namespace {
 
 // Variety is freedom of direction: paint that is lit otherwise does not do.
-Source ChooseInSpace(const MatchInput& input, const Offer& own, int level, std::uint64_t hash) {
+Source ChooseInSpace(const MatchInput& input, const Candidate& own, int level, std::uint64_t hash) {
   if (!input.space) return ChooseAlike(input, own, level, hash);
   constexpr int kTries = 16;
   for (int attempt = 0; attempt < kTries; ++attempt) {
@@ -27,23 +27,23 @@ Source ChooseInSpace(const MatchInput& input, const Offer& own, int level, std::
 
 }  // namespace
 
-bool Vary(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedOffer& made) {
-  if (!HasFreedom(input, level, q)) return false;
+bool VarySource(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedCandidate& made) {
+  if (!CanVary(input, level, q)) return false;
   const Source own = made.offer.source;
   made.offer.source = ChooseInSpace(input, made.offer, level, hash);
   made.moved += input.exemplar.Normal(made.offer.source.x, made.offer.source.y) - input.exemplar.Normal(own.x, own.y);
   return true;
 }
 
-SeedOffer SeedOf(const MatchInput& input, const PixelGuide& guide, const Offer& offer) {
-  SeedOffer made{offer};
+SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Candidate& offer) {
+  SeedCandidate made{offer};
   made.best = offer.source;
   made.off = input.IsOff(guide, offer.source, offer.exemplar);
   return made;
 }
 
-std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, PixelPosition q, PixelPosition p,
-                               const PixelGuide& guide) {
+std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q,
+                                      PixelPosition p, const PixelGuide& guide) {
   const Source candidate{seed.offer.source.x + (p.x - q.x), seed.offer.source.y + (p.y - q.y)};
   if (!input.exemplar.Usable(candidate.x, candidate.y)) return std::nullopt;
   if (!seed.off) {
@@ -54,26 +54,25 @@ std::optional<Offer> TakeOffer(const MatchInput& input, const SeedOffer& seed, P
     input.MoveAs(of_seed, seed.best, seed.offer.exemplar, moved);
     if (!input.Alike(moved, seed.moved, candidate, seed.offer.exemplar)) return std::nullopt;
   }
-  return Offer{candidate, seed.offer.exemplar, seed.moved};
+  return Candidate{candidate, seed.offer.exemplar, seed.moved};
 }
 
 namespace {
 
 // What a seed on the screen offers.
-struct GridOffer : SeedOffer {
+struct GridCandidate : SeedCandidate {
   int flat = -1;  // which of the level's tones is wanted here; -1: the surface is not flat, or variety is 0
 };
 
 // The seeds of one level with what they offer; thousands of pixels share each.
 struct Level {
   SeedGrid grid;
-  std::vector<std::optional<GridOffer>> offers;  // empty: outside the picture, or not to be painted
-  std::vector<Alternatives::Tone> tones;         // of the seeds on flat surfaces: that of the paint which fits them best
+  std::vector<std::optional<GridCandidate>> offers;  // empty: outside the picture, or not to be painted
+  std::vector<SourceVariation::Tone> tones;  // of the seeds on flat surfaces: that of the paint which fits them best
   // Searches in many dimensions are slow, and most seeds of fine levels are never asked: theirs are made when they are.
   std::unique_ptr<std::once_flag[]> asked;
 
-  Level(const MatchInput& input, int level)
-      : grid(input.seeds, level, input.region), offers(grid.size()) {
+  Level(const MatchInput& input, int level) : grid(input.seeds, level, input.region), offers(grid.size()) {
     if (input.space && !(input.variety_degrees > 0.0)) {
       asked = std::make_unique<std::once_flag[]>(grid.size());
       return;
@@ -81,7 +80,7 @@ struct Level {
     for (std::size_t s = 0; s < grid.size(); ++s) Fill(input, s);
   }
 
-  const std::optional<GridOffer>& OfferOf(const MatchInput& input, std::size_t s) {
+  const std::optional<GridCandidate>& CandidateOf(const MatchInput& input, std::size_t s) {
     if (asked) std::call_once(asked[s], [&] { Fill(input, s); });
     return offers[s];
   }
@@ -93,34 +92,35 @@ struct Level {
     if (!input.active[i]) return;
     PixelGuide guide;
     input.ReadGuide(i, guide);
-    const Offer own = OwnOffer(input, guide);
-    GridOffer& made = offers[s].emplace(GridOffer{SeedOf(input, guide, own)});
+    const Candidate own = OwnCandidate(input, guide);
+    GridCandidate& made = offers[s].emplace(GridCandidate{SeedOf(input, guide, own)});
     const int level = grid.level();
     const PixelPosition cell = grid.Cell(s);
     const std::uint64_t hash =
         Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset, cell.x, cell.y, 0x7a);
-    if (!Vary(input, level, q, hash, made)) return;
+    if (!VarySource(input, level, q, hash, made)) return;
     made.flat = static_cast<int>(tones.size());
     tones.push_back(WantedTone(input, own, level));
   }
 };
 
 // What p may take from seed s of this level, if anything.
-std::optional<Offer> AcceptFrom(const MatchInput& input, Level& level, std::size_t s, int x, int y,
-                                const PixelGuide& guide) {
-  const std::optional<GridOffer>& offer = level.OfferOf(input, s);
+std::optional<Candidate> AcceptFrom(const MatchInput& input, Level& level, std::size_t s, int x, int y,
+                                    const PixelGuide& guide) {
+  const std::optional<GridCandidate>& offer = level.CandidateOf(input, s);
   if (!offer) return std::nullopt;
-  return TakeOffer(input, *offer, level.grid.Position(s), {x, y}, guide);
+  return TryCandidate(input, *offer, level.grid.Position(s), {x, y}, guide);
 }
 
-// What p may take from its nearest seed; near the border of two seeds of a flat surface, from the one that suits it better.
-std::optional<Offer> Accept(const MatchInput& input, Level& level, int x, int y, const PixelGuide& guide) {
+// What p may take from its nearest seed; near the border of two seeds of a flat surface, from the one that suits it
+// better.
+std::optional<Candidate> Accept(const MatchInput& input, Level& level, int x, int y, const PixelGuide& guide) {
   if (level.tones.empty()) return AcceptFrom(input, level, level.grid.Nearest(x, y), x, y, guide);
   const auto [s, t, excess] = level.grid.NearestTwo(x, y);
-  const std::optional<Offer> nearest = AcceptFrom(input, level, s, x, y, guide);
+  const std::optional<Candidate> nearest = AcceptFrom(input, level, s, x, y, guide);
   if (!InBorderBand(level.grid.level(), excess)) return nearest;
   if (!nearest || level.offers[s]->flat < 0 || !level.offers[t] || level.offers[t]->flat < 0) return nearest;
-  const std::optional<Offer> other = AcceptFrom(input, level, t, x, y, guide);
+  const std::optional<Candidate> other = AcceptFrom(input, level, t, x, y, guide);
   if (!other) return nearest;
   const int nearest_off = ToneError(input, *nearest, level.tones[std::size_t(level.offers[s]->flat)]);
   const int other_off = ToneError(input, *other, level.tones[std::size_t(level.offers[t]->flat)]);
@@ -139,7 +139,7 @@ bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgres
       if (!input.Wants(i)) continue;
       PixelGuide guide;
       input.ReadGuide(i, guide);
-      std::optional<Offer> offer;
+      std::optional<Candidate> offer;
       int settled = 0;
       for (Level& level : levels) {
         if ((offer = Accept(input, level, x, y, guide))) {
@@ -147,7 +147,7 @@ bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgres
           break;
         }
       }
-      if (!offer) offer = OwnOffer(input, guide);
+      if (!offer) offer = OwnCandidate(input, guide);
       field.Set(i, offer->source.x, offer->source.y, offer->exemplar, settled);
       if (!field.moved.empty()) field.moved[i] = offer->moved;
     }

@@ -1,12 +1,15 @@
-// StyleBlit (Sýkora et al. 2019, section 3.2), sixteen pixels at a time. The same decisions as styleblit.cpp, and the same
-// bytes; that file says what is decided, this one how it is done fast:
+// StyleBlit (Sýkora et al. 2019, section 3.2), sixteen pixels at a time. The same decisions as styleblit.cpp, and the
+// same bytes; that file says what is decided, this one how it is done fast:
 //
-//   - The picture is cut into columns of tiles. A thread goes down its rows of one, or of all of them (band_transfer.h), with seeds
+//   - The picture is cut into columns of tiles. A thread goes down its rows of one, or of all of them
+//   (band_transfer.h), with seeds
 //     of its own (tile_seeds.h).
-//   - A block of sixteen pixels of one row goes through the levels from coarse to fine, until all of them are settled. Its
-//     nearest seeds are found by vector code that compares the nine candidates of each pixel (fine levels), or come from
-//     the runs of pixels that share one (coarse levels).
-//   - Each of these seeds, one or two on coarse levels, is offered to its pixels at once: their sources stand side by side
+//   - A block of sixteen pixels of one row goes through the levels from coarse to fine, until all of them are settled.
+//   Its
+//     nearest seeds are found by vector code that compares the nine candidates of each pixel (fine levels), or come
+//     from the runs of pixels that share one (coarse levels).
+//   - Each of these seeds, one or two on coarse levels, is offered to its pixels at once: their sources stand side by
+//   side
 //     in the exemplar, so both guides are read from sixteen places in a row.
 //   - What nothing accepts takes its own nearest neighbour.
 #include "transfer/match/styleblit_simd.h"
@@ -38,8 +41,9 @@ const hn::CappedTag<std::uint16_t, 2 * kBlock> kPairWords;
 const hn::CappedTag<std::uint8_t, kBlock> kBytes;
 
 // first, first + 1, … by lane. (Highway's Iota writes them to memory one by one.)
-alignas(64) constexpr std::uint16_t kCount[2 * kBlock] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
-                                                         16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
+alignas(64) constexpr std::uint16_t kCount[2 * kBlock] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10,
+                                                          11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
+                                                          22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
 template <class Tag>
 HWY_INLINE hn::Vec<Tag> CountFrom(Tag tag, int first) {
   const auto count = hn::BitCast(tag, hn::Load(hn::Rebind<std::uint16_t, Tag>(), kCount));
@@ -64,8 +68,8 @@ HWY_INLINE hn::Mask<Tag> MaskFrom(Tag tag, std::uint32_t bits) {
   return hn::LoadMaskBits(tag, bytes);
 }
 
-// Writes the lanes of the mask. (Highway's BlendedStore of 16 bits goes lane by lane before AVX-512; here the others may
-// be written too, with what they hold.)
+// Writes the lanes of the mask. (Highway's BlendedStore of 16 bits goes lane by lane before AVX-512; here the others
+// may be written too, with what they hold.)
 template <class Tag>
 HWY_INLINE void StoreSome(Tag tag, hn::Mask<Tag> mask, hn::Vec<Tag> value, hn::TFromD<Tag>* to) {
   hn::StoreU(hn::IfThenElse(mask, value, hn::LoadU(tag, to)), tag, to);
@@ -87,10 +91,10 @@ struct Row {
   std::uint16_t wanted[kBlocks];
   std::uint16_t unsettled[kBlocks];
   std::int16_t source_x[kTileWidth], source_y[kTileWidth];
-  std::uint16_t how[kTileWidth];  // level, and the exemplar times 256
+  std::uint16_t how[kTileWidth];          // level, and the exemplar times 256
   std::uint16_t nearest[kTileWidth + 1];  // seeds of the level at work
-  glm::vec3 moved[kTileWidth];    // only where the field asks for it
-  float copy[4][kTileWidth];      // of a row whose last block is not whole: nothing is read beyond the picture
+  glm::vec3 moved[kTileWidth];            // only where the field asks for it
+  float copy[4][kTileWidth];              // of a row whose last block is not whole: nothing is read beyond the picture
 };
 
 class TileMatcher {
@@ -133,9 +137,11 @@ class TileMatcher {
     for (TileSeeds& seeds : levels_) {
       if (open == 0) break;
       groups_ = 0;
-      if (seeds.level() <= kMaxSpreadLevel) GroupBySpread(seeds, open);
-      else GroupByRuns(seeds, open);
-      for (int g = 0; g < groups_; ++g) OfferTo(seeds, group_[g]);
+      if (seeds.level() <= kMaxSpreadLevel)
+        GroupBySpread(seeds, open);
+      else
+        GroupByRuns(seeds, open);
+      for (int g = 0; g < groups_; ++g) CandidateFor(seeds, group_[g]);
       const int before = open;
       open = 0;
       for (int k = 0; k < before; ++k) {
@@ -294,10 +300,10 @@ class TileMatcher {
     group_[groups_++] = {static_cast<std::uint16_t>(block), static_cast<std::uint16_t>(lanes), seed};
   }
 
-  // Offers a seed to a group, and lets those take it that are like it.
-  HWY_INLINE void OfferTo(TileSeeds& seeds, const Group& group) {
-    const TileOffer& offer = seeds.Offer(group.seed);
-    if (offer.state != TileOffer::kOffers) return;
+  // Candidates a seed to a group, and lets those take it that are like it.
+  HWY_INLINE void CandidateFor(TileSeeds& seeds, const Group& group) {
+    const TileCandidate& offer = seeds.Candidate(group.seed);
+    if (offer.state != TileCandidate::kCandidates) return;
     const glm::vec3* const moved = offer.is_free ? &seeds.Freedom(group.seed).moved : nullptr;
     const int from = group.block * kBlock;
     const std::uint32_t taken = Alike(from, offer, moved, group.lanes);
@@ -306,7 +312,7 @@ class TileMatcher {
     if (offer.is_free && taken != 0) TakeFreely(seeds, group.seed, from, taken);
   }
 
-  HWY_INLINE void Take(int from, std::uint32_t lanes, const TileOffer& offer, int level) {
+  HWY_INLINE void Take(int from, std::uint32_t lanes, const TileCandidate& offer, int level) {
     const int x = row_.x + from + offer.offset_x;
     const auto y = hn::Set(kShorts, static_cast<std::int16_t>(row_.y + offer.offset_y));
     const auto how = hn::Set(kWords, static_cast<std::uint16_t>(level | offer.exemplar << 8));
@@ -318,9 +324,10 @@ class TileMatcher {
     }
   }
 
-  // Of the lanes, those whose source is usable and whose guide, moved, is like it: GuideTest's and Illumination's rules.
-  // `from` is the first lane's place in the row.
-  HWY_INLINE std::uint32_t Alike(int from, const TileOffer& offer, const glm::vec3* moved, std::uint32_t lanes) const {
+  // Of the lanes, those whose source is usable and whose guide, moved, is like it: GuideTest's and Illumination's
+  // rules. `from` is the first lane's place in the row.
+  HWY_INLINE std::uint32_t Alike(int from, const TileCandidate& offer, const glm::vec3* moved,
+                                 std::uint32_t lanes) const {
     const int x = row_.x + from + offer.offset_x, y = row_.y + offer.offset_y;
     if (static_cast<unsigned>(y) >= static_cast<unsigned>(rows_.height)) return 0;
     if (rows_.is_sphere) {
@@ -368,12 +375,13 @@ class TileMatcher {
       }
       const auto dx = hn::Sub(x, a), dy = hn::Sub(y, b), dz = hn::Sub(z, c);
       const auto distance = squares_ ? hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz))
-                                    : hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz));
+                                     : hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz));
       auto alike = hn::Lt(distance, bound);
       if (light_counts_) {
         const auto extra = LightError(row_.light + from + i, exemplar);
         const auto left = hn::Sub(hn::Set(kFloats, input_.test.threshold()), extra);
-        const auto less = hn::Lt(distance, squares_ ? hn::Max(hn::Mul(left, left), hn::Set(kFloats, GuideTest::kLeastSquare)) : left);
+        const auto less =
+            hn::Lt(distance, squares_ ? hn::Max(hn::Mul(left, left), hn::Set(kFloats, GuideTest::kLeastSquare)) : left);
         const auto zero = hn::Zero(kFloats);
         const auto lit = hn::And(hn::Gt(left, zero), less);
         const auto counts = hn::Gt(extra, zero);
@@ -415,19 +423,19 @@ class TileMatcher {
 
   // Lanes that took what a seed on a flat surface offers: near its border they choose between two.
   HWY_NOINLINE void TakeFreely(TileSeeds& seeds, int seed, int from, std::uint32_t lanes) {
-    const TileOffer& offer = seeds.Offer(seed);
+    const TileCandidate& offer = seeds.Candidate(seed);
     for (; lanes != 0; lanes &= lanes - 1) {
       const int place = from + std::countr_zero(lanes);
       const PixelPosition p{row_.x + place, row_.y};
-      Offer taken{{p.x + offer.offset_x, p.y + offer.offset_y}, offer.exemplar, seeds.Freedom(seed).moved};
+      Candidate taken{{p.x + offer.offset_x, p.y + offer.offset_y}, offer.exemplar, seeds.Freedom(seed).moved};
       ChooseAtBorder(input_, seeds, {p, GuideOf(place)}, taken);
       Put(place, taken, seeds.level());
     }
   }
 
-  HWY_NOINLINE void TakeOwn(int place) { Put(place, OwnOffer(input_, GuideOf(place)), 0); }
+  HWY_NOINLINE void TakeOwn(int place) { Put(place, OwnCandidate(input_, GuideOf(place)), 0); }
 
-  void Put(int place, const Offer& taken, int level) {
+  void Put(int place, const Candidate& taken, int level) {
     row_.source_x[place] = static_cast<std::int16_t>(taken.source.x);
     row_.source_y[place] = static_cast<std::int16_t>(taken.source.y);
     row_.how[place] = static_cast<std::uint16_t>(level | taken.exemplar << 8);
@@ -513,14 +521,14 @@ HWY_EXPORT(MatchTileRows);
 
 void MatchTile(const TileJob& job) { HWY_DYNAMIC_DISPATCH(MatchTileRows)(job); }
 
-void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Offer& taken) {
+void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Candidate& taken) {
   const PixelPosition p = choice.p;
   seeds.Need(p.y >> seeds.level(), p.x, 1);  // where a map told the nearest, places were not
   const auto [s, t, excess] = seeds.NearestTwo(p.x, p.y);
   if (!InBorderBand(seeds.level(), excess)) return;
-  const TileOffer& second = seeds.Offer(t);
-  if (second.state != TileOffer::kOffers || !second.is_free) return;
-  const Offer other{{p.x + second.offset_x, p.y + second.offset_y}, second.exemplar, seeds.Freedom(t).moved};
+  const TileCandidate& second = seeds.Candidate(t);
+  if (second.state != TileCandidate::kCandidates || !second.is_free) return;
+  const Candidate other{{p.x + second.offset_x, p.y + second.offset_y}, second.exemplar, seeds.Freedom(t).moved};
   if (!input.exemplar.Usable(other.source.x, other.source.y)) return;
   if (!input.Alike(choice.guide, other.moved, other.source, other.exemplar)) return;
   const int nearest_off = ToneError(input, taken, seeds.Freedom(s).tone);

@@ -1,4 +1,5 @@
-// What styleblit_tiles.cpp hands from its plain half to the half that is compiled once for each set of vector instructions.
+// What styleblit_tiles.cpp hands from its plain half to the half that is compiled once for each set of vector
+// instructions.
 #pragma once
 
 #include <vector>
@@ -18,9 +19,9 @@ struct TileScratch {
 struct TileJob {
   const MatchInput& input;
   ExemplarRows exemplar;
-  int tile_x;            // pixels from tile_x · kTileWidth on
-  int x0, x1;            // columns of the tile that are looked at
-  int y0, y1;            // rows, none above those that `scratch` was used for
+  int tile_x;                            // pixels from tile_x · kTileWidth on
+  int x0, x1;                            // columns of the tile that are looked at
+  int y0, y1;                            // rows, none above those that `scratch` was used for
   std::span<const std::uint8_t> wanted;  // by the field's index, 1: pixels to be matched
   TileScratch& scratch;
   SourceField& field;
@@ -29,12 +30,12 @@ struct TileJob {
 // Matches the pixels of the job that are wanted and in the input's region.
 void MatchTile(const TileJob& job);
 
-// What a pixel of the tile takes where its nearest seed s offers paint that it accepts and stands on a flat surface: near
-// the border of two such seeds, that of the other if it suits better. `taken` comes with what s offers.
+// What a pixel of the tile takes where its nearest seed s offers paint that it accepts and stands on a flat surface:
+// near the border of two such seeds, that of the other if it suits better. `taken` comes with what s offers.
 struct FreeChoice {
   PixelPosition p;
   PixelGuide guide;
 };
-void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Offer& taken);
+void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Candidate& taken);
 
 }  // namespace scumble::internal

@@ -7,8 +7,9 @@ namespace scumble::internal {
 namespace {
 
 constexpr float kFlatCosine = 0.99996192f;  // half a degree
-// Where a surface is flat for the 16 pixels that IsFlat looks at, a seed of this level has been taken already, so choosing
-// for the many seeds of finer levels would be for nothing. Small pictures have no level as coarse: their coarsest counts.
+// Where a surface is flat for the 16 pixels that IsFlat looks at, a seed of this level has been taken already, so
+// choosing for the many seeds of finer levels would be for nothing. Small pictures have no level as coarse: their
+// coarsest counts.
 constexpr int kLeastLevel = 4;
 // So much less error of tone (summed over channels of 0 … 65535) is worth the whole band, which is a quarter of the
 // level's grid on either side of a border between seeds one grid step apart.
@@ -33,18 +34,19 @@ bool IsFlat(const MatchInput& input, PixelPosition at, int reach) {
   return true;
 }
 
-bool HasFreedom(const MatchInput& input, int level, PixelPosition seed) {
-  if (!(input.variety_degrees > 0.0) || level < std::min(kLeastLevel - input.seeds.level_offset, input.levels - 1)) return false;
+bool CanVary(const MatchInput& input, int level, PixelPosition seed) {
+  if (!(input.variety_degrees > 0.0) || level < std::min(kLeastLevel - input.seeds.level_offset, input.levels - 1))
+    return false;
   return IsFlat(input, seed, std::max(input.flat_reach, 1 << level));
 }
 
-Source ChooseAlike(const MatchInput& input, const Offer& own, int level, std::uint64_t hash) {
+Source ChooseAlike(const MatchInput& input, const Candidate& own, int level, std::uint64_t hash) {
   return input.exemplar.alternatives().Choose(
       input.exemplar, {own.source, own.exemplar, input.variety_degrees, 1 << (level - 1), hash});
 }
 
-Alternatives::Tone WantedTone(const MatchInput& input, const Offer& own, int level) {
-  const Alternatives& alternatives = input.exemplar.alternatives();
+SourceVariation::Tone WantedTone(const MatchInput& input, const Candidate& own, int level) {
+  const SourceVariation& alternatives = input.exemplar.alternatives();
   // The square rounds to whole cells, so that of a source at the rim may hold none that is usable.
   return alternatives.ToneAround(own.source, own.exemplar, 1 << (level - 1))
       .value_or(alternatives.ToneAt(own.source, own.exemplar));
@@ -52,8 +54,8 @@ Alternatives::Tone WantedTone(const MatchInput& input, const Offer& own, int lev
 
 bool InBorderBand(int level, std::int64_t excess) { return 2 * excess < std::int64_t{1} << (2 * level); }
 
-int ToneError(const MatchInput& input, const Offer& offer, const Alternatives::Tone& wanted) {
-  const Alternatives::Tone tone = input.exemplar.alternatives().ToneAt(offer.source, offer.exemplar);
+int ToneError(const MatchInput& input, const Candidate& offer, const SourceVariation::Tone& wanted) {
+  const SourceVariation::Tone tone = input.exemplar.alternatives().ToneAt(offer.source, offer.exemplar);
   int sum = 0;
   for (int c = 0; c < 4; ++c) sum += std::abs(tone[c] - wanted[c]);
   return sum;

@@ -13,20 +13,20 @@ bool IsFlat(const MatchInput& input, PixelPosition at, int reach);
 
 // Whether a seed may take other paint than its own: variety is not 0, the level is coarse enough to matter, and the
 // surface is flat as far as the seed's chunk reaches.
-bool HasFreedom(const MatchInput& input, int level, PixelPosition seed);
+bool CanVary(const MatchInput& input, int level, PixelPosition seed);
 
-// Another source for such a seed, within input.variety_degrees of its own one and of like tone (see Alternatives).
-Source ChooseAlike(const MatchInput& input, const Offer& own, int level, std::uint64_t hash);
+// Another source for such a seed, within input.variety_degrees of its own one and of like tone (see SourceVariation).
+Source ChooseAlike(const MatchInput& input, const Candidate& own, int level, std::uint64_t hash);
 
 // The tone of the paint that fits a seed best, which all paint around it should have.
-Alternatives::Tone WantedTone(const MatchInput& input, const Offer& own, int level);
+SourceVariation::Tone WantedTone(const MatchInput& input, const Candidate& own, int level);
 
 // Chunk borders that follow the paint. Between two seeds of a flat surface a straight border would cut strokes where it
-// happens to lie. Near it each pixel weighs distance against tone: it takes the seed whose paint, there, is nearer to the
-// wanted tone. So the border runs where both agree, and what stands out from either is cut off. Each pixel decides by
-// itself; the order of work cannot matter. `excess`: of the second nearest seed's squared distance.
+// happens to lie. Near it each pixel weighs distance against tone: it takes the seed whose paint, there, is nearer to
+// the wanted tone. So the border runs where both agree, and what stands out from either is cut off. Each pixel decides
+// by itself; the order of work cannot matter. `excess`: of the second nearest seed's squared distance.
 bool InBorderBand(int level, std::int64_t excess);
-int ToneError(const MatchInput& input, const Offer& offer, const Alternatives::Tone& wanted);
+int ToneError(const MatchInput& input, const Candidate& offer, const SourceVariation::Tone& wanted);
 bool SecondWins(int level, std::int64_t excess, int gain_of_tone);
 
 }  // namespace scumble::internal

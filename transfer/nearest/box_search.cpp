@@ -27,8 +27,8 @@ HWY_INLINE std::uint32_t BitsOf(hn::Mask<Floats> mask) {
   return bits[0] | std::uint32_t(bits[1]) << 8;
 }
 
-// `off` gives, for a dimension and a lane, how far the query is from 16 things. Where the last bits may matter to the answer,
-// products are not fused with sums, so that all machines have the same.
+// `off` gives, for a dimension and a lane, how far the query is from 16 things. Where the last bits may matter to the
+// answer, products are not fused with sums, so that all machines have the same.
 template <bool kFused, class Off>
 HWY_INLINE void Measure(int dimensions, float bound, const Off& off, Sixteen& found) {
   const Floats d;
@@ -44,8 +44,9 @@ HWY_INLINE void Measure(int dimensions, float bound, const Off& off, Sixteen& fo
   }
 }
 
-// `nearer`: boxes count where they may hold something at less than this share of the distance found; 1 unless kRough.
-template <bool kRough>
+// `nearer`: boxes count where they may hold something at less than this share of the distance found; 1 unless
+// kApproximate.
+template <bool kApproximate>
 class Search {
  public:
   Search(const BoxTree& tree, const float* query, std::uint32_t first, double nearer = 1.0)
@@ -79,7 +80,7 @@ class Search {
     // Whatever is farther in floats is farther; the least summand is for squares that underflow.
     const double bound = distance * tree_.slack() * tree_.slack() + 1e-40;
     bound_ = InFloats(bound);
-    box_bound_ = kRough ? InFloats(bound * nearer_squared_) : bound_;
+    box_bound_ = kApproximate ? InFloats(bound * nearer_squared_) : bound_;
   }
   static float InFloats(double bound) {
     return bound < 3e38 ? static_cast<float>(bound) : std::numeric_limits<float>::infinity();
@@ -89,9 +90,12 @@ class Search {
     const Floats d;
     const float* HWY_RESTRICT points = tree_.Leaf(leaf);
     Sixteen found;
-    Measure<!kRough>(tree_.dimensions(), bound_, [&](int k, std::size_t lane) HWY_ATTR {
-      return hn::Sub(hn::Set(d, query_[k]), hn::LoadU(d, points + std::size_t(k) * BoxTree::kWide + lane));
-    }, found);
+    Measure<!kApproximate>(
+        tree_.dimensions(), bound_,
+        [&](int k, std::size_t lane) HWY_ATTR {
+          return hn::Sub(hn::Set(d, query_[k]), hn::LoadU(d, points + std::size_t(k) * BoxTree::kWide + lane));
+        },
+        found);
     for (std::uint32_t left = found.within; left != 0; left &= left - 1) {
       const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(left);
       if (found.distance[lane] > bound_) continue;
@@ -109,12 +113,16 @@ class Search {
     const BoxTree::Level& boxes = tree_.levels()[level];
     const float* HWY_RESTRICT sides = boxes.sides.data() + node * std::size_t(tree_.dimensions()) * 2 * BoxTree::kWide;
     Sixteen found;
-    Measure<!kRough>(tree_.dimensions(), box_bound_, [&](int k, std::size_t lane) HWY_ATTR {
-      const float* lower = sides + std::size_t(k) * 2 * BoxTree::kWide + lane;
-      const auto at = hn::Set(d, query_[k]);
-      const auto outside = hn::Max(hn::Sub(hn::LoadU(d, lower), at), hn::Sub(at, hn::LoadU(d, lower + BoxTree::kWide)));
-      return hn::Max(outside, hn::Zero(d));
-    }, found);
+    Measure<!kApproximate>(
+        tree_.dimensions(), box_bound_,
+        [&](int k, std::size_t lane) HWY_ATTR {
+          const float* lower = sides + std::size_t(k) * 2 * BoxTree::kWide + lane;
+          const auto at = hn::Set(d, query_[k]);
+          const auto outside =
+              hn::Max(hn::Sub(hn::LoadU(d, lower), at), hn::Sub(at, hn::LoadU(d, lower + BoxTree::kWide)));
+          return hn::Max(outside, hn::Zero(d));
+        },
+        found);
     const std::size_t first = node * BoxTree::kWide, inside = boxes.boxes - first;
     if (inside < BoxTree::kWide) found.within &= (1u << inside) - 1;
     while (found.within != 0) {

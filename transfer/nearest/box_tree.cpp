@@ -117,7 +117,7 @@ std::uint32_t BoxTree::Nearest(const float* query, std::uint32_t& place) const {
   return index_[place];
 }
 
-std::uint32_t BoxTree::NearlyNearest(const float* query, double error) const {
+std::uint32_t BoxTree::ApproximateNearest(const float* query, double error) const {
   return index_[SearchBoxesRoughly(*this, query, error)];
 }
 

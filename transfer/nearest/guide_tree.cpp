@@ -72,7 +72,7 @@ std::uint32_t PointTree::Nearest(std::span<const float> query, std::uint32_t& pl
 std::uint32_t PointTree::Nearest(std::span<const float> query, std::uint32_t& place, double error) const {
   if (!(error > 0.0)) return Nearest(query, place);
   SCUMBLE_DCHECK(query.size() == std::size_t(dimensions_));
-  return first_[tree_->NearlyNearest(query.data(), error)];
+  return first_[tree_->ApproximateNearest(query.data(), error)];
 }
 
 }  // namespace scumble

@@ -1,6 +1,6 @@
-// Nearest neighbours among guides of any number of dimensions (transfer/exemplar/guide_space.h makes them), in the spirit of
-// Friedman, Bentley, Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected Time", ACM TOMS 1977. The tree
-// is our own, transfer/nearest/box_tree.h says why.
+// Nearest neighbours among guides of any number of dimensions (transfer/exemplar/guide_space.h makes them), in the
+// spirit of Friedman, Bentley, Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected Time", ACM TOMS
+// 1977. The tree is our own, transfer/nearest/box_tree.h says why.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ class BoxTree;
 }
 
 // Points of `dimensions` finite floats each. Equal points count once, as the first of them, so that a flat face of ten
-// thousand pixels costs what one pixel does. Building is O(n log n), on all threads of the caller's oneTBB arena; about 5
-// bytes a coordinate and 8 a distinct point. Immutable; any number of threads may ask at once.
+// thousand pixels costs what one pixel does. Building is O(n log n), on all threads of the caller's oneTBB arena; about
+// 5 bytes a coordinate and 8 a distinct point. Immutable; any number of threads may ask at once.
 class PointTree {
  public:
   // `coordinates` holds the points one after the other; at least one.

@@ -27,7 +27,8 @@ LookUpTable::LookUpTable(const PointTree& normals, std::span<const Source> sourc
       const glm::vec3 direction = DirectionAt((2.0 * i + 1.0) / resolution - 1.0, 1.0 - (2.0 * j + 1.0) / resolution);
       const float query[3] = {direction.x, direction.y, direction.z};
       const Source& source = sources[normals.Nearest(query, place)];
-      cells_[std::size_t(j) * resolution + i] = {static_cast<std::uint16_t>(source.x), static_cast<std::uint16_t>(source.y)};
+      cells_[std::size_t(j) * resolution + i] = {static_cast<std::uint16_t>(source.x),
+                                                 static_cast<std::uint16_t>(source.y)};
     }
   });
 }

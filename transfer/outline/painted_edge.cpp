@@ -14,7 +14,7 @@ namespace {
 // Inside, shares of the band: how deep rim paint lies over an object's own, and how deep gaps in it may cut.
 constexpr float kInkDepth = 0.5f, kCutDepth = 0.2f;
 constexpr float kFadeFrom = 0.6f;  // of the depth, on either side
-constexpr float kFirm = 0.2f;     // of the full width: narrower edges grow faint
+constexpr float kFirm = 0.2f;      // of the full width: narrower edges grow faint
 
 using Texel = std::array<std::uint16_t, 4>;
 
@@ -77,12 +77,12 @@ class EdgePainter {
     int margin = 0;
     for (const EdgePaint& paint : input.paints) {
       if (paint.rims.empty()) continue;
-      margin = std::max(margin, RimPieceMargin(paint.seeds.level_offset, paint.rims.front().band()));
+      margin = std::max(margin, RimSegmentMargin(paint.seeds.level_offset, paint.rims.front().band()));
     }
     return margin;
   }
 
-  std::vector<RimPieces> Pieces() const {
+  std::vector<RimSegments> Pieces() const {
     std::vector<float> radii;
     std::vector<SeedRules> seeds;
     int widest = 0;
@@ -92,11 +92,11 @@ class EdgePainter {
       if (!paint.rims.empty()) widest = std::max(widest, paint.rims.front().band());
     }
     const Region near = input_.region.GrownBy(EdgeReach(widest), input_.guides.width(), input_.guides.height());
-    return ChooseRimPieces({silhouettes_, radii, seeds, near});
+    return ChooseRimSegments({silhouettes_, radii, seeds, near});
   }
 
-  // Of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is that from the line through it, which
-  // has no steps as the pixels have.
+  // Of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is that from the line through it,
+  // which has no steps as the pixels have.
   static float Distance(const OutlinePixel& outline, int x, int y, bool inside) {
     const glm::vec2 to = outline.point - glm::vec2(x + 0.5f, y + 0.5f);
     const float across = to.x * outline.outward.x + to.y * outline.outward.y;
@@ -106,9 +106,9 @@ class EdgePainter {
     return inside ? length : -length;
   }
 
-  // The rim as the pieces show it at a point of the picture, so far inside its edge. A line that is drawn narrower is the
-  // mean of what it is drawn together from. Sums are of integers, like a vote's.
-  static Texel RimAt(const RimPaint& rim, const RimPieces& pieces, glm::vec2 at, float distance, float width) {
+  // The rim as the pieces show it at a point of the picture, so far inside its edge. A line that is drawn narrower is
+  // the mean of what it is drawn together from. Sums are of integers, like a vote's.
+  static Texel RimAt(const RimPaint& rim, const RimSegments& pieces, glm::vec2 at, float distance, float width) {
     const int samples = std::clamp(static_cast<int>(std::ceil(1.0f / width - 0.01f)), 1, 8);
     std::uint64_t sum[4] = {0, 0, 0, 0}, total = 0;
     for (std::size_t n = 0; n < pieces.piece.size() && pieces.weight[n] > 0.0f; ++n) {
@@ -133,7 +133,7 @@ class EdgePainter {
   std::span<const float> coverage_;
   std::vector<int> bands_;
   Silhouettes silhouettes_;
-  std::vector<RimPieces> pieces_;  // by outline pixel
+  std::vector<RimSegments> pieces_;  // by outline pixel
 };
 
 }  // namespace

@@ -1,18 +1,19 @@
-// The painting's own silhouette as the picture's: where the brush ends raggedly round the sphere, it does so round objects.
+// The painting's own silhouette as the picture's: where the brush ends raggedly round the sphere, it does so round
+// objects.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/image/guides.h"
-#include "scumble/picture.h"
-#include "transfer/tint/colorize.h"
 #include "core/filter/parallel.h"
 #include "core/filter/region.h"
+#include "core/image/guides.h"
+#include "scumble/picture.h"
+#include "transfer/field/source_field.h"
 #include "transfer/outline/rim_paint.h"
 #include "transfer/seeds/seeds.h"
-#include "transfer/field/source_field.h"
+#include "transfer/tint/colorize.h"
 
 namespace scumble::internal {
 
@@ -35,10 +36,10 @@ struct PaintedEdgeInput {
 constexpr int EdgeReach(int band) { return band + 2; }
 
 // Lays rim paint over both sides of silhouettes and borders with things further away, and thins `coverage` where the
-// painting thins out before nothing. What the rim shows at a distance from the sphere's edge goes to the same distance from
-// the silhouette, in the direction that rim_pieces.h chooses; on thin things (silhouettes.h) all distances shrink, and the
-// line with them. Reads coverage from the guides, changes `coverage` and `picture` inside the region. Colours meet in linear
-// light. O(pixels of the region + outline pixels · band²). False: asked to stop.
+// painting thins out before nothing. What the rim shows at a distance from the sphere's edge goes to the same distance
+// from the silhouette, in the direction that rim_pieces.h chooses; on thin things (silhouettes.h) all distances shrink,
+// and the line with them. Reads coverage from the guides, changes `coverage` and `picture` inside the region. Colours
+// meet in linear light. O(pixels of the region + outline pixels · band²). False: asked to stop.
 bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress);
 
 }  // namespace scumble::internal

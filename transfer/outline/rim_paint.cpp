@@ -4,17 +4,17 @@
 #include <array>
 #include <cmath>
 
-#include "core/image/bare_paper.h"
 #include "core/filter/resample.h"
+#include "core/image/bare_paper.h"
 
 namespace scumble {
 namespace {
 
 // The band around the rim, as a share of the radius.
 constexpr double kBand = 0.035;
-// Where the sphere touches the picture's sides, the paint outside it is that of 30 degrees on: cosine and sine. It melts into
-// what the picture shows over a share of the band.
-constexpr double kOnCosine = 0.8660254037844386, kOnSine = 0.5, kMelt = 0.25;
+// Where the sphere touches the picture's sides, the paint outside it is that of 30 degrees on: cosine and sine. It
+// melts into what the picture shows over a share of the band.
+constexpr double kOnCosine = 0.8660254037844386, kOnSine = 0.5, kBlendWidth = 0.25;
 // The ring inside the rim that must be painted, and how much.
 constexpr double kRingFrom = 0.93, kLeastPaintOnRing = 0.05;
 
@@ -60,9 +60,11 @@ RimPaint::RimPaint(const Picture& picture, int size)
       if (r < from + 1.0 || r > half + band_ + 1.0) continue;
       Texel texel{};
       const double to_side = half - std::max(std::fabs(dx), std::fabs(dy));
-      const double shown = r <= half ? 1.0 : std::clamp(to_side / std::max(1.0, kMelt * band_), 0.0, 1.0);
-      if (shown >= 1.0) std::copy_n(inside(dx, dy), 4, texel.begin());
-      else texel = Mixed(inside(dx * kOnCosine - dy * kOnSine, dx * kOnSine + dy * kOnCosine), inside(dx, dy), shown);
+      const double shown = r <= half ? 1.0 : std::clamp(to_side / std::max(1.0, kBlendWidth * band_), 0.0, 1.0);
+      if (shown >= 1.0)
+        std::copy_n(inside(dx, dy), 4, texel.begin());
+      else
+        texel = Mixed(inside(dx * kOnCosine - dy * kOnSine, dx * kOnSine + dy * kOnCosine), inside(dx, dy), shown);
       std::copy_n(texel.begin(), 4, paint_.At(x, y));
       if (r >= kRingFrom * half && r <= half) paint += texel[3] / 65535.0, count += 1.0;
     }

@@ -29,7 +29,7 @@ glm::vec2 Turned(glm::vec2 v, float half_tangent) {
 // The seeds of one level, sorted by (row, column, object).
 class OutlineSeeds {
  public:
-  OutlineSeeds(const RimPieceInput& input, int level, const std::vector<std::size_t>& styles)
+  OutlineSeeds(const RimSegmentInput& input, int level, const std::vector<std::size_t>& styles)
       : input_(input), styles_(styles), level_(level) {
     const auto outline = input.silhouettes.outline();
     for (std::size_t k = 0; k < outline.size(); ++k) {
@@ -38,25 +38,27 @@ class OutlineSeeds {
                         static_cast<std::int32_t>(k), DistanceToCellSeed(k, h)});
     }
     std::sort(seeds_.begin(), seeds_.end(), [](const Seed& a, const Seed& b) {
-      return std::tie(a.row, a.column, a.object, a.distance, a.outline) < std::tie(b.row, b.column, b.object, b.distance, b.outline);
+      return std::tie(a.row, a.column, a.object, a.distance, a.outline) <
+             std::tie(b.row, b.column, b.object, b.distance, b.outline);
     });
     const auto same = [](const Seed& a, const Seed& b) {
       return a.row == b.row && a.column == b.column && a.object == b.object;
     };
     seeds_.erase(std::unique(seeds_.begin(), seeds_.end(), same), seeds_.end());
-    tbb::parallel_for(std::size_t(0), seeds_.size(), [&](std::size_t s) { seeds_[s].piece = PieceOf(seeds_[s].outline); });
+    tbb::parallel_for(std::size_t(0), seeds_.size(),
+                      [&](std::size_t s) { seeds_[s].piece = PieceOf(seeds_[s].outline); });
   }
 
   // The piece of the seed nearest to outline pixel k, among those of its object in the 3 × 3 cells around; null: none.
-  const RimPiece* Nearest(std::size_t k) const {
+  const RimSegment* Nearest(std::size_t k) const {
     const OutlinePixel& own = input_.silhouettes.outline()[k];
     const int h = LevelAt(k), row = own.y >> h, column = own.x >> h;
     const std::uint32_t object = input_.silhouettes.ObjectOf(own);
-    const RimPiece* best = nullptr;
+    const RimSegment* best = nullptr;
     std::int64_t least = 0;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        const RimPiece* piece = Find(row + dy, column + dx, object);
+        const RimSegment* piece = Find(row + dy, column + dx, object);
         if (!piece) continue;
         const OutlinePixel& at = input_.silhouettes.outline()[std::size_t(piece->seed)];
         const std::int64_t ex = at.x - own.x, ey = at.y - own.y, distance = ex * ex + ey * ey;
@@ -72,7 +74,7 @@ class OutlineSeeds {
     std::uint32_t object;
     std::int32_t outline;
     std::int64_t distance;  // squared, to the cell's own seed
-    RimPiece piece = {};
+    RimSegment piece = {};
   };
 
   int LevelAt(std::size_t k) const { return Level(level_, input_.seeds[styles_[k]].level_offset); }
@@ -84,7 +86,7 @@ class OutlineSeeds {
     return ex * ex + ey * ey;
   }
 
-  RimPiece PieceOf(std::int32_t seed) const {
+  RimSegment PieceOf(std::int32_t seed) const {
     const OutlinePixel& at = input_.silhouettes.outline()[std::size_t(seed)];
     const std::size_t style = styles_[std::size_t(seed)];
     const SeedRules& rules = input_.seeds[style];
@@ -95,10 +97,12 @@ class OutlineSeeds {
     return {at.point, Turned(at.outward, 0.5f * turn), seed};
   }
 
-  const RimPiece* Find(int row, int column, std::uint32_t object) const {
-    const auto found = std::lower_bound(seeds_.begin(), seeds_.end(), std::tuple(row, column, object),
-                                        [](const Seed& a, const auto& b) { return std::tie(a.row, a.column, a.object) < b; });
-    if (found == seeds_.end() || found->row != row || found->column != column || found->object != object) return nullptr;
+  const RimSegment* Find(int row, int column, std::uint32_t object) const {
+    const auto found =
+        std::lower_bound(seeds_.begin(), seeds_.end(), std::tuple(row, column, object),
+                         [](const Seed& a, const auto& b) { return std::tie(a.row, a.column, a.object) < b; });
+    if (found == seeds_.end() || found->row != row || found->column != column || found->object != object)
+      return nullptr;
     return &found->piece;
   }
 
@@ -118,7 +122,7 @@ class OutlineSeeds {
     return std::clamp(1.0f - most / (kTurnOfNoFreedom * rims_own), 0.0f, 1.0f);
   }
 
-  const RimPieceInput& input_;
+  const RimSegmentInput& input_;
   const std::vector<std::size_t>& styles_;
   int level_;
   std::vector<Seed> seeds_;
@@ -126,9 +130,9 @@ class OutlineSeeds {
 
 }  // namespace
 
-int RimPieceMargin(int level_offset, int band) { return (3 << Level(kCoarsest, level_offset)) + 2 * band + 8; }
+int RimSegmentMargin(int level_offset, int band) { return (3 << Level(kCoarsest, level_offset)) + 2 * band + 8; }
 
-std::vector<RimPieces> ChooseRimPieces(const RimPieceInput& input) {
+std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
   const Silhouettes& silhouettes = input.silhouettes;
   const auto outline = silhouettes.outline();
   std::vector<std::size_t> styles(outline.size());
@@ -145,37 +149,38 @@ std::vector<RimPieces> ChooseRimPieces(const RimPieceInput& input) {
            pixel.y < region.y1 + grown;
   };
   // Each outline pixel's own piece …
-  std::vector<RimPiece> own(outline.size());
+  std::vector<RimSegment> own(outline.size());
   tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
     const OutlinePixel& pixel = outline[k];
     if (!within(pixel, widest)) return;
     own[k] = {pixel.point, pixel.outward, static_cast<std::int32_t>(k)};
     for (const OutlineSeeds& seeds : levels) {
-      const RimPiece* piece = seeds.Nearest(k);
+      const RimSegment* piece = seeds.Nearest(k);
       if (!piece) continue;
       const OutlinePixel& at = outline[std::size_t(piece->seed)];
-      const RimPiece straight{at.point, at.outward, piece->seed};
+      const RimSegment straight{at.point, at.outward, piece->seed};
       if (glm::dot(straight.DirectionAt(pixel.point, input.radii[styles[k]]), pixel.outward) < kLeastAlike) continue;
       own[k] = *piece;
       return;
     }
   });
   // … and those of the pixels beside it, by how many have them.
-  std::vector<RimPieces> chosen(outline.size());
+  std::vector<RimSegments> chosen(outline.size());
   tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
     const OutlinePixel& pixel = outline[k];
     if (!within(pixel, 0)) return;
     const std::uint32_t object = silhouettes.ObjectOf(pixel);
-    std::vector<std::pair<RimPiece, float>> votes;
+    std::vector<std::pair<RimSegment, float>> votes;
     silhouettes.ForNear(pixel.x, pixel.y, melt(k), [&](std::size_t other) {
-      if (silhouettes.ObjectOf(outline[other]) != object || glm::dot(outline[other].outward, pixel.outward) < 0.5f) return;
+      if (silhouettes.ObjectOf(outline[other]) != object || glm::dot(outline[other].outward, pixel.outward) < 0.5f)
+        return;
       for (auto& [piece, count] : votes) {
         if (piece.seed == own[other].seed && piece.outward == own[other].outward) return void(count += 1.0f);
       }
       votes.emplace_back(own[other], 1.0f);
     });
     std::stable_sort(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-    RimPieces& pieces = chosen[k];
+    RimSegments& pieces = chosen[k];
     const std::size_t kept = std::min(votes.size(), pieces.piece.size());
     float sum = 0.0f;
     for (std::size_t n = 0; n < kept; ++n) sum += votes[n].second;

@@ -16,8 +16,8 @@ namespace {
 constexpr float kLeastStep = 0.01f, kFullStep = 0.03f;
 // The step back from which on an object that is behind at the outline is not so beside it.
 constexpr float kMostBefore = 0.1f;
-// In bands: thinner than the first an object has no painted edge, thicker than the second it has the whole; and the same of
-// the gap to what it stands beside.
+// In bands: thinner than the first an object has no painted edge, thicker than the second it has the whole; and the
+// same of the gap to what it stands beside.
 constexpr float kThin = 1.0f, kThick = 8.0f, kNarrow = 0.5f, kWide = 3.0f;
 // How far around an outline pixel its direction is taken from, in bands.
 constexpr float kDirectionReach = 0.5f;
@@ -42,7 +42,7 @@ Silhouettes::Silhouettes(const SilhouetteInput& input)
 
 bool Silhouettes::Painted(std::size_t i) const {
   const std::size_t style = StyleOf(i);
-  return coverage_[i] > 0.0f && style != StyleMap::kLeave && style != StyleMap::kCatch;
+  return coverage_[i] > 0.0f && style != StyleMap::kPassThrough && style != StyleMap::kShadowCatcher;
 }
 
 int Silhouettes::Band(std::size_t i) const {
@@ -72,8 +72,8 @@ bool Silhouettes::Inside(const OutlinePixel& outline, std::size_t pixel) const {
 bool Silhouettes::Behind(const OutlinePixel& outline, std::size_t pixel) const {
   const std::size_t own = input_.guides.Index(outline.x, outline.y);
   if (Step(own, pixel) > 0.0f) return true;
-  return object_[pixel] != object_[own] && coverage_[outline.beyond] > 0.0f && object_[pixel] == object_[outline.beyond] &&
-         depth_[own] < depth_[pixel] * (1.0f + kMostBefore);
+  return object_[pixel] != object_[own] && coverage_[outline.beyond] > 0.0f &&
+         object_[pixel] == object_[outline.beyond] && depth_[own] < depth_[pixel] * (1.0f + kMostBefore);
 }
 
 bool Silhouettes::Concerns(const OutlinePixel& outline, int x, int y) const {
@@ -125,9 +125,12 @@ void Silhouettes::Straighten(OutlinePixel& pixel) const {
       if (dx * dx + dy * dy > reach * reach + reach) continue;
       const std::size_t q = guides.Index(u, v);
       float share;  // 1: the object, -1: behind it
-      if (Inside(pixel, q)) share = pixel.open ? 2.0f * std::min(coverage_[q], 1.0f) - 1.0f : 1.0f;
-      else if (Behind(pixel, q)) share = -1.0f;
-      else continue;
+      if (Inside(pixel, q))
+        share = pixel.open ? 2.0f * std::min(coverage_[q], 1.0f) - 1.0f : 1.0f;
+      else if (Behind(pixel, q))
+        share = -1.0f;
+      else
+        continue;
       toward_x -= share * static_cast<float>(dx), toward_y -= share * static_cast<float>(dy);
       if (std::max(std::abs(dx), std::abs(dy)) <= kPointReach) near += share;
     }
@@ -140,8 +143,8 @@ void Silhouettes::Straighten(OutlinePixel& pixel) const {
   pixel.point = glm::vec2(pixel.x + 0.5f, pixel.y + 0.5f) + beyond * pixel.outward;
 }
 
-// How much of the full width there is room for, 0 … 1: inside to the opposite outline, outside to the next thing that is not
-// behind. Both are walked to in steps of a pixel. Under what stands before it an object is taken to go on.
+// How much of the full width there is room for, 0 … 1: inside to the opposite outline, outside to the next thing that
+// is not behind. Both are walked to in steps of a pixel. Under what stands before it an object is taken to go on.
 float Silhouettes::Room(const OutlinePixel& pixel) const {
   const GuideSet& guides = input_.guides;
   const float band = static_cast<float>(BandOf(pixel)), own_depth = depth_[guides.Index(pixel.x, pixel.y)];
@@ -151,7 +154,8 @@ float Silhouettes::Room(const OutlinePixel& pixel) const {
       const int v = static_cast<int>(std::floor(pixel.y + 0.5f + sign * t * pixel.outward.y));
       if (u < 0 || v < 0 || u >= guides.width() || v >= guides.height()) return 1.0f;
       const std::size_t q = guides.Index(u, v);
-      if (sign < 0.0f && coverage_[q] > 0.0f && !(depth_[q] > own_depth * (1.0f - kLeastStep)) && !Inside(pixel, q)) return 1.0f;
+      if (sign < 0.0f && coverage_[q] > 0.0f && !(depth_[q] > own_depth * (1.0f - kLeastStep)) && !Inside(pixel, q))
+        return 1.0f;
       if (ends(q, t)) return t / far;
     }
     return 1.0f;
@@ -185,7 +189,8 @@ void Silhouettes::Smooth() {
     const float length = std::sqrt(outward.x * outward.x + outward.y * outward.y);
     smoothed[k] = {length > 0.0f ? outward / length : own.outward, count > 0.0f ? width / count : own.width};
   });
-  for (std::size_t k = 0; k < smoothed.size(); ++k) outline_[k].outward = smoothed[k].outward, outline_[k].width = smoothed[k].width;
+  for (std::size_t k = 0; k < smoothed.size(); ++k)
+    outline_[k].outward = smoothed[k].outward, outline_[k].width = smoothed[k].width;
 }
 
 void Silhouettes::FindNearest() {
@@ -236,7 +241,8 @@ std::int32_t Silhouettes::Search(int x, int y) const {
   for (int dy = 0; dy <= widest_ + 2 && (best == kNone || dy * dy <= least); ++dy) {
     if (row_reach_.empty()) break;
     for (int sign = -1; sign <= (dy > 0 ? 1 : -1); sign += 2) {
-      const int row = y + sign * dy, in_row = row >= around_.y0 && row < around_.y1 ? row_reach_[std::size_t(row - around_.y0)] : 0;
+      const int row = y + sign * dy,
+                in_row = row >= around_.y0 && row < around_.y1 ? row_reach_[std::size_t(row - around_.y0)] : 0;
       if (in_row >= dy && in_row > 0) look(row, in_row);
     }
   }

@@ -6,17 +6,17 @@
 #include <span>
 #include <vector>
 
-#include "core/image/guides.h"
 #include "core/filter/region.h"
+#include "core/image/guides.h"
 
 namespace scumble::internal {
 
 // A pixel of an object that has another, further away, or nothing beside it.
 struct OutlinePixel {
   int x = 0, y = 0;
-  glm::vec2 point{0.0f};    // of the outline, picture coordinates, y down
-  glm::vec2 outward{0.0f};  // unit
-  float width = 1.0f;       // 0 … 1: how wide an edge may be here, as a share of its full width; see below
+  glm::vec2 point{0.0f};     // of the outline, picture coordinates, y down
+  glm::vec2 outward{0.0f};   // unit
+  float width = 1.0f;        // 0 … 1: how wide an edge may be here, as a share of its full width; see below
   std::uint32_t beyond = 0;  // index of a pixel on the other side
   bool open = false;         // nothing is on the other side
 };
@@ -30,12 +30,13 @@ struct SilhouetteInput {
 };
 
 // The outlines of objects in front of something else. Object a stands before b where they meet if b is further from the
-// camera by more than 1% of its distance; the outline tapers off below 3%. Pixels that no style paints (StyleMap::kLeave and
-// kCatch) count as nothing, unless they stand before the object. Self-occlusion makes no outline.
+// camera by more than 1% of its distance; the outline tapers off below 3%. Pixels that no style paints
+// (StyleMap::kPassThrough and kShadowCatcher) count as nothing, unless they stand before the object. Self-occlusion
+// makes no outline.
 //
-// `width` falls with the thickness of the object there, full from 8 bands on and 0 below one band, where the outline stays
-// exact; and with the gap to the next thing that is not behind, full from 3 bands on and 0 below half a band. It is averaged
-// over a band along the outline. Below kNarrowest nothing is painted.
+// `width` falls with the thickness of the object there, full from 8 bands on and 0 below one band, where the outline
+// stays exact; and with the gap to the next thing that is not behind, full from 3 bands on and 0 below half a band. It
+// is averaged over a band along the outline. Below kNarrowest nothing is painted.
 class Silhouettes {
  public:
   explicit Silhouettes(const SilhouetteInput& input);
@@ -90,15 +91,18 @@ void Silhouettes::ForNearInRow(int x, int y, int reach, const Visit& visit) cons
   std::uint32_t from = row_[std::size_t(y - around_.y0)], count = end - from;
   while (count > 0) {  // the first that is not too far left
     const std::uint32_t half = count / 2;
-    if (outline_[from + half].x < x - reach) from += half + 1, count -= half + 1;
-    else count = half;
+    if (outline_[from + half].x < x - reach)
+      from += half + 1, count -= half + 1;
+    else
+      count = half;
   }
   for (; from < end && outline_[from].x <= x + reach; ++from) visit(from);
 }
 
 template <class Visit>
 void Silhouettes::ForNear(int x, int y, int reach, const Visit& visit) const {
-  for (int v = std::max(around_.y0, y - reach); v <= std::min(around_.y1 - 1, y + reach); ++v) ForNearInRow(x, v, reach, visit);
+  for (int v = std::max(around_.y0, y - reach); v <= std::min(around_.y1 - 1, y + reach); ++v)
+    ForNearInRow(x, v, reach, visit);
 }
 
 }  // namespace scumble::internal

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image/hash.h"
 #include "core/filter/region.h"
+#include "core/image/hash.h"
 
 namespace scumble {
 
@@ -28,9 +28,9 @@ struct PixelPosition {
 // (seed, time step, level, cell) and scaled by the jitter. Cells outside the picture have seeds too.
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y);
 
-// The same in steps, for those who walk along rows or columns of cells. What (seed, time step, level) hash to; HashOn with
-// the cell's column makes `column` of it, and with that comes how far a seed stands from its cell's corner, in
-// [0, 2^level) each way.
+// The same in steps, for those who walk along rows or columns of cells. What (seed, time step, level) hash to; HashOn
+// with the cell's column makes `column` of it, and with that comes how far a seed stands from its cell's corner, in [0,
+// 2^level) each way.
 inline std::uint64_t SeedLevel(const SeedRules& rules, int level) {
   return Hash(rules.seed, rules.time_step, level + rules.level_offset);
 }

@@ -1,14 +1,15 @@
-// Seeds that live on surfaces: those of StyleBlit's hierarchy (transfer/seeds/seeds.h), strewn through an object's rest space
-// (layer `pref`) instead of over the screen, so that pieces of paint move with what they are painted on, and a frame
-// needs no other frame.
+// Seeds that live on surfaces: those of StyleBlit's hierarchy (transfer/seeds/seeds.h), strewn through an object's rest
+// space (layer `pref`) instead of over the screen, so that pieces of paint move with what they are painted on, and a
+// frame needs no other frame.
 //
 //   - Rest space has a grid of cubes for every power of two, its edge 2^e, and one point hashed into each cube from
 //     (seed, time step, object, e, cube). A pixel belongs to the nearest point of the 27 cubes around it: the pieces'
-//     borders are places on the surface, wherever the camera stands. Each grid is moved by a hash of (seed, object, e), or
-//     a floor at height 0 would lie exactly between two layers of cubes.
+//     borders are places on the surface, wherever the camera stands. Each grid is moved by a hash of (seed, object, e),
+//     or a floor at height 0 would lie exactly between two layers of cubes.
 //   - A piece's seed q is the pixel of it that lies nearest to the point, ties to the lowest (y, x). It follows the
 //     surface as closely as pixels can.
-//   - How large 2^e is on the screen is the pixel's footprint, as an octave κ = log2(pref units a pixel): the median over
+//   - How large 2^e is on the screen is the pixel's footprint, as an octave κ = log2(pref units a pixel): the median
+//   over
 //     the object of (distance of pref to the next pixel / depth), times the pixel's own depth. So a floor has pieces of
 //     one size near and far, and a zoom moves κ without any step.
 //   - The piece's place in StyleBlit's hierarchy is level = e - floor(κ(q) + h), h in [0, 1) hashed from its cube; it
@@ -28,10 +29,10 @@ namespace scumble::internal {
 // κ of each pixel that is not a number: it has no seed, nor any use for one.
 inline constexpr float kNoOctave = -1e9f;
 
-// κ per pixel, kNoOctave where it is not active, where pref is not finite, or where the object shows no two neighbouring
-// pixels at different places. log2 is linear between powers of two, so that it is the same on every machine. Guides must
-// hold pref, depth and object ids; those without a depth above 0, or seen by a camera that they say is orthographic, count
-// as all at one distance. O(active pixels), in the caller's oneTBB arena.
+// κ per pixel, kNoOctave where it is not active, where pref is not finite, or where the object shows no two
+// neighbouring pixels at different places. log2 is linear between powers of two, so that it is the same on every
+// machine. Guides must hold pref, depth and object ids; those without a depth above 0, or seen by a camera that they
+// say is orthographic, count as all at one distance. O(active pixels), in the caller's oneTBB arena.
 std::vector<float> SurfaceOctaves(const GuideSet& guides, std::span<const std::uint8_t> active);
 
 // The piece that a place belongs to.
@@ -64,9 +65,9 @@ class SurfaceGrid {
   std::uint64_t prefix_ = 0;
   bool placed_ = false;
   std::int64_t cube_[3] = {};
-  std::uint32_t filled_ = 0;      // one bit for each of the 27
+  std::uint32_t filled_ = 0;  // one bit for each of the 27
   std::uint64_t key_[27] = {};
-  float point_[27][3] = {};       // from the middle cube's lowest corner, in edges
+  float point_[27][3] = {};  // from the middle cube's lowest corner, in edges
 };
 
 // [0, 1), for what is decided once for a piece; `purpose` makes such numbers independent.

@@ -16,7 +16,7 @@ struct Strength {
 };
 
 bool Catches(const ShadowInput& input, std::size_t i) {
-  return input.style[i] == StyleMap::kCatch && input.guides.Plane(Layer::kCoverage)[i] > 0.0f;
+  return input.style[i] == StyleMap::kShadowCatcher && input.guides.Plane(Layer::kCoverage)[i] > 0.0f;
 }
 
 Strength StrengthAt(const ShadowInput& input, int x, int y) {
@@ -50,9 +50,10 @@ bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress)
       if (!(strength.strongest > 0.0f)) continue;
       const PixelPosition q = seeds.Position(seeds.Nearest(x, y));
       // The cell and not the position: a preview of half the size has the same.
-      const std::uint64_t hash = Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset, q.x >> level,
-                                      q.y >> level, 0x5d);
-      const int step = std::min(ShadowPaint::kSteps, static_cast<int>(strength.strongest * ShadowPaint::kSteps + UnitFloat(hash)));
+      const std::uint64_t hash = Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset,
+                                      q.x >> level, q.y >> level, 0x5d);
+      const int step =
+          std::min(ShadowPaint::kSteps, static_cast<int>(strength.strongest * ShadowPaint::kSteps + UnitFloat(hash)));
       if (step == 0) continue;
       std::uint16_t* pixel = out.At(x, y);
       input.paint.Sample(input.paint.PlaceFor(step, Mix64(hash)), x - q.x, y - q.y, step, pixel);

@@ -5,10 +5,10 @@
 #include <limits>
 #include <optional>
 
+#include "core/image/bare_paper.h"
 #include "core/image/color.h"
 #include "core/image/exact_math.h"
 #include "core/image/hash.h"
-#include "core/image/bare_paper.h"
 
 namespace scumble {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 // Places this near to a strength are as good as the nearest, and at least so many are to choose from.
 constexpr float kSameTone = 0.03f;
 constexpr std::size_t kLeastChoice = 12;
-constexpr int kSquares = 16;       // a side of the picture that is divided by chance
+constexpr int kSquares = 16;     // a side of the picture that is divided by chance
 constexpr float kByRank = 0.6f;  // how much of the opacity is a texel's own, by its rank; the rest is the same for all
 
 // How much a texel of that rank, 0 … 1, shows. Over all ranks the mean is the strength.
@@ -78,7 +78,8 @@ ShadowPaint::ShadowPaint(std::shared_ptr<const PreparedExemplar> exemplar, std::
     RankDarkPaint();
     return;
   }
-  for (int e = 0; e < exemplar_->count(); ++e) pictures_.push_back(LiftPaint(papers[std::size_t(e)], exemplar_->picture(e)));
+  for (int e = 0; e < exemplar_->count(); ++e)
+    pictures_.push_back(LiftPaint(papers[std::size_t(e)], exemplar_->picture(e)));
   FindTones(papers);
 }
 
@@ -116,12 +117,14 @@ void ShadowPaint::FindTones(std::span<const BarePaper> papers) {
     }
   }
   std::stable_sort(tones_.begin(), tones_.end(), [](const Tone& a, const Tone& b) { return a.strength < b.strength; });
-  if (tones_.empty()) RankDarkPaint();
-  else FindPlaces();
+  if (tones_.empty())
+    RankDarkPaint();
+  else
+    FindPlaces();
 }
 
-// The share of the texels around each that are darker: the order in which they appear as a shadow grows stronger. Around the
-// texel, and not of the whole place, so that strokes decide it and not the tone that they are in.
+// The share of the texels around each that are darker: the order in which they appear as a shadow grows stronger.
+// Around the texel, and not of the whole place, so that strokes decide it and not the tone that they are in.
 void ShadowPaint::RankDarkPaint() {
   pictures_.clear();
   const int reach = 2 * dark_.reach + 1, around = std::max(2, dark_.reach / 3), step = std::max(1, around / 4);
@@ -146,8 +149,8 @@ void ShadowPaint::RankDarkPaint() {
   }
 }
 
-// By step and by square of the sphere's picture the suitable place nearest to the square's middle: chance chooses a square
-// and not a place, because an exemplar of half the size has other places, and a preview must show the same ones.
+// By step and by square of the sphere's picture the suitable place nearest to the square's middle: chance chooses a
+// square and not a place, because an exemplar of half the size has other places, and a preview must show the same ones.
 void ShadowPaint::FindPlaces() {
   const auto below = [](const Tone& tone, float value) { return tone.strength < value; };
   const auto at = [&](float value) {
@@ -168,7 +171,8 @@ void ShadowPaint::FindPlaces() {
         return dx * dx + dy * dy;
       };
       const auto nearer = [&](const Tone& a, const Tone& b) { return squared(a) < squared(b); };
-      const auto nearest = std::min_element(tones_.begin() + std::ptrdiff_t(first), tones_.begin() + std::ptrdiff_t(last), nearer);
+      const auto nearest =
+          std::min_element(tones_.begin() + std::ptrdiff_t(first), tones_.begin() + std::ptrdiff_t(last), nearer);
       places_.push_back({nearest->center, nearest->exemplar});
     }
   }
@@ -179,13 +183,16 @@ ShadowPaint::Place ShadowPaint::PlaceFor(int step, std::uint64_t hash) const {
     return places_[std::size_t(std::max(0, step)) * kSquares * kSquares + hash % std::uint64_t(kSquares * kSquares)];
   }
   const float reach = static_cast<float>(dark_.reach);
-  const auto spread = [&](std::uint64_t bits) { return static_cast<int>(std::floor((UnitFloat(bits) - 0.5f) * reach + 0.5f)); };
+  const auto spread = [&](std::uint64_t bits) {
+    return static_cast<int>(std::floor((UnitFloat(bits) - 0.5f) * reach + 0.5f));
+  };
   return {{dark_.center.x + spread(hash), dark_.center.y + spread(Mix64(hash))}, dark_.exemplar};
 }
 
 void ShadowPaint::Sample(const Place& place, int dx, int dy, int step, std::uint16_t* texel) const {
   Source source{place.center.x + dx, place.center.y + dy};
-  if (!exemplar_->Usable(source.x, source.y)) source = exemplar_->Usable(place.center.x, place.center.y) ? place.center : dark_.center;
+  if (!exemplar_->Usable(source.x, source.y))
+    source = exemplar_->Usable(place.center.x, place.center.y) ? place.center : dark_.center;
   if (!pictures_.empty()) {
     std::copy_n(pictures_[std::size_t(place.exemplar)].At(source.x, source.y), 4, texel);
     return;
@@ -194,7 +201,8 @@ void ShadowPaint::Sample(const Place& place, int dx, int dy, int step, std::uint
   const int reach = ranks_width_ / 2, u = source.x - dark_.center.x + reach, v = source.y - dark_.center.y + reach;
   const bool ranked = u >= 0 && v >= 0 && u < ranks_width_ && v < ranks_width_;
   const float rank = ranked ? ranks_[std::size_t(v) * ranks_width_ + u] : 0.5f;
-  texel[3] = static_cast<std::uint16_t>(static_cast<float>(texel[3]) * Shown(rank, static_cast<float>(step) / kSteps) + 0.5f);
+  texel[3] =
+      static_cast<std::uint16_t>(static_cast<float>(texel[3]) * Shown(rank, static_cast<float>(step) / kSteps) + 0.5f);
 }
 
 }  // namespace scumble

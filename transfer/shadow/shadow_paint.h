@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/image/bare_paper.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble {
@@ -25,11 +25,11 @@ DarkPlace DarkestPlace(const PreparedExemplar& exemplar);
 
 // Paint for shadows of every strength, 0 none … 1 full. Full shadow is the darkest place's paint.
 //
-// Where the exemplars are spheres painted on bare paper (bare_paper.h), a strength between is painted as the artist painted
-// that tone: with paint, lifted off its paper, from places of the sphere whose mean luminance over the paper is that share
-// of the way from bare paper to the darkest place, in linear light. Where paint covers everything there is no such scale:
-// then the darkest place's paint is laid on as thinly as the shadow is weak, and thinner yet where the texels around are
-// darker, so that its strokes show; the mean opacity is the strength. Immutable.
+// Where the exemplars are spheres painted on bare paper (bare_paper.h), a strength between is painted as the artist
+// painted that tone: with paint, lifted off its paper, from places of the sphere whose mean luminance over the paper is
+// that share of the way from bare paper to the darkest place, in linear light. Where paint covers everything there is
+// no such scale: then the darkest place's paint is laid on as thinly as the shadow is weak, and thinner yet where the
+// texels around are darker, so that its strokes show; the mean opacity is the strength. Immutable.
 class ShadowPaint {
  public:
   // `originals` are the pictures that the exemplar was prepared from, in its order.

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/image/style.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 
 namespace scumble::internal {
@@ -26,10 +26,11 @@ struct Tint {
   // kOklab: w of the way, in Oklab, from the paint to its target. With P the paint's lightness, R the reference, and
   // (L, a, b) the albedo, clamped to 0 … 1:
   //   P ≤ R   P / R · (L, a, b): darker as in light that is weaker, so the ratio of the luminances of two paints stays;
-  //   P > R   t = (P − R) / (1 − min(R, L)), lightness L + t · (1 − L), chroma × (1 − t²), or less where a channel would
+  //   P > R   t = (P − R) / (1 − min(R, L)), lightness L + t · (1 − L), chroma × (1 − t²), or less where a channel
+  //   would
   //           be above 0.98 and above the albedo's: towards white as far as the paint goes and there is room.
-  // So black stays black, no paint short of white becomes white, and lightness is monotone and continuous in P. Where the
-  // way from the paint to the target is outside the gamut, lightness and hue stay and chroma gives in.
+  // So black stays black, no paint short of white becomes white, and lightness is monotone and continuous in P. Where
+  // the way from the paint to the target is outside the gamut, lightness and hue stay and chroma gives in.
   void Apply(glm::vec3 albedo, std::uint16_t* texel) const;
 };
 
@@ -40,14 +41,15 @@ struct ColorizeInput {
   int first_row = 0;  // that `active` begins with
 };
 
-// Tints the active ones of the pixels x0 … x1 - 1 of a row in place. Rows and pieces of rows are independent of each other.
+// Tints the active ones of the pixels x0 … x1 - 1 of a row in place. Rows and pieces of rows are independent of each
+// other.
 void ColorizeRow(const ColorizeInput& input, int y, int x0, int x1, Picture& picture);
 
 // The mean of Oklab's L over the usable texels of an exemplar's picture, weighted by alpha.
 float MeanLightness(const PreparedExemplar& exemplar, int index);
 
-// What a style's base colours mean: the colour in full light, which is that of its lightest exemplar on average. One for
-// all of its exemplars, so that those for weaker light stay darker and a blend of two is what lies between them.
+// What a style's base colours mean: the colour in full light, which is that of its lightest exemplar on average. One
+// for all of its exemplars, so that those for weaker light stay darker and a blend of two is what lies between them.
 float ReferenceLightness(const PreparedExemplar& exemplar);
 
 }  // namespace scumble::internal

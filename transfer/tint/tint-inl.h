@@ -1,8 +1,9 @@
-// What a tint does to paint, for one pixel or for a vector of them; transfer/tint/colorize.h says which formulas these are.
+// What a tint does to paint, for one pixel or for a vector of them; transfer/tint/colorize.h says which formulas these
+// are.
 //
-// Text to be included behind core/image/color_math-inl.h in a namespace of Lanes. A tint is told the albedo first, which
-// neighbouring pixels mostly share, then asked what becomes of paint. Paint comes in 16-bit sRGB codes and leaves in codes
-// that are not rounded yet, of 0 … 65535.
+// Text to be included behind core/image/color_math-inl.h in a namespace of Lanes. A tint is told the albedo first,
+// which neighbouring pixels mostly share, then asked what becomes of paint. Paint comes in 16-bit sRGB codes and leaves
+// in codes that are not rounded yet, of 0 … 65535.
 
 // 0 … top; NaN becomes 0.
 inline Lane ClampTo(Lane x, float top) { return Select(Less(0.0f, x), Min(x, top), 0.0f); }
@@ -57,13 +58,16 @@ class OklabTint {
   }
 
   // Three steps. Each waits long for its own results: whoever tints many pixels takes each step for all of them.
-  static LaneColor RootsOfPaint(LaneColor codes) { return Each(CubeRoot, ConesFromLinear(Each(LinearFromCode, codes))); }
+  static LaneColor RootsOfPaint(LaneColor codes) {
+    return Each(CubeRoot, ConesFromLinear(Each(LinearFromCode, codes)));
+  }
   LaneColor Linear(LaneColor own) const {
     const Lane lightness = LightnessFromRoots(own);
     // Darker paint than the reference has a share below 1, lighter paint a rise above 0.
     const Lane share = Min(lightness * per_reference_, 1.0f);
     const Lane rise = Min(Max((lightness - reference_) * per_room_, 0.0f), 1.0f);
-    Parts target{share * scene_.lightness + rise * (1.0f - scene_.lightness), Scaled(scene_.chroma, share - rise * rise)};
+    Parts target{share * scene_.lightness + rise * (1.0f - scene_.lightness),
+                 Scaled(scene_.chroma, share - rise * rise)};
     const LaneColor linear = FitIn(target, top_);
     if (!(weight_ < 1.0f)) return linear;
     const LaneColor to = RootsOf(target);

@@ -80,7 +80,8 @@ void TintBlock(Scene<OklabTint>& scene, const float* const* albedo, std::size_t 
   LaneColor colors[kVectors];
   LaneColor* const end = colors + count / lanes;
   std::size_t i = 0;
-  for (LaneColor* color = colors; color < end; ++color, i += lanes) *color = OklabTint::RootsOfPaint(Load(texels + 4 * i));
+  for (LaneColor* color = colors; color < end; ++color, i += lanes)
+    *color = OklabTint::RootsOfPaint(Load(texels + 4 * i));
   i = 0;
   for (LaneColor* color = colors; color < end; ++color, i += lanes) *color = scene.Of(Load(albedo, i)).Linear(*color);
   i = 0;
@@ -108,8 +109,10 @@ void TintBlocks(const Tint& tint, const float* const* albedo, std::size_t count,
 }
 
 void TintRowHere(const Tint& tint, const float* const* albedo, std::size_t count, std::uint16_t* texels) {
-  if (tint.mode == ColorizeMode::kMultiply) TintBlocks<MultiplyingTint>(tint, albedo, count, texels);
-  else TintBlocks<OklabTint>(tint, albedo, count, texels);
+  if (tint.mode == ColorizeMode::kMultiply)
+    TintBlocks<MultiplyingTint>(tint, albedo, count, texels);
+  else
+    TintBlocks<OklabTint>(tint, albedo, count, texels);
 }
 
 }  // namespace HWY_NAMESPACE

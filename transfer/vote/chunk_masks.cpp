@@ -77,7 +77,7 @@ void ActiveRow(const ChunkRow& row, int first_word, int words, std::uint64_t* ac
 
 // Bit i: the exemplar there is the one `step` values further on.
 HWY_INLINE std::uint64_t OneExemplar(const ChunkRow& row, int begin, std::ptrdiff_t step) {
-  if (!row.exemplar) return BitRows::kAll;
+  if (!row.exemplar) return BitMaskRows::kAll;
   std::uint64_t bits = 0;
   for (int i = 0; i < 64; i += int(hn::Lanes(kByte))) {
     const std::uint8_t* at = row.exemplar + begin + i;
@@ -110,7 +110,7 @@ void LinkRow(const ChunkRow& row, int first_word, int words, const std::uint64_t
     const int begin = 64 * (first_word + w);
     if (begin < 0 || begin >= row.width) continue;
     const std::uint64_t beyond = ~BitRange(0, row.width - begin), at_end = ~BitRange(0, row.width - 1 - begin);
-    right[w] = at_end, below[w] = row.last ? BitRows::kAll : beyond, deep[w] = 0;
+    right[w] = at_end, below[w] = row.last ? BitMaskRows::kAll : beyond, deep[w] = 0;
     if (!active[w]) continue;
     if (!Fits(row, begin)) {
       const auto one = [&](int x, std::ptrdiff_t step, int dx, int dy) {
@@ -160,8 +160,16 @@ namespace {
 ChunkRow RowAt(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar* exemplar,
                int radius, int y) {
   const std::size_t begin = field.Index(0, y);
-  ChunkRow row{field.x.data() + begin, field.y.data() + begin,  nullptr, active.data() + begin, field.width,
-               y + 1 == field.height,  std::int64_t(active.size() - begin), 0, radius, 0};
+  ChunkRow row{field.x.data() + begin,
+               field.y.data() + begin,
+               nullptr,
+               active.data() + begin,
+               field.width,
+               y + 1 == field.height,
+               std::int64_t(active.size() - begin),
+               0,
+               radius,
+               0};
   if (!exemplar) return row;
   if (exemplar->count() > 1) row.exemplar = field.exemplar.data() + begin;
   if (exemplar->is_sphere()) row.size = exemplar->size(), row.limit = exemplar->usable_limit();
@@ -170,8 +178,8 @@ ChunkRow RowAt(const SourceField& field, std::span<const std::uint8_t> active, c
 
 }  // namespace
 
-void MarkActive(const SourceField& field, std::span<const std::uint8_t> active, const MarkedTile& tile,
-                BitRows& marks) {
+void MaskActive(const SourceField& field, std::span<const std::uint8_t> active, const MaskedTile& tile,
+                BitMaskRows& marks) {
   marks.Reset(tile, 0);
   const int first = std::max(0, tile.first_row), end = std::min(field.height, tile.first_row + tile.rows);
   for (int y = first; y < end; ++y) {
@@ -181,8 +189,8 @@ void MarkActive(const SourceField& field, std::span<const std::uint8_t> active, 
 }
 
 bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
-                int radius, const MarkedTile& tile, ChunkMarks& marks) {
-  MarkActive(field, active, tile, marks.active);
+                int radius, const MaskedTile& tile, ChunkMasks& marks) {
+  MaskActive(field, active, tile, marks.active);
   const int first = std::max(0, tile.first_row), last = std::min(field.height, tile.first_row + tile.rows) - 1;
   const auto any = [&](int y) {
     const std::uint64_t* row = marks.active.Row(y);
@@ -191,8 +199,8 @@ bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
   bool some = false;
   for (int y = first; y <= last && !some; ++y) some = any(y);
   if (!some) return false;
-  marks.right.Reset(tile, BitRows::kAll);
-  marks.below.Reset(tile, BitRows::kAll);
+  marks.right.Reset(tile, BitMaskRows::kAll);
+  marks.below.Reset(tile, BitMaskRows::kAll);
   marks.deep.Reset(tile, 0);
   for (int y = first; y <= last; ++y) {
     ChunkRow row = RowAt(field, active, &exemplar, radius, y);

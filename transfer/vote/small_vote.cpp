@@ -3,10 +3,10 @@
 #include <array>
 #include <bit>
 
-#include "transfer/vote/vote_sum.h"
 #include "transfer/vote/chunk_masks.h"
 #include "transfer/vote/edge/open_steps.h"
 #include "transfer/vote/vote_kernels.h"
+#include "transfer/vote/vote_sum.h"
 
 namespace scumble::internal {
 namespace {
@@ -40,7 +40,7 @@ class VoteTile {
  private:
   void VoteStrip(int first_word, int words, bool edges, Picture& out) {
     std::array<std::uint64_t, kStripWords> copied{}, linked{}, whole{}, parts{};
-    joined_.assign(std::size_t(kNeighbourCount) * words, BitRows::kAll);
+    joined_.assign(std::size_t(kNeighbourCount) * words, BitMaskRows::kAll);
     votes_.assign(joined_.size(), 0);
     const int radius = input_.radius, first = std::max(0, 64 * first_word - radius);
     const int end = std::min(input_.field.width, 64 * (first_word + words) + radius);
@@ -105,7 +105,7 @@ class VoteTile {
 
   std::uint64_t OneChunk(int y, int word) const {
     const int r = input_.radius;
-    std::uint64_t one = BitRows::kAll;
+    std::uint64_t one = BitMaskRows::kAll;
     for (int v = y - r; v <= y + r; ++v) {
       for (int dx = -r; dx < r; ++dx) one &= marks_.right.Shifted(v, word, dx);
       if (v < y + r) one &= marks_.below.At(v, word);
@@ -116,7 +116,7 @@ class VoteTile {
   // Whether all of the window is active, and all texels that it votes for are usable.
   std::uint64_t WholeWindows(int y, int word) const {
     const int r = input_.radius;
-    std::uint64_t whole = BitRows::kAll;
+    std::uint64_t whole = BitMaskRows::kAll;
     for (int v = y - r; v <= y + r; ++v) {
       for (int dx = -r; dx <= r; ++dx) whole &= marks_.deep.Shifted(v, word, dx);
     }
@@ -125,7 +125,7 @@ class VoteTile {
 
   // The steps that the support regions of the mixed pixels depend on: of three rows, from the pixel on the left.
   void MarkSteps() {
-    BitRows wanted;
+    BitMaskRows wanted;
     wanted.Reset(tile_, 0);
     for (int y = region_.y0; y < region_.y1; ++y) {
       const std::uint64_t* row = mixed_.Row(y);
@@ -142,8 +142,8 @@ class VoteTile {
   void Join(int y, int word, std::span<std::uint64_t> joined) const {
     for (int k = 0; k < kNeighbourCount; ++k) {
       const auto [dx, dy] = kNeighbours[k];
-      const std::uint64_t column = dy == 0 ? BitRows::kAll : steps_.down.At(dy < 0 ? y - 1 : y, word);
-      const std::uint64_t row = dx == 0   ? BitRows::kAll
+      const std::uint64_t column = dy == 0 ? BitMaskRows::kAll : steps_.down.At(dy < 0 ? y - 1 : y, word);
+      const std::uint64_t row = dx == 0  ? BitMaskRows::kAll
                                 : dx < 0 ? steps_.right.Shifted(y + dy, word, -1)
                                          : steps_.right.At(y + dy, word);
       joined[std::size_t(k)] = column & row;
@@ -169,7 +169,7 @@ class VoteTile {
     const SourceField& field = input_.field;
     for (; pixels; pixels &= pixels - 1) {
       const int i = std::countr_zero(pixels), x = 64 * word + i;
-      Ballot ballot;
+      VoteSum ballot;
       const auto add = [&](int u, int v) {
         const std::size_t q = field.Index(u, v);
         const Source at{field.x[q] - (u - x), field.y[q] - (v - y)};
@@ -191,9 +191,9 @@ class VoteTile {
   const TexelPlanes& texels_;
   Region region_;
   int first_word_, words_;
-  MarkedTile tile_;
-  ChunkMarks marks_;
-  BitRows mixed_;
+  MaskedTile tile_;
+  ChunkMasks marks_;
+  BitMaskRows mixed_;
   bool mixed_any_ = false;
   OpenSteps steps_;
   std::vector<std::uint64_t> joined_, votes_;  // by word and neighbour

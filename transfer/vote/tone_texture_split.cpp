@@ -8,7 +8,7 @@
 
 namespace scumble {
 
-std::vector<Picture> MakeTones(const PreparedExemplar& exemplar, double sigma) {
+std::vector<Picture> MakeBaseLayers(const PreparedExemplar& exemplar, double sigma) {
   std::vector<std::uint8_t> usable(std::size_t(exemplar.width()) * exemplar.height());
   for (const Source& at : exemplar.UsablePixels()) usable[std::size_t(at.y) * exemplar.width() + at.x] = 1;
   std::vector<Picture> tones;
@@ -62,7 +62,7 @@ Color ToneAt(const HybridInput& input, std::size_t pixel, int k) {
   const glm::vec3 normal = input.guides.Vec3(Layer::kNormal, pixel);
   const Picture& tone = input.tones[std::size_t(k)];
   if (!input.space) return ToneFor(input.votes.exemplar, tone, normal);
-  float rest[GuideSpace::kMaxRest];
+  float rest[GuideSpace::kMaxExtra];
   input.space->Read(input.guides, pixel, input.brightness, rest);
   return TexelAt(tone, input.space->Nearest(k, normal, rest));
 }

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "transfer/vote/vote_sum.h"
 #include "transfer/vote/small_vote.h"
+#include "transfer/vote/vote_sum.h"
 #include "transfer/vote/wide/wide_vote.h"
 
 namespace scumble::internal {
@@ -16,7 +16,7 @@ bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress) {
   return ForEachRow(region, progress, [&](int y) {
     for (int x = region.x0; x < region.x1; ++x) {
       if (!input.active[field.Index(x, y)]) continue;
-      Ballot ballot;
+      VoteSum ballot;
       ForEachVote(input, regions ? &*regions : nullptr, x, y, [&](int exemplar, Source source) {
         ballot.Add(input.exemplar.picture(exemplar).At(source.x, source.y));
       });

@@ -6,10 +6,10 @@
 #include <functional>
 #include <span>
 
-#include "core/image/guides.h"
-#include "scumble/picture.h"
 #include "core/filter/edge_test.h"
 #include "core/filter/parallel.h"
+#include "core/image/guides.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/field/source_field.h"
 #include "transfer/vote/edge/support_regions.h"
@@ -23,8 +23,8 @@ struct VoteInput {
   int radius = 0;
   const EdgeRules* edges = nullptr;  // null: plain voting
   Region region;
-  // Called from any thread for pieces x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once for
-  // each active pixel of the region, and maybe for others. It may change those pixels of the picture.
+  // Called from any thread for pieces x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once
+  // for each active pixel of the region, and maybe for others. It may change those pixels of the picture.
   std::function<void(int y, int x0, int x1)> finished = {};
 };
 
@@ -50,9 +50,9 @@ void ForEachVote(const VoteInput& input, const SupportRegions* regions, int x, i
   }
 }
 
-// Every active pixel of the region becomes the mean of its votes: of what the chunks around it would put there. Inside a
-// chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha. Writes straight alpha
-// into `out` (the picture's size); other pixels are left alone. False: asked to stop.
+// Every active pixel of the region becomes the mean of its votes: of what the chunks around it would put there. Inside
+// a chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha. Writes straight
+// alpha into `out` (the picture's size); other pixels are left alone. False: asked to stop.
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress);
 
 // The same, pixel by pixel: what all faster ways are held against.

@@ -60,7 +60,7 @@ void CopyMarked(const VoteRow& row, std::span<const std::uint64_t> marked, std::
 // and all texels that it votes for are usable. Only where all of these are opaque; the marks of other pixels are left,
 // those of pixels that are done are cleared. `sources` has the rows of the windows, of radius 1.
 //
-// With opaque paint the mean weighted by alpha is the plain one, rounded alike. Ballot has floor((aS + floor(an/2)) /
+// With opaque paint the mean weighted by alpha is the plain one, rounded alike. VoteSum has floor((aS + floor(an/2)) /
 // (an)), a = 65535, for n votes of sum S. Without the inner floor that is floor((2S + n) / (2n)). Where an is odd, aS +
 // an/2 lies half-way between two integers, so no multiple of an lies between it and the lower one, and both quotients
 // have one floor.

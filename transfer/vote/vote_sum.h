@@ -6,7 +6,7 @@
 namespace scumble::internal {
 
 // Sums are integers, so their order does not matter. 16-bit texels of straight alpha; at least one vote, at most 2^16.
-struct Ballot {
+struct VoteSum {
   std::uint64_t color[3] = {0, 0, 0};
   std::uint64_t alpha = 0;
   std::uint32_t votes = 0;

@@ -22,20 +22,21 @@ bool IsForWantOfThreads(const std::exception& error) {
 }
 
 [[noreturn]] void TellAndEnd() {
-  const int code = TellOf(std::current_exception());
-  RemoveUnfinishedFiles();
+  const int code = ReportException(std::current_exception());
+  RemovePendingTemporaries();
   ::_exit(code);  // other threads still run: nothing that they use may be taken down
 }
 
 }  // namespace
 
-int TellOf(std::exception_ptr thrown) {
+int ReportException(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
     // So it is where a thread could not be started while others of the same library ran.
-    std::fputs("scumble: error: a library gave up, as they do where memory or threads run out; allow more of both, or take "
-               "fewer threads, as --threads 1\n",
-               stderr);
+    std::fputs(
+        "scumble: error: a library gave up, as they do where memory or threads run out; allow more of both, or take "
+        "fewer threads, as --threads 1\n",
+        stderr);
   } catch (const std::bad_alloc&) {
     std::fputs("scumble: error: out of memory; ask for a smaller picture, or allow more memory\n", stderr);
   } catch (const std::exception& error) {
@@ -55,6 +56,6 @@ int TellOf(std::exception_ptr thrown) {
   return static_cast<int>(ExitCode::kInternal);
 }
 
-void TellOfWhatNobodyCatches() { std::set_terminate(TellAndEnd); }
+void ReportUncaughtExceptions() { std::set_terminate(TellAndEnd); }
 
 }  // namespace scumble

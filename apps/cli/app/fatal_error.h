@@ -6,10 +6,10 @@
 namespace scumble {
 
 // Says on stderr what was thrown and how to mend it; returns the exit code. Takes no memory, as there may be none.
-int TellOf(std::exception_ptr thrown);
+int ReportException(std::exception_ptr thrown);
 
 // From now on what is thrown where nothing can catch it, as on a library's own thread, ends the program with that
 // sentence and code instead of a core dump, and removes the temporary files of outputs. To be called once, early.
-void TellOfWhatNobodyCatches();
+void ReportUncaughtExceptions();
 
 }  // namespace scumble

@@ -86,8 +86,8 @@ std::string GuidesToText(const GuidesReport& guides) {
   for (const auto& [name, ms] : guides.times) steps += fmt::format("{}{} {:.1f}", steps.empty() ? "" : ", ", name, ms);
   if (guides.noise > 0.0) samples = fmt::format("; noise {:.3g}", guides.noise);
   if (guides.open_ended) {
-    samples += guides.samples > 0 ? fmt::format("; repeat with --samples {}", guides.samples)
-                                  : "; free of noise, no samples";
+    samples +=
+        guides.samples > 0 ? fmt::format("; repeat with --samples {}", guides.samples) : "; free of noise, no samples";
   }
   return fmt::format("{}  {}; {} ms{}\n", guides.output, guides.layers.ToString(), steps, samples);
 }
@@ -115,12 +115,9 @@ void AddRun(const RunReport& report, const Globals& globals, Json& json) {
 
 void PrintTotals(const SequenceTotals& totals, const RunReport& report, const Globals& globals, Json entries) {
   if (globals.json) {
-    Json json{{"frames", std::move(entries)},
-              {"made", totals.made},
-              {"kept", totals.kept},
-              {"failed", totals.failed.size()},
-              {"total_ms", totals.total_ms},
-              {"memory", {{"peak_bytes", PeakMemory()}}}};
+    Json json{{"frames", std::move(entries)}, {"made", totals.made},
+              {"kept", totals.kept},          {"failed", totals.failed.size()},
+              {"total_ms", totals.total_ms},  {"memory", {{"peak_bytes", PeakMemory()}}}};
     AddRun(report, globals, json);
     Print(JsonText(json));
     return;

@@ -23,9 +23,10 @@ void AddGlobalOptions(CLI::App& verb, Globals& globals) {
 }
 
 CLI::Option* AddFastIoOption(CLI::App& verb, bool& fast_io) {
-  return verb.add_flag("--fast-io", fast_io,
-                       "of EXR files the compression that is written and read in the least time, rle: the same pixels, larger "
-                       "files");
+  return verb.add_flag(
+      "--fast-io", fast_io,
+      "of EXR files the compression that is written and read in the least time, rle: the same pixels, larger "
+      "files");
 }
 
 std::string RefuseNegative(const std::string& text) {
@@ -42,7 +43,9 @@ std::function<std::string(const std::string&)> RefuseNoAmount(const std::string&
   };
 }
 
-std::string RefuseEmpty(const std::string& text) { return text.empty() ? "it is empty: give a name, or leave it out" : ""; }
+std::string RefuseEmpty(const std::string& text) {
+  return text.empty() ? "it is empty: give a name, or leave it out" : "";
+}
 
 Expected<Size> ParseSize(const std::string& text) {
   const std::size_t cross = text.find_first_of("xX");
@@ -126,8 +129,9 @@ void AddSceneOptions(CLI::App& verb, SceneOptions& options) {
   AddViewOptions(verb, options);
   AddAnimationOption(verb, options);
   AddCastOptions(verb, options);
-  verb.add_flag("!--no-robust", options.request.robust,
-                "without Embree's robust mode: rays may pass where two triangles meet; scumble tradeoff shows what it gains");
+  verb.add_flag(
+      "!--no-robust", options.request.robust,
+      "without Embree's robust mode: rays may pass where two triangles meet; scumble tradeoff shows what it gains");
   verb.add_flag("--half", options.request.half, "16-bit half floats for colour layers; data layers stay 32-bit");
   verb.add_flag("--explain", options.explain, "print the plan: each layer, why, and what it costs");
 }
@@ -138,21 +142,26 @@ void AddSampleOptions(CLI::App& verb, SceneOptions& options) {
       ->check(CLI::Range(1, kMaxSamples))
       ->each([&options](const std::string&) { options.request.samples_given = true; })
       ->capture_default_str();
-  verb.add_option("--max-bounces", options.request.max_bounces, "reflections after the first surface's; 0: direct light alone")
+  verb.add_option("--max-bounces", options.request.max_bounces,
+                  "reflections after the first surface's; 0: direct light alone")
       ->type_name("N")
       ->check(CLI::Range(0, kMaxBounces))
       ->capture_default_str();
 }
 
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options) {
-  verb.add_option("--seed", options.request.seed, "another seed, other noise of the same size; the same seed, the same bytes")
+  verb.add_option("--seed", options.request.seed,
+                  "another seed, other noise of the same size; the same seed, the same bytes")
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
   AddSampleOptions(verb, options);
-  verb.get_option("--samples")->description(
-      "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most there may be");
-  verb.add_option("--noise", options.request.noise, "sample lpe.* layers, 16 times or more, until the estimated error, RMS over mean, is below this")
+  verb.get_option("--samples")
+      ->description(
+          "paths a pixel, for lpe.* layers and under lights with extent; with --noise or --time-budget the most there "
+          "may be");
+  verb.add_option("--noise", options.request.noise,
+                  "sample lpe.* layers, 16 times or more, until the estimated error, RMS over mean, is below this")
       ->type_name("X")
       ->check(RefuseNoAmount("an error, as 0.05"));
   verb.add_option("--time-budget", options.request.time_budget_seconds,
@@ -189,10 +198,11 @@ void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required) {
   auto* style = verb.add_option("--style", request.style, required ? what : what + "; adds the layers that it needs");
   style->type_name("STYLE");
   if (required) style->required();
-  verb.add_option("--set", request.sets,
-                  "overrides a key of style.toml, as transfer.blend_radius=0, in all styles of the picture; "
-                  "NAME:transfer.scale=0.5 only in the one that --style or --assign gives as NAME; repeatable, the later "
-                  "wins. scumble styles --keys lists them")
+  verb.add_option(
+          "--set", request.sets,
+          "overrides a key of style.toml, as transfer.blend_radius=0, in all styles of the picture; "
+          "NAME:transfer.scale=0.5 only in the one that --style or --assign gives as NAME; repeatable, the later "
+          "wins. scumble styles --keys lists them")
       ->type_name("[NAME:]KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -224,7 +234,9 @@ Expected<std::optional<double>> ParseExposure(const std::string& text) {
 
 namespace {
 
-std::string RefuseEmptyRate(const std::string& text) { return text.empty() ? "it is empty: give a rate, or leave it out" : ""; }
+std::string RefuseEmptyRate(const std::string& text) {
+  return text.empty() ? "it is empty: give a rate, or leave it out" : "";
+}
 
 }  // namespace
 
@@ -234,9 +246,9 @@ void AddFpsOption(CLI::App& verb, std::string& fps, const std::string& help) {
 
 void AddMemoryOption(CLI::App& verb, Globals& globals) {
   verb.add_option_function<std::string>(
-          "--max-memory",
-          [&globals](const std::string& text) { globals.max_memory = ParseBytes(text).value(); },
-          "memory that the run may take, as 4G or 800M, in powers of 1024; it is estimated before it is taken, and what needs "
+          "--max-memory", [&globals](const std::string& text) { globals.max_memory = ParseBytes(text).value(); },
+          "memory that the run may take, as 4G or 800M, in powers of 1024; it is estimated before it is taken, and "
+          "what needs "
           "more is refused. Left out: what the machine, its control group and ulimit -v have")
       ->type_name("SIZE")
       ->check([](const std::string& text) {

@@ -29,7 +29,8 @@ CLI::Option* AddFastIoOption(CLI::App& verb, bool& fast_io);
 
 // For counts: the parser would take -1 for the largest number there is. Returns what is wrong, or nothing.
 std::string RefuseNegative(const std::string& text);
-// For amounts that may be fractions: what is not a finite number above 0. `example` says what is meant: "milliseconds, as 40".
+// For amounts that may be fractions: what is not a finite number above 0. `example` says what is meant: "milliseconds,
+// as 40".
 std::function<std::string(const std::string&)> RefuseNoAmount(const std::string& example);
 // For names, which a shell's empty variable would leave out unseen.
 std::string RefuseEmpty(const std::string& text);

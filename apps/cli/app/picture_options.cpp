@@ -25,9 +25,10 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
       ->check(CLI::Range(0, 9))
       ->capture_default_str();
   AddFastIoOption(verb, options.request.fast_io);
-  verb.add_option("--frame", options.request.frame,
-                  "frame number, for transfer.jitter_fps, for keys of the style that change over time, and of a scene "
-                  "that moves; left out: 0, of a .blend the frame that it was saved at, of glTF the nodes as they stand")
+  verb.add_option(
+          "--frame", options.request.frame,
+          "frame number, for transfer.jitter_fps, for keys of the style that change over time, and of a scene "
+          "that moves; left out: 0, of a .blend the frame that it was saved at, of glTF the nodes as they stand")
       ->type_name("N");
   AddFpsOption(verb, options.fps,
                "frames a second, as 24 or 24000/1001, for transfer.jitter_fps, and of a glTF animation: frame N is at "
@@ -37,9 +38,10 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
                   "light; auto fits it to the brightest exemplar and prints the stops that repeat it")
       ->type_name("auto|STOPS")
       ->capture_default_str();
-  verb.add_option("--seed", options.request.seed,
-                  "another seed, another pattern: where chunks begin, what paint flat surfaces, shadows and edges take, "
-                  "and the noise of a scene's soft lights; the same seed, the same bytes")
+  verb.add_option(
+          "--seed", options.request.seed,
+          "another seed, another pattern: where chunks begin, what paint flat surfaces, shadows and edges take, "
+          "and the noise of a scene's soft lights; the same seed, the same bytes")
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
@@ -48,13 +50,15 @@ void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed) {
                   "their borders, their size, the guide error, which exemplar, which style")
       ->type_name("WHAT")
       ->check(CLI::IsMember(ExplanationNames()));
-  verb.add_option("--upsample", options.request.upsample,
-                  "the picture is N times as wide and high as the guides: they are quicker to make, and the paint has its "
-                  "full size")
+  verb.add_option(
+          "--upsample", options.request.upsample,
+          "the picture is N times as wide and high as the guides: they are quicker to make, and the paint has its "
+          "full size")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxUpsampling))
       ->capture_default_str();
-  verb.add_option("--repeat", options.request.repeat, "times to run the transfer, to report the median time and its spread")
+  verb.add_option("--repeat", options.request.repeat,
+                  "times to run the transfer, to report the median time and its spread")
       ->type_name("N")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
@@ -77,7 +81,8 @@ void AddSequenceOptions(CLI::App& verb, SequenceOptions& options) {
                   "names of files stands for the frame's number")
       ->type_name("RANGE");
   verb.add_flag("--resume", options.resume,
-                "with --frames: keep frames whose output is there, whole, and made with these settings; all others are made again");
+                "with --frames: keep frames whose output is there, whole, and made with these settings; all others are "
+                "made again");
 }
 
 Expected<SequenceRequest> ToRequest(const SequenceOptions& options) {
@@ -90,18 +95,23 @@ Expected<SequenceRequest> ToRequest(const SequenceOptions& options) {
 
 void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts) {
   const std::string smaller = casts ? "smaller guides, fewer samples, " : "";
-  const std::string wins = std::string("--set") + (casts ? ", --upsample and --samples" : " and --upsample") + " win over it";
+  const std::string wins =
+      std::string("--set") + (casts ? ", --upsample and --samples" : " and --upsample") + " win over it";
   verb.add_option("--quality", options.quality,
-                  "final: the style as it is; preview and draft take less time where there is much to take, by " + smaller +
-                      "simpler ways to find the paint; what is taken is printed as options that repeat it. " + wins)
+                  "final: the style as it is; preview and draft take less time where there is much to take, by " +
+                      smaller + "simpler ways to find the paint; what is taken is printed as options that repeat it. " +
+                      wins)
       ->type_name("NAME")
       ->check(CLI::IsMember(QualityNames()));
   verb.add_option(
           "--budget-ms", options.request.budget_ms,
           std::string("milliseconds that ") + (casts ? "the guides and the transfer" : "the transfer") +
               " of one picture may take, without start-up, reading, preparing the style and writing: of a dozen "
-              "ways, ordered by what they cost in accuracy, the first that fits is taken, by times that are measured once on this "
-              "machine and kept in the user's cache folder; one way for all frames; the options that repeat it are printed. " + wins)
+              "ways, ordered by what they cost in accuracy, the first that fits is taken, by times that are measured "
+              "once on this "
+              "machine and kept in the user's cache folder; one way for all frames; the options that repeat it are "
+              "printed. " +
+              wins)
       ->type_name("N")
       ->check(RefuseNoAmount("milliseconds, as 40"));
   verb.add_flag("--recalibrate", options.request.recalibrate, "with --budget-ms: measure anew");

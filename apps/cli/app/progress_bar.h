@@ -10,8 +10,8 @@ namespace scumble {
 // "  1:05 left", or nothing in the first second and before 2%, when it would be a guess. `share` in [0, 1].
 std::string TimeLeft(double elapsed_seconds, double share);
 
-// Shows a bar of this label until the returned callback and its copies are gone. An empty callback, which costs nothing,
-// when stderr is no terminal or `quiet`.
+// Shows a bar of this label until the returned callback and its copies are gone. An empty callback, which costs
+// nothing, when stderr is no terminal or `quiet`.
 Progress ShowProgress(const std::string& label, bool quiet);
 
 // Takes the bar off the terminal, so that a line can be printed; it comes back with the next report.

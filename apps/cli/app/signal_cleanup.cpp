@@ -8,7 +8,7 @@ namespace scumble {
 namespace {
 
 void CleanUpAndEnd(int signal) {
-  RemoveUnfinishedFiles();
+  RemovePendingTemporaries();
   std::signal(signal, SIG_DFL);
   ::raise(signal);  // is delivered when this returns
 }

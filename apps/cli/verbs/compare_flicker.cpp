@@ -1,8 +1,8 @@
 // scumble compare --motion: how what stays in sight changes from one frame to the next.
 #include <fmt/format.h>
 
-#include "apps/cli/verbs/compare_verb.h"
 #include "apps/cli/app/json_text.h"
+#include "apps/cli/verbs/compare_verb.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "measure/compare/flicker.h"

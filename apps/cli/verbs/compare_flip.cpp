@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "apps/cli/verbs/compare_verb.h"
 #include "apps/cli/app/json_text.h"
+#include "apps/cli/verbs/compare_verb.h"
 #include "core/io/channel_file.h"
 #include "core/io/picture_file.h"
 #include "measure/compare/heat_map.h"
@@ -68,8 +68,9 @@ Expected<FlipReport> OfLayer(const CompareVerb& verb, const std::string& layer, 
   SCUMBLE_ASSIGN(const LinearColors first, LightOf(a, layer, clamped));
   SCUMBLE_ASSIGN(const LinearColors second, LightOf(b, layer, clamped));
   if (clamped > 0) {
-    globals.Note(fmt::format("{} values of {} lie outside of 0 … 1 and count as its ends, or are no numbers and count as 0",
-                             clamped, layer));
+    globals.Note(
+        fmt::format("{} values of {} lie outside of 0 … 1 and count as its ends, or are no numbers and count as 0",
+                    clamped, layer));
   }
   return MeasureFlip(first, second, options);
 }
@@ -85,7 +86,8 @@ Expected<FlipReport> OfPictures(const CompareVerb& verb, const FlipOptions& opti
 Expected<ExitCode> CompareByFlip(const CompareVerb& verb, const Globals& globals) {
   if (verb.options.layers.size() > 1) return UsageError("--flip compares one --layer, not several");
   if (verb.flip_fail && !(*verb.flip_fail >= 0.0)) {
-    return UsageError(fmt::format("--fail {}: expected 0 or more, the largest mean FLIP that is no failure", *verb.flip_fail));
+    return UsageError(
+        fmt::format("--fail {}: expected 0 or more, the largest mean FLIP that is no failure", *verb.flip_fail));
   }
   FlipOptions options = verb.flip_options;
   options.threads = globals.threads;
@@ -98,9 +100,12 @@ Expected<ExitCode> CompareByFlip(const CompareVerb& verb, const Globals& globals
     globals.Note(verb.heat_map + ": yellow is a FLIP of 1");
   }
   const bool fails = verb.flip_fail && !(report.mean <= *verb.flip_fail);
-  nlohmann::ordered_json json = {{"a", verb.a},         {"b", verb.b},
-                                 {"layer", layer},      {"flip", report.mean},
-                                 {"flip_max", report.max}, {"rms", report.rms},
+  nlohmann::ordered_json json = {{"a", verb.a},
+                                 {"b", verb.b},
+                                 {"layer", layer},
+                                 {"flip", report.mean},
+                                 {"flip_max", report.max},
+                                 {"rms", report.rms},
                                  {"pixels_per_degree", options.pixels_per_degree}};
   std::string text = fmt::format("FLIP mean {:.6f}, most {:.6f}, at {:.2f} pixels per degree\nRMS  {:.6f} of 1\n",
                                  report.mean, report.max, options.pixels_per_degree, report.rms);

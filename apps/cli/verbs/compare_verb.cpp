@@ -1,26 +1,26 @@
 // scumble compare.
-#include "measure/compare/compare.h"
+#include "apps/cli/verbs/compare_verb.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <set>
 #include <string>
 
-#include "apps/cli/verbs/compare_verb.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/scene/run_inputs.h"
 #include "core/io/channel_file.h"
 #include "core/io/picture_file.h"
+#include "measure/compare/compare.h"
 #include "measure/compare/heat_map.h"
+#include "pipeline/scene/run_inputs.h"
 
 namespace scumble {
 namespace {
 
 Status CheckHeatMap(const CompareVerb& verb) {
   if (verb.heat_map.empty()) return Ok();
-  RunFiles files;
+  RunInputs files;
   files.Reads("the first file", verb.a), files.Reads("the second file", verb.b);
   if (!verb.motion.empty()) files.Reads("the guides", verb.motion);
   if (!verb.motion_next.empty()) files.Reads("the next frame's guides", verb.motion_next);
@@ -98,10 +98,11 @@ void AddCompareVerb(CLI::App& app, Globals& globals, Action& chosen) {
                   "guides of the second picture's frame: what is hidden there is left out")
       ->type_name("FILE")
       ->needs(motion);
-  CLI::Option* flip = sub->add_flag("--flip", verb->flip,
-                                    "how visible the difference of two pictures is to who flips between them, 0 to 1 "
-                                    "(FLIP, Andersson et al. 2020), and nothing else; of one layer of light with --layer, "
-                                    "values clamped to 0 … 1; exit code 1 where --fail is given and the mean is above it");
+  CLI::Option* flip =
+      sub->add_flag("--flip", verb->flip,
+                    "how visible the difference of two pictures is to who flips between them, 0 to 1 "
+                    "(FLIP, Andersson et al. 2020), and nothing else; of one layer of light with --layer, "
+                    "values clamped to 0 … 1; exit code 1 where --fail is given and the mean is above it");
   sub->add_option("--flip-ppd", verb->flip_options.pixels_per_degree,
                   "pixels of the display in one degree of sight; 67 is 4K, 0.7 m wide and 0.7 m away")
       ->type_name("N")

@@ -28,7 +28,8 @@ Expected<GuidegenRequest> ToRequest(const GuidegenVerb& verb) {
   if (verb.output.empty() && !verb.scene.explain) {
     return UsageError("scumble guidegen: -o FILE is required; with --explain and no -o the plan is printed alone");
   }
-  if (verb.style.style.empty() && !verb.style.sets.empty()) return UsageError("--set changes a style: give --style too");
+  if (verb.style.style.empty() && !verb.style.sets.empty())
+    return UsageError("--set changes a style: give --style too");
   if (verb.style.style.empty() && !verb.style.assigned.empty()) {
     return UsageError("--assign goes with a style for all the rest: give --style too");
   }
@@ -60,7 +61,7 @@ void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen) {
                   "frame of a scene that moves; left out: of a .blend the one it was saved at, of glTF the nodes as "
                   "they stand")
       ->type_name("N");
-  AddFpsOption(*sub, verb->scene.fps, 
+  AddFpsOption(*sub, verb->scene.fps,
                "frames a second of a glTF animation, as 24 or 24000/1001: frame N is at N / RATE s; left out: 24. Of a "
                ".blend what its guides say to transfer; left out: its own");
   AddLightPathOptions(*sub, verb->scene);

@@ -1,21 +1,21 @@
 // scumble info: what is in a guide file, a scene or a style.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 
-#include "pipeline/style/style_locations.h"
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/style/style_set.h"
-#include "pipeline/frame/paint_picture.h"
+#include "core/io/guide_file.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
-#include "core/io/guide_file.h"
+#include "pipeline/frame/paint_picture.h"
+#include "pipeline/style/style_locations.h"
+#include "pipeline/style/style_set.h"
 
 namespace scumble {
 namespace {
@@ -43,8 +43,8 @@ Expected<Json> DescribeGuides(const std::string& path) {
   if (info.from_blender) json["note"] = BlenderNote(info);
   for (const auto& [id, name] : info.header.object_names) json["objects"].push_back(name);
   for (const auto& [id, name] : info.header.material_names) json["materials"].push_back(name);
-  for (const auto& [name, style] : WishesOf(info.header).objects) json["styles"][name] = style;
-  for (const auto& [name, style] : WishesOf(info.header).materials) json["material styles"][name] = style;
+  for (const auto& [name, style] : SceneStyleRequestsOf(info.header).objects) json["styles"][name] = style;
+  for (const auto& [name, style] : SceneStyleRequestsOf(info.header).materials) json["material styles"][name] = style;
   if (info.header.camera) json["camera"] = info.header.camera->name;
   for (const auto& [name, value] : info.header.attributes) json[name] = value;
   return json;
@@ -163,9 +163,10 @@ Expected<Json> Describe(const InfoVerb& verb, const Globals& globals) {
 void AddInfoVerb(CLI::App& app, Globals& globals, Action& chosen) {
   CLI::App* sub = app.add_subcommand("info", "what is in a guide file, a scene or a style");
   auto verb = std::make_shared<InfoVerb>();
-  sub->add_option("file", verb->path,
-                  "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first), style, "
-                  "or picture of a painted sphere")
+  sub->add_option(
+         "file", verb->path,
+         "guide file (.exr), scene (.glb, .gltf, .obj, .ply, or .blend, which Blender 3.4 exports first), style, "
+         "or picture of a painted sphere")
       ->type_name("FILE")
       ->required();
   sub->add_option("--blender", verb->blender.program,

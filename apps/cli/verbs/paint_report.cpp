@@ -11,13 +11,16 @@ nlohmann::ordered_json LightToJson(const PaintedLight& light) {
 
 nlohmann::ordered_json PatchesToJson(const Patches& patches, int margin) {
   nlohmann::ordered_json json{{"count", patches.count}, {"pixels", patches.pixels}};
-  if (patches.count > 0) json["largest"] = {{"pixels", patches.largest}, {"x", patches.x + margin}, {"y", patches.y + margin}};
+  if (patches.count > 0)
+    json["largest"] = {{"pixels", patches.largest}, {"x", patches.x + margin}, {"y", patches.y + margin}};
   return json;
 }
 
 nlohmann::ordered_json RegularityToJson(const RegularityReport& report, int margin) {
-  nlohmann::ordered_json json{
-      {"windows", report.windows}, {"autocorrelation_peak", report.peak}, {"echo", report.echo}, {"local_echo", report.local_echo}};
+  nlohmann::ordered_json json{{"windows", report.windows},
+                              {"autocorrelation_peak", report.peak},
+                              {"echo", report.echo},
+                              {"local_echo", report.local_echo}};
   if (report.period > 0.0) {
     json["period"] = report.period;
     json["direction"] = report.direction;
@@ -38,10 +41,11 @@ nlohmann::ordered_json TraitsToJson(const PaintTraits& traits, int margin) {
                               {"translucent_percent", traits.alpha.translucent_percent},
                               {"premultiplied", traits.alpha.premultiplied},
                               {"holes", PatchesToJson(traits.alpha.holes, margin)},
-                              {"lightness", {{"darkest", traits.tone.darkest},
-                                             {"brightest", traits.tone.brightest},
-                                             {"mean", traits.tone.mean},
-                                             {"range", traits.tone.range()}}},
+                              {"lightness",
+                               {{"darkest", traits.tone.darkest},
+                                {"brightest", traits.tone.brightest},
+                                {"mean", traits.tone.mean},
+                                {"range", traits.tone.range()}}},
                               {"painted_light", LightToJson(traits.light)},
                               {"anisotropy", traits.texture.anisotropy},
                               {"regularity", RegularityToJson(traits.texture.regularity, margin)}};
@@ -71,8 +75,8 @@ std::string TraitsToText(const PaintTraits& traits) {
                         traits.light.elevation, traits.light.correlation);
   }
   const RegularityReport& regularity = traits.texture.regularity;
-  return text + fmt::format("\n  strokes: anisotropy {:.2f}; regularity {:.2f}, in places {:.2f}\n", traits.texture.anisotropy,
-                            regularity.peak, regularity.local_echo);
+  return text + fmt::format("\n  strokes: anisotropy {:.2f}; regularity {:.2f}, in places {:.2f}\n",
+                            traits.texture.anisotropy, regularity.peak, regularity.local_echo);
 }
 
 nlohmann::ordered_json FaultToJson(const std::string& image, const PaintFault& fault) {

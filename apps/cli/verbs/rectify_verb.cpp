@@ -1,8 +1,8 @@
 #include "apps/cli/verbs/rectify_verb.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -11,12 +11,12 @@
 
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/scene/run_inputs.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/fiducials.h"
-#include "core/style/scan/rectify.h"
 #include "core/style/kit/sphere_kit.h"
+#include "core/style/scan/rectify.h"
+#include "pipeline/scene/run_inputs.h"
 
 namespace scumble {
 namespace {
@@ -42,7 +42,8 @@ Status CheckIsPainting(const std::string& output) {
   const fs::path path(output);
   std::error_code failed;
   if (fs::is_directory(path, failed) || (!output.empty() && output.back() == '/'))
-    return UsageError("-o " + output + " is a folder, and with --rectify -o is the picture: " + (path / "lit.png").string());
+    return UsageError("-o " + output +
+                      " is a folder, and with --rectify -o is the picture: " + (path / "lit.png").string());
   if (const auto painting = PaintingOfTemplate(path.stem().string())) {
     return UsageError("-o " + output + " is the name of a kit's template, which stays as it is: save it as " +
                       (path.parent_path() / (*painting + ".png")).string());
@@ -154,7 +155,7 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   SCUMBLE_RETURN_IF_ERROR(CheckOptions(verb));
   SCUMBLE_RETURN_IF_ERROR(CheckIsPainting(request.output));
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(request.output));
-  RunFiles files;
+  RunInputs files;
   files.Reads("the scan", request.scan);
   SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(request.output));
   SCUMBLE_ASSIGN(const PictureHeader header, InspectPicture(request.scan));
@@ -172,7 +173,7 @@ Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& reques
   SCUMBLE_RETURN_IF_ERROR(WritePicture(request.output, rectified.picture, write));
   if (kit && *kit != options.size) {
     globals.Warn(fmt::format("{} has {} pixels and the kit's {} {}: the style there will refuse it; take --size {}",
-                     request.output, options.size, guides->string(), *kit, *kit));
+                             request.output, options.size, guides->string(), *kit, *kit));
   }
   for (const std::string& warning : rectified.report.warnings) globals.Warn(request.scan + ": " + warning);
   if (globals.json) {

@@ -1,7 +1,7 @@
 // scumble sphere: the artist's kit.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -11,14 +11,14 @@
 
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
-#include "pipeline/memory/memory_estimate.h"
 #include "apps/cli/app/options.h"
+#include "apps/cli/app/run_report.h"
 #include "apps/cli/verbs/rectify_verb.h"
-#include "guidegen/guidegen.h"
 #include "core/image/direction.h"
 #include "core/style/kit/fiducials.h"
 #include "core/style/kit/sphere_kit.h"
-#include "apps/cli/app/run_report.h"
+#include "guidegen/guidegen.h"
+#include "pipeline/memory/memory_estimate.h"
 
 namespace scumble {
 namespace {
@@ -128,16 +128,18 @@ Status CheckPaper(const SphereVerb& verb, const KitOptions& options, const Globa
     return Ok();
   }
   if (!options.png && !options.ora && !FiducialsFit(verb.size)) {
-    return UsageError(fmt::format("--only pdf with a sphere of {} pixels: it is too small to have the marks by which "
-                                  "--rectify reads a painting on paper; expected --size {} or more",
-                                  verb.size, kSmallestPrinted));
+    return UsageError(
+        fmt::format("--only pdf with a sphere of {} pixels: it is too small to have the marks by which "
+                    "--rectify reads a painting on paper; expected --size {} or more",
+                    verb.size, kSmallestPrinted));
   }
   constexpr double kLeastMm = 20;
   const double across = MillimetresOf(verb.size, verb.dpi);
   if (FiducialsFit(verb.size) && across < kLeastMm) {
-    globals.Warn(fmt::format("the printed sphere is {:.1f} mm across, small for a brush, and must be scanned at {} dpi or more: "
-                     "take a larger --size, or --print-size",
-                     across, ScanDpi(verb.size, verb.dpi)));
+    globals.Warn(
+        fmt::format("the printed sphere is {:.1f} mm across, small for a brush, and must be scanned at {} dpi or more: "
+                    "take a larger --size, or --print-size",
+                    across, ScanDpi(verb.size, verb.dpi)));
   }
   return Ok();
 }
@@ -153,7 +155,8 @@ void SayWhatNext(const SphereVerb& verb, const KitOptions& options, const std::o
   if (!files.empty())
     globals.Note("paint over " + files + ", save it as " + painting + " in the same folder; HOWTO.txt says how");
   if (page) {
-    globals.Note(fmt::format("print {}.pdf at 100%: a sphere of {:.1f} mm on {}", stem, MillimetresOf(verb.size, verb.dpi),
+    globals.Note(
+        fmt::format("print {}.pdf at 100%: a sphere of {:.1f} mm on {}", stem, MillimetresOf(verb.size, verb.dpi),
                     page->name == "fit" ? fmt::format("a page of {:.0f} x {:.0f} mm", page->width_mm, page->height_mm)
                                         : page->name));
   }
@@ -258,7 +261,9 @@ void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen) {
                   "Embree's instruction set: sse2, sse4.2, avx, avx2 or avx512; left out: the best of this machine")
       ->type_name("NAME");
   AddFastIoOption(*sub, verb->fast_io);
-  sub->add_option("-o,--output", verb->output, "folder to write to; what is painted there is kept. With --rectify the picture to write: the kit's lit.png")
+  sub->add_option(
+         "-o,--output", verb->output,
+         "folder to write to; what is painted there is kept. With --rectify the picture to write: the kit's lit.png")
       ->type_name("FOLDER")
       ->required();
   AddRectifyOptions(*sub, verb->rectify);

@@ -7,18 +7,18 @@
 #include <span>
 #include <utility>
 
-#include "pipeline/style/kit_template.h"
-#include "pipeline/file_cache.h"
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/paint_report.h"
-#include "pipeline/frame/paint_picture.h"
+#include "core/style/kit/sphere_kit.h"
 #include "measure/painting/paint_faults.h"
 #include "measure/painting/paint_traits.h"
-#include "core/style/kit/sphere_kit.h"
+#include "pipeline/file_cache.h"
+#include "pipeline/frame/paint_picture.h"
+#include "pipeline/style/kit_template.h"
+#include "pipeline/style/style_locations.h"
 #include "transfer/exemplar/ambiguity.h"
 #include "transfer/transfer.h"
-#include "pipeline/style/style_locations.h"
 
 namespace scumble {
 namespace {
@@ -29,18 +29,20 @@ std::vector<PaintFault> AmbiguityFaults(const AmbiguityReport& report) {
   // A floor and a wall are flat too, and do no harm where rounder things stand between them.
   constexpr double kLeastCovered = 50.0, kMostFlat = 50.0, kRound = 80.0;
   if (report.flat_percent > kMostFlat && report.covered_percent < kRound) {
-    return {{"flat-faces", Weight::kMistake,
-             fmt::format("{:.0f}% of the painting shows flat faces: {} of {} directions, the fullest on {} pixels; curved "
-                         "surfaces will be flat patches",
-                         report.flat_percent, report.cells_shown, report.cells, report.most_repeats),
-             "use a rounded shape", std::nullopt}};
+    return {
+        {"flat-faces", Weight::kMistake,
+         fmt::format("{:.0f}% of the painting shows flat faces: {} of {} directions, the fullest on {} pixels; curved "
+                     "surfaces will be flat patches",
+                     report.flat_percent, report.cells_shown, report.cells, report.most_repeats),
+         "use a rounded shape", std::nullopt}};
   }
   if (report.covered_percent < kLeastCovered) {
-    return {{"few-directions", Weight::kMistake,
-             fmt::format("the painting shows {:.0f}% of the directions that face the viewer; surfaces that face elsewhere "
-                         "take paint that is up to {:.0f}° off",
-                         report.covered_percent, report.largest_error_degrees),
-             "paint a rounder shape, or a larger picture of it", std::nullopt}};
+    return {
+        {"few-directions", Weight::kMistake,
+         fmt::format("the painting shows {:.0f}% of the directions that face the viewer; surfaces that face elsewhere "
+                     "take paint that is up to {:.0f}° off",
+                     report.covered_percent, report.largest_error_degrees),
+         "paint a rounder shape, or a larger picture of it", std::nullopt}};
   }
   return {};
 }
@@ -70,12 +72,9 @@ std::string SizeText(const Picture& picture) {
 
 // Of the first exemplar, as the rest of the report.
 nlohmann::ordered_json SpaceToJson(const GuideSpace& space, const SpaceAmbiguity& report) {
-  nlohmann::ordered_json json{{"dimensions", space.dimensions()},
-                              {"covered_percent", report.covered_percent},
-                              {"mean_error", report.mean_error},
-                              {"cells_shown", report.cells_shown},
-                              {"mean_repeats", report.mean_repeats},
-                              {"most_repeats", report.most_repeats}};
+  nlohmann::ordered_json json{{"dimensions", space.dimensions()},    {"covered_percent", report.covered_percent},
+                              {"mean_error", report.mean_error},     {"cells_shown", report.cells_shown},
+                              {"mean_repeats", report.mean_repeats}, {"most_repeats", report.most_repeats}};
   for (const Layer layer : space.layers()) {
     const auto range = space.RangeOf(0, layer);
     json["range"][Info(layer).name] = {range.least, range.largest};
@@ -110,8 +109,8 @@ struct CheckedStyle {
   std::vector<FoundFault> faults;
 
   std::size_t Count(Weight weight) const {
-    return static_cast<std::size_t>(
-        std::count_if(faults.begin(), faults.end(), [&](const FoundFault& found) { return found.fault.weight == weight; }));
+    return static_cast<std::size_t>(std::count_if(
+        faults.begin(), faults.end(), [&](const FoundFault& found) { return found.fault.weight == weight; }));
   }
 };
 
@@ -142,9 +141,11 @@ void FindFaults(CheckedStyle& checked) {
     for (PaintFault& fault : faults) checked.faults.push_back({exemplar.name, std::move(fault)});
   }
   for (EqualLight& equal : EqualLights(style, checked.prepared)) {
-    checked.faults.push_back({equal.image, {"equal-light", Weight::kMistake, "it " + equal.what, equal.fix, std::nullopt}});
+    checked.faults.push_back(
+        {equal.image, {"equal-light", Weight::kMistake, "it " + equal.what, equal.fix, std::nullopt}});
   }
-  for (PaintFault& fault : AmbiguityFaults(checked.directions)) checked.faults.push_back({style.exemplars.front().name, std::move(fault)});
+  for (PaintFault& fault : AmbiguityFaults(checked.directions))
+    checked.faults.push_back({style.exemplars.front().name, std::move(fault)});
 }
 
 // Loads and prepares the style as a transfer would, and looks for what a painter overlooks.
@@ -209,7 +210,8 @@ nlohmann::ordered_json ToJson(const CheckedStyle& checked) {
 
 std::string VerdictOf(const CheckedStyle& checked) {
   const std::size_t mistakes = checked.Count(Weight::kMistake), remarks = checked.Count(Weight::kRemark);
-  std::string verdict = mistakes == 0 ? "usable" : fmt::format("usable, with {} mistake{}", mistakes, mistakes == 1 ? "" : "s");
+  std::string verdict =
+      mistakes == 0 ? "usable" : fmt::format("usable, with {} mistake{}", mistakes, mistakes == 1 ? "" : "s");
   if (remarks > 0) verdict += fmt::format(", {} remark{}", remarks, remarks == 1 ? "" : "s");
   return verdict;
 }
@@ -229,8 +231,9 @@ std::string ToText(const CheckedStyle& checked) {
   }
   text += fmt::format("directions: {:.1f}% covered within {:.0f}°; error {:.2f}° on average, {:.1f}° at most\n",
                       report.covered_percent, kCoveredDegrees, report.mean_error_degrees, report.largest_error_degrees);
-  text += fmt::format("repeats: {} of {} directions shown, each by {:.1f} pixels on average, {} at most; {:.0f}% flat\n",
-                      report.cells_shown, report.cells, report.mean_repeats, report.most_repeats, report.flat_percent);
+  text +=
+      fmt::format("repeats: {} of {} directions shown, each by {:.1f} pixels on average, {} at most; {:.0f}% flat\n",
+                  report.cells_shown, report.cells, report.mean_repeats, report.most_repeats, report.flat_percent);
   if (checked.space) text += SpaceToText(*checked.prepared.space, *checked.space);
   for (const auto& [image, fault] : checked.faults) {
     if (fault.weight == Weight::kRemark) text += "remark: " + FaultToText(image, fault) + "\n";

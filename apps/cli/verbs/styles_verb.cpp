@@ -1,19 +1,19 @@
 // scumble styles.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <system_error>
 
-#include "pipeline/style/style_locations.h"
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
 #include "apps/cli/app/options.h"
 #include "apps/cli/verbs/styles_check.h"
 #include "core/style/style_file.h"
 #include "core/style/style_keys.h"
+#include "pipeline/style/style_locations.h"
 
 namespace scumble {
 namespace {
@@ -63,7 +63,8 @@ Expected<ExitCode> ListKeys(const Globals& globals) {
   const StyleKeyLine of_exemplars[] = {
       {"exemplar.image", "", "picture of the painted sphere, required; in style.toml only"},
       {"exemplar.guides", "\"\"", "guides of what is painted; empty: a sphere fills the square; in style.toml only"},
-      {"exemplar.luminance", "", "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"}};
+      {"exemplar.luminance", "",
+       "of its light; left out: measured; --set exemplar.1.luminance=0.8 sets the first one's"}};
   for (const auto& [key, default_value, help] : of_exemplars) {
     json.push_back({{"key", key}, {"default", default_value}, {"help", help}});
     text += fmt::format("{:<26} {:<12} {}\n", key, default_value, help);

@@ -1,8 +1,9 @@
-// scumble tradeoff: what every way to stylise a scene costs, and how far off it is.
+// scumble tradeoff: what every variant to stylise a scene costs, and how far off it is.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -16,20 +17,18 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "apps/cli/app/command.h"
 #include "apps/cli/app/json_text.h"
-#include "pipeline/memory/memory_limit.h"
 #include "apps/cli/app/options.h"
-#include "pipeline/scene/run_inputs.h"
-#include "pipeline/run/sequence.h"
-#include "pipeline/style/style_set.h"
-#include "pipeline/tradeoff/measure.h"
-#include "pipeline/frame/paint_picture.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/file/pending_temporaries.h"
 #include "measure/tradeoff/report.h"
+#include "pipeline/frame/paint_picture.h"
+#include "pipeline/memory/memory_limit.h"
+#include "pipeline/run/sequence.h"
+#include "pipeline/scene/run_inputs.h"
+#include "pipeline/style/style_set.h"
+#include "pipeline/tradeoff/measure.h"
 
 namespace scumble {
 namespace {
@@ -38,10 +37,10 @@ namespace fs = std::filesystem;
 
 struct TradeoffVerb {
   TradeSetup setup;
-  SceneOptions scene;              // becomes setup.scene
+  SceneOptions scene;             // becomes setup.scene
   std::string exposure = "auto";  // becomes setup.exposure
   std::string folder;
-  std::string peak_of;  // a way's name: its memory alone, for the process that AskForPeak starts
+  std::string peak_of;  // a variant's name: its memory alone, for the process that AskForPeak starts
 };
 
 constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json", *kPage = "report.html";
@@ -51,15 +50,16 @@ class MadeFolders {
  public:
   explicit MadeFolders(const fs::path& deepest) {
     std::error_code failed;
-    for (fs::path folder = fs::absolute(deepest, failed).lexically_normal(); !folder.empty() && !fs::exists(folder, failed);
-         folder = folder.parent_path()) {
+    for (fs::path folder = fs::absolute(deepest, failed).lexically_normal();
+         !folder.empty() && !fs::exists(folder, failed); folder = folder.parent_path()) {
       made_.push_back(folder);
     }
     fs::create_directories(deepest, failed);
   }
   ~MadeFolders() {
     std::error_code ignored;
-    for (const fs::path& folder : made_) fs::remove(folder, ignored);  // the deepest first; fails where something is in it
+    for (const fs::path& folder : made_)
+      fs::remove(folder, ignored);  // the deepest first; fails where something is in it
   }
   MadeFolders(const MadeFolders&) = delete;
   MadeFolders& operator=(const MadeFolders&) = delete;
@@ -68,15 +68,16 @@ class MadeFolders {
   std::vector<fs::path> made_;
 };
 
-// Told before minutes of work: whether the folder is there and can be written to, and takes the place of nothing that is read.
+// Told before minutes of work: whether the folder is there and can be written to, and takes the place of nothing that
+// is read.
 Status CheckFolder(const TradeoffVerb& verb, const Globals& globals) {
   const fs::path pictures = fs::path(verb.folder) / kPictures;
   std::error_code failed;
   if (!fs::is_directory(fs::status(pictures, failed))) {
-    return OutputError(fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made; name another", verb.folder,
-                                   kPictures));
+    return OutputError(fmt::format("-o {}: it is no folder with a folder {} in it, and none can be made; name another",
+                                   verb.folder, kPictures));
   }
-  RunFiles files;
+  RunInputs files;
   files.ReadsScene(verb.setup.scene.scene);
   StyleRequest style = verb.setup.style;
   style.scene_styles = false;
@@ -101,10 +102,10 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
   const auto json = nlohmann::json::parse(text, text + bytes->size(), nullptr, false);
   if (!json.is_object() || !json.contains("ways") || !json["ways"].is_array()) return old;
   std::set<std::string> names;
-  for (std::size_t i = 0; i < report.ways.size(); ++i) names.insert(TradePictureName(report, i));
-  for (const auto& way : json["ways"]) {
-    if (!way.is_object() || !way.contains("picture") || !way["picture"].is_string()) continue;
-    const fs::path name = way["picture"].get<std::string>();
+  for (std::size_t i = 0; i < report.variants.size(); ++i) names.insert(TradePictureName(report, i));
+  for (const auto& variant : json["ways"]) {
+    if (!variant.is_object() || !variant.contains("picture") || !variant["picture"].is_string()) continue;
+    const fs::path name = variant["picture"].get<std::string>();
     if (name.extension() == ".png" && name == name.filename() && !names.contains(name.string())) {
       old.push_back(fs::path(folder) / kPictures / name);
     }
@@ -112,10 +113,10 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
   return old;
 }
 
-// Whether a report of so many bytes, its largest file of `largest`, finds room in the page's folder: they are taken, and given
-// back at once. Some file systems tell of a full disk only when the file is flushed or closed.
+// Whether a report of so many bytes, its largest file of `largest`, finds room in the page's folder: they are taken,
+// and given back at once. Some file systems tell of a full disk only when the file is flushed or closed.
 Status CheckRoom(const fs::path& page, std::size_t bytes, std::size_t largest) {
-  const internal::UnfinishedFile taken(page);
+  const internal::PendingTemporary taken(page);
   int failure = errno;
   const int file = taken.descriptor();
   if (file >= 0) {
@@ -126,8 +127,8 @@ Status CheckRoom(const fs::path& page, std::size_t bytes, std::size_t largest) {
     if (failure != ENOSPC && failure != EDQUOT && failure != EFBIG) return Ok();
   }
   const std::string mend = file < 0 ? "name another folder" : "make room, or name another folder";
-  return OutputError(fmt::format("cannot write {}: {}; the report takes {:.1f} MB: {}", page.string(), std::strerror(failure),
-                                 1e-6 * static_cast<double>(bytes), mend));
+  return OutputError(fmt::format("cannot write {}: {}; the report takes {:.1f} MB: {}", page.string(),
+                                 std::strerror(failure), 1e-6 * static_cast<double>(bytes), mend));
 }
 
 // Takes a file away, links followed as where it is written; what is not there, a device and a pipe are no matter.
@@ -140,19 +141,19 @@ Status Remove(const fs::path& file) {
 }
 
 // All is encoded first and has room, so that a full disk leaves an older report as it was. Then that goes, its page
-// first, as pictures of other ways get the names of its own; and the new page comes last. So where a page is, all that
-// it tells of is there, whenever a run ends.
+// first, as pictures of other variants get the names of its own; and the new page comes last. So where a page is, all
+// that it tells of is there, whenever a run ends.
 Status WriteFolder(const std::string& folder, const TradeReport& report) {
   const fs::path place(folder);
   const std::array<std::pair<const char*, std::string>, 4> texts = {{{"tradeoff.csv", TradeCsv(report)},
-                                                                    {kJson, TradeJson(report)},
-                                                                    {"chart.svg", TradeChart(report)},
-                                                                    {kPage, TradeHtml(report)}}};
+                                                                     {kJson, TradeJson(report)},
+                                                                     {"chart.svg", TradeChart(report)},
+                                                                     {kPage, TradeHtml(report)}}};
   constexpr std::size_t kBlock = 4096;  // what a file takes beside its bytes: the rest of its last block
   std::size_t bytes = 0, largest = 0;
   const auto add = [&](std::size_t size) { bytes += size + kBlock, largest = std::max(largest, size); };
   for (const auto& [name, text] : texts) add(text.size());
-  for (const TradeMeasure& way : report.ways) add(way.picture_png.size());
+  for (const TradeMeasure& variant : report.variants) add(variant.picture_png.size());
   SCUMBLE_RETURN_IF_ERROR(CheckRoom(place / kPage, bytes, largest));
 
   const std::vector<fs::path> old = OldPictures(folder, report);
@@ -161,9 +162,9 @@ Status WriteFolder(const std::string& folder, const TradeReport& report) {
   for (const fs::path& picture : old) fs::remove(picture, ignored);
   for (const auto& [name, text] : texts) SCUMBLE_RETURN_IF_ERROR(Remove(place / name));
 
-  for (std::size_t i = 0; i < report.ways.size(); ++i) {
+  for (std::size_t i = 0; i < report.variants.size(); ++i) {
     const fs::path file = place / kPictures / TradePictureName(report, i);
-    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.ways[i].picture_png))));
+    SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(file, std::as_bytes(std::span(report.variants[i].picture_png))));
   }
   for (const auto& [name, text] : texts) SCUMBLE_RETURN_IF_ERROR(WriteFileAtomically(place / name, text));
   return Ok();
@@ -177,12 +178,13 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   SCUMBLE_ASSIGN(verb.setup.exposure, ParseExposure(verb.exposure));
   verb.setup.writes = !verb.folder.empty();
   if (!verb.peak_of.empty()) {
-    SCUMBLE_ASSIGN(const std::size_t bytes, PeakOfWay(verb.setup, verb.peak_of, globals));
+    SCUMBLE_ASSIGN(const std::size_t bytes, PeakOfVariant(verb.setup, verb.peak_of, globals));
     Print(fmt::format("{{\"peak_bytes\": {}}}\n", bytes));
     return ExitCode::kOk;
   }
   if (!verb.folder.empty()) {
-    const MadeFolders folders(fs::path(verb.folder) / kPictures);  // gone again while minutes of work may be interrupted
+    const MadeFolders folders(fs::path(verb.folder) /
+                              kPictures);  // gone again while minutes of work may be interrupted
     SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb, globals));
   }
   SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals));
@@ -191,7 +193,8 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
     const MadeFolders folders(fs::path(verb.folder) / kPictures);
     written = WriteFolder(verb.folder, report);
   }
-  Print(globals.json ? TradeJson(report) : TradeTable(report));  // in any case: minutes of work are not lost where writing fails
+  Print(globals.json ? TradeJson(report)
+                     : TradeTable(report));  // in any case: minutes of work are not lost where writing fails
   SCUMBLE_RETURN_IF_ERROR(written);
   if (!verb.folder.empty()) {
     globals.Note((fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");
@@ -204,36 +207,48 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
 void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<TradeoffVerb>();
   CLI::App* sub = app.add_subcommand(
-      "tradeoff", "what every way to stylise a scene costs on this machine, and how far off it is: a table, a chart, all pictures");
+      "tradeoff",
+      "what every way to stylise a scene costs on this machine, and how far off it is: a table, a chart, all pictures");
   sub->footer(
-      "Each way changes one thing of the style, or a few; the energy says how far its picture is from what the exemplar shows:\n"
-      "`both` ranks, the less the better. Times are of the guides (with the acceleration structure) and of the transfer, after a\n"
-      "run to warm up of which nothing is kept that a sequence would keep: they are those of a single picture. Loading, preparing\n"
-      "the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak of a process that\n"
+      "Each way changes one thing of the style, or a few; the energy says how far its picture is from what the "
+      "exemplar shows:\n"
+      "`both` ranks, the less the better. Times are of the guides (with the acceleration structure) and of the "
+      "transfer, after a\n"
+      "run to warm up of which nothing is kept that a sequence would keep: they are those of a single picture. "
+      "Loading, preparing\n"
+      "the style and writing are not in them, and a run of more than 5 s is not repeated. Memory is the peak of a "
+      "process that\n"
       "makes the one picture. Everything is measured without paper, and in the one style, whatever the scene\n"
-      "says; colorized styles are measured before the scene's colours are on them. Blending mostly scores better: it takes\n"
-      "seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each way.\n");
+      "says; colorized styles are measured before the scene's colours are on them. Blending mostly scores better: it "
+      "takes\n"
+      "seams away, and strokes become soft. Memory is not measured of a .blend, which would be exported for each "
+      "way.\n");
   AddViewOptions(*sub, verb->scene);
-  sub->add_option("--frame", verb->setup.frame,
-                  "the scene and the style at this frame of theirs; left out: as they stand, of a .blend the frame that it was "
-                  "saved at")
+  sub->add_option(
+         "--frame", verb->setup.frame,
+         "the scene and the style at this frame of theirs; left out: as they stand, of a .blend the frame that it was "
+         "saved at")
       ->type_name("N");
-  AddFpsOption(*sub, verb->scene.fps,
-               "frames a second, with --frame: of a glTF animation frame N is at N / RATE s; left out: of a .blend its own, "
-               "otherwise 24");
+  AddFpsOption(
+      *sub, verb->scene.fps,
+      "frames a second, with --frame: of a glTF animation frame N is at N / RATE s; left out: of a .blend its own, "
+      "otherwise 24");
   AddAnimationOption(*sub, verb->scene);
-  sub->add_option("--exposure", verb->exposure,
-                  "stops by which the scene's light is brightened, as stylize has it; auto fits it to this frame, a sequence to "
-                  "its first")
+  sub->add_option(
+         "--exposure", verb->exposure,
+         "stops by which the scene's light is brightened, as stylize has it; auto fits it to this frame, a sequence to "
+         "its first")
       ->type_name("auto|STOPS")
       ->capture_default_str();
   AddCastOptions(*sub, verb->scene);
   AddSampleOptions(*sub, verb->scene);
   AddOneStyleOptions(*sub, verb->setup.style, true);
-  sub->add_option("--only", verb->setup.only,
-                  "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "
-                  "measured in any case. A name that is no axis of this style and scene lists those that are, of precision, samples, "
-                  "resolution, robust, nearest, method, levels, threshold, blend_radius and more")
+  sub->add_option(
+         "--only", verb->setup.only,
+         "these axes alone, as levels,nearest, or ways by name, * stands for any text: 'levels*'; the style itself is "
+         "measured in any case. A name that is no axis of this style and scene lists those that are, of precision, "
+         "samples, "
+         "resolution, robust, nearest, method, levels, threshold, blend_radius and more")
       ->type_name("AXIS,…")
       ->check(RefuseEmpty);
   sub->add_flag("--quick", verb->setup.quick, "the small grid: a dozen ways or two");
@@ -241,13 +256,15 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen) {
       ->type_name("N")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  sub->add_option("--seed", verb->setup.scene.seed, "another seed, another pattern and other noise; the same seed, the same errors")
+  sub->add_option("--seed", verb->setup.scene.seed,
+                  "another seed, another pattern and other noise; the same seed, the same errors")
       ->type_name("N")
       ->check(RefuseNegative)
       ->capture_default_str();
   sub->add_flag("!--no-memory", verb->setup.memory, "do not measure memory, which takes a process for each way");
   sub->add_option("-o,--output", verb->folder,
-                  "folder to write to: report.html, chart.svg, tradeoff.csv, tradeoff.json, pictures/*.png; left out: the table alone")
+                  "folder to write to: report.html, chart.svg, tradeoff.csv, tradeoff.json, pictures/*.png; left out: "
+                  "the table alone")
       ->type_name("FOLDER")
       ->check(RefuseEmpty);
   sub->add_option("--peak-of", verb->peak_of)->group("");

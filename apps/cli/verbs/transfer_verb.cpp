@@ -23,7 +23,8 @@ struct TransferVerb {
 
 Expected<TransferRequest> ToRequest(const CLI::App& sub, const TransferVerb& verb, const Globals& globals) {
   if (IsScene(verb.guides)) {
-    return InputError(verb.guides + " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
+    return InputError(verb.guides +
+                      " is a scene: transfer takes guides; use `scumble stylize`, or `scumble guidegen` first");
   }
   TransferRequest request{verb.guides, verb.view_layer, verb.camera, verb.style, {}, {}, {}};
   SCUMBLE_ASSIGN(request.picture, ToRequest(verb.picture, globals));
@@ -43,10 +44,12 @@ Expected<ExitCode> RunTransferVerb(const CLI::App& sub, const TransferVerb& verb
 
 void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto verb = std::make_shared<TransferVerb>();
-  CLI::App* sub = app.add_subcommand("transfer", "guides + style -> picture, from a guide file of guidegen or a Blender render");
+  CLI::App* sub =
+      app.add_subcommand("transfer", "guides + style -> picture, from a guide file of guidegen or a Blender render");
   sub->add_option("guides", verb->guides, "guide file: .exr")->type_name("FILE")->required();
   sub->add_option("--view-layer", verb->view_layer, "which view layer of a multilayer file")->type_name("NAME");
-  sub->add_option("--camera", verb->camera, "the .camera file of a Blender render; left out: found from its Position pass")
+  sub->add_option("--camera", verb->camera,
+                  "the .camera file of a Blender render; left out: found from its Position pass")
       ->type_name("FILE");
   AddStyleOptions(*sub, verb->style, true);
   AddPictureOptions(*sub, verb->picture, true);

@@ -21,7 +21,8 @@ struct Matte {
 using BlenderMattes = std::map<Layer, Matte>;  // kObject, kMaterial
 
 // Turns passes as Blender writes them into guides, in place:
-//   - Without `camera` it is solved from Position and Depth (core/io/blender/solve_camera.h); an error says what that lacks.
+//   - Without `camera` it is solved from Position and Depth (core/io/blender/solve_camera.h); an error says what that
+//   lacks.
 //   - Normals go from Blender's world (+Z up) into view space and get length 1, positions into glTF's world (+Y up),
 //   the
 //     background's depth of 1e10 becomes infinity.

@@ -20,8 +20,8 @@ constexpr std::uint32_t kNotOnlyImages = 0x800, kManyParts = 0x1000;
 constexpr std::size_t kLongestName = 255;
 
 // By the number in the header: none; rle, 64 to 1; zips, zip; piz, whose Huffman code of 510 bytes in 9 bits is below
-// Deflate's bound; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32 bytes in 3; dwaa and dwab, which leave at
-// least 4 bytes of a block of 8 × 8 floats to it.
+// Deflate's bound; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32 bytes in 3; dwaa and dwab, which leave
+// at least 4 bytes of a block of 8 × 8 floats to it.
 constexpr std::uint64_t kMostPacked[] = {
     1,  64, kMostDeflated,      kMostDeflated,     kMostDeflated, kMostDeflated * 4 / 3,
     11, 11, 64 * kMostDeflated, 64 * kMostDeflated};
@@ -71,7 +71,7 @@ std::optional<std::string> ReadName(std::istream& file) {
 }
 
 // Of one pixel, in a list of channels: name, NUL, type, 4 bytes, sampling in x and y; an empty name ends it. Channels
-// with fewer samples than pixels, which no guides have, count as nothing: less is promised. Nothing where the list ends
+// with fewer samples than pixels, which no guides have, count as nothing: less is declared. Nothing where the list ends
 // elsewhere than its attribute, or a type is none: OpenImageIO would end the whole process.
 std::optional<std::uint64_t> PixelBytes(const std::string& list) {
   constexpr std::size_t kBehindName = 16;
@@ -148,7 +148,8 @@ void Take(const std::string& name, const std::string& type, const std::string& v
 
 Status CheckPart(const Part& part, std::uint64_t file_bytes, const std::string& name) {
   if (part.is_deep) {
-    return InputError("cannot read " + name + ": it holds deep pixels, and flat ones are expected; flatten it, or save " +
+    return InputError("cannot read " + name +
+                      ": it holds deep pixels, and flat ones are expected; flatten it, or save " +
                       "its flat parts as a file of their own");
   }
   const std::string size = std::to_string(part.width) + "×" + std::to_string(part.height) + " pixels";
@@ -206,7 +207,7 @@ Status Check(std::istream& file, std::uint64_t file_bytes, const std::string& na
 
 }  // namespace
 
-Status CheckExrPromises(const std::filesystem::path& path) {
+Status CheckExrIntegrity(const std::filesystem::path& path) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return Ok();
   const auto bytes = std::filesystem::file_size(path, failed);
@@ -215,7 +216,7 @@ Status CheckExrPromises(const std::filesystem::path& path) {
   return Check(file, bytes, path.string());
 }
 
-Status CheckExrPromises(std::span<const std::byte> bytes, const std::string& name) {
+Status CheckExrIntegrity(std::span<const std::byte> bytes, const std::string& name) {
   const char* const begin = reinterpret_cast<const char*>(bytes.data());
   if (bytes.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), begin)) return Ok();
   SpanBuffer buffer(bytes);

@@ -1,4 +1,5 @@
-// Whether an EXR file can hold what its header promises. OpenEXR believes a header, and asks for the memory first.
+// Integrity check of EXR files: whether a file can hold the size that its header declares. OpenEXR believes a header,
+// and asks for the memory first.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace scumble::internal {
 // pixels of no part are more than its compression can make of the whole file. No part is deep, of which no reader here
 // makes anything and whose pixels nothing bounds. Nothing is wrong with what is no EXR file, or whose header ends too
 // early: the library says what is. `name` is for the message. Thread-safe.
-Status CheckExrPromises(const std::filesystem::path& path);
-Status CheckExrPromises(std::span<const std::byte> bytes, const std::string& name);
+Status CheckExrIntegrity(const std::filesystem::path& path);
+Status CheckExrIntegrity(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace scumble::internal

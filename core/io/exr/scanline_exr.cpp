@@ -24,9 +24,9 @@
 #include <thread>
 
 #include "core/image/guides.h"
-#include "core/io/format_dispatch.h"
-#include "core/io/guides/guide_storage.h"
 #include "core/io/exr/exr_integrity.h"
+#include "core/io/exr/half_float.h"
+#include "core/io/format_dispatch.h"
 
 namespace scumble::internal {
 namespace {
@@ -121,7 +121,8 @@ std::optional<ExrHeader> PlainHeader(const Imf::Header& header) {
   }
   for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
     const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
-    const std::string value = text ? text->value().c_str() : "";  // up to a NUL, and empty ones left out, as by the module
+    const std::string value =
+        text ? text->value().c_str() : "";  // up to a NUL, and empty ones left out, as by the module
     if (!value.empty()) plain.texts[attribute.name()] = value;
   }
   return plain;
@@ -182,7 +183,7 @@ std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
                                       const std::function<std::optional<PlaneFor>(const ExrHeader&)>& look) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;  // a pipe would be waited for without end
-  if (!CheckExrPromises(path)) return std::nullopt;
+  if (!CheckExrIntegrity(path)) return std::nullopt;
   SetThreads();
   try {
     Imf::MultiPartInputFile file(path.c_str());

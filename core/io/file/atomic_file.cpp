@@ -55,8 +55,8 @@ Expected<fs::path> FollowLinks(const fs::path& path) {
   return failed || canonical.empty() ? target : canonical;
 }
 
-// The process's umask, which the system tells only by setting another; Linux has it in proc(5) as well (4.7 and later), so
-// that files that other threads make meanwhile get none of it. Elsewhere it is asked once.
+// The process's umask, which the system tells only by setting another; Linux has it in proc(5) as well (4.7 and later),
+// so that files that other threads make meanwhile get none of it. Elsewhere it is asked once.
 mode_t FileModeMask() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -102,7 +102,7 @@ Expected<Target> CheckTarget(const fs::path& path) {
 Status CheckWritable(const fs::path& path) {
   SCUMBLE_ASSIGN(const Target target, CheckTarget(path));
   if (target.is_special) return ::access(target.path.c_str(), W_OK) == 0 ? Ok() : Status(WriteFailure(path, errno));
-  const internal::UnfinishedFile temporary(target.path);
+  const internal::PendingTemporary temporary(target.path);
   if (temporary.descriptor() < 0) return WriteFailure(path, errno);
   ::close(temporary.descriptor());
   return Ok();
@@ -118,7 +118,7 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
     if (failure == 0) bytes_written += bytes.size();
     return failure == 0 ? Ok() : Status(WriteFailure(path, failure));
   }
-  internal::UnfinishedFile temporary(target);
+  internal::PendingTemporary temporary(target);
   const int descriptor = temporary.descriptor();
   if (descriptor < 0) return WriteFailure(path, errno);
   // Where the file system has no permissions, that is no failure to write.
@@ -135,7 +135,7 @@ Status WriteFileAtomically(const fs::path& path, std::string_view text) {
   return WriteFileAtomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
-Expected<std::vector<std::byte>> ReadWholeFile(const fs::path& path, std::size_t limit, std::string_view mend) {
+Expected<std::vector<std::byte>> ReadWholeFile(const fs::path& path, std::size_t limit, std::string_view remedy) {
   std::error_code failed;
   const fs::file_status status = fs::status(path, failed);
   if (!fs::exists(status)) return InputError("cannot read " + path.string() + ": there is no such file");
@@ -151,7 +151,7 @@ Expected<std::vector<std::byte>> ReadWholeFile(const fs::path& path, std::size_t
     const auto* begin = reinterpret_cast<const std::byte*>(block);
     bytes.insert(bytes.end(), begin, begin + stream.gcount());
     if (bytes.size() > limit) {
-      return InputError(path.string() + " is larger than " + std::to_string(limit) + " bytes" + std::string(mend));
+      return InputError(path.string() + " is larger than " + std::to_string(limit) + " bytes" + std::string(remedy));
     }
   }
   if (stream.bad()) return InputError("cannot read " + path.string() + ": " + std::strerror(errno));

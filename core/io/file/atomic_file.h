@@ -26,8 +26,8 @@ std::uint64_t BytesWrittenByThisThread();
 // before long work.
 Status CheckWritable(const std::filesystem::path& path);
 
-// The whole file; `limit` bytes at most, and of a larger one no more than tells so. `mend` ends the message about that.
-Expected<std::vector<std::byte>> ReadWholeFile(const std::filesystem::path& path, std::size_t limit = std::size_t(8) << 30,
-                                               std::string_view mend = {});
+// The whole file, `limit` bytes at most. If it is larger, that is an error, and `remedy` ends the message.
+Expected<std::vector<std::byte>> ReadWholeFile(const std::filesystem::path& path,
+                                               std::size_t limit = std::size_t(8) << 30, std::string_view remedy = {});
 
 }  // namespace scumble

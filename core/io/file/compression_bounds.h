@@ -1,12 +1,13 @@
-// How little a packed picture can take: what a file promises beyond is a lie, and is refused before memory is taken for it.
+// How little a packed picture can take: a file that declares more is refused
+// before memory is taken for it.
 #pragma once
 
 #include <cstdint>
 
 namespace scumble::internal {
 
-// Most bytes that one of Deflate (RFC 1951) unpacks to: it writes at least 2 bits, a length and a distance of a bit each,
-// for a run of 258 bytes.
+// Most bytes that one of Deflate (RFC 1951) unpacks to: it writes at least 2 bits, a length and a distance of a bit
+// each, for a run of 258 bytes.
 inline constexpr std::uint64_t kMostDeflated = 258 * 8 / 2;
 
 }  // namespace scumble::internal

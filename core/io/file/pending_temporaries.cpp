@@ -58,7 +58,7 @@ class NoSignals {
 
 }  // namespace
 
-void RemoveUnfinishedFiles() {
+void RemovePendingTemporaries() {
   is_ending = true;
   constexpr int kMostWaits = 1000;
   const timespec millisecond{0, 1000000};
@@ -70,19 +70,19 @@ void RemoveUnfinishedFiles() {
 
 namespace internal {
 
-UnfinishedFile::UnfinishedFile(const std::filesystem::path& target) {
-  RemoveLeftoversOnce(target.parent_path());
+PendingTemporary::PendingTemporary(const std::filesystem::path& target) {
+  RemoveStaleTemporariesOnce(target.parent_path());
   constexpr std::size_t kMaxStem = 200;
   const std::string stem = target.filename().string().substr(0, kMaxStem);
   const std::string wanted =
-      (target.parent_path() / ("." + stem + "." + KernelMark() + "-XXXXXX" + std::string(kLeftoverSuffix))).string();
-  // Another run, that took it for a leftover before it was locked, has it then: a new one is made.
+      (target.parent_path() / ("." + stem + "." + KernelMark() + "-XXXXXX" + std::string(kTemporarySuffix))).string();
+  // If another run took it for stale before it was locked, that run has it, and a new one is made.
   constexpr int kMostTries = 100;
   for (int i = 0; i < kMostTries && !Make(wanted); ++i) {
   }
 }
 
-bool UnfinishedFile::Make(const std::string& wanted) {
+bool PendingTemporary::Make(const std::string& wanted) {
   name_ = wanted;
   int failure = 0;
   bool must_wait = false;
@@ -91,7 +91,7 @@ bool UnfinishedFile::Make(const std::string& wanted) {
     ++being_made;  // before the flag is looked at, as the handler sets the flag before it looks at the count
     must_wait = is_ending;
     if (!must_wait) {
-      descriptor_ = ::mkostemps(name_.data(), static_cast<int>(kLeftoverSuffix.size()), O_CLOEXEC);
+      descriptor_ = ::mkostemps(name_.data(), static_cast<int>(kTemporarySuffix.size()), O_CLOEXEC);
       failure = errno;
       is_there_ = descriptor_ >= 0;
       if (is_there_) place_ = TakePlace(name_.c_str());
@@ -104,7 +104,7 @@ bool UnfinishedFile::Make(const std::string& wanted) {
     lock_ = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
     failure = errno;
     is_taken = lock_ >= 0 && !Hold();
-    if (lock_ < 0 || is_taken) {  // unlocked, another run would take it away while it is written
+    if (lock_ < 0 || is_taken) {  // without a lock another run would remove it while it is written
       Forget();
       ::close(std::exchange(descriptor_, -1));
     }
@@ -113,13 +113,13 @@ bool UnfinishedFile::Make(const std::string& wanted) {
   return !is_taken;
 }
 
-bool UnfinishedFile::Hold() {
+bool PendingTemporary::Hold() {
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;  // others: no locks on that file system
   struct stat file;
   return ::fstat(lock_, &file) != 0 || file.st_nlink > 0;
 }
 
-void UnfinishedFile::Forget() {
+void PendingTemporary::Forget() {
   const char* name = name_.c_str();
   if (place_ && !place_->compare_exchange_strong(name, nullptr)) WaitForTheEnd();  // the handler is reading the name
   place_ = nullptr;
@@ -128,8 +128,8 @@ void UnfinishedFile::Forget() {
   if (lock_ >= 0) ::close(std::exchange(lock_, -1));
 }
 
-UnfinishedFile::~UnfinishedFile() { Forget(); }
-int UnfinishedFile::Finish(const std::filesystem::path& target) {
+PendingTemporary::~PendingTemporary() { Forget(); }
+int PendingTemporary::Finish(const std::filesystem::path& target) {
   if (::rename(name_.c_str(), target.c_str()) == 0) {
     is_there_ = false;
     return 0;

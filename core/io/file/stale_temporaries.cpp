@@ -22,8 +22,8 @@ constexpr std::time_t kDay = 24 * 60 * 60;
 
 // The mark in a name of the form of temporary files; empty where it has another form.
 std::string MarkIn(const std::string& name) {
-  constexpr std::size_t kEnd = kMarkLength + 1 + kRandomLength + kLeftoverSuffix.size();
-  if (name.size() < kEnd + 2 || name.front() != '.' || !name.ends_with(kLeftoverSuffix)) return "";
+  constexpr std::size_t kEnd = kMarkLength + 1 + kRandomLength + kTemporarySuffix.size();
+  if (name.size() < kEnd + 2 || name.front() != '.' || !name.ends_with(kTemporarySuffix)) return "";
   const std::size_t mark = name.size() - kEnd;
   const bool has_form = name[mark - 1] == '.' && name[mark + kMarkLength] == '-';
   return has_form ? name.substr(mark, kMarkLength) : "";
@@ -52,7 +52,7 @@ const std::string& KernelMark() {
   return kMark;
 }
 
-void RemoveLeftovers(const fs::path& folder) {
+void RemoveStaleTemporaries(const fs::path& folder) {
   std::error_code failed;
   fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, failed);
   for (; !failed && entry != fs::directory_iterator(); entry.increment(failed)) {
@@ -61,14 +61,14 @@ void RemoveLeftovers(const fs::path& folder) {
   }
 }
 
-void RemoveLeftoversOnce(const fs::path& folder) {
+void RemoveStaleTemporariesOnce(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path>& done = *new std::set<fs::path>;
   {
     const std::lock_guard lock(mutex);
     if (!done.insert(folder).second) return;
   }
-  RemoveLeftovers(folder);
+  RemoveStaleTemporaries(folder);
 }
 
 }  // namespace scumble::internal

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/io/exr/half_float.h"
 #include "core/io/guides/guide_storage.h"
 
 namespace scumble {

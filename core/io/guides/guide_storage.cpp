@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <iterator>
+#include <limits>
 
+#include "core/io/exr/half_float.h"
 #include "core/io/guide_file.h"
 
 namespace scumble {
@@ -17,11 +18,6 @@ constexpr const char* kCompressions[] = {"none", "rle", "zips", "zip", "piz"};
 
 bool IsLossless(const std::string& compression) {
   return std::find(std::begin(kCompressions), std::end(kCompressions), compression) != std::end(kCompressions);
-}
-
-Imath::half ToHalf(float value) {
-  constexpr float kLargest = 65504.0f;
-  return std::isfinite(value) ? Imath::half(std::clamp(value, -kLargest, kLargest)) : Imath::half(value);
 }
 
 bool LookPacked(const GuideSet& guides) {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/guides/cryptomatte.h"
 #include "core/io/exr/scanline_exr.h"
+#include "core/io/guides/cryptomatte.h"
 #include "core/io/guides/guide_header.h"
 #include "core/io/guides/guide_storage.h"
 

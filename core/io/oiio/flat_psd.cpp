@@ -111,15 +111,15 @@ Status CheckRows(IOProxy& file, const Header& header, Size at, const std::string
   const Size rows = header.channels * header.height, packing = NumberAt(file, at, 2), left = file.size() - at - 2;
   if (packing > 1) return Ok();  // the library reads none of these
   if (packing == 0) {
-    return rows * ((header.width * header.depth + 7) / 8) <= left ? Ok() : BrokenPromise(name, file.size());
+    return rows * ((header.width * header.depth + 7) / 8) <= left ? Ok() : DeclaredSizeError(name, file.size());
   }
   // Their lengths stand before packed rows.
   const Size digits = header.RowLengthDigits();
   const std::string lengths = BytesAt(file, at + 2, rows * digits);
-  if (lengths.size() < rows * digits) return BrokenPromise(name, file.size());
+  if (lengths.size() < rows * digits) return DeclaredSizeError(name, file.size());
   Size needed = lengths.size();
   for (Size row = 0; row < rows; ++row) needed += NumberIn(lengths, row * digits, digits);
-  return needed <= left ? Ok() : BrokenPromise(name, file.size());
+  return needed <= left ? Ok() : DeclaredSizeError(name, file.size());
 }
 
 // A resource of so many bytes.
@@ -168,7 +168,7 @@ Expected<std::unique_ptr<IOProxy>> FlatPsd(IOProxy& file, const std::string& nam
   const Size resources = palette + palette_bytes + 4, resource_bytes = NumberAt(file, resources - 4, 4);
   const Size layers = resources + resource_bytes + digits, layer_bytes = NumberAt(file, layers - digits, digits);
   const Size pixels = layers + layer_bytes;
-  if (layer_bytes > file.size() || pixels + 2 > file.size()) return BrokenPromise(name, file.size());
+  if (layer_bytes > file.size() || pixels + 2 > file.size()) return DeclaredSizeError(name, file.size());
   SCUMBLE_RETURN_IF_ERROR(CheckRows(file, header, pixels, name));
   const bool indexed = header.mode == kIndexed;
   const std::string start =

@@ -1,6 +1,4 @@
 // Reading guides by OpenImageIO, as any program may have written them. Part of the module of formats.
-#include "core/io/guide_file.h"
-
 #include <algorithm>
 #include <array>
 #include <set>
@@ -8,6 +6,7 @@
 #include "core/io/blender/blender_camera.h"
 #include "core/io/blender/blender_passes.h"
 #include "core/io/format_dispatch.h"
+#include "core/io/guide_file.h"
 #include "core/io/guides/guide_header.h"
 #include "core/io/guides/guide_storage.h"
 #include "core/io/oiio/oiio.h"
@@ -35,7 +34,7 @@ struct FileContents {
   std::vector<FoundChannel> channels;
   std::vector<FoundMatte> mattes;
   std::map<std::string, std::string> manifests;  // by the matte's name: "ViewLayer.CryptoObject"
-  std::string all_names;  // for messages
+  std::string all_names;                         // for messages
   bool has_half = false;
   bool from_blender = false;
 };
@@ -171,8 +170,8 @@ struct ChannelRun {
   int end;
 };
 
-// The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which nobody
-// asked for are cheaper to read along than to leave out.
+// The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which
+// nobody asked for are cheaper to read along than to leave out.
 std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage) {
   constexpr int kCheapGap = 16;
   std::set<int> indices;
@@ -181,8 +180,10 @@ std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage
   }
   std::vector<ChannelRun> runs;
   for (const int index : indices) {
-    if (!runs.empty() && index <= runs.back().end + kCheapGap) runs.back().end = index + 1;
-    else runs.push_back({index, index + 1});
+    if (!runs.empty() && index <= runs.back().end + kCheapGap)
+      runs.back().end = index + 1;
+    else
+      runs.push_back({index, index + 1});
   }
   return runs;
 }
@@ -267,7 +268,8 @@ void ReadMattesToo(const FileContents& contents, const std::string& prefix, Blen
 std::string MendFor(const LayerSet& missing) {
   std::string asked;
   for (const LayerInfo& info : AllLayers()) {
-    if (missing.Has(info.layer) && !AlwaysWritten().Has(info.layer)) asked += (asked.empty() ? "" : ",") + std::string(info.name);
+    if (missing.Has(info.layer) && !AlwaysWritten().Has(info.layer))
+      asked += (asked.empty() ? "" : ",") + std::string(info.name);
   }
   if (asked.empty()) return ". Make guides with `scumble guidegen`, or render that pass too";
   return ". Make the guides again with --layers " + asked +
@@ -363,7 +365,13 @@ Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(const FileContents contents, Survey(*input, name));
   LayerSet all;
   for (const LayerInfo& info : AllLayers()) all.Add(info.layer);
-  GuideFileInfo info{contents.spec.full_width, contents.spec.full_height, contents.has_half, contents.from_blender, {}, contents.all_names, {}};
+  GuideFileInfo info{contents.spec.full_width,
+                     contents.spec.full_height,
+                     contents.has_half,
+                     contents.from_blender,
+                     {},
+                     contents.all_names,
+                     {}};
   std::set<std::string> prefixes = ViewLayers(contents);
   if (prefixes.empty()) prefixes.insert("");
   for (const std::string& prefix : prefixes) {

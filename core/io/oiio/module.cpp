@@ -1,5 +1,5 @@
-// The table by which the module of formats is called. The symbol's name holds the version, so that a module of another one
-// is refused.
+// The table by which the module of formats is called. The symbol's name holds the version, so that a module of another
+// one is refused.
 #include "core/io/format_dispatch.h"
 
 namespace scumble {

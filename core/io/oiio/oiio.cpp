@@ -6,12 +6,12 @@
 #include <system_error>
 
 #include "core/image/guides.h"
-#include "core/io/file/atomic_file.h"
-#include "core/io/oiio/flat_psd.h"
-#include "core/io/format_dispatch.h"
-#include "core/io/picture/format_detection.h"
-#include "core/io/file/readable_file.h"
 #include "core/io/exr/exr_integrity.h"
+#include "core/io/file/atomic_file.h"
+#include "core/io/file/readable_file.h"
+#include "core/io/format_dispatch.h"
+#include "core/io/oiio/flat_psd.h"
+#include "core/io/picture/format_detection.h"
 #include "core/io/png/png_integrity.h"
 
 namespace scumble {
@@ -60,7 +60,7 @@ bool LooksLikeScene(const std::filesystem::path& path) {
 Status CheckIfPng(const std::filesystem::path& path) {
   if (!IsPngFile(path)) return Ok();
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
-  return CheckPngIsWhole(bytes, path.string());
+  return CheckPngIntegrity(bytes, path.string());
 }
 
 Error OpenFailure(const std::string& reason, const std::string& name) {
@@ -68,8 +68,8 @@ Error OpenFailure(const std::string& reason, const std::string& name) {
 }
 
 // Before memory is taken for pixels that so short a file cannot hold.
-Status CheckPromise(const OIIO::ImageSpec& spec, const std::string& reader, std::uint64_t bytes,
-                    const std::string& name) {
+Status CheckDeclaredSize(const OIIO::ImageSpec& spec, const std::string& reader, std::uint64_t bytes,
+                         const std::string& name) {
   const std::uint64_t most = MostSamplesInAByte(reader);
   if (most == 0 || spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return Ok();
   const auto samples =
@@ -93,7 +93,7 @@ Expected<std::shared_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, co
   bool open = false;
   SCUMBLE_RETURN_IF_ERROR(WithoutExceptions(name, [&] { open = input->open(name, spec, config); }));
   if (!open) return OpenFailure(input->geterror(), name);
-  SCUMBLE_RETURN_IF_ERROR(CheckPromise(spec, reader, bytes, name));
+  SCUMBLE_RETURN_IF_ERROR(CheckDeclaredSize(spec, reader, bytes, name));
   return input;
 }
 
@@ -121,7 +121,7 @@ Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
                       "scumble stylize and scumble guidegen take scenes");
   }
   if (auto whole = CheckIfPng(path); !whole) return whole.error();
-  if (auto kept = CheckExrPromises(path); !kept) return kept.error();
+  if (auto kept = CheckExrIntegrity(path); !kept) return kept.error();
   SCUMBLE_ASSIGN(const std::vector<std::byte> start, ReadStart(path));
   SCUMBLE_ASSIGN(const std::string reader, ReaderFor(start, path));
   std::error_code unknown;
@@ -137,8 +137,8 @@ Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::pat
 
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name) {
   const auto bytes = std::as_bytes(std::span(proxy.buffer().data(), proxy.buffer().size()));
-  if (IsPng(bytes)) SCUMBLE_RETURN_IF_ERROR(CheckPngIsWhole(bytes, name));
-  SCUMBLE_RETURN_IF_ERROR(CheckExrPromises(bytes, name));
+  if (IsPng(bytes)) SCUMBLE_RETURN_IF_ERROR(CheckPngIntegrity(bytes, name));
+  SCUMBLE_RETURN_IF_ERROR(CheckExrIntegrity(bytes, name));
   SCUMBLE_ASSIGN(const std::string reader, ReaderFor(bytes, name));
   SCUMBLE_RETURN_IF_ERROR(CheckStart(reader, bytes, name));
   if (reader == "psd") return OpenPsd(std::make_unique<OIIO::Filesystem::IOMemReader>(proxy.buffer()), name);

@@ -5,9 +5,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cstddef>
+#include <exception>
 #include <filesystem>
 #include <functional>
-#include <exception>
 #include <memory>
 #include <new>
 #include <span>
@@ -18,15 +18,15 @@
 
 namespace scumble::internal {
 
-// Opens a picture file with straight alpha left as it is stored. The message carries the library's reason. Of a PSD only
-// the flattened picture is there.
+// Opens a picture file with straight alpha left as it is stored. The message carries the library's reason. Of a PSD
+// only the flattened picture is there.
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path);
 
 // The same from memory; `proxy` must outlive the input.
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name);
 
-// Calls a reader of the library, which may throw where a file promises what no memory holds: kInput then, but for want of
-// memory, which is the caller's.
+// Calls a reader of the library, which may throw where a file declares more than memory holds: kInput then, but for
+// want of memory, which is the caller's.
 template <class Call>
 Status WithoutExceptions(const std::string& name, const Call& call) {
   try {
@@ -44,8 +44,8 @@ Status WithoutExceptions(const std::string& name, const Call& call) {
 // TIFF that ends too soon: ask has_error() as well.
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name);
 
-// Encodes with `write_pixels` into memory, in the format that the name's ending says. The library's failures become errors that
-// name the file.
+// Encodes with `write_pixels` into memory, in the format that the name's ending says. The library's failures become
+// errors that name the file.
 Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::ImageSpec& spec,
                                         const std::function<bool(OIIO::ImageOutput&)>& write_pixels);
 

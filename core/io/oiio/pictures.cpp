@@ -238,7 +238,7 @@ Bytes EncodeOnWhite(const std::filesystem::path& path, const Picture& picture, P
 
 // The JPEG reader fills what is missing at the end with grey and says nothing. So the markers are followed here, from
 // segment to segment and through the coded data, until the one that ends the picture (ITU-T T.81, annex B).
-Status CheckJpegIsWhole(std::span<const std::byte> bytes, const std::string& name) {
+Status CheckJpegIntegrity(std::span<const std::byte> bytes, const std::string& name) {
   constexpr unsigned kFill = 0xff, kStuffed = 0x00, kFirstAlone = 0xd0, kEndOfImage = 0xd9, kStartOfScan = 0xda;
   const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
   std::size_t i = 2;  // after the start marker
@@ -277,7 +277,7 @@ Expected<Picture> ReadPicture(const std::filesystem::path& path) {
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(path));
   if (input->format_name() == std::string("jpeg")) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
-    SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, path.string()));
+    SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, path.string()));
   }
   SCUMBLE_ASSIGN(Picture stored, ReadFrom(*input, path.string()));
   return Upright(std::move(stored), input->spec().get_int_attribute("Orientation", 1));
@@ -299,7 +299,7 @@ Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const s
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name) {
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(auto input, internal::OpenInput(proxy, name));
-  if (input->format_name() == std::string("jpeg")) SCUMBLE_RETURN_IF_ERROR(CheckJpegIsWhole(bytes, name));
+  if (input->format_name() == std::string("jpeg")) SCUMBLE_RETURN_IF_ERROR(CheckJpegIntegrity(bytes, name));
   return ReadFrom(*input, name);
 }
 

@@ -48,8 +48,8 @@ constexpr Mark kMarks[] = {
     {"\xff\x4f\xff\x51"sv, "jpeg2000"},
 };
 
-// OpenImageIO's readers of these look behind the end of what a file holds, or for ever, take memory for whatever it says, or
-// end the process at a number that they do not know.
+// OpenImageIO's readers of these look behind the end of what a file holds, or for ever, take memory for whatever it
+// says, or end the process at a number that they do not know.
 constexpr Mark kNotRead[] = {
     {"GIF8"sv, "a GIF"}, {"DDS "sv, "a DDS"}, {"SDPX"sv, "a DPX"}, {"XPDS"sv, "a DPX"}, {"\x01\xda"sv, "an SGI"}};
 
@@ -74,11 +74,11 @@ struct Bound {
 // What the tightest packing of each format comes to, once OpenImageIO has put palettes and bits into channels of their
 // own.
 constexpr Bound kBounds[] = {
-    {"pnm", 8},      // a bit a pixel
-    {"bmp", 8 * 3},  // a bit a pixel, of a palette of three channels
-    {"hdr", 64},     // 2 bytes a run of 127
-    {"targa", 128 * 4 / 2},                     // 2 bytes a run of 128 pixels, of a palette of 4 channels
-    {"psd", 64 * 8 * 3},                        // 2 bytes a run of 128, of a bit a pixel, shown as three channels
+    {"pnm", 8},              // a bit a pixel
+    {"bmp", 8 * 3},          // a bit a pixel, of a palette of three channels
+    {"hdr", 64},             // 2 bytes a run of 127
+    {"targa", 128 * 4 / 2},  // 2 bytes a run of 128 pixels, of a palette of 4 channels
+    {"psd", 64 * 8 * 3},     // 2 bytes a run of 128, of a bit a pixel, shown as three channels
 };
 
 }  // namespace
@@ -104,9 +104,8 @@ Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::fil
     if (text.size() >= mark.at && text.substr(mark.at).starts_with(mark.bytes)) return std::string(mark.reader);
   }
   if (EndsIn(name, {".tga", ".tpic"})) return std::string("targa");
-  return InputError(
-      failure + (start.empty() ? "it is empty" : "it does not begin as a picture") +
-      "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP and JPEG 2000 are read");
+  return InputError(failure + (start.empty() ? "it is empty" : "it does not begin as a picture") +
+                    "; EXR, PNG, TIFF, JPEG, WebP, HEIC, PSD, TGA, HDR, PNM, BMP and JPEG 2000 are read");
 }
 
 Status CheckStart(std::string_view reader, std::span<const std::byte> start, const std::string& name) {
@@ -123,7 +122,7 @@ Status CheckStart(std::string_view reader, std::span<const std::byte> start, con
   return Ok();
 }
 
-Error BrokenPromise(const std::string& name, std::uint64_t bytes) {
+Error DeclaredSizeError(const std::string& name, std::uint64_t bytes) {
   return InputError("cannot read " + name + ": its header promises more than its " + std::to_string(bytes) +
                     " bytes hold; it may be cut short or damaged");
 }

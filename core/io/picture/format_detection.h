@@ -23,12 +23,13 @@ namespace scumble::internal {
 inline constexpr std::size_t kStartBytes = 64;
 Expected<std::string> ReaderFor(std::span<const std::byte> start, const std::filesystem::path& name);
 
-// Whether that reader may open a file that starts so: BMPs that are packed by runs OpenImageIO unpacks without looking where it
-// writes, and a TGA's colours it takes without looking how many there are. Of PSDs core/io/oiio/flat_psd.h takes care.
+// Whether that reader may open a file that starts so: BMPs that are packed by runs OpenImageIO unpacks without looking
+// where it writes, and a TGA's colours it takes without looking how many there are. Of PSDs core/io/oiio/flat_psd.h
+// takes care.
 Status CheckStart(std::string_view reader, std::span<const std::byte> start, const std::string& name);
 
-// That a file of so many bytes is too short for what its header promises.
-Error BrokenPromise(const std::string& name, std::uint64_t bytes);
+// That a file of so many bytes is too short for the size that its header declares.
+Error DeclaredSizeError(const std::string& name, std::uint64_t bytes);
 
 // The first kStartBytes of a file, or all there are.
 Expected<std::vector<std::byte>> ReadStart(const std::filesystem::path& path);

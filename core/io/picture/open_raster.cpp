@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "core/image/check.h"
+#include "core/io/file/zip_archive.h"
 #include "core/io/picture_file.h"
 #include "core/io/png/png_integrity.h"
-#include "core/io/file/zip_archive.h"
 
 namespace scumble {
 namespace {
@@ -164,8 +164,7 @@ bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> 
   // Names, order and what is shown are the artist's too.
   constexpr std::size_t kNoted = 200;
   const auto held_stack = zip->Read("stack.xml", stack.size() + kNoted);
-  if (!held_stack ||
-      WithoutDpi({reinterpret_cast<const char*>(held_stack->data()), held_stack->size()}) != stack) {
+  if (!held_stack || WithoutDpi({reinterpret_cast<const char*>(held_stack->data()), held_stack->size()}) != stack) {
     return false;
   }
   const auto same = [&](const std::string& entry, const Picture& drawn) {

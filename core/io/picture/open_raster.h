@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/image/status.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
@@ -39,9 +39,8 @@ struct MergedHeader {
 };
 Expected<MergedHeader> InspectMergedLayers(const std::filesystem::path& path);
 
-// Whether a file shows the same pictures, layer by layer, under the same names and settings, as one that EncodeOpenRaster
-// makes of these, at whatever dpi.
-// A file that cannot be read does not. Thread-safe.
+// Whether a file shows the same pictures, layer by layer, under the same names and settings, as one that
+// EncodeOpenRaster makes of these, at whatever dpi. A file that cannot be read does not. Thread-safe.
 bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> layers, const Picture& merged);
 
 }  // namespace scumble

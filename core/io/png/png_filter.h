@@ -10,7 +10,8 @@ namespace scumble::internal {
 inline constexpr std::uint8_t kNoFilter = 0, kPaeth = 4;
 
 // Paeth's filter of a row: each byte less the one to its left, above it or above that one, whichever is nearest to
-// left + above − upper left. `above` is all 0 for the first row. `pixel` bytes make a pixel. No two of the three overlap.
+// left + above − upper left. `above` is all 0 for the first row. `pixel` bytes make a pixel. No two of the three
+// overlap.
 inline void FilterPaeth(const std::uint8_t* row, const std::uint8_t* above, std::size_t bytes, std::size_t pixel,
                         std::uint8_t* out) {
   const auto nearest = [](int a, int b, int c) {

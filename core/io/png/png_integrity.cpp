@@ -44,7 +44,8 @@ std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes) {
   }
   const int colors = std::to_integer<int>(bytes[kColors]);  // 0, 2, 3, 4 or 6: grey, RGB, palette, with alpha
   const int channels = (colors == 2 || colors == 6 ? 3 : 1) + (colors >= 4 ? 1 : 0);
-  return PngHeader{Number(bytes.subspan(kWidth)), Number(bytes.subspan(kHeight)), std::to_integer<int>(bytes[kBits]), channels};
+  return PngHeader{Number(bytes.subspan(kWidth)), Number(bytes.subspan(kHeight)), std::to_integer<int>(bytes[kBits]),
+                   channels};
 }
 
 bool IsPng(std::span<const std::byte> bytes) {
@@ -61,7 +62,7 @@ bool IsPngFile(const std::filesystem::path& path) {
   return IsPng(std::as_bytes(std::span(start)));
 }
 
-Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name) {
+Status CheckPngIntegrity(std::span<const std::byte> bytes, const std::string& name) {
   constexpr std::size_t kAround = 12;  // length, type and sum
   const std::optional<PngHeader> header = ReadPngHeader(bytes);
   std::uint64_t packed = 0;

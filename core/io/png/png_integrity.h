@@ -31,7 +31,8 @@ std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes);
 bool CanHold(std::uint64_t packed, const PngHeader& header);
 
 // Follows the chunks (PNG specification, third edition, section 5) up to the one that ends the picture, and checks the
-// sums of those that a reader needs, and that the pixels are not more than so many bytes can unpack to. `name` is for the message. Thread-safe.
-Status CheckPngIsWhole(std::span<const std::byte> bytes, const std::string& name);
+// sums of those that a reader needs, and that the pixels are not more than so many bytes can unpack to. `name` is for
+// the message. Thread-safe.
+Status CheckPngIntegrity(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace scumble::internal

@@ -17,8 +17,9 @@
 namespace scumble::internal {
 namespace {
 
-constexpr std::size_t kBandBytes = std::size_t(1) << 18;  // small enough for threads to share, large enough to pack well
-constexpr std::size_t kWindow = std::size_t(1) << 15;     // how far back deflate looks
+constexpr std::size_t kBandBytes = std::size_t(1)
+                                   << 18;              // small enough for threads to share, large enough to pack well
+constexpr std::size_t kWindow = std::size_t(1) << 15;  // how far back deflate looks
 
 void Append(std::vector<std::byte>& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::byte>(number >> shift & 0xff));
@@ -100,7 +101,8 @@ struct Layout {
   int end(int band) const { return std::min(picture.height, begin(band + 1)); }
 };
 
-// A row's samples, the higher byte first. v/257 to the nearest is (255·v + 32895) >> 16, which compilers turn into vectors.
+// A row's samples, the higher byte first. v/257 to the nearest is (255·v + 32895) >> 16, which compilers turn into
+// vectors.
 void FillSamples(const Layout& layout, int y, std::uint8_t* out) {
   const std::uint16_t* const in = layout.picture.At(0, y);
   const std::size_t step = layout.options.grey ? 4 : 1;
@@ -110,7 +112,8 @@ void FillSamples(const Layout& layout, int y, std::uint8_t* out) {
       out[2 * i] = static_cast<std::uint8_t>(value >> 8), out[2 * i + 1] = static_cast<std::uint8_t>(value & 0xff);
     }
   } else {
-    for (std::size_t i = 0; i < layout.samples; ++i) out[i] = static_cast<std::uint8_t>((in[i * step] * 255u + 32895u) >> 16);
+    for (std::size_t i = 0; i < layout.samples; ++i)
+      out[i] = static_cast<std::uint8_t>((in[i * step] * 255u + 32895u) >> 16);
   }
 }
 
@@ -144,7 +147,8 @@ struct Band {
 struct Stream : z_stream {
   explicit Stream(int level) : z_stream{} {
     constexpr int kRawWindowBits = -15, kMemory = 8;
-    if (deflateInit2(this, level, Z_DEFLATED, kRawWindowBits, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) throw std::bad_alloc();
+    if (deflateInit2(this, level, Z_DEFLATED, kRawWindowBits, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
+      throw std::bad_alloc();
   }
   ~Stream() { deflateEnd(this); }
   Stream(const Stream&) = delete;
@@ -168,8 +172,8 @@ void Deflate(std::span<const std::byte> dictionary, std::span<const std::byte> r
   out.resize(before + stream.total_out);
 }
 
-// The filter by which a sample of the band packs best. Paint that is copied in chunks repeats as it is, and loses that by any
-// filter; smooth pictures gain by one.
+// The filter by which a sample of the band packs best. Paint that is copied in chunks repeats as it is, and loses that
+// by any filter; smooth pictures gain by one.
 std::uint8_t ChooseFilter(const Layout& layout, int band) {
   if (layout.options.level == 0) return kNoFilter;
   const int begin = layout.begin(band), end = std::min(layout.end(band), begin + 2 * layout.look_back);
@@ -213,7 +217,8 @@ std::vector<std::byte> WritePng(const Picture& picture, const PngOptions& option
     if (b == 0) {
       for (const std::byte byte : StreamHead(options.level)) band.chunk.push_back(byte);
     }
-    Deflate(dictionary.last(std::min(dictionary.size(), kWindow)), rows, options.level, end == picture.height, band.chunk);
+    Deflate(dictionary.last(std::min(dictionary.size(), kWindow)), rows, options.level, end == picture.height,
+            band.chunk);
     band.adler = adler32_z(1, Zlib(rows.data()), rows.size());
     band.bytes = rows.size();
     if (end < picture.height) EndChunk(band.chunk, start);  // the last one lacks the sum of all

@@ -60,8 +60,11 @@ void DrawFiducials(Picture& picture, int size, int margin);
 // was saved as JPEG; none where the picture has another size than (size + 2 · margin)².
 int FiducialsInPlace(const Picture& picture, int size, int margin);
 
-// The same for a square picture that was scaled as a whole, where the margin is an eighth of the sphere whatever the pixels:
-// all twelve in a template that was exported at another size, down to modules of two pixels.
+// The same for a square picture that was scaled as a whole, where the margin is an eighth of the sphere whatever the
+// pixels: all twelve in a template that was exported at another size, down to modules of two pixels.
 int FiducialsInProportion(const Picture& picture);
+
+// Fewest pixels across the sphere in the scan.
+inline constexpr int kMinScanSphere = 200;
 
 }  // namespace scumble

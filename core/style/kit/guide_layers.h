@@ -3,8 +3,8 @@
 // formula, so that they are as sharp at any size.
 #pragma once
 
-#include "scumble/picture.h"
 #include "core/style/kit/sphere_template.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

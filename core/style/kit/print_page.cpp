@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/style/scan/rectify.h"
+#include "core/style/kit/fiducials.h"
 #include "core/style/kit/sphere_template.h"
 
 namespace scumble {

@@ -175,8 +175,9 @@ Status RefusePaintedTemplate(const fs::path& path, const KitLight& light, const 
   return MayBePainting(path);
 }
 
-// Whether the luminance differs by more than a thousandth of the brightest, as that of lights a tenth of a degree apart does.
-// Other instruction sets round otherwise, by some millionths. Pixels of the edge depend on --aa, so they do not count.
+// Whether the luminance differs by more than a thousandth of the brightest, as that of lights a tenth of a degree apart
+// does. Other instruction sets round otherwise, by some millionths. Pixels of the edge depend on --aa, so they do not
+// count.
 bool HasOtherLight(const GuideSet& old, const GuideSet& now) {
   const auto was = old.Plane(Layer::kLuminance), is = now.Plane(Layer::kLuminance);
   const auto had = old.Plane(Layer::kCoverage), has = now.Plane(Layer::kCoverage);
@@ -207,9 +208,9 @@ Status RefuseOtherGuides(const fs::path& folder, const KitLight& light, std::siz
     lit.required = {Layer::kCoverage, Layer::kNormal, Layer::kLuminance};  // guides are none without normals
     const auto read = ReadGuides(guides, lit);
     if (!read || !HasOtherLight(*read, light.guides)) continue;
-    return OutputError(guides.string() + " has another light than " + AnglesInWords(light) + " and belongs to " +
-                       painting.string() + ": take the --light that it was made with, give this one a --name of its own, " +
-                       "or write to another folder");
+    return OutputError(
+        guides.string() + " has another light than " + AnglesInWords(light) + " and belongs to " + painting.string() +
+        ": take the --light that it was made with, give this one a --name of its own, " + "or write to another folder");
   }
   return Ok();
 }

@@ -123,15 +123,14 @@ std::vector<std::string> Words(const KitLight& light, int dpi, const std::string
                                      "   makes the painting for style.toml out of the scan."
                                : "4. The sphere is too small for the marks that lay a scan straight: cut " + painting +
                                      " out of the scan by hand.";
-  return {
-      "The light comes from " + PlaceInWords(light) + ": " + AnglesInWords(light) + ".",
-      std::string(size_text),
-      "1. Print at 100% (\"actual size\", not fitted to the page). The line below is 50 mm long: measure it.",
-      "2. Paint over the sphere, past its edge all round. Keep the black marks and the white around them free of "
-      "paint.",
-      "3. When it is dry, scan the whole page, all marks in sight, at " + std::to_string(ScanDpi(size, dpi)) +
-          " dpi or more. Or photograph it in even light.",
-      scan};
+  return {"The light comes from " + PlaceInWords(light) + ": " + AnglesInWords(light) + ".",
+          std::string(size_text),
+          "1. Print at 100% (\"actual size\", not fitted to the page). The line below is 50 mm long: measure it.",
+          "2. Paint over the sphere, past its edge all round. Keep the black marks and the white around them free of "
+          "paint.",
+          "3. When it is dry, scan the whole page, all marks in sight, at " + std::to_string(ScanDpi(size, dpi)) +
+              " dpi or more. Or photograph it in even light.",
+          scan};
 }
 
 void DrawScaleBar(const Sheet& sheet, double left, double top, double pixels_per_mm) {

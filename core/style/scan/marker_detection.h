@@ -6,8 +6,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/style/kit/fiducials.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

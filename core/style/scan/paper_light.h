@@ -4,8 +4,8 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "scumble/picture.h"
 #include "core/style/scan/template_fit.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 

@@ -8,11 +8,11 @@
 
 #include "core/image/check.h"
 #include "core/image/color.h"
+#include "core/style/kit/sphere_kit.h"
 #include "core/style/scan/homography.h"
 #include "core/style/scan/marker_detection.h"
 #include "core/style/scan/paper_light.h"
 #include "core/style/scan/resample_scan.h"
-#include "core/style/kit/sphere_kit.h"
 #include "core/style/scan/template_fit.h"
 
 namespace scumble {
@@ -71,7 +71,8 @@ Error NoTemplate(const Picture& scan, const std::string& name, const std::vector
                       "scanner program");
   }
   if (found.size() >= 4) {
-    return InputError(size + " shows " + std::to_string(found.size()) + " of the template's marks (" + FiducialPlaces(found) +
+    return InputError(size + " shows " + std::to_string(found.size()) + " of the template's marks (" +
+                      FiducialPlaces(found) +
                       "), but not where they lie on one sheet: expected one flat template; is it folded, or cut "
                       "and pasted?");
   }
@@ -245,9 +246,9 @@ Status CheckFit(const TemplateFit& fit, const std::string& name, const RectifyOp
   if (!(fit.on_sphere <= kMaxRegistrationError)) {
     std::vector<int> found, missing;
     SplitIds(fit.marks, found, missing);
-    return InputError("the marks that " + name + " shows (" + FiducialPlaces(found) + ") leave open where the sphere is, by " +
-                      Percent(fit.on_sphere) + " of its diameter; at most " + Percent(kMaxRegistrationError) +
-                      " is let through: expected marks on all sides of it");
+    return InputError("the marks that " + name + " shows (" + FiducialPlaces(found) +
+                      ") leave open where the sphere is, by " + Percent(fit.on_sphere) + " of its diameter; at most " +
+                      Percent(kMaxRegistrationError) + " is let through: expected marks on all sides of it");
   }
   return Ok();
 }

@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "scumble/picture.h"
 #include "core/image/status.h"
+#include "core/style/kit/fiducials.h"
 #include "core/style/scan/template_fit.h"
+#include "scumble/picture.h"
 
 namespace scumble {
 
@@ -52,10 +53,8 @@ struct Rectified {
 inline constexpr double kMaxRegistrationError = 0.01;
 // Above this one there is a warning.
 inline constexpr double kGoodRegistrationError = 0.003;
-// Fewest pixels across the sphere in the scan.
-inline constexpr int kMinScanSphere = 200;
-// Most pixels of a scan: an A4 page at 1200 dpi. A pixel takes 8 bytes, and up to 8 more, beside the file's own reader's
-// share, while it is read: of so many pixels, some gigabytes.
+// Most pixels of a scan: an A4 page at 1200 dpi. A pixel takes 8 bytes, and up to 8 more, beside the file's own
+// reader's share, while it is read: of so many pixels, some gigabytes.
 inline constexpr double kMaxScanPixels = 150e6;
 // What white paper becomes, in linear light. Room is left above for white paint, which is often lighter than paper.
 inline constexpr double kPaperWhite = 0.96;
@@ -65,8 +64,8 @@ Status CheckScanSize(int width, int height, double dpi, const std::string& name)
 
 // Alpha is laid on white first. `name` stands for the scan in messages. Errors (kInput) say what is missing and how to
 // mend it: no marks, marks of other programs, fewer than four, a mirrored picture, two templates, marks that no plane
-// holds, too few pixels. The same bytes for the same scan; single-threaded; holds the scan, what the marks are looked for in
-// (grey and smaller copies of it) and three floats for each pixel of the output.
+// holds, too few pixels. The same bytes for the same scan; single-threaded; holds the scan, what the marks are looked
+// for in (grey and smaller copies of it) and three floats for each pixel of the output.
 Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options = {});
 
 }  // namespace scumble

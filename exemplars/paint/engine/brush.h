@@ -12,8 +12,8 @@ extern "C" {
 #include <string>
 #include <vector>
 
-#include "exemplars/paint/engine/canvas.h"
 #include "core/image/status.h"
+#include "exemplars/paint/engine/canvas.h"
 
 namespace scumble::paint {
 

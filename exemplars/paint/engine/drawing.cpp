@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
-#include "exemplars/paint/sphere.h"
 #include "core/image/color.h"
+#include "exemplars/paint/sphere.h"
 
 namespace scumble::paint {
 namespace {

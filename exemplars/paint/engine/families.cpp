@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "exemplars/paint/sphere.h"
 #include "core/image/hash.h"
+#include "exemplars/paint/sphere.h"
 
 namespace scumble::paint {
 namespace {

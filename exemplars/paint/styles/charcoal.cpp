@@ -93,8 +93,6 @@ Expected<Picture> PaintCharcoal(const Studio& studio) {
   return ToPicture(light.Look());
 }
 
-Expected<Picture> CharcoalPaper(const Studio& studio) {
-  return PaperTile(studio, kPaper);
-}
+Expected<Picture> CharcoalPaper(const Studio& studio) { return PaperTile(studio, kPaper); }
 
 }  // namespace scumble::paint

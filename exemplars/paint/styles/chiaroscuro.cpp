@@ -112,8 +112,6 @@ Expected<Picture> PaintChiaroscuro(const Studio& studio) {
   return ToPicture(light.Look());
 }
 
-Expected<Picture> ChiaroscuroPaper(const Studio& studio) {
-  return PaperTile(studio, kPaper);
-}
+Expected<Picture> ChiaroscuroPaper(const Studio& studio) { return PaperTile(studio, kPaper); }
 
 }  // namespace scumble::paint

@@ -66,14 +66,13 @@ Status DrawAccents(Drawing& drawing, const Studio& studio) {
 }  // namespace
 
 Expected<Picture> PaintGraphite(const Studio& studio) {
-  Drawing drawing(PrepareGround({studio.size}, kPaper, studio.seed), {.bite = 0.55f, .softness = 0.40f, .density = 1.1f});
+  Drawing drawing(PrepareGround({studio.size}, kPaper, studio.seed),
+                  {.bite = 0.55f, .softness = 0.40f, .density = 1.1f});
   SCUMBLE_RETURN_IF_ERROR(DrawHatching(drawing, studio));
   SCUMBLE_RETURN_IF_ERROR(DrawAccents(drawing, studio));
   return ToPicture(drawing.Look());
 }
 
-Expected<Picture> GraphitePaper(const Studio& studio) {
-  return PaperTile(studio, kPaper);
-}
+Expected<Picture> GraphitePaper(const Studio& studio) { return PaperTile(studio, kPaper); }
 
 }  // namespace scumble::paint

@@ -6,8 +6,8 @@
 #include "exemplars/paint/engine/hairs.h"
 #include "exemplars/paint/engine/media.h"
 #include "exemplars/paint/engine/paper.h"
-#include "exemplars/paint/sphere.h"
 #include "exemplars/paint/engine/strokes.h"
+#include "exemplars/paint/sphere.h"
 #include "exemplars/paint/styles.h"
 
 namespace scumble::paint {

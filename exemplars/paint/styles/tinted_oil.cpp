@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "exemplars/paint/engine/impasto.h"
-#include "exemplars/paint/neutral.h"
 #include "exemplars/paint/engine/patches.h"
+#include "exemplars/paint/neutral.h"
 #include "exemplars/paint/styles.h"
 
 namespace scumble::paint {

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "exemplars/paint/engine/glaze.h"
-#include "exemplars/paint/neutral.h"
 #include "exemplars/paint/engine/paper.h"
+#include "exemplars/paint/neutral.h"
 #include "exemplars/paint/sphere.h"
 #include "exemplars/paint/styles.h"
 

@@ -43,8 +43,6 @@ Expected<Picture> PaintWatercolour(const Studio& studio) {
   return ToPicture(picture);
 }
 
-Expected<Picture> WatercolourPaper(const Studio& studio) {
-  return PaperTile(studio, kPaper);
-}
+Expected<Picture> WatercolourPaper(const Studio& studio) { return PaperTile(studio, kPaper); }
 
 }  // namespace scumble::paint

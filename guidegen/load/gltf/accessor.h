@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/loader_util.h"
 #include "core/image/status.h"
+#include "guidegen/load/loader_util.h"
 
 namespace tinygltf {
 class Model;
@@ -30,9 +30,9 @@ struct FloatTable {
 Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::string& file, int accessor,
                                     const std::string& what);
 
-// An accessor without a buffer view is all zeros, but for what a sparse one puts in their place: it needs no byte of the
-// file, however many elements it has, and may be named any number of times. So its count has a limit, and what is read of
-// such accessors has one for all together.
+// An accessor without a buffer view is all zeros, but for what a sparse one puts in their place: it needs no byte of
+// the file, however many elements it has, and may be named any number of times. So its count has a limit, and what is
+// read of such accessors has one for all together.
 inline constexpr std::uint64_t kMaxZeroElements = 16'000'000;
 
 // Counts elements that no byte of the file stands for; a value of a sparse accessor stands for 16.
@@ -40,8 +40,8 @@ class ZeroBudget {
  public:
   explicit ZeroBudget(std::uint64_t limit) : limit_(limit) {}
 
-  // One more reading of an accessor, before it is read: kInput, naming the file, where it is one too many. Those that have
-  // data, or do not exist, take nothing.
+  // One more reading of an accessor, before it is read: kInput, naming the file, where it is one too many. Those that
+  // have data, or do not exist, take nothing.
   Status Take(const tinygltf::Model& model, const std::string& file, int accessor);
 
  private:
@@ -49,8 +49,8 @@ class ZeroBudget {
   std::uint64_t taken_ = 0;
 };
 
-// Elements of a list that many readers share, in the order in which they were added. No call costs more for a longer list,
-// but for the first that reaches so far, so one choice serves reader after reader.
+// Elements of a list that many readers share, in the order in which they were added. No call costs more for a longer
+// list, but for the first that reaches so far, so one choice serves reader after reader.
 class ElementChoice {
  public:
   static constexpr std::uint32_t kNone = ~std::uint32_t(0);
@@ -67,9 +67,9 @@ class ElementChoice {
   std::vector<std::uint32_t> places_;  // by element, as far as any reached
 };
 
-// Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused. With a choice,
-// whose elements must all exist, the table has those alone, at their places; the values of a sparse accessor are looked
-// through all the same.
+// Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused. With a
+// choice, whose elements must all exist, the table has those alone, at their places; the values of a sparse accessor
+// are looked through all the same.
 Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
                                 const std::string& what, const ElementChoice* choice = nullptr);
 

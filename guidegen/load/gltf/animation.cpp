@@ -10,8 +10,8 @@
 
 namespace scumble {
 
-// Each channel keeps its times and values, and any number of channels may name the same accessors. This refuses before they
-// are read.
+// Each channel keeps its times and values, and any number of channels may name the same accessors. This refuses before
+// they are read.
 class KeyBudget {
  public:
   // 200 joints that are moved, turned and scaled 30 times a second for 20 minutes have 43 million times and values.

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/load/loader_util.h"
 #include "core/image/status.h"
+#include "guidegen/load/loader_util.h"
 
 namespace tinygltf {
 class Model;
@@ -47,8 +47,8 @@ class GltfAnimation {
  public:
   // Chooses by name: "" is the file's first, "*" all of them at once (Blender may write one for each object). A name
   // that the file lacks is a kUsage error that lists those there are. Keys that are not finite or do not increase,
-  // accessors whose counts do not fit, and more keys in all than any film has, are kInput errors that name animation,
-  // channel and place.
+  // accessors whose counts do not fit, and more keys in all than any animation has, are kInput errors that name
+  // animation, channel and place.
   static Expected<GltfAnimation> Read(const tinygltf::Model& model, const std::string& file, const std::string& name,
                                       WarningCounter& warnings);
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDegreesPerRadian = 180.0 / kPi;
 constexpr std::size_t kMaxWarnings = 100;
-constexpr std::size_t kLongestWarning = 400;  // bytes; export_scene.py writes less
+constexpr std::size_t kLongestWarning = 400;   // bytes; export_scene.py writes less
 constexpr double kLargestPassIndex = 32767.0;  // Blender's limit
 
 // The object of that name inside extras.scumble, or null.
@@ -85,7 +85,7 @@ void ReadSpot(Fields& fields, Light& light) {
   light.inner_cone_degrees = light.outer_cone_degrees * (1.0 - light.spot_blend);
 }
 
-// False where the lamp has no area, and so gives no light.
+// False where the light has no area, and so gives none.
 bool ReadArea(Fields& fields, Light& light, double energy) {
   const std::string shape = fields.Text("shape");
   light.ellipse = shape == "DISK" || shape == "ELLIPSE";
@@ -183,7 +183,7 @@ Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std:
   return Ok();
 }
 
-Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const std::string& where) {
+Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const std::string& where) {
   const tinygltf::Value* lamp = Find(node.extras, "lamp");
   if (!lamp) return std::optional<Light>();
   Fields fields(*lamp, where);

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace tinygltf {
 class Model;
@@ -26,9 +26,9 @@ Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file,
 // that does not exist is no error.
 Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std::string& file, Scene& scene);
 
-// The lamp that a node's extras describe, in watts as Cycles 3.4 means them: point and spot I = P/(4π), sun W/m², area
-// L = P/(4A). Name and place are the caller's. Nothing where the node is no such lamp. `where` is for the messages.
-Expected<std::optional<Light>> ReadLampExtras(const tinygltf::Node& node, const std::string& where);
+// The light that a node's extras describe, in watts as Cycles 3.4 means them: point and spot I = P/(4π), sun W/m², area
+// L = P/(4A). Name and place are the caller's. Nothing where the node has no such extras. `where` is for the messages.
+Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const std::string& where);
 
 // Completes an instance by the style and pass index that its node's extras name.
 Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance);

@@ -1,5 +1,5 @@
-// glTF 2.0 scenes, binary (.glb) and text (.gltf), by tinygltf. Use LoadScene (guidegen/load/load_scene.h), which also sees
-// to what all formats have in common.
+// glTF 2.0 scenes, binary (.glb) and text (.gltf), by tinygltf. Use LoadScene (guidegen/load/load_scene.h), which also
+// sees to what all formats have in common.
 //
 // Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
 // strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
+#include "core/image/status.h"
 #include "guidegen/load/gltf/rig.h"
 #include "guidegen/scene/scene.h"
-#include "core/image/status.h"
 
 namespace scumble {
 

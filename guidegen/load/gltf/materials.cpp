@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/io/picture_file.h"
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/gltf/parse.h"
-#include "core/io/picture_file.h"
 
 namespace scumble {
 namespace {
@@ -235,8 +235,8 @@ tinygltf::TextureInfo TextureInExtension(const tinygltf::Value& from) {
   return info;
 }
 
-// KHR_materials_pbrSpecularGlossiness, the model before metalness, as far as the present one can say it. Its metals have a
-// black diffuse colour and are their specular one, which has no place here.
+// KHR_materials_pbrSpecularGlossiness, the model before metalness, as far as the present one can say it. Its metals
+// have a black diffuse colour and are their specular one, which has no place here.
 Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::Value& extension,
                                                                 const std::string& where) {
   tinygltf::PbrMetallicRoughness pbr;
@@ -259,15 +259,18 @@ Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::
   return pbr;
 }
 
-// What exporters write beside that extension is for programs without it, and knows metals: it goes first if it has a colour.
+// What exporters write beside that extension is for programs without it, and knows metals: it goes first if it has a
+// colour.
 Expected<tinygltf::PbrMetallicRoughness> MetallicRoughness(const tinygltf::Material& from, const std::string& file,
                                                            const std::string& owner, WarningCounter& warnings) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
   const auto extension = from.extensions.find("KHR_materials_pbrSpecularGlossiness");
   const bool has_color = pbr.baseColorTexture.index >= 0 || pbr.baseColorFactor != std::vector<double>(4, 1.0);
   if (extension == from.extensions.end() || has_color) return pbr;
-  warnings.Add("of KHR_materials_pbrSpecularGlossiness the diffuse colour is taken, and 1 - glossiness as roughness, but "
-               "not the specular colour; where a texture has the glossiness, roughness is 1", owner);
+  warnings.Add(
+      "of KHR_materials_pbrSpecularGlossiness the diffuse colour is taken, and 1 - glossiness as roughness, but "
+      "not the specular colour; where a texture has the glossiness, roughness is 1",
+      owner);
   return FromSpecularGlossiness(extension->second, file + ": " + owner);
 }
 

@@ -93,8 +93,8 @@ class PrimitiveLoader {
     return it == primitive_.attributes.end() ? -1 : it->second;
   }
 
-  // Exporters share one long vertex list between many primitives: of such a list only what the triangles use is read, in the
-  // order of its first use, and they are renumbered to it. Reading all of it for each would take their product.
+  // Exporters share one long vertex list between many primitives: of such a list only what the triangles use is read,
+  // in the order of its first use, and they are renumbered to it. Reading all of it for each would take their product.
   void ChooseVertices() {
     shared_choice_.Clear();
     for (glm::uvec3& triangle : mesh_.triangles) {
@@ -106,7 +106,8 @@ class PrimitiveLoader {
   // A vertex of the mesh as the file counts it.
   std::size_t NumberInFile(std::size_t vertex) const { return choice_ ? choice_->elements()[vertex] : vertex; }
 
-  // Of all accessors that may be read. Where vertices are chosen, these are still looked through, and count as vertices.
+  // Of all accessors that may be read. Where vertices are chosen, these are still looked through, and count as
+  // vertices.
   std::uint64_t SparseValues() const {
     std::uint64_t values = 0;
     const auto add = [&](const std::map<std::string, int>& attributes) {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "core/image/status.h"
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/gltf/skin.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/scene/scene.h"
-#include "core/image/status.h"
 
 namespace tinygltf {
 class Model;
@@ -27,8 +27,8 @@ struct GltfLoad {
 };
 
 // Loads the primitives of one glTF mesh into scene.meshes and returns their indices. Points, lines and primitives
-// without positions are left out with a warning; the list may be empty. The attribute _SCUMBLE_REST, which our Blender export
-// writes, becomes rest_positions. scene.materials must hold the file's.
+// without positions are left out with a warning; the list may be empty. The attribute _SCUMBLE_REST, which our Blender
+// export writes, becomes rest_positions. scene.materials must hold the file's.
 Expected<std::vector<int>> LoadGltfMesh(const GltfLoad& load, int mesh_index);
 
 // A mesh that is to be deformed. Its scene.meshes have rest_positions.

@@ -19,8 +19,8 @@ namespace {
 
 // tinygltf walks and frees extras by recursion; real files nest a dozen levels.
 constexpr int kMaxJsonDepth = 200;
-// Of files that several buffers name. Exporters write one for each: as tinygltf wants a buffer to be as long as its file,
-// others would only hold the same bytes again.
+// Of files that several buffers name. Exporters write one for each: as tinygltf wants a buffer to be as long as its
+// file, others would only hold the same bytes again.
 constexpr std::uintmax_t kMaxBytesAgain = std::uintmax_t(1) << 26;
 constexpr std::size_t kGlbHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
@@ -66,20 +66,20 @@ Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::s
   return json;
 }
 
-// Lists of the top level whose elements tinygltf makes far larger than they may be spelled, as `{}` or little more: 2 KB for a
-// material, half a KB for a node. Of what a file may show, a million instances, none needs so many. Accessors and buffer
-// views cannot be spelled so shortly, and there are several for each mesh.
+// Lists of the top level whose elements tinygltf makes far larger than they may be spelled, as `{}` or little more: 2
+// KB for a material, half a KB for a node. Of what a file may show, a million instances, none needs so many. Accessors
+// and buffer views cannot be spelled so shortly, and there are several for each mesh.
 struct ListLimit {
   std::string_view list;
   std::size_t most;
 };
 constexpr std::size_t kMostElements = 100'000;
-constexpr ListLimit kListLimits[] = {{"nodes", 2'000'000},         {"meshes", 2'000'000},      {"materials", kMostElements},
-                                     {"textures", kMostElements},  {"images", kMostElements},  {"samplers", kMostElements},
-                                     {"scenes", kMostElements},    {"cameras", kMostElements}, {"skins", kMostElements},
-                                     {"animations", kMostElements}};
-// Each value inside extras and extensions takes tinygltf 150 bytes: 2 are enough to spell it. A million nodes with ten of
-// Blender's custom properties each have 10 million.
+constexpr ListLimit kListLimits[] = {
+    {"nodes", 2'000'000},      {"meshes", 2'000'000},        {"materials", kMostElements}, {"textures", kMostElements},
+    {"images", kMostElements}, {"samplers", kMostElements},  {"scenes", kMostElements},    {"cameras", kMostElements},
+    {"skins", kMostElements},  {"animations", kMostElements}};
+// Each value inside extras and extensions takes tinygltf 150 bytes: 2 are enough to spell it. A million nodes with ten
+// of Blender's custom properties each have 10 million.
 constexpr std::uint64_t kMaxFreeValues = 16'000'000;
 
 // What a cheap look ahead of the parser proper finds in the JSON.
@@ -203,7 +203,7 @@ class Outliner {
 bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, int, int, const unsigned char* bytes,
                  int size, void*) {
   image->as_is = true;
-  // Embedded pictures come with a pointer that nobody has checked; they are read later, from their buffer view.
+  // Embedded pictures come with an unchecked pointer; they are read later, from their buffer view.
   if (image->bufferView >= 0) return true;
   if (size < 0) {
     if (error) *error += "a picture has more than two gigabytes";
@@ -229,7 +229,7 @@ bool HasPictureEnding(const std::string& name) {
 }
 
 // tinygltf also looks in the current folder; only files beside the scene (or below or above it) belong to it. It takes
-// a picture that is not there for one that nobody needs.
+// a missing picture for one that is not needed.
 bool BesideScene(const std::string& name, void* base) {
   Surroundings& surroundings = *static_cast<Surroundings*>(base);
   if (name.rfind(surroundings.folder, 0) != 0) return false;
@@ -291,8 +291,8 @@ Status RunTinygltf(const std::string& file, Surroundings& surroundings, std::spa
   const std::string& folder = surroundings.folder;
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(&KeepEncoded, nullptr);
-  loader.SetFsCallbacks(
-      {&BesideScene, [](const std::string& name, void*) { return name; }, &ReadForTinygltf, &NeverWrite, &surroundings});
+  loader.SetFsCallbacks({&BesideScene, [](const std::string& name, void*) { return name; }, &ReadForTinygltf,
+                         &NeverWrite, &surroundings});
   std::string errors, warnings;
   bool ok = false;
   const unsigned size = static_cast<unsigned>(bytes.size());
@@ -349,8 +349,8 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
                       " values in extras and extensions; expected at most " + std::to_string(kMaxFreeValues) +
                       ": export it without custom properties");
   }
-  // Each of them would be a copy of the binary chunk. glTF allows it to the first alone; where meshopt packs the meshes,
-  // others stand for what they become.
+  // Each of them would be a copy of the binary chunk. glTF allows it to the first alone; where meshopt packs the
+  // meshes, others stand for what they become.
   if (IsGlb(bytes) && outline.buffers_without_uri > 1) {
     return InputError(file + " has " + std::to_string(outline.buffers_without_uri) +
                       " buffers without a uri; expected one, the file's own binary chunk: export it again, with " +

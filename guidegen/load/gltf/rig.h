@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/image/status.h"
 #include "guidegen/load/gltf/animation.h"
 #include "guidegen/load/gltf/skin.h"
 #include "guidegen/scene/scene.h"
-#include "core/image/status.h"
 
 namespace scumble {
 

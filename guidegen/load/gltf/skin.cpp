@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/image/check.h"
 #include "guidegen/load/gltf/accessor.h"
 #include "guidegen/load/loader_util.h"
 #include "guidegen/load/mesh_normals.h"
-#include "core/image/check.h"
 
 namespace scumble {
 namespace {
@@ -37,12 +37,12 @@ glm::dmat4 BlendJoints(const MeshDeformation& deformation, std::size_t vertex, s
   return blend;
 }
 
-// What the targets that move anything add to one attribute: collected once, because of any number of targets most may be
-// empty or at rest, and no vertex then looks at those.
+// What the targets that move anything add to one attribute: collected once, because of any number of targets most may
+// be empty or at rest, and no vertex then looks at those.
 class ActiveDeltas {
  public:
   ActiveDeltas(const MeshDeformation& deformation, std::span<const double> weights,
-               std::vector<glm::vec3> MorphTarget::* attribute) {
+               std::vector<glm::vec3> MorphTarget::*attribute) {
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const std::vector<glm::vec3>& deltas = deformation.targets[i].*attribute;
       if (weights[i] != 0.0 && !deltas.empty()) active_.emplace_back(weights[i], deltas.data());

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/scene/scene.h"
 #include "core/image/status.h"
+#include "guidegen/scene/scene.h"
 
 namespace tinygltf {
 class Model;

@@ -118,7 +118,8 @@ TEST_F(CliBudget, WhateverIsPickedIsRepeatedByTheOptionsThatAreNamed) {
   }
 }
 
-// The ball's lamp has an extent, so its light takes samples; suzanne's suns and points need none, and then no way has fewer.
+// The ball's lamp has an extent, so its light takes samples; suzanne's suns and points need none, and then no way has
+// fewer.
 TEST_F(CliBudget, FewerSamplesWhereLightTakesThem) {
   const auto stylize = [&](const char* scene) {
     return Arguments{"stylize", Scene(scene), "--style", "chiaroscuro", "--size", "64x36"};
@@ -182,10 +183,12 @@ TEST_F(CliBudget, WhatElseTheSceneIsMadeOfCounts) {
   EXPECT_GT(Budget(stylize, "3600000").at("measured_runs").get<int>(), 0);
 }
 
-// A radius of 32 takes longer than none: a frame's times are those of its own values, and an edited key is another style.
+// A radius of 32 takes longer than none: a frame's times are those of its own values, and an edited key is another
+// style.
 TEST_F(CliBudget, KeysThatChangeOverTimeCount) {
   const auto write = [&](const std::string& radius) {
-    WriteText("style/style.toml", "[transfer]\nblend_radius = [[0, 0], [100, " + radius + "]]\n[[exemplar]]\nimage = \"lit.png\"\n");
+    WriteText("style/style.toml",
+              "[transfer]\nblend_radius = [[0, 0], [100, " + radius + "]]\n[[exemplar]]\nimage = \"lit.png\"\n");
   };
   write("8");
   for (const char* const frame : {"0", "100"}) {
@@ -207,15 +210,17 @@ TEST_F(CliBudget, MeasuringIsSaidOnce) {
 TEST_F(CliBudget, TrialsPaintOverWhatLiesUnderneath) {
   WritePainted("under.0007.png", 48, 48);
   for (const char* const name : {"ball.0007.exr", "ball.0008.exr"}) WriteGuideFile(name, Ball(48));
-  const Arguments range = {"transfer", "ball.####.exr", "--style", "style", "--frames", "7-8", "--budget-ms", "3600000",
-                           "--over", "under.####.png", "-o", "p.####.png"};
+  const Arguments range = {"transfer",    "ball.####.exr", "--style", "style",          "--frames", "7-8",
+                           "--budget-ms", "3600000",       "--over",  "under.####.png", "-o",       "p.####.png"};
   const CommandResult missing = Run(range);
   EXPECT_EQ(missing.code, 3);
   EXPECT_NE(missing.err.find("under.0008.png"), std::string::npos) << missing.err;
   EXPECT_TRUE(Exists("p.0007.png")) << "the first was found and painted over";
-  ExpectError({"transfer", "ball.exr", "--style", "style", "--budget-ms", "3600000", "--over", "none.png", "-o", "q.png"}, 3,
-              {"none.png"});
-  RunOk({"transfer", "ball.exr", "--style", "style", "--budget-ms", "3600000", "--over", "under.0007.png", "-o", "q.png"});
+  ExpectError(
+      {"transfer", "ball.exr", "--style", "style", "--budget-ms", "3600000", "--over", "none.png", "-o", "q.png"}, 3,
+      {"none.png"});
+  RunOk({"transfer", "ball.exr", "--style", "style", "--budget-ms", "3600000", "--over", "under.0007.png", "-o",
+         "q.png"});
   RunOk({"transfer", "ball.exr", "--style", "style", "--over", "under.0007.png", "-o", "r.png"});
   EXPECT_EQ(Bytes("q.png"), Bytes("r.png"));
 }
@@ -269,9 +274,11 @@ TEST_F(CliBudget, ASequenceHasOneWay) {
   EXPECT_EQ(of_files.at("picked"), "the style");
 }
 
-// A scene that moves, whose camera frames it as it stands at time 0: measured at its first frame, painted as without a budget.
+// A scene that moves, whose camera frames it as it stands at time 0: measured at its first frame, painted as without a
+// budget.
 TEST_F(CliBudget, AMovingSceneIsPaintedAsWithoutABudget) {
-  const Arguments stylize = {"stylize", Scene("toys.glb"), "--style", "style", "--size", "96x54", "--view", "20,30", "--frames", "30-31"};
+  const Arguments stylize = {"stylize", Scene("toys.glb"), "--style", "style",    "--size",
+                             "96x54",   "--view",          "20,30",   "--frames", "30-31"};
   const CommandResult within = RunOk(With(stylize, {"--budget-ms", "3600000", "--json", "-o", "p.#.png"}));
   EXPECT_EQ(within.Json().at("budget").at("picked"), "the style");
   RunOk(With(stylize, {"-o", "o.#.png"}));

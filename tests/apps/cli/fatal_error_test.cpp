@@ -37,8 +37,8 @@ class LastWords : public testing::Test {
 
   // In the process of a death test: an output is half written when a second thread ends as it should not.
   [[noreturn]] void EndOnAnotherThread(const std::function<void()>& end) {
-    TellOfWhatNobodyCatches();
-    const internal::UnfinishedFile file(folder_ / "p.png");
+    ReportUncaughtExceptions();
+    const internal::PendingTemporary file(folder_ / "p.png");
     if (file.descriptor() < 0 || std::filesystem::is_empty(folder_.path())) ::_exit(99);
     std::thread([&] { end(); }).join();
     ::_exit(98);
@@ -63,7 +63,8 @@ TEST_F(LastWordsDeathTest, OfThreads) {
 }
 
 TEST_F(LastWordsDeathTest, OfAnythingElse) {
-  ExpectWords([] { throw std::runtime_error("a broken promise"); }, "internal error", "a broken promise; please report");
+  ExpectWords([] { throw std::runtime_error("a broken promise"); }, "internal error",
+              "a broken promise; please report");
   ExpectWords([] { throw std::system_error(EIO, std::generic_category()); }, "internal error", "please report");
   ExpectWords([] { throw 7; }, "internal error", "of an unknown kind; please report");
 }

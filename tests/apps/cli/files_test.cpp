@@ -38,7 +38,8 @@ TEST_F(CliFiles, NoOutputTakesThePlaceOfAnInput) {
   const Arguments range = With(transfer_, {"--frames", "1-2"});
   ExpectError(With(range, {"-o", "g.#.exr"}), 2, {"-o g.1.exr", "overwrite the guides"});
   ExpectError(With(range, {"-o", "g.%d.exr"}), 2, {"-o g.1.exr"});
-  ExpectError(With(transfer_, {"--frame", "2", "-o", "folder/../g.#.exr"}), 2, {"folder/../g.2.exr", "by the name g.2.exr"});
+  ExpectError(With(transfer_, {"--frame", "2", "-o", "folder/../g.#.exr"}), 2,
+              {"folder/../g.2.exr", "by the name g.2.exr"});
   // Another frame's input counts too.
   ExpectError({"transfer", "g.1.exr", "--style", "style", "--over", "g.2.exr", "--frames", "1-2", "-o", "g.#.exr"}, 2,
               {"g.1.exr"});
@@ -94,7 +95,8 @@ TEST_F(CliFiles, NorThatOfFilesThatABinarySceneNames) {
   RunOk(With(stylize, {"-o", "new.png"}));
 }
 
-// A name is what follows any space of a line. Of 50,000 words all such ends were kept at once: 50,000 times 50 KB, 2.5 GB.
+// A name is what follows any space of a line. Of 50,000 words all such ends were kept at once: 50,000 times 50 KB, 2.5
+// GB.
 TEST_F(CliFiles, LinesOfManyWordsTakeNoMemory) {
   WriteStyle("style");
   std::string words;
@@ -202,8 +204,8 @@ TEST_F(CliFiles, WhatFailsInEveryFrameEndsTheRunAtOnce) {
 TEST_F(CliFiles, LibrariesKeepSilent) {
   WriteStyle("style");
   WriteBalls(1);
-  const CommandResult many = RunOk({"stylize", Scene("suzanne.glb"), "--size", "32", "--style", "style", "--threads",
-                                    "7", "-q", "-o", "p.png"});
+  const CommandResult many = RunOk(
+      {"stylize", Scene("suzanne.glb"), "--size", "32", "--style", "style", "--threads", "7", "-q", "-o", "p.png"});
   EXPECT_EQ(many.err, "");
   for (const int cut : {20, 200, 2000}) {
     WriteText("cut.png", Bytes("style/lit.png").substr(0, std::size_t(cut)));
@@ -214,8 +216,9 @@ TEST_F(CliFiles, LibrariesKeepSilent) {
   std::string damaged = Bytes("style/lit.png");
   damaged[damaged.size() / 2] ^= 1;
   WriteText("damaged.png", damaged);
-  const CommandResult result = ExpectError(
-      {"transfer", "g.1.exr", "--style", "style", "--over", "damaged.png", "-o", "q.png"}, 3, {"damaged.png", "damaged"});
+  const CommandResult result =
+      ExpectError({"transfer", "g.1.exr", "--style", "style", "--over", "damaged.png", "-o", "q.png"}, 3,
+                  {"damaged.png", "damaged"});
   EXPECT_EQ(Count(result.err, "\n"), 1) << result.err;
 }
 
@@ -228,7 +231,8 @@ TEST_F(CliFiles, ErrorsSayHowToMend) {
   EXPECT_EQ(cut.code, 3);
   EXPECT_EQ(Count(cut.Warning(), "g.2.exr"), 1) << cut.err;
   EXPECT_TRUE(Contains(cut.Warning(), "guidegen --resume")) << cut.err;
-  ExpectError({"transfer", Scene("suzanne.glb"), "--style", "style", "-o", "p.png"}, 3, {"is a scene", "scumble stylize"});
+  ExpectError({"transfer", Scene("suzanne.glb"), "--style", "style", "-o", "p.png"}, 3,
+              {"is a scene", "scumble stylize"});
   ExpectError({"transfer", "g.1.exr", "--style", Scene("suzanne.glb"), "-o", "p.png"}, 3, {"is a scene", "stylize"});
   WriteText("README.md", "text");
   ExpectError({"stylize", "README.md", "--style", "style", "-o", "p.png"}, 3, {"'.md'", ".ply or .blend"});
@@ -239,7 +243,8 @@ TEST_F(CliFiles, ErrorsSayHowToMend) {
               {"sim.####.glb", "--frame N"});
   const CommandResult plan = RunOk({"stylize", Scene("suzanne.glb"), "--style", "style", "--explain"});
   EXPECT_TRUE(Contains(plan.out, "normal")) << plan.out;
-  EXPECT_TRUE(RunOk({"stylize", Scene("suzanne.glb"), "--style", "style", "--explain", "--json"}).Json()["plan"].is_array());
+  EXPECT_TRUE(
+      RunOk({"stylize", Scene("suzanne.glb"), "--style", "style", "--explain", "--json"}).Json()["plan"].is_array());
   ExpectError({"stylize", Scene("suzanne.glb"), "--style", "style"}, 2, {"-o FILE is required"});
 }
 
@@ -274,8 +279,8 @@ TEST_F(CliFiles, GuidesTellTheirRate) {
   guides.attributes["scumble:fps"] = "48";
   WriteGuideFile("fast.exr", guides);
   const auto shown = [&](const Arguments& more) {
-    RunOk(With({"transfer"}, With(more, {"--style", "style", "--set", "transfer.jitter_fps=12", "--frame", "3", "-o",
-                                         "p.png"})));
+    RunOk(With({"transfer"},
+               With(more, {"--style", "style", "--set", "transfer.jitter_fps=12", "--frame", "3", "-o", "p.png"})));
     return Bytes("p.png");
   };
   EXPECT_EQ(shown({"fast.exr"}), shown({"plain.exr", "--fps", "48"}));

@@ -12,7 +12,9 @@ namespace {
 
 class CliFlip : public CliTest {
  protected:
-  static bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+  static bool Contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
 
   // Guides with light of the same value everywhere.
   void WriteLight(const std::string& name, float grey, float red) {
@@ -62,7 +64,8 @@ TEST_F(CliFlip, FilesOfLayersAreNoPictures) {
   WriteLight("a.exr", 0.0f, 0.0f);
   WriteLight("b.exr", 1.0f, 0.0f);
   const std::vector<std::string> words = {"holds layers and no picture", "A, depth.Z", "expected R, G and B, or Y"};
-  ExpectError({"compare", "a.exr", "b.exr", "--flip"}, 3, {"a.exr " + words[0], words[1], words[2], "--layer", "lpe.full, luminance"});
+  ExpectError({"compare", "a.exr", "b.exr", "--flip"}, 3,
+              {"a.exr " + words[0], words[1], words[2], "--layer", "lpe.full, luminance"});
   ExpectError({"transfer", "a.exr", "--style", "b.exr", "-o", "p.png"}, 3, {"b.exr " + words[0], words[2]});
   ExpectError({"stylize", "a.glb", "--style", "b.exr", "-o", "p.png"}, 3, {"b.exr " + words[0]});
 }
@@ -70,7 +73,8 @@ TEST_F(CliFlip, FilesOfLayersAreNoPictures) {
 TEST_F(CliFlip, OfOneLayerOfLight) {
   WriteLight("a.exr", 0.0f, 0.25f);
   WriteLight("b.exr", 1.0f, 0.25f);
-  const CommandResult grey = RunOk({"compare", "a.exr", "b.exr", "--flip", "--layer", "luminance", "--json", "-o", "map.png"});
+  const CommandResult grey =
+      RunOk({"compare", "a.exr", "b.exr", "--flip", "--layer", "luminance", "--json", "-o", "map.png"});
   EXPECT_NEAR(double(grey.Json()["flip"]), kBlackToWhite, kItsRounding);
   EXPECT_EQ(grey.Json()["rms"], 1.0);
   EXPECT_EQ(grey.Json()["layer"], "luminance");
@@ -85,12 +89,15 @@ TEST_F(CliFlip, OfOneLayerOfLight) {
   EXPECT_TRUE(Contains(above.out, "FLIP mean 0.967")) << above.out;
   EXPECT_TRUE(Contains(above.err, "576 values of luminance lie outside")) << above.err;
   for (const std::string layer : {"normal", "depth", "lpe", "bogus"}) {
-    ExpectError({"compare", "a.exr", "b.exr", "--flip", "--layer", layer}, 3, {"a.exr has no layer of light " + layer, "lpe.full, luminance"});
+    ExpectError({"compare", "a.exr", "b.exr", "--flip", "--layer", layer}, 3,
+                {"a.exr has no layer of light " + layer, "lpe.full, luminance"});
   }
-  ExpectError({"compare", "a.exr", "b.exr", "--flip", "--layer", "luminance", "--layer", "lpe.full"}, 2, {"one --layer"});
+  ExpectError({"compare", "a.exr", "b.exr", "--flip", "--layer", "luminance", "--layer", "lpe.full"}, 2,
+              {"one --layer"});
   WritePainted("a.png", 24, 24);
   EXPECT_EQ(RunOk({"compare", "a.png", "a.png", "--flip", "--layer", "color", "--json"}).Json()["flip"], 0.0);
-  ExpectError({"compare", "a.png", "a.exr", "--flip", "--layer", "luminance"}, 3, {"a.png has no layer of light", "it has none"});
+  ExpectError({"compare", "a.png", "a.exr", "--flip", "--layer", "luminance"}, 3,
+              {"a.png has no layer of light", "it has none"});
 }
 
 TEST_F(CliFlip, FailIsALimitOfItsMean) {
@@ -105,7 +112,8 @@ TEST_F(CliFlip, FailIsALimitOfItsMean) {
   EXPECT_EQ(run({"-fail", "0.968"}).code, 0);
   EXPECT_EQ(run({"-fail", "0.967"}).code, 1);
   EXPECT_EQ(run({"--fail", "0"}).code, 1);
-  EXPECT_EQ(Run({"compare", "a.exr", "a.exr", "--flip", "--layer", "luminance", "--fail", "0"}).code, 0) << "not above it";
+  EXPECT_EQ(Run({"compare", "a.exr", "a.exr", "--flip", "--layer", "luminance", "--fail", "0"}).code, 0)
+      << "not above it";
   EXPECT_EQ(run({"--fail", "0.967", "--json"}).Json()["verdict"], "fail");
   EXPECT_EQ(run({"--fail", "1", "--json"}).Json()["verdict"], "equal");
   EXPECT_TRUE(Contains(run({"--fail", "0.5"}).out, "fail: the mean may be 0.5"));

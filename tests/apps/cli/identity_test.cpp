@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "core/filter/resample.h"
 #include "core/io/guide_file.h"
 #include "core/style/style_file.h"
 #include "tests/support/cli_harness.h"
-#include "core/filter/resample.h"
 
 namespace scumble {
 namespace {
@@ -37,7 +37,8 @@ class CliIdentity : public CliTest {
   static void ExpectSame(const std::vector<std::string>& frames, const std::vector<std::string>& expected,
                          const std::string& what) {
     ASSERT_EQ(frames.size(), expected.size());
-    for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_TRUE(frames[i] == expected[i]) << what << ", frame " << i + 1;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      EXPECT_TRUE(frames[i] == expected[i]) << what << ", frame " << i + 1;
   }
 
   // Coverage and normals of every so many pixels.
@@ -64,9 +65,10 @@ class CliIdentity : public CliTest {
   void WriteMovingStyle(const std::string& folder, const fs::path& bundled) {
     const auto style = LoadStyle(bundled);
     ASSERT_TRUE(style.ok()) << style.error().message;
-    std::string text = "[transfer]\nreference_height = 0\nlevels = 5\nblend_radius = 2\njitter_fps = 12\nvariety = 8\n"
-                       "threshold = [[1, 0.05], [6, 0.4]]\ncolorize = [[2, 0.0], [5, 1.0]]\ncolorize_mode = \"oklab\"\n"
-                       "shadow = \"paint\"\nluminance_weight = [[1, 0.3], [4, 0.0]]\n";
+    std::string text =
+        "[transfer]\nreference_height = 0\nlevels = 5\nblend_radius = 2\njitter_fps = 12\nvariety = 8\n"
+        "threshold = [[1, 0.05], [6, 0.4]]\ncolorize = [[2, 0.0], [5, 1.0]]\ncolorize_mode = \"oklab\"\n"
+        "shadow = \"paint\"\nluminance_weight = [[1, 0.3], [4, 0.0]]\n";
     if (style->exemplars.front().is_sphere) text += "edge = \"exemplar\"\n";
     fs::create_directories(At(folder));
     const std::size_t lights = std::max<std::size_t>(2, style->exemplars.size());
@@ -83,12 +85,12 @@ class CliIdentity : public CliTest {
   }
 };
 
-// As the style's author wants it, and in plain pixels, where even the small pictures of a test have all levels and a vote.
+// As the style's author wants it, and in plain pixels, where even the small pictures of a test have all levels and a
+// vote.
 TEST_F(CliIdentity, OneStepOrTwoOnAnyThreads) {
   const Arguments scene = {Scene("stilllife.glb"), "--view", "35,25", "--size", "96x54", "--aa", "4"};
   const std::vector<Arguments> variants = {
-      {},
-      {"--set", "transfer.reference_height=0", "--set", "transfer.scale=0.1", "--set", "transfer.colorize=0.7"}};
+      {}, {"--set", "transfer.reference_height=0", "--set", "transfer.scale=0.1", "--set", "transfer.colorize=0.7"}};
   for (const fs::path& folder : Styles()) {
     for (const Arguments& variant : variants) {
       const Arguments style = With({"--style", folder.string()}, variant);
@@ -96,7 +98,8 @@ TEST_F(CliIdentity, OneStepOrTwoOnAnyThreads) {
       RunOk(With(With({"stylize"}, scene), With(style, {"--threads", "4", "-o", "once.png"})));
       RunOk(With({"transfer", "guides.exr"}, With(style, {"--threads", "3", "-o", "twice.png"})));
       EXPECT_NE(Bytes("once.png"), "");
-      EXPECT_TRUE(Bytes("once.png") == Bytes("twice.png")) << folder.filename() << ", " << variant.size() << " more arguments";
+      EXPECT_TRUE(Bytes("once.png") == Bytes("twice.png"))
+          << folder.filename() << ", " << variant.size() << " more arguments";
     }
   }
 }
@@ -110,7 +113,8 @@ TEST_F(CliIdentity, HoweverARangeIsCut) {
     const Arguments stylize = With(With({"stylize"}, scene), style);
     RunOk(With(stylize, {"--frames", "1-6", "--threads", "1", "-o", "once.#.png"}));
     const auto once = AllBytes("once");
-    for (std::size_t i = 1; i < once.size(); ++i) EXPECT_FALSE(once[i] == once[i - 1]) << "frame " << i + 1 << " stands still";
+    for (std::size_t i = 1; i < once.size(); ++i)
+      EXPECT_FALSE(once[i] == once[i - 1]) << "frame " << i + 1 << " stands still";
 
     RunOk(With(stylize, {"--frames", "1-2", "--threads", "4", "-o", "cut.#.png"}));
     RunOk(With(stylize, {"--frames", "3-6", "--threads", "3", "-o", "cut.#.png"}));
@@ -127,10 +131,12 @@ TEST_F(CliIdentity, HoweverARangeIsCut) {
 
 // Bounced light needs chance: so many paths in one step as in two, and another number is another picture.
 TEST_F(CliIdentity, SamplesAndBouncesOfLightInOneStepOrTwo) {
-  const Arguments view = {Scene("snail.glb"), "--style", "scene-oil", "--set", "transfer.guide_weights.lpe.LDDE=1", "--size", "96x54"};
+  const Arguments view = {Scene("snail.glb"), "--style", "scene-oil", "--set", "transfer.guide_weights.lpe.LDDE=1",
+                          "--size",           "96x54"};
   for (const Arguments& light : {Arguments{"--samples", "2"}, {"--samples", "3", "--max-bounces", "1"}}) {
     RunOk(With(With(With({"guidegen"}, view), light), {"-o", "g.exr"}));
-    RunOk({"transfer", "g.exr", "--style", "scene-oil", "--set", "transfer.guide_weights.lpe.LDDE=1", "-o", "two" + light[1] + ".png"});
+    RunOk({"transfer", "g.exr", "--style", "scene-oil", "--set", "transfer.guide_weights.lpe.LDDE=1", "-o",
+           "two" + light[1] + ".png"});
     RunOk(With(With(With({"stylize"}, view), light), {"-o", "one" + light[1] + ".png"}));
     EXPECT_TRUE(Bytes("one" + light[1] + ".png") == Bytes("two" + light[1] + ".png")) << Joined(light);
   }

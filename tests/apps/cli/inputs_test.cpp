@@ -1,5 +1,5 @@
-// Inputs at the ends of what is promised: the smallest and the largest exemplar, spheres in pictures that are not square,
-// lights in any order, names that a scene has not.
+// Inputs at the ends of what is promised: the smallest and the largest exemplar, spheres in pictures that are not
+// square, lights in any order, names that a scene has not.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -27,11 +27,11 @@ TEST_F(CliInputs, TheSmallestExemplar) {
   for (const Layer layer : {Layer::kAlbedo, Layer::kShadow}) guides.Add(layer);
   for (float& value : guides.Plane(Layer::kAlbedo, 1)) value = 0.5f;
   WriteGuideFile("ball.exr", guides);
-  for (const Arguments& more : {Arguments{}, Arguments{"--set", "transfer.reference_height=0"},
-                                Arguments{"--set", "transfer.reference_height=0", "--set", "transfer.blend_radius=8", "--set",
-                                          "transfer.colorize=1", "--set", "transfer.colorize_mode=oklab", "--set",
-                                          "transfer.variety=20", "--set", "transfer.edge=exemplar", "--set",
-                                          "transfer.shadow=paint"}}) {
+  for (const Arguments& more :
+       {Arguments{}, Arguments{"--set", "transfer.reference_height=0"},
+        Arguments{"--set", "transfer.reference_height=0", "--set", "transfer.blend_radius=8", "--set",
+                  "transfer.colorize=1", "--set", "transfer.colorize_mode=oklab", "--set", "transfer.variety=20",
+                  "--set", "transfer.edge=exemplar", "--set", "transfer.shadow=paint"}}) {
     RunOk(With({"transfer", "ball.exr", "--style", "tiny.png", "-o", "out.png"}, more));
     const Picture picture = Read("out.png");
     for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
@@ -55,10 +55,11 @@ TEST_F(CliInputs, TheLargestExemplar) {
   for (const Arguments& size : {Arguments{}, Arguments{"--set", "transfer.reference_height=0"}}) {  // 486² and 8192²
     CommandSettings patient;
     patient.patience_seconds = 300;
-    const CommandResult result = Run(With({"transfer", "ball.exr", "--style", "huge.ppm", "--set",
-                                           "transfer.method=litsphere", "--set", "transfer.blend_radius=0", "-o", "out.png"},
-                                          size),
-                                     patient);
+    const CommandResult result =
+        Run(With({"transfer", "ball.exr", "--style", "huge.ppm", "--set", "transfer.method=litsphere", "--set",
+                  "transfer.blend_radius=0", "-o", "out.png"},
+                 size),
+            patient);
     ASSERT_EQ(result.code, 0) << result.err;
     const Picture picture = Read("out.png");
     for (const auto& [x, y] : {std::pair{32, 32}, {10, 30}, {50, 20}, {30, 55}}) {
@@ -68,8 +69,8 @@ TEST_F(CliInputs, TheLargestExemplar) {
   }
 }
 
-// A sphere off the middle of a wide or tall painting, told by its guides: stylising these very guides gives the painting
-// back, wherever it may be used.
+// A sphere off the middle of a wide or tall painting, told by its guides: stylising these very guides gives the
+// painting back, wherever it may be used.
 TEST_F(CliInputs, ASphereInAPictureThatIsNotSquare) {
   for (const auto& [width, height] : {std::pair{150, 90}, {90, 150}}) {
     GuideSet guides(width, height);
@@ -112,7 +113,8 @@ TEST_F(CliInputs, ASphereInAPictureThatIsNotSquare) {
     EXPECT_GT(same, 3000);
     // Every extension works on it too.
     RunOk({"styles", "check", "style"});
-    for (const char* set : {"transfer.shadow=paint", "transfer.variety=10", "transfer.scale=0.4", "transfer.blend_radius=8"}) {
+    for (const char* set :
+         {"transfer.shadow=paint", "transfer.variety=10", "transfer.scale=0.4", "transfer.blend_radius=8"}) {
       RunOk({"stylize", Scene("suzanne.glb"), "--size", "64x36", "--style", "style", "--set", set, "-o", "more.png"});
     }
     RunOk({"stylize", Scene("suzanne.glb"), "--size", "64x36", "--style", "style", "--set", "transfer.shadow=paint",
@@ -122,7 +124,8 @@ TEST_F(CliInputs, ASphereInAPictureThatIsNotSquare) {
                 {"transfer.edge", "wide.png", "exact"});
     // Without its guides the same picture is refused.
     WritePainted("alone.png", width, height);
-    ExpectError({"transfer", "target.exr", "--style", "alone.png", "-o", "out.png"}, 3, {"alone.png", "square", "guides"});
+    ExpectError({"transfer", "target.exr", "--style", "alone.png", "-o", "out.png"}, 3,
+                {"alone.png", "square", "guides"});
   }
 }
 
@@ -134,7 +137,10 @@ class CliLights : public CliInputs {
     for (const auto& [name, luminance] : lights) {
       Picture picture = Painted(64, 64);
       for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-        for (int c = 0; c < 3; ++c) picture.rgba[i + c] = static_cast<std::uint16_t>(picture.rgba[i + c] / (name == "light" ? 1 : name == "half" ? 2 : 5));
+        for (int c = 0; c < 3; ++c)
+          picture.rgba[i + c] = static_cast<std::uint16_t>(picture.rgba[i + c] / (name == "light"  ? 1
+                                                                                  : name == "half" ? 2
+                                                                                                   : 5));
       }
       std::filesystem::create_directories(At("style"));
       ASSERT_TRUE(WritePicture(At("style/" + name + ".png"), picture));
@@ -161,7 +167,8 @@ TEST_F(CliLights, EqualOnesAreSaidAndTheFirstIsUsed) {
   EXPECT_FALSE(Contains(two.err, "warning")) << two.err;
   WriteLights({{"light", 0.8}, {"dark", 0.1}, {"half", 0.8}});
   const CommandResult three = Paint("three.png");
-  for (const char* words : {"style/half.png has the luminance 0.8 as style/light.png has", "give each [[exemplar]] its own"}) {
+  for (const char* words :
+       {"style/half.png has the luminance 0.8 as style/light.png has", "give each [[exemplar]] its own"}) {
     EXPECT_TRUE(Contains(three.err, words)) << three.err;
   }
   EXPECT_TRUE(Pixels("two.png") == Pixels("three.png"));
@@ -180,9 +187,11 @@ TEST_F(CliInputs, NamesThatTheSceneHasNot) {
   WritePainted("other.png", 64, 64);
   const Arguments stylize = {"stylize", Scene("suzanne.glb"), "--size", "64x36", "--style", "style"};
   RunOk(With(stylize, {"-o", "plain.png"}));
-  const CommandResult result = RunOk(
-      With(stylize, {"--assign", "Balll=other.png", "--assign", "Tree*=rendered", "--assign", "Bal*=other.png", "-o", "out.png"}));
-  EXPECT_TRUE(Contains(result.err, "warning: --assign Balll=other.png: the scene has no such object or material; its objects are ")) << result.err;
+  const CommandResult result = RunOk(With(stylize, {"--assign", "Balll=other.png", "--assign", "Tree*=rendered",
+                                                    "--assign", "Bal*=other.png", "-o", "out.png"}));
+  EXPECT_TRUE(Contains(result.err,
+                       "warning: --assign Balll=other.png: the scene has no such object or material; its objects are "))
+      << result.err;
   EXPECT_TRUE(Contains(result.err, "Plinth")) << result.err;
   EXPECT_TRUE(Contains(result.err, "warning: --assign Tree*=rendered: ")) << result.err;
   EXPECT_FALSE(Contains(result.err, "warning: --assign Bal*")) << result.err;

@@ -11,8 +11,12 @@ using CliIsa = CliTest;
 // SSE2 is what every machine has. A file tells nothing of threads, and one set of instructions decides the same for any
 // order of work: so all bytes are the same, header, subsamples and bounced light included.
 TEST_F(CliIsa, OneSetWritesTheSameFileForAnyThreads) {
-  const Arguments guidegen = {"guidegen",  Scene("stilllife.glb"), "--isa", "sse2", "--size", "96x54", "--aa", "2",
-                              "--samples", "2", "--layers", "position,luminance,shadow,lpe.full"};
+  const Arguments guidegen = {"guidegen",  Scene("stilllife.glb"),
+                              "--isa",     "sse2",
+                              "--size",    "96x54",
+                              "--aa",      "2",
+                              "--samples", "2",
+                              "--layers",  "position,luminance,shadow,lpe.full"};
   RunOk(With(guidegen, {"--threads", "1", "-o", "one.exr"}));
   const Expected<GuideSet> guides = ReadGuides(At("one.exr"), {});
   ASSERT_TRUE(guides) << guides.error().message;

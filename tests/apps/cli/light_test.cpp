@@ -29,14 +29,16 @@ class CliStyleLight : public CliTest {
     const auto entry = [](const std::string& image, const std::string& luminance) {
       return "[[exemplar]]\nimage = \"" + image + "\"\n" + (luminance.empty() ? "" : "luminance = " + luminance + "\n");
     };
-    WriteText("style/style.toml", "[transfer]\nreference_height = 0\n" + entry("light.png", light) + entry("dark.png", dark));
+    WriteText("style/style.toml",
+              "[transfer]\nreference_height = 0\n" + entry("light.png", light) + entry("dark.png", dark));
   }
 };
 
 TEST_F(CliStyleLight, LuminancesAreShownWithWhereTheyComeFrom) {
   WriteTwo("0.75", "");
   for (const char* verb : {"check", "info"}) {
-    const Arguments arguments = verb == std::string("info") ? Arguments{"info", "style"} : Arguments{"styles", "check", "style"};
+    const Arguments arguments =
+        verb == std::string("info") ? Arguments{"info", "style"} : Arguments{"styles", "check", "style"};
     const std::string out = RunOk(arguments).out;
     EXPECT_TRUE(Contains(out, "luminance 0.75, given")) << out;
     // (40 … 44) / 255 in sRGB is 0.0232 in linear light on average.
@@ -57,10 +59,14 @@ TEST_F(CliStyleLight, LightsThatAreTheWrongWayRoundOrEqual) {
   EXPECT_FALSE(Contains(RunOk({"styles", "check", "style"}).err, "more light"));
   WriteTwo("0.1", "0.8");
   const std::string opposite = RunOk({"styles", "check", "style"}).err;
-  EXPECT_TRUE(Contains(opposite, "style/dark.png: it is for more light than style/light.png (0.8 and 0.1), and its paint is darker")) << opposite;
+  EXPECT_TRUE(Contains(
+      opposite, "style/dark.png: it is for more light than style/light.png (0.8 and 0.1), and its paint is darker"))
+      << opposite;
   WriteTwo("0.4", "0.4");
   const std::string equal = RunOk({"styles", "check", "style"}).err;
-  EXPECT_TRUE(Contains(equal, "style/dark.png: it has the luminance 0.4 as style/light.png has, which stands first and is taken")) << equal;
+  EXPECT_TRUE(Contains(
+      equal, "style/dark.png: it has the luminance 0.4 as style/light.png has, which stands first and is taken"))
+      << equal;
   // And so it is: nothing of the second is in the picture.
   RunOk({"stylize", Scene("suzanne.glb"), "--size", "48x27", "--style", "style", "-o", "p.png", "-q"});
   const Expected<Picture> picture = ReadPicture(At("p.png"));
@@ -73,8 +79,12 @@ TEST_F(CliStyleLight, LightsThatAreTheWrongWayRoundOrEqual) {
 
 TEST_F(CliStyleLight, LuminanceByOption) {
   WriteTwo("0.8", "0.1");
-  const Arguments stylize = {"stylize", Scene("suzanne.glb"), "--size", "48x27", "--style", "style", "--exposure", "0", "--json", "-o", "p.png"};
-  const auto luminances = [&](const Arguments& sets) { return RunOk(With(stylize, sets)).Json()["styles"][0]["luminances"].dump(); };
+  const Arguments stylize = {"stylize", Scene("suzanne.glb"), "--size", "48x27",  "--style",
+                             "style",   "--exposure",         "0",      "--json", "-o",
+                             "p.png"};
+  const auto luminances = [&](const Arguments& sets) {
+    return RunOk(With(stylize, sets)).Json()["styles"][0]["luminances"].dump();
+  };
   EXPECT_EQ(luminances({"--set", "exemplar.1.luminance=0.5"}), "[0.5,0.10000000149011612]");
   EXPECT_EQ(luminances({"--set", "exemplar.1.luminance=2", "--set", "exemplar.2.luminance=0.25"}), "[2.0,0.25]");
   const auto refused = [&](const std::string& set, const std::vector<std::string>& words) {
@@ -95,20 +105,23 @@ TEST_F(CliStyleLight, FromTheTemplateToTwoLights) {
   const Arguments sphere = {"sphere", "--size", "64", "-o", "mine", "-q"};
   RunOk(sphere);
   WriteGrey("mine/lit.png", 80, 200);
-  const std::string first = Bytes("mine/style.toml"), painted = Bytes("mine/lit.png"), guides = Bytes("mine/guides.exr");
+  const std::string first = Bytes("mine/style.toml"), painted = Bytes("mine/lit.png"),
+                    guides = Bytes("mine/guides.exr");
   const CommandResult second = RunOk(With(sphere, {"--light", "120,-10", "--name", "shade"}));
   for (const char* file : {"mine/shade-template.png", "mine/shade-guides.exr", "mine/style.toml"}) {
     EXPECT_TRUE(Contains(second.out, file)) << second.out;
   }
   EXPECT_EQ(Bytes("mine/style.toml").rfind(first, 0), 0u) << "what the artist wrote stays as it is";
-  ExpectError({"styles", "check", "mine"}, 3, {"shade.png is not there yet", "mine/shade-template.png", "[[exemplar]]"});
+  ExpectError({"styles", "check", "mine"}, 3,
+              {"shade.png is not there yet", "mine/shade-template.png", "[[exemplar]]"});
   WriteGrey("mine/shade.png", 80, 60);
   const std::string shade = Bytes("mine/shade.png");
   const CommandResult check = RunOk({"styles", "check", "mine"});
   EXPECT_TRUE(Contains(check.out, "mine/shade.png: luminance")) << check.out;
   EXPECT_FALSE(Contains(check.err, "luminance")) << check.err;
   const nlohmann::json json =
-      RunOk({"stylize", Scene("suzanne.glb"), "--size", "48x27", "--style", "mine", "-o", "p.png", "--json", "-q"}).Json();
+      RunOk({"stylize", Scene("suzanne.glb"), "--size", "48x27", "--style", "mine", "-o", "p.png", "--json", "-q"})
+          .Json();
   EXPECT_EQ(json["styles"][0]["exemplars"], 2);
   // Once more changes nothing; another size or light is refused before anything is written.
   EXPECT_FALSE(Contains(RunOk(With(sphere, {"--light", "120,-10", "--name", "shade"})).out, "style.toml"));
@@ -126,7 +139,8 @@ TEST_F(CliStyleLight, FromTheTemplateToTwoLights) {
 TEST_F(CliStyleLight, NamesOfLights) {
   const Arguments sphere = {"sphere", "--size", "16", "-o", "kit", "-q"};
   RunOk(With(sphere, {"--light", "0,0", "--name", "day", "--light", "0,60", "--name", "night"}));
-  for (const char* file : {"kit/day-template.png", "kit/night-guides.exr", "kit/HOWTO.txt"}) EXPECT_TRUE(Exists(file)) << file;
+  for (const char* file : {"kit/day-template.png", "kit/night-guides.exr", "kit/HOWTO.txt"})
+    EXPECT_TRUE(Exists(file)) << file;
   EXPECT_TRUE(Contains(Bytes("kit/style.toml"), "image = \"night.png\""));
   for (const char* name : {"", "a/b", "template", "x-template", "-x", "a.b"}) {
     const std::string option = "--name=" + std::string(name);
@@ -137,7 +151,8 @@ TEST_F(CliStyleLight, NamesOfLights) {
   // A style has four lights at most.
   RunOk(With(sphere, {"--light", "0,10", "--name", "three"}));
   RunOk(With(sphere, {"--light", "0,20", "--name", "four"}));
-  ExpectError(With(sphere, {"--light", "0,30", "--name", "five"}), 4, {"kit/style.toml would list 5 lights", "up to 4"});
+  ExpectError(With(sphere, {"--light", "0,30", "--name", "five"}), 4,
+              {"kit/style.toml would list 5 lights", "up to 4"});
   EXPECT_FALSE(Exists("kit/five-template.png"));
 }
 

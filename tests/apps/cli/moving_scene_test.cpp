@@ -1,5 +1,5 @@
-// Scenes with animations on the command line: frames that depend on nothing but their number, cameras and lamps that are
-// decided once, the layer motion, several animations in one file, broken ones.
+// Scenes with animations on the command line: frames that depend on nothing but their number, cameras and lamps that
+// are decided once, the layer motion, several animations in one file, broken ones.
 #include <cmath>
 #include <map>
 #include <string>
@@ -28,8 +28,8 @@ class CliMoving : public CliTest {
     const int mesh = b.Mesh({{{"attributes", {{"POSITION", position}}}, {"indices", b.Indices({0, 1, 2, 0, 2, 3})}}});
     const int wall = b.Root({{"name", "Wall"}, {"mesh", mesh}});
     if (camera) {
-      b.Append("cameras", {{"type", "orthographic"},
-                           {"orthographic", {{"xmag", 5}, {"ymag", 5}, {"znear", 0.1}, {"zfar", 100}}}});
+      b.Append("cameras",
+               {{"type", "orthographic"}, {"orthographic", {{"xmag", 5}, {"ymag", 5}, {"znear", 0.1}, {"zfar", 100}}}});
       b.Root({{"name", "Eye"}, {"camera", 0}, {"translation", {0, 0, 10}}});
     }
     b.Animate(wall, "translation", {1, 2}, {0, 0, 0, 2, 0, 0});
@@ -101,7 +101,7 @@ TEST_F(CliMoving, FrameNIsAtNOverFps) {
   };
   // At rest the wall covers columns 30 to 69; a metre is ten of them. Still before its first key and after its last.
   const std::map<std::pair<std::string, std::string>, int> expected = {
-      {{"0", "24"}, 30},  {{"-48", "24"}, 30}, {{"24", "24"}, 30}, {{"36", "24"}, 40}, {{"48", "24"}, 50},
+      {{"0", "24"}, 30},   {{"-48", "24"}, 30}, {{"24", "24"}, 30}, {{"36", "24"}, 40},           {{"48", "24"}, 50},
       {{"480", "24"}, 50}, {{"36", "48"}, 30},  {{"15", "10"}, 40}, {{"48000", "24000/1001"}, 50}};
   for (const auto& [frame, column] : expected) EXPECT_EQ(edge(frame.first, frame.second), column) << frame.first;
   // Without a frame's number it is seen at rest, and that is said.
@@ -214,7 +214,8 @@ TEST_F(CliMoving, BrokenAnimationsAreNamed) {
   WriteStyle("style");
   const auto refuse = [&](const GltfBuilder& b, const std::vector<std::string>& words) {
     WriteGlb("bad.glb", b);
-    for (const Arguments& verb : {Arguments{"guidegen", "bad.glb"}, Arguments{"stylize", "bad.glb", "--style", "style"}}) {
+    for (const Arguments& verb :
+         {Arguments{"guidegen", "bad.glb"}, Arguments{"stylize", "bad.glb", "--style", "style"}}) {
       const std::string output = verb[0] == "guidegen" ? "#.exr" : "#.png";
       ExpectError(With(verb, {"--size", "16", "--frames", "1-3", "-o", output}), 3, words);
       ExpectError(With(verb, {"--size", "16", "--frame", "2", "-o", output}), 3, words);

@@ -60,7 +60,8 @@ TEST_F(CliOneStepOrTwo, SameBytesHoweverItIsAsked) {
 TEST_F(CliPictures, AnEdgeThatTheExemplarHasNotIsWarnedOf) {
   WriteStyle("style");
   WriteGuideFile("g.exr", Ball(64));
-  const Arguments transfer = {"transfer", "g.exr", "--style", "style", "--set", "transfer.edge=exemplar", "-o", "e.png"};
+  const Arguments transfer = {"transfer", "g.exr", "--style", "style", "--set", "transfer.edge=exemplar",
+                              "-o",       "e.png"};
   EXPECT_TRUE(Contains(RunOk(transfer).err, "has no painted edge"));
   EXPECT_FALSE(Contains(RunOk({"transfer", "g.exr", "--style", "style", "-o", "e.png"}).err, "painted edge"));
 }
@@ -137,7 +138,8 @@ TEST_F(CliPictures, ShowWritesWhatExplainsTheResult) {
   std::string last;
   for (const std::string what : {"sources", "chunks", "borders", "levels", "error", "exemplar", "styles"}) {
     nlohmann::json shown = RunOk(With(transfer, {"--show", what, "-o", "p.png"})).Json();
-    for (const char* other : {"ms", "memory", "work"}) shown.erase(other), plain.erase(other);  // other bytes are written
+    for (const char* other : {"ms", "memory", "work"})
+      shown.erase(other), plain.erase(other);  // other bytes are written
     EXPECT_EQ(shown, plain) << what;
     EXPECT_FALSE(Pixels("p.png") == painted) << what;
     last = Bytes("p.png");
@@ -246,7 +248,8 @@ TEST_F(CliCompare, FlickerAlongTheMotion) {
   EXPECT_EQ(moved.Json()["flicker"], 0.0);
   EXPECT_EQ(moved.Json()["floor"], 0.0);
   EXPECT_GT(moved.Json()["pixels"], 100);
-  const CommandResult still = RunOk({"compare", "a.png", "a.png", "--motion", "g.exr", "--motion-next", "next.exr", "--json"});
+  const CommandResult still =
+      RunOk({"compare", "a.png", "a.png", "--motion", "g.exr", "--motion-next", "next.exr", "--json"});
   EXPECT_GT(still.Json()["flicker"], 1.0);
   EXPECT_LT(still.Json()["pixels"], moved.Json()["pixels"]);  // beyond the ball's edge the next frame shows nothing
   EXPECT_TRUE(Contains(RunOk({"compare", "a.png", "a.png", "--motion", "g.exr"}).out, "flicker "));

@@ -117,9 +117,8 @@ TEST_F(CliQuality, FewerSamplesAreNotTakenForMore) {
   for (const bool lit : {true, false}) {
     const std::string style = lit ? "chiaroscuro" : "style", name = lit ? "lit" : "unlit";
     const auto kept = [&](const char* samples) {
-      const Arguments stylize = {"stylize",   Scene("ball.glb"), "--style", style,      "--size", "32",
-                                 "--samples", samples,           "--frames", "1-2",     "--resume", "--json",
-                                 "-o",        name + ".#.png"};
+      const Arguments stylize = {"stylize", Scene("ball.glb"), "--style", style,      "--size", "32", "--samples",
+                                 samples,   "--frames",        "1-2",     "--resume", "--json", "-o", name + ".#.png"};
       return RunOk(stylize).Json().at("kept").get<int>();
     };
     EXPECT_EQ(kept("2"), 0);
@@ -128,8 +127,8 @@ TEST_F(CliQuality, FewerSamplesAreNotTakenForMore) {
     EXPECT_EQ(kept("3"), 2);
   }
   RunOk({"guidegen", Scene("ball.glb"), "--style", "chiaroscuro", "--size", "32", "--samples", "3", "-o", "g.1.exr"});
-  const Arguments transfer = {"transfer", "g.#.exr", "--style", "chiaroscuro", "--frames", "1-1", "--resume", "--json",
-                              "-o",       "lit.#.png"};
+  const Arguments transfer = {"transfer", "g.#.exr",  "--style", "chiaroscuro", "--frames",
+                              "1-1",      "--resume", "--json",  "-o",          "lit.#.png"};
   EXPECT_EQ(RunOk(transfer).Json().at("kept"), 1) << "guides tell how many samples they have";
   RunOk({"guidegen", Scene("ball.glb"), "--style", "chiaroscuro", "--size", "32", "--samples", "2", "-o", "g.1.exr"});
   EXPECT_EQ(RunOk(transfer).Json().at("kept"), 0);

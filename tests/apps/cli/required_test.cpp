@@ -37,7 +37,8 @@ class CliRequired : public CliTest {
               "[[exemplar]]\nimage = \"dark.png\"\nluminance = 0.1\n");
   }
   static Arguments Stylize(const std::string& style, const Arguments& more = {}, const std::string& output = "p.png") {
-    return With({"stylize", "scene.gltf", "--style", style, "--size", std::to_string(kSide), "-o", output, "--json"}, more);
+    return With({"stylize", "scene.gltf", "--style", style, "--size", std::to_string(kSide), "-o", output, "--json"},
+                more);
   }
   std::size_t FileSize(const std::string& name) const { return fs::file_size(At(name)); }
 };
@@ -100,7 +101,8 @@ TEST_F(CliRequired, PicturesThatNoStyleAsksForAreNotMissed) {
     const CommandResult run = RunOk(Stylize(style));
     EXPECT_EQ(run.err.find("lost.png"), std::string::npos) << run.err;
   }
-  ExpectError(Stylize("plain", {"--set", "transfer.colorize=1"}), 3, {"scene.gltf", "lost.png", "put it beside the scene"});
+  ExpectError(Stylize("plain", {"--set", "transfer.colorize=1"}), 3,
+              {"scene.gltf", "lost.png", "put it beside the scene"});
   ExpectError({"guidegen", "scene.gltf", "--size", "8", "--layers", "albedo", "-o", "g.exr"}, 3, {"lost.png"});
   EXPECT_FALSE(Exists("g.exr"));
   ExpectError({"info", "scene.gltf"}, 3, {"lost.png"});
@@ -108,7 +110,8 @@ TEST_F(CliRequired, PicturesThatNoStyleAsksForAreNotMissed) {
   ExpectError(Stylize("plain", {"--set", "transfer.colorize=1", "--frames", "1-2"}, "q#.png"), 3, {"lost.png"});
 }
 
-// A JPEG is OpenImageIO's to read. Without that library at hand, a style of normals, and of light, is painted all the same.
+// A JPEG is OpenImageIO's to read. Without that library at hand, a style of normals, and of light, is painted all the
+// same.
 TEST_F(CliRequired, TheLibraryOfPicturesIsOpenedWhereItIsNeeded) {
   WriteText("photo.jpg", "\xFF\xD8\xFF\xE0 the rest is never read");
   WriteTextured("photo.jpg");
@@ -171,7 +174,9 @@ TEST_F(CliRequired, ThePlanSaysWhichPicturesAreDecodedAndWhatWasTaken) {
   WriteTextured("paint.png");
   WriteStyles();
   const Arguments plan = {"stylize", "scene.gltf", "--style", "plain", "--explain", "--size", std::to_string(kSide)};
-  const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
   EXPECT_TRUE(has(RunOk(plan).out, "none of 1 decoded"));
   EXPECT_FALSE(has(RunOk(plan).out, "taken:")) << "nothing was";
   const std::string made = RunOk(With(plan, {"--set", "transfer.colorize=1", "-o", "p.png"})).out;

@@ -1,5 +1,5 @@
-// Styles by object and material: what a scene's author gives, what --assign gives, and what --set changes in one of them;
-// shadow catchers; wrong names.
+// Styles by object and material: what a scene's author gives, what --assign gives, and what --set changes in one of
+// them; shadow catchers; wrong names.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -26,10 +26,11 @@ class CliSceneStyles : public CliTest {
     }
     std::filesystem::create_directories(At(folder));
     ASSERT_TRUE(WritePicture(At(folder + "/lit.png"), picture));
-    WriteText(folder + "/style.toml", "[transfer]\nreference_height = 0\nblend_radius = 0\n" + more +
-                                          "[[exemplar]]\nimage = \"lit.png\"\n");
+    WriteText(folder + "/style.toml",
+              "[transfer]\nreference_height = 0\nblend_radius = 0\n" + more + "[[exemplar]]\nimage = \"lit.png\"\n");
   }
-  // Columns of squares, each `side` wide, of one mesh in the material "Paint", seen from the front: object i is "Tile" i.
+  // Columns of squares, each `side` wide, of one mesh in the material "Paint", seen from the front: object i is "Tile"
+  // i.
   static GltfBuilder Tiles(int columns, int rows) {
     GltfBuilder b;
     const int position = b.Floats({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 3);
@@ -40,8 +41,9 @@ class CliSceneStyles : public CliTest {
               {"mesh", 0},
               {"translation", {i % columns, rows - 1 - i / columns, 0}}});
     }
-    b.Append("cameras", {{"type", "orthographic"},
-                         {"orthographic", {{"xmag", columns / 2.0}, {"ymag", rows / 2.0}, {"znear", 0.1}, {"zfar", 100}}}});
+    b.Append("cameras",
+             {{"type", "orthographic"},
+              {"orthographic", {{"xmag", columns / 2.0}, {"ymag", rows / 2.0}, {"znear", 0.1}, {"zfar", 100}}}});
     b.Root({{"name", "Eye"}, {"camera", 0}, {"translation", {columns / 2.0, rows / 2.0, 10}}});
     return b;
   }
@@ -57,8 +59,10 @@ class CliSceneStyles : public CliTest {
     if (!picture) return colors;
     for (int i = 0; i < columns * rows; ++i) {
       const std::uint16_t* pixel = picture->At(8 * (i % columns) + 4, 8 * (i / columns) + 4);
-      if (pixel[3] == 0) colors += '.';
-      else colors += pixel[0] > 40000 ? 'r' : pixel[1] > 40000 ? 'g' : 'b';
+      if (pixel[3] == 0)
+        colors += '.';
+      else
+        colors += pixel[0] > 40000 ? 'r' : pixel[1] > 40000 ? 'g' : 'b';
     }
     return colors;
   }
@@ -84,7 +88,8 @@ TEST_F(CliSceneStyles, ObjectsAndMaterialsGetWhatTheirAuthorWants) {
   EXPECT_EQ(colors({"--no-scene-styles"}), "rrrr");
   EXPECT_EQ(colors({"--assign", "Tile0=red"}), "rb.r");
   EXPECT_EQ(colors({"--assign", "Tile2=scene/green"}), "gbgr");
-  EXPECT_EQ(colors({"--assign", "Paint=scene/blue"}), "bbbb") << "what is asked for goes before the scene, even by material";
+  EXPECT_EQ(colors({"--assign", "Paint=scene/blue"}), "bbbb")
+      << "what is asked for goes before the scene, even by material";
   EXPECT_EQ(colors({"--assign", "Paint=scene/blue", "--assign", "Tile1=rendered"}), "b.bb");
   b.json["materials"][0]["extras"] = {{"scumble_style", "green"}};
   WriteGlb("scene/s.glb", b);
@@ -113,7 +118,8 @@ TEST_F(CliSceneStyles, NoOutputTakesThePlaceOfTheirFiles) {
   RunOk({"guidegen", "scene/s.glb", "--style", "red", "--size", "16x8", "-o", "scene/g.exr"});
   for (const Arguments& verb : {Arguments{"stylize", "scene/s.glb", "--size", "16x8"}, {"transfer", "scene/g.exr"}}) {
     const Arguments paint = With(verb, {"--style", "red"});
-    ExpectError(With(paint, {"-o", "scene/green/lit.png"}), 2, {"scene/green/lit.png", "overwrite a file of the style"});
+    ExpectError(With(paint, {"-o", "scene/green/lit.png"}), 2,
+                {"scene/green/lit.png", "overwrite a file of the style"});
     ExpectError(With(paint, {"--frames", "1-2", "-o", "p#.png"}), 2, {"-o p2.png", "overwrite a file of the style"});
     EXPECT_FALSE(Exists("p1.png"));
     RunOk(With(paint, {"-o", "new.png"}));
@@ -156,8 +162,9 @@ TEST_F(CliSceneStyles, WishesThatCannotBeGranted) {
   WriteGlb("scene/s.glb", b);
   const Arguments stylize = {"stylize", "scene/s.glb", "--style", "red", "--size", "16x8", "-o", "p#.png"};
   for (const Arguments& frames : {Arguments{"--frame", "1"}, Arguments{"--frames", "1-2"}}) {
-    ExpectError(With(stylize, frames), 3, {"scene/s.glb: object 'Tile1'", "'oill'", "scumble_style", "charcoal",
-                                           "--assign 'Tile1=STYLE'", "--no-scene-styles"});
+    ExpectError(With(stylize, frames), 3,
+                {"scene/s.glb: object 'Tile1'", "'oill'", "scumble_style", "charcoal", "--assign 'Tile1=STYLE'",
+                 "--no-scene-styles"});
     RunOk(With(With(stylize, frames), {"--no-scene-styles"}));
     RunOk(With(With(stylize, frames), {"--assign", "Tile*=rendered"}));
   }
@@ -258,8 +265,8 @@ TEST_F(CliSceneStyles, ACatcherShowsTheShadowsOnIt) {
   EXPECT_GT(lit, 3000);
   EXPECT_GT(shaded, 100);
   // The same from guides, and by the scene's own wish.
-  RunOk({"transfer", "g.exr", "--style", "grey", "--assign", "Floor=catcher", "--set", "transfer.shadow=paint", "--over",
-         "under.png", "-o", "two.png"});
+  RunOk({"transfer", "g.exr", "--style", "grey", "--assign", "Floor=catcher", "--set", "transfer.shadow=paint",
+         "--over", "under.png", "-o", "two.png"});
   EXPECT_TRUE(Pixels("two.png") == Pixels("p.png"));
   b.json["nodes"][0]["extras"] = {{"scumble_style", "catcher"}};
   WriteGlb("s.glb", b);
@@ -282,8 +289,9 @@ TEST_F(CliSceneStyles, TwoThousandObjectsOfThreeStyles) {
   const nlohmann::json many = RunOk(stylize).Json();
   EXPECT_EQ(Colors("p.png", kColumns, kRows), expected);
   RecordProperty("prepare_ms", std::to_string(many["ms"]["prepare"]["median"].get<double>()));
-  RecordProperty("plain_prepare_ms",
-                 std::to_string(RunOk(With(stylize, {"--no-scene-styles"})).Json()["ms"]["prepare"]["median"].get<double>()));
+  RecordProperty(
+      "plain_prepare_ms",
+      std::to_string(RunOk(With(stylize, {"--no-scene-styles"})).Json()["ms"]["prepare"]["median"].get<double>()));
   // Two thousand options do what the scene did.
   Arguments assigned = With(stylize, {"--no-scene-styles"});
   for (int i = 0; i < kColumns * kRows; ++i) {
@@ -327,21 +335,29 @@ TEST_F(CliAssign, TheLaterOneWinsBeItAnObjectsOrAMaterials) {
   const CommandResult hidden =
       Paint({"--assign", "Tile1=scene/green", "--assign", "Tile2=rendered", "--assign", "Paint=scene/blue"});
   EXPECT_EQ(Colors("p.png", 4, 1), "bbbb");
-  EXPECT_EQ(hidden.Warning(), "--assign Tile1=scene/green, --assign Tile2=rendered paint no pixel: what is named there is "
-                              "not seen, or a later assignment names it too");
+  EXPECT_EQ(hidden.Warning(),
+            "--assign Tile1=scene/green, --assign Tile2=rendered paint no pixel: what is named there is "
+            "not seen, or a later assignment names it too");
   ASSERT_EQ(hidden.Json()["warnings"].size(), 1u);
   EXPECT_EQ(hidden.Json()["warnings"][0], hidden.Warning());
   EXPECT_TRUE(Paint({"--assign", "Tile1=scene/green"}).Json()["warnings"].empty());
 }
 
 TEST_F(CliAssign, NamesThatFitNothingAreSaidOncePerRun) {
-  const Arguments stylize = {"stylize", "s.glb", "--style", "red", "--size", "32x8", "--frames", "1-3", "-o", "p#.png",
-                             "--assign", "tile0=scene/green", "--assign", "Pait=scene/blue", "--assign", "Zebra=rendered"};
+  const Arguments stylize = {"stylize",  "s.glb",
+                             "--style",  "red",
+                             "--size",   "32x8",
+                             "--frames", "1-3",
+                             "-o",       "p#.png",
+                             "--assign", "tile0=scene/green",
+                             "--assign", "Pait=scene/blue",
+                             "--assign", "Zebra=rendered"};
   const CommandResult run = RunOk(With(stylize, {"--json"}));
   const std::string names = "its objects are Tile0, Tile1, Tile2, Tile3; its materials are Paint";
-  for (const std::string& line : {"--assign tile0=scene/green: the scene has no such object or material; " + names + "; did you mean Tile0?\n",
-                                 "--assign Pait=scene/blue: the scene has no such object or material; " + names + "; did you mean Paint?\n",
-                                 "--assign Zebra=rendered: the scene has no such object or material; " + names + "\n"}) {
+  for (const std::string& line :
+       {"--assign tile0=scene/green: the scene has no such object or material; " + names + "; did you mean Tile0?\n",
+        "--assign Pait=scene/blue: the scene has no such object or material; " + names + "; did you mean Paint?\n",
+        "--assign Zebra=rendered: the scene has no such object or material; " + names + "\n"}) {
     EXPECT_EQ(Count(run.err, line), 1) << run.err;
   }
   EXPECT_EQ(Count(run.err, "warning"), 3) << run.err;
@@ -349,7 +365,8 @@ TEST_F(CliAssign, NamesThatFitNothingAreSaidOncePerRun) {
 }
 
 TEST_F(CliAssign, FilesHoldManyAssignments) {
-  WriteText("sheet.txt", "\xef\xbb\xbf# the set\r\n\n  Tile0 = scene/green\r\nPaint=scene/blue\n   # over it\nTile3=rendered");
+  WriteText("sheet.txt",
+            "\xef\xbb\xbf# the set\r\n\n  Tile0 = scene/green\r\nPaint=scene/blue\n   # over it\nTile3=rendered");
   EXPECT_EQ(ColorsWith({"--assign", "@sheet.txt"}), "bbb.");
   EXPECT_EQ(ColorsWith({"--assign", "@sheet.txt", "--assign", "Tile1=red"}), "brb.");
   EXPECT_EQ(ColorsWith({"--assign", "Tile1=red", "--assign", "@sheet.txt"}), "bbb.");
@@ -397,9 +414,10 @@ TEST_F(CliAssign, TheTwoStepsTakeWhatTheOneTakes) {
   RunOk(With({"transfer", "g.exr", "-o", "two.png"}, styles));
   EXPECT_TRUE(Bytes("one.png") == Bytes("two.png"));
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--style", "red", "-o", "few.exr"});
-  const CommandResult lacks = ExpectError(With({"transfer", "few.exr", "-o", "no.png"}, styles), 3,
-                                          {"few.exr has no layer albedo, luminance", "--layers albedo,luminance",
-                                           "the same --style, --assign and --set", "It has A, normal, depth, object, material"});
+  const CommandResult lacks =
+      ExpectError(With({"transfer", "few.exr", "-o", "no.png"}, styles), 3,
+                  {"few.exr has no layer albedo, luminance", "--layers albedo,luminance",
+                   "the same --style, --assign and --set", "It has A, normal, depth, object, material"});
   EXPECT_EQ(Count(lacks.err, "normal.X"), 0) << lacks.err;
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--layers", "albedo,luminance", "-o", "few.exr"});
   RunOk(With({"transfer", "few.exr", "-o", "two.png"}, styles));
@@ -419,7 +437,8 @@ TEST_F(CliAssign, OneLayerOfNamesIsEnoughForWhatItNames) {
   WriteGuideFile("materials.exr", materials);
   WriteGuideFile("neither.exr", neither);
   const auto with = [](const std::string& file, const std::string& assigned) -> Arguments {
-    return {"transfer", file, "--style", "red", "--set", "transfer.edge_aware=false", "--assign", assigned, "-o", "p.png"};
+    return {"transfer", file,     "--style", "red",  "--set", "transfer.edge_aware=false",
+            "--assign", assigned, "-o",      "p.png"};
   };
   RunOk(with("objects.exr", "Tile2=scene/blue"));
   EXPECT_EQ(Colors("p.png", 4, 1), "rrbr");
@@ -432,8 +451,8 @@ TEST_F(CliAssign, OneLayerOfNamesIsEnoughForWhatItNames) {
 }
 
 TEST_F(CliAssign, ShadowsThatComeLaterCanBeCaught) {
-  const Arguments stylize = {"stylize", "s.glb", "--style", "red", "--size", "32x8", "-o", "p.png", "--assign",
-                             "Tile0=catcher", "--frame", "6"};
+  const Arguments stylize = {"stylize", "s.glb", "--style",  "red",           "--size",  "32x8",
+                             "-o",      "p.png", "--assign", "Tile0=catcher", "--frame", "6"};
   RunOk(With(stylize, {"--set", R"(transfer.shadow=[[1, "none"], [5, "paint"]])"}));
   EXPECT_EQ(Colors("p.png", 4, 1), ".rrr");
   ExpectError(stylize, 2, {"--assign Tile0=catcher", "transfer.shadow=paint"});

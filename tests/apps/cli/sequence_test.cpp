@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 #include "tests/support/cli_harness.h"
 
 namespace scumble {
@@ -130,7 +130,8 @@ TEST_F(CliSequence, ResumeRepairsAndLeavesTheRest) {
   EXPECT_TRUE(Contains(RunOk(stylize).out, "6 frames: 6 made;"));
 }
 
-// Frames of another exposure are other pictures, whichever of the two was measured; stops that were printed go on with it.
+// Frames of another exposure are other pictures, whichever of the two was measured; stops that were printed go on with
+// it.
 TEST_F(CliSequence, ResumeComparesTheExposure) {
   WriteLitStyle("style");
   for (const char* const name : {"g.1.exr", "g.2.exr"}) WriteLitBall(name, 0.2f);
@@ -153,8 +154,8 @@ TEST_F(CliSequence, ResumeComparesTheExposure) {
   EXPECT_EQ(kept("auto"), 2);
 }
 
-// Pictures of older versions do not tell of everything: what they were all made with is taken for granted, what nobody can know
-// agrees with anything, and all else that one side alone tells of differs.
+// Pictures of older versions do not tell of everything: what they were all made with is taken for granted, what nobody
+// can know agrees with anything, and all else that one side alone tells of differs.
 TEST_F(CliSequence, ResumeTakesForGrantedWhatOlderPicturesDoNotTell) {
   const auto agrees = [&](const std::string& found, const std::string& wanted) {
     PictureWriteOptions options;
@@ -163,7 +164,8 @@ TEST_F(CliSequence, ResumeTakesForGrantedWhatOlderPicturesDoNotTell) {
     return CheckWholePicture(At("p.png"), {8, 8, 4, 8, "scumble 0.1; " + wanted}).ok();
   };
   for (const std::string made : {"seed 0", "seed 0; upsample 1", "seed 0; fps 24; measured 1"}) {
-    for (const std::string wanted : {"seed 0", "seed 0; upsample 1; fps 24; measured 1"}) EXPECT_TRUE(agrees(made, wanted)) << made;
+    for (const std::string wanted : {"seed 0", "seed 0; upsample 1; fps 24; measured 1"})
+      EXPECT_TRUE(agrees(made, wanted)) << made;
     EXPECT_FALSE(agrees(made, "seed 0; upsample 2")) << made;
     EXPECT_FALSE(agrees(made, "seed 1; upsample 1")) << made;
     EXPECT_FALSE(agrees(made, "seed 0; show chunks")) << made;

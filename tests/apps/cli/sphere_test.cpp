@@ -22,8 +22,9 @@ TEST_F(CliSphere, SaysWhatEachFileIsFor) {
   const CommandResult kit = RunOk({"sphere", "--size", "128", "-o", "kit"});
   EXPECT_EQ(kit.out,
             "kit/template.png\nkit/template.ora\nkit/template.pdf\nkit/guides.exr\nkit/style.toml\nkit/HOWTO.txt\n");
-  for (const char* part : {"template.ora (layers: Krita, GIMP, MyPaint) or template.png", "save it as lit.png",
-                           "template.pdf at 100%", "a sphere of 10.8 mm on A4", "10.8 mm across, small for a brush", "at 600 dpi or more"}) {
+  for (const char* part :
+       {"template.ora (layers: Krita, GIMP, MyPaint) or template.png", "save it as lit.png", "template.pdf at 100%",
+        "a sphere of 10.8 mm on A4", "10.8 mm across, small for a brush", "at 600 dpi or more"}) {
     EXPECT_NE(kit.err.find(part), std::string::npos) << part << "\n" << kit.err;
   }
   const std::string howto = Bytes("kit/HOWTO.txt");

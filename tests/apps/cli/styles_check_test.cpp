@@ -23,7 +23,9 @@ class StylesCheck : public CliTest {
     for (const auto& fault : report["faults"]) codes.insert(fault["code"].get<std::string>());
     return codes;
   }
-  std::set<std::string> CodesIn(const std::string& style) { return CodesOf(RunOk({"styles", "check", style, "--json"}).Json()); }
+  std::set<std::string> CodesIn(const std::string& style) {
+    return CodesOf(RunOk({"styles", "check", style, "--json"}).Json());
+  }
 };
 
 using Codes = std::set<std::string>;
@@ -40,7 +42,8 @@ TEST_F(StylesCheck, AGoodStyleIsSilent) {
   EXPECT_GT(paint["covered_percent"], 99.0);
   EXPECT_NEAR(paint["painted_light"]["azimuth"].get<double>(), -40.0, 10.0);
   EXPECT_NEAR(paint["template_light"]["azimuth"].get<double>(), -40.0, 10.0);
-  for (const char* key : {"transparent_percent", "lightness", "anisotropy", "regularity", "holes", "fringe_percent", "template_percent"}) {
+  for (const char* key : {"transparent_percent", "lightness", "anisotropy", "regularity", "holes", "fringe_percent",
+                          "template_percent"}) {
     EXPECT_TRUE(paint.contains(key)) << key;
   }
 }
@@ -50,7 +53,8 @@ TEST_F(StylesCheck, MistakesAreWarningsAndStrictCountsThem) {
   shifted.x = 0.53, shifted.reach = 1.0, shifted.waver = 0.0;
   Write("off.png", PaintSphere(shifted));
   const CommandResult plain = RunOk({"styles", "check", "off.png"});
-  EXPECT_TRUE(Contains(plain.Warning(), "off.png: the painted sphere is 3.0% of its diameter off the middle")) << plain.err;
+  EXPECT_TRUE(Contains(plain.Warning(), "off.png: the painted sphere is 3.0% of its diameter off the middle"))
+      << plain.err;
   EXPECT_TRUE(Contains(plain.Warning(), "pixels to the left")) << plain.err;
   EXPECT_TRUE(Contains(plain.out, "usable, with 1 mistake\n")) << plain.out;
   EXPECT_EQ(Run({"styles", "check", "off.png", "--strict"}).code, 1);
@@ -144,8 +148,9 @@ TEST_F(StylesCheck, LightsOfOneStyle) {
   shade.dark = 0.05, shade.light = 0.3, shade.azimuth = 0.0, shade.elevation = 80.0, shade.size = 256;
   Write("two/lit.png", PaintSphere(lit));
   Write("two/shade.png", PaintSphere(shade));
-  WriteText("two/style.toml",
-            "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
+  WriteText(
+      "two/style.toml",
+      "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
   const nlohmann::json json = RunOk({"styles", "check", "two", "--json"}).Json();
   EXPECT_EQ(CodesOf(json), Codes{"other-size"});
   EXPECT_TRUE(Contains(json["faults"][0]["image"], "shade.png"));

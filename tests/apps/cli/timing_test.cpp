@@ -25,7 +25,8 @@ TEST_F(CliTiming, TheStagesAddUpToTheWhole) {
   const Arguments stylize = {"stylize", Scene("ball.glb"), "--style", "style", "--size", "64", "-o", "p.png"};
   const auto text = Run(With(stylize, {"--timing"}));
   ASSERT_EQ(text.code, 0) << text.err;
-  for (const char* stage : {"start ", "style ", "scene ", "build ", "rays ", "prepare ", "match ", "vote ", "write ", "total "}) {
+  for (const char* stage :
+       {"start ", "style ", "scene ", "build ", "rays ", "prepare ", "match ", "vote ", "write ", "total "}) {
     EXPECT_NE(text.out.find(std::string("\n") + stage), std::string::npos) << stage << text.out;
   }
   const auto plain = Run(stylize);
@@ -61,8 +62,8 @@ TEST_F(CliTiming, OfASequenceItIsTheSum) {
 
 TEST_F(CliTiming, OneThreadWritesAtOnceAndIsCountedOnce) {
   WriteStyle("style");
-  const auto run = Run({"stylize", Scene("ball.glb"), "--style", "style", "--size", "512", "--frames", "1-3", "--json", "--bits",
-                        "16", "--png-level", "9", "--threads", "1", "--timing", "-o", "p.####.png"});
+  const auto run = Run({"stylize", Scene("ball.glb"), "--style", "style", "--size", "512", "--frames", "1-3", "--json",
+                        "--bits", "16", "--png-level", "9", "--threads", "1", "--timing", "-o", "p.####.png"});
   ASSERT_EQ(run.code, 0) << run.err;
   double wall = 0, write_cpu = 0, total = 0;
   const auto json = run.Json();

@@ -131,8 +131,8 @@ TEST_F(Tradeoff, OptionsRepeatThePictureByteForByte) {
     ++repeated;
   }
   EXPECT_EQ(repeated, 14) << "all but the small table and twice the resolution";
-  const auto large =
-      std::find_if(json["ways"].begin(), json["ways"].end(), [](const auto& way) { return way["way"] == "resolution 2"; });
+  const auto large = std::find_if(json["ways"].begin(), json["ways"].end(),
+                                  [](const auto& way) { return way["way"] == "resolution 2"; });
   ASSERT_NE(large, json["ways"].end());
   EXPECT_GT((*large)["guide_rms"].get<double>(), 0.0) << "averaged, they are not those of the pixels' centres";
   EXPECT_GT((*large)["guide_flip"].get<double>(), 0.0);
@@ -164,8 +164,8 @@ TEST_F(Tradeoff, OptionsRepeatLightPathsToo) {
 
 // A scene that moves, and a style whose chunks begin elsewhere in each frame.
 TEST_F(Tradeoff, AFrameIsThatOfStylize) {
-  const Arguments arguments = Small(Scene("toys.glb"), {"--only", "blend_radius 4", "--set", "transfer.jitter_fps=12", "--json",
-                                                        "--frame", "31", "--fps", "20", "-o", "out"});
+  const Arguments arguments = Small(Scene("toys.glb"), {"--only", "blend_radius 4", "--set", "transfer.jitter_fps=12",
+                                                        "--json", "--frame", "31", "--fps", "20", "-o", "out"});
   const nlohmann::json ways = RunOk(arguments).Json()["ways"];
   ASSERT_EQ(ways.size(), 2u);
   for (const auto& way : ways) {
@@ -181,10 +181,11 @@ TEST_F(Tradeoff, AFrameIsThatOfStylize) {
   }
   // What a key asks for in other frames is there in this one too: guides of half the size are upsampled by it.
   WriteText("mine/style.toml",
-            "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = [[0, 0], [48, 3]]\n[[exemplar]]\nimage = \"lit.png\"\n");
-  const nlohmann::json half =
-      RunOk(Small(Scene("toys.glb"),
-                  {"--only", "resolution 0.5", "--view", "30,20", "--frame", "2", "--json", "-o", "out"})).Json();
+            "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = [[0, 0], [48, 3]]\n[[exemplar]]\nimage = "
+            "\"lit.png\"\n");
+  const nlohmann::json half = RunOk(Small(Scene("toys.glb"), {"--only", "resolution 0.5", "--view", "30,20", "--frame",
+                                                              "2", "--json", "-o", "out"}))
+                                  .Json();
   EXPECT_EQ(half["frame"], 2);
   ASSERT_EQ(half["ways"].size(), 2u);
   for (const auto& way : half["ways"]) {
@@ -240,9 +241,10 @@ TEST_F(Tradeoff, TheExposureIsGivenOrTold) {
     if (i % 4 != 3) shade.rgba[i] = static_cast<std::uint16_t>(shade.rgba[i] / 3);
   }
   ASSERT_TRUE(WritePicture(At("mine/shade.png"), shade).ok());
-  WriteText("mine/style.toml",
-            "[transfer]\nreference_height = 0\nlevels = 4\n"
-            "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
+  WriteText(
+      "mine/style.toml",
+      "[transfer]\nreference_height = 0\nlevels = 4\n"
+      "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.7\n[[exemplar]]\nimage = \"shade.png\"\nluminance = 0.1\n");
   const auto pictures_of = [&](const Arguments& exposure) {
     const nlohmann::json json =
         RunOk(With(Small(Scene("suzanne.glb"), {"--only", "levels 1", "--json", "-o", "out"}), exposure)).Json();
@@ -270,18 +272,20 @@ TEST_F(Tradeoff, TheExposureIsGivenOrTold) {
 
 TEST_F(Tradeoff, AnExposureThatIsNoneOrIdleIsSaid) {
   ExpectError(Small(Scene("suzanne.glb"), {"--exposure", "bright"}), 2, {"--exposure bright", "auto"});
-  const CommandResult idle = RunOk(Small(Scene("suzanne.glb"), {"--only", "levels 1", "--exposure", "1", "--json"}, "48x27"));
+  const CommandResult idle =
+      RunOk(Small(Scene("suzanne.glb"), {"--only", "levels 1", "--exposure", "1", "--json"}, "48x27"));
   EXPECT_NE(idle.Warning().find("--exposure 1 changes nothing"), std::string::npos) << idle.err;
   EXPECT_TRUE(idle.Json()["exposure"].is_null());
 }
 
-// Eight ways, what they are measured against and all pictures are too much for a gigabyte at 16384², of which guides alone
-// take 7 GiB. Nothing is cast, no folder is made, and what is advised is what the verb has: it has no layers.
+// Eight ways, what they are measured against and all pictures are too much for a gigabyte at 16384², of which guides
+// alone take 7 GiB. Nothing is cast, no folder is made, and what is advised is what the verb has: it has no layers.
 TEST_F(Tradeoff, WhatDoesNotFitIsRefusedBeforeItIsTaken) {
   const Arguments huge = Small(Scene("suzanne.glb"), {"--max-memory", "1G", "--only", "levels", "-o", "out"}, "16384");
   const CommandResult result =
-      ExpectError(huge, 2, {"this takes up to ", "guides 7.0 GiB", "reference ", "pictures of all ways ", "energy ",
-                            "--max-memory allows 1.0 GiB", "take a smaller --size, or fewer ways by --only, or allow more"});
+      ExpectError(huge, 2,
+                  {"this takes up to ", "guides 7.0 GiB", "reference ", "pictures of all ways ", "energy ",
+                   "--max-memory allows 1.0 GiB", "take a smaller --size, or fewer ways by --only, or allow more"});
   EXPECT_EQ(result.Error().find("layers"), std::string::npos) << result.Error();
   EXPECT_FALSE(Exists("out"));
   ExpectError(Small(Scene("suzanne.glb"), {"--max-memory", "0"}), 2, {"--max-memory"});
@@ -300,8 +304,7 @@ TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
 
 // What a table costs is told, though this machine has made it before.
 TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
-  const Arguments arguments =
-      Small(Scene("suzanne.glb"), {"--only", "nearest table 64,nearest table 1024", "--json"});
+  const Arguments arguments = Small(Scene("suzanne.glb"), {"--only", "nearest table 64,nearest table 1024", "--json"});
   std::map<std::string, double> ms;  // the least, whatever else the machine does
   for (int run = 0; run < 4; ++run) {
     const nlohmann::json report = RunOk(arguments).Json();
@@ -316,12 +319,13 @@ TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// The estimate is the most that there may be, as of other verbs (memory_need_test): above what the system counts, and no idle
-// one, so not four times as much.
+// The estimate is the most that there may be, as of other verbs (memory_need_test): above what the system counts, and
+// no idle one, so not four times as much.
 TEST_F(Tradeoff, TakesNoMoreMemoryThanItSays) {
   const Arguments arguments =
       Small(Scene("suzanne.glb"), {"--only", "levels 1,resolution 0.5", "--threads", "2", "-o", "out"}, "640x360");
-  const std::string error = ExpectError(With(arguments, {"--max-memory", "1M"}), 2, {"this takes up to ", "MiB of memory"}).Error();
+  const std::string error =
+      ExpectError(With(arguments, {"--max-memory", "1M"}), 2, {"this takes up to ", "MiB of memory"}).Error();
   const std::string before = "this takes up to ";
   const double estimated = 1048576.0 * std::stod(error.substr(error.find(before) + before.size()));
   const pid_t child = Start(arguments);
@@ -334,9 +338,9 @@ TEST_F(Tradeoff, TakesNoMoreMemoryThanItSays) {
   EXPECT_GE(peak, 0.25 * estimated);
 }
 
-// Four exemplars of S = 8 · 512² bytes: 4 S as they were read, 4 S as they are painted with, and S more while one of them is
-// prepared, since at their own size they are only copied. A second style of the process, which no run of stylize has, would
-// be 4 S more; half of that is allowed to the allocator.
+// Four exemplars of S = 8 · 512² bytes: 4 S as they were read, 4 S as they are painted with, and S more while one of
+// them is prepared, since at their own size they are only copied. A second style of the process, which no run of
+// stylize has, would be 4 S more; half of that is allowed to the allocator.
 TEST_F(Tradeoff, MemoryHasTheStyleOnce) {
   const auto peak_with = [&](const std::string& folder, int size) {
     WritePainted(folder + "/lit.png", size, size);
@@ -345,8 +349,8 @@ TEST_F(Tradeoff, MemoryHasTheStyleOnce) {
       text += std::string("[[exemplar]]\nimage = \"lit.png\"\nluminance = ") + luminance + "\n";
     }
     WriteText(folder + "/style.toml", text);
-    const CommandResult result = RunOk({"tradeoff", Scene("suzanne.glb"), "--style", folder, "--size", "64x36", "--threads", "1",
-                                        "--peak-of", "the style"});
+    const CommandResult result = RunOk({"tradeoff", Scene("suzanne.glb"), "--style", folder, "--size", "64x36",
+                                        "--threads", "1", "--peak-of", "the style"});
     return result.Json()["peak_bytes"].get<double>();
   };
   const double more = peak_with("large", 512) - peak_with("small", 16), s = 8.0 * 512 * 512;
@@ -366,7 +370,8 @@ TEST_F(Tradeoff, SaysWhatIsWrongAndHowToMendIt) {
   ExpectError({"tradeoff", scene, "--style", "nobody"}, 3, {"nobody"});
   WriteText("file", "");
   ExpectError(Small(scene, {"-o", "file"}), 4, {"-o file"});
-  ExpectError(Small(scene, {"--quick", "--only", "resolution 2,levels"}), 2, {"--only resolution 2,levels", "--quick leaves"});
+  ExpectError(Small(scene, {"--quick", "--only", "resolution 2,levels"}), 2,
+              {"--only resolution 2,levels", "--quick leaves"});
   // One thing that covers no pixel whole has no paint to be measured.
   ExpectError(Small(scene, {"--view", "30,20", "--aa", "4"}, "1x1"), 3, {"covered fully", "--size"});
   WriteText("away.gltf", TriangleGltf(true));
@@ -474,8 +479,8 @@ TEST_F(Tradeoff, KilledAmongItsPicturesItLeavesNoPage) {
 
 TEST_F(Tradeoff, HelpSaysWhatIsTimed) {
   const std::string help = RunOk({"help", "tradeoff"}).out;
-  for (const char* word : {"--only", "--quick", "--repeat", "--samples", "--exposure", "--max-memory", "--no-memory", "both",
-                           "not in them", "FOLDER"}) {
+  for (const char* word : {"--only", "--quick", "--repeat", "--samples", "--exposure", "--max-memory", "--no-memory",
+                           "both", "not in them", "FOLDER"}) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(help.find("--peak-of"), std::string::npos) << "for the program itself";
@@ -496,8 +501,8 @@ TEST_F(Tradeoff, GuidesWithoutRobustModeSaySo) {
   for (std::size_t i = 0; i < robust->pixel_count(); ++i) {
     different += robust->Plane(Layer::kObject)[i] != plain->Plane(Layer::kObject)[i];
   }
-  // Only where a ray passes an outline within float's sight, 2^-20 of 9 m to either side beside pixels of 0.026 m: outlines are
-  // some 1,500 pixels long, so one centre is expected there, and more than three once in fifty.
+  // Only where a ray passes an outline within float's sight, 2^-20 of 9 m to either side beside pixels of 0.026 m:
+  // outlines are some 1,500 pixels long, so one centre is expected there, and more than three once in fifty.
   EXPECT_LE(different, 3u);
 }
 

@@ -75,8 +75,8 @@ TEST_F(Upsample, ASequenceIsResumedAtThePicturesSize) {
 TEST_F(Upsample, StylizeKeepsFramesOfTheSameFactorAlone) {
   WriteStyle("style");
   const auto kept = [&](const std::string& factor) {
-    return RunOk({"stylize", Scene("ball.glb"), "--style", "style", "--size", "32", "--frames", "1-2", "--upsample", factor,
-                  "--json", "--resume", "-o", "p#.png"})
+    return RunOk({"stylize", Scene("ball.glb"), "--style", "style", "--size", "32", "--frames", "1-2", "--upsample",
+                  factor, "--json", "--resume", "-o", "p#.png"})
         .Json()["kept"];
   };
   EXPECT_EQ(kept("1"), 0);

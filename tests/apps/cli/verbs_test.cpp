@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 using CliVerbs = CliTest;
 using CliUsage = CliTest;
 
-const std::vector<std::string> kVerbs = {"sphere", "guidegen", "transfer", "stylize", "compare", "crosscheck", "info", "styles"};
+const std::vector<std::string> kVerbs = {"sphere",  "guidegen",   "transfer", "stylize",
+                                         "compare", "crosscheck", "info",     "styles"};
 
 bool Contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -53,8 +54,10 @@ TEST_F(CliUsage, EveryVerbHasHelp) {
 }
 
 TEST_F(CliUsage, VerbsThatAreNone) {
-  ExpectError({}, 2, {"no verb given: expected one of sphere, guidegen, transfer, stylize, compare, crosscheck, tradeoff, info, "
-                  "styles"});
+  ExpectError(
+      {}, 2,
+      {"no verb given: expected one of sphere, guidegen, transfer, stylize, compare, crosscheck, tradeoff, info, "
+       "styles"});
   ExpectError({"bogus"}, 2, {"unknown verb 'bogus': expected one of sphere, guidegen"});
   ExpectError({""}, 2, {"expected one of sphere"});
   ExpectError({"--bogus"}, 2, {"unknown option --bogus: options follow the verb"});

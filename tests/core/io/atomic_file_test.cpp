@@ -1,4 +1,6 @@
 // Files that appear whole or not at all.
+#include "core/io/file/atomic_file.h"
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -12,10 +14,9 @@
 #include <vector>
 
 #include "core/image/guides.h"
-#include "scumble/picture.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
+#include "scumble/picture.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {

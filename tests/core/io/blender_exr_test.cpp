@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "core/image/hash.h"
-#include "core/io/file/atomic_file.h"
 #include "core/io/blender/blender_camera.h"
 #include "core/io/blender/blender_passes.h"
-#include "core/io/guides/cryptomatte.h"
+#include "core/io/file/atomic_file.h"
 #include "core/io/guide_file.h"
+#include "core/io/guides/cryptomatte.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/true_camera.h"

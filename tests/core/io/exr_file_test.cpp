@@ -1,6 +1,4 @@
 // EXR files by OpenEXR alone: the bytes that OpenImageIO would write, and what it would read from them.
-#include "core/io/exr/scanline_exr.h"
-
 #include <Imath/half.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -13,10 +11,11 @@
 #include <vector>
 
 #include "core/image/color.h"
+#include "core/io/exr/scanline_exr.h"
 #include "core/io/file/atomic_file.h"
 #include "core/io/format_dispatch.h"
-#include "core/io/library.h"
 #include "core/io/guides/own_guides.h"
+#include "core/io/library.h"
 #include "tests/support/guide_files.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,4 +1,5 @@
-// Where the program finds its module of formats, and what it does without one: in the folders of builds and installations.
+// Where the program finds its module of formats, and what it does without one: in the folders of builds and
+// installations.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ class CliModule : public CliTest {
 TEST_F(CliModule, BesideTheProgramOrInstalledAndNowhereElse) {
   WriteGuideFile("g.exr", Ball(16));
   const Arguments compare = {"compare", "g.exr", "g.exr"};  // any channels of any file
-  Put(Module(), ".");  // the folder that it runs in
+  Put(Module(), ".");                                       // the folder that it runs in
   ExpectError(compare, 5, {kModule, At("home/bin").string(), At("home/lib/scumble").string()}, settings_);
   for (const std::string folder : {"home/bin", "home/lib/scumble"}) {
     Put(Module(), folder);
@@ -50,10 +51,11 @@ TEST_F(CliModule, OneOfOtherTypesIsRefused) {
 
 TEST_F(CliModule, GuidesAndPicturesInExrNeedNone) {
   WriteStyle("style");
-  const std::vector<Arguments> commands = {{"guidegen", Scene("ball.glb"), "--size", "32", "-o", "g.exr"},
-                                           {"info", "g.exr"},
-                                           {"transfer", "g.exr", "--style", "style", "-o", "p.exr"},
-                                           {"stylize", Scene("ball.glb"), "--style", "style", "--size", "32", "-o", "s.exr"}};
+  const std::vector<Arguments> commands = {
+      {"guidegen", Scene("ball.glb"), "--size", "32", "-o", "g.exr"},
+      {"info", "g.exr"},
+      {"transfer", "g.exr", "--style", "style", "-o", "p.exr"},
+      {"stylize", Scene("ball.glb"), "--style", "style", "--size", "32", "-o", "s.exr"}};
   for (const Arguments& command : commands) {
     const CommandResult without = RunHere(command);
     EXPECT_EQ(without.code, 0) << without.err;

@@ -192,7 +192,8 @@ TEST(GuideFile, PackedNormalsAreRefused) {
              const glm::vec3 n = glm::normalize(glm::vec3(0.3f * (i % 4) - 0.5f, 0.3f * (i / 4) - 0.5f, 1.0f));
              return c == 0 ? 1.0f : 0.5f + 0.5f * n[static_cast<int>(c) - 1];
            });
-  ExpectRefusal(ReadGuides(folder / "packed.exr", OnlyNormals()), ErrorKind::kInput, {"packed.exr", "packed", "-1 to 1"});
+  ExpectRefusal(ReadGuides(folder / "packed.exr", OnlyNormals()), ErrorKind::kInput,
+                {"packed.exr", "packed", "-1 to 1"});
 }
 
 TEST(GuideHeader, DamagedTextNeverDoesHarm) {

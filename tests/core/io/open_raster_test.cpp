@@ -9,8 +9,8 @@
 
 #include "core/image/hash.h"
 #include "core/io/file/atomic_file.h"
-#include "core/io/picture_file.h"
 #include "core/io/file/zip_archive.h"
+#include "core/io/picture_file.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 

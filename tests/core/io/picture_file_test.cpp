@@ -407,7 +407,8 @@ TEST(PictureFile, FormatsThatNobodyPaintsInAreRefused) {
   WriteWith(path, OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), std::vector<std::uint8_t>(3 * 8 * 8, 9));
   ExpectRefusal(ReadPicture(path), {"render.rla", "does not begin as a picture", "PNG", "PSD"});
   // OpenImageIO's reader of GIF looks colours up behind the end of a short palette.
-  WriteWith(folder / "small.gif", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), std::vector<std::uint8_t>(3 * 8 * 8, 9));
+  WriteWith(folder / "small.gif", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8),
+            std::vector<std::uint8_t>(3 * 8 * 8, 9));
   fs::rename(folder / "small.gif", folder / "small.png");
   ExpectRefusal(ReadPicture(folder / "small.png"), {"small.png", "it is a GIF", "save it as a PNG"});
   std::ofstream(folder / "block.dds") << "DDS |" << std::string(200, '\0');
@@ -417,7 +418,8 @@ TEST(PictureFile, FormatsThatNobodyPaintsInAreRefused) {
     ExpectRefusal(ReadPicture(folder / "film.dpx"), {"film.dpx", "it is a DPX", "save it as a PNG"});
   }
   // Raw photographs are TIFF files whose first picture is a small preview.
-  WriteWith(folder / "preview.tif", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8), std::vector<std::uint8_t>(3 * 8 * 8, 9));
+  WriteWith(folder / "preview.tif", OIIO::ImageSpec(8, 8, 3, OIIO::TypeDesc::UINT8),
+            std::vector<std::uint8_t>(3 * 8 * 8, 9));
   ASSERT_TRUE(ReadPicture(folder / "preview.tif"));
   fs::rename(folder / "preview.tif", folder / "photo.NEF");
   ExpectRefusal(ReadPicture(folder / "photo.NEF"), {"photo.NEF", "raw", "TIFF of 16 bits"});

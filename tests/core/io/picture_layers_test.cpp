@@ -33,12 +33,14 @@ class PictureLayers : public testing::Test {
     const auto picture = ReadPicture(folder_ / "p.exr");
     ASSERT_TRUE(picture) << picture.error().message;
     for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_EQ(picture->At(0, 0)[c], Srgb16FromLinear(0.1f * static_cast<float>(numbers[c] + 1))) << names[0] << " " << c;
+      EXPECT_EQ(picture->At(0, 0)[c], Srgb16FromLinear(0.1f * static_cast<float>(numbers[c] + 1)))
+          << names[0] << " " << c;
     }
   }
   void ExpectNone(const std::vector<std::string>& names) {
     WriteChannels(folder_ / "p.exr", names);
-    ExpectRefusal(ReadPicture(folder_ / "p.exr"), {"p.exr holds layers and no picture", names[0], "expected R, G and B, or Y"});
+    ExpectRefusal(ReadPicture(folder_ / "p.exr"),
+                  {"p.exr holds layers and no picture", names[0], "expected R, G and B, or Y"});
   }
   const TemporaryFolder folder_;
 };
@@ -47,8 +49,10 @@ TEST_F(PictureLayers, NamesSayWhichIsThePicture) {
   ExpectColors({"R", "G", "B"}, {0, 1, 2});
   ExpectColors({"B", "G", "R", "depth.Z", "normal.X"}, {2, 1, 0});
   ExpectColors({"Y", "depth.Z"}, {0, 0, 0});
-  ExpectColors({"Composite.Combined.R", "Composite.Combined.G", "Composite.Combined.B", "ViewLayer.Combined.R"}, {0, 1, 2});
-  ExpectColors({"ViewLayer.Depth.Z", "ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"}, {1, 2, 3});
+  ExpectColors({"Composite.Combined.R", "Composite.Combined.G", "Composite.Combined.B", "ViewLayer.Combined.R"},
+               {0, 1, 2});
+  ExpectColors({"ViewLayer.Depth.Z", "ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B"},
+               {1, 2, 3});
   // A view layer of another name, if it is the only one.
   ExpectColors({"Front.Depth.Z", "Front.Combined.R", "Front.Combined.G", "Front.Combined.B"}, {1, 2, 3});
 }
@@ -64,7 +68,8 @@ TEST_F(PictureLayers, LayersAreNoPicture) {
   ExpectNone({"depth.Z"});
   ExpectNone({"albedo.R", "albedo.G", "luminance.Y"});
   // Either could be meant.
-  ExpectNone({"Back.Combined.R", "Back.Combined.G", "Back.Combined.B", "Front.Combined.R", "Front.Combined.G", "Front.Combined.B"});
+  ExpectNone({"Back.Combined.R", "Back.Combined.G", "Back.Combined.B", "Front.Combined.R", "Front.Combined.G",
+              "Front.Combined.B"});
 }
 
 }  // namespace

@@ -19,9 +19,9 @@
 #include "core/io/format_dispatch.h"
 #include "core/io/parallel.h"
 #include "core/io/png/png_filter.h"
+#include "core/io/png/png_integrity.h"
 #include "core/io/png/png_reader.h"
 #include "core/io/png/png_writer.h"
-#include "core/io/png/png_integrity.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {
@@ -37,7 +37,8 @@ Picture Make(int width, int height, int bits, bool smooth) {
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < 4; ++c) {
         const std::uint64_t value = smooth ? std::uint64_t(x * 3 + y * 5 + c * 40) : Hash(x / 4, y / 3, c, width);
-        picture.At(x, y)[c] = static_cast<std::uint16_t>(bits == 8 ? value % 256 * 257 : value * (smooth ? 97 : 1) % 65536);
+        picture.At(x, y)[c] =
+            static_cast<std::uint16_t>(bits == 8 ? value % 256 * 257 : value * (smooth ? 97 : 1) % 65536);
       }
     }
   }
@@ -59,7 +60,7 @@ Expected<Picture> ReadByLibrary(const fs::path& path) {
 }
 
 void ExpectHolds(const std::vector<std::byte>& bytes, const Picture& picture) {
-  EXPECT_TRUE(internal::CheckPngIsWhole(bytes, "p.png"));
+  EXPECT_TRUE(internal::CheckPngIntegrity(bytes, "p.png"));
   const auto plain = internal::ReadPlainPng(bytes);
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->width, picture.width);
@@ -82,7 +83,8 @@ TEST_P(PngShapes, AnyThreadsSameBytesAndTheyHoldThePicture) {
   for (const int bits : {8, 16}) {
     for (const int level : {0, 1, 9}) {
       for (const bool smooth : {false, true}) {
-        SCOPED_TRACE(std::to_string(bits) + " bits, level " + std::to_string(level) + (smooth ? ", smooth" : ", noise"));
+        SCOPED_TRACE(std::to_string(bits) + " bits, level " + std::to_string(level) +
+                     (smooth ? ", smooth" : ", noise"));
         const Picture picture = Make(width, height, bits, smooth);
         PngOptions options{bits, false, level, 0, "", 1};
         const auto bytes = internal::WritePng(picture, options);
@@ -167,7 +169,8 @@ TEST(PngWriter, SaysWhatThePictureLibraryWouldSay) {
       auto output = OIIO::ImageOutput::create(by_library);
       ASSERT_TRUE(output && output->open(by_library, spec));
       ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT16, picture.rgba.data()) && output->close());
-      ASSERT_TRUE(WriteFileAtomically(folder / "ours.png", internal::WritePng(picture, {8, false, 6, dpi, settings, 1})));
+      ASSERT_TRUE(
+          WriteFileAtomically(folder / "ours.png", internal::WritePng(picture, {8, false, 6, dpi, settings, 1})));
       EXPECT_EQ(Said(folder / "ours.png"), Said(by_library)) << dpi << " dpi, settings '" << settings << "'";
     }
   }
@@ -217,7 +220,8 @@ void Write(const fs::path& path, const Kind& kind, int width, int height) {
   png_write_info(png, info);
   const std::size_t row_bytes = png_get_rowbytes(png, info);
   std::vector<png_byte> bytes(row_bytes * std::size_t(height));
-  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<png_byte>(Hash(i, kind.type) % (kind.transparent ? 4 : 256));
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<png_byte>(Hash(i, kind.type) % (kind.transparent ? 4 : 256));
   std::vector<png_bytep> rows;
   for (int y = 0; y < height; ++y) rows.push_back(bytes.data() + row_bytes * std::size_t(y));
   png_write_image(png, rows.data());
@@ -230,12 +234,35 @@ constexpr int kG = PNG_COLOR_TYPE_GRAY, kGa = PNG_COLOR_TYPE_GRAY_ALPHA, kRgb = 
               kRgba = PNG_COLOR_TYPE_RGB_ALPHA, kPalette = PNG_COLOR_TYPE_PALETTE;
 
 TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
-  const std::vector<Kind> kinds = {
-      {kG, 1}, {kG, 2}, {kG, 4}, {kG, 8}, {kG, 16}, {kGa, 8}, {kGa, 16}, {kRgb, 8}, {kRgb, 16}, {kRgba, 8}, {kRgba, 16},
-      {kPalette, 1}, {kPalette, 2}, {kPalette, 4}, {kPalette, 8}, {kPalette, 8, false, true}, {kPalette, 4, true, true},
-      {kRgb, 8, false, true}, {kG, 8, false, true}, {kRgb, 16, false, true}, {kG, 2, false, true}, {kRgba, 8, true},
-      {kRgba, 16, true}, {kG, 1, true}, {kRgba, 8, false, false, 1 / 2.2}, {kRgb, 8, false, false, 1 / 1.8},
-      {kRgb, 8, false, false, 0, "Comment", "a word"}, {kRgba, 16, false, false, 0, "scumble:settings", "seed 1"}, {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"}};
+  const std::vector<Kind> kinds = {{kG, 1},
+                                   {kG, 2},
+                                   {kG, 4},
+                                   {kG, 8},
+                                   {kG, 16},
+                                   {kGa, 8},
+                                   {kGa, 16},
+                                   {kRgb, 8},
+                                   {kRgb, 16},
+                                   {kRgba, 8},
+                                   {kRgba, 16},
+                                   {kPalette, 1},
+                                   {kPalette, 2},
+                                   {kPalette, 4},
+                                   {kPalette, 8},
+                                   {kPalette, 8, false, true},
+                                   {kPalette, 4, true, true},
+                                   {kRgb, 8, false, true},
+                                   {kG, 8, false, true},
+                                   {kRgb, 16, false, true},
+                                   {kG, 2, false, true},
+                                   {kRgba, 8, true},
+                                   {kRgba, 16, true},
+                                   {kG, 1, true},
+                                   {kRgba, 8, false, false, 1 / 2.2},
+                                   {kRgb, 8, false, false, 1 / 1.8},
+                                   {kRgb, 8, false, false, 0, "Comment", "a word"},
+                                   {kRgba, 16, false, false, 0, "scumble:settings", "seed 1"},
+                                   {kRgb, 8, false, false, 0, "oiio:ColorSpace", "sRGB"}};
   TemporaryFolder folder;
   for (const Kind& kind : kinds) {
     for (const auto& [width, height] : {Shape{1, 1}, Shape{19, 13}, Shape{7, 40}}) {
@@ -260,10 +287,11 @@ TEST(PngReader, ReadsEveryKindAsThePictureLibraryDoes) {
 
 TEST(PngReader, LeavesToThePictureLibraryWhatSaysMore) {
   TemporaryFolder folder;
-  for (const Kind& kind : {Kind{kRgb, 8, false, false, 1.0}, Kind{kRgb, 8, false, false, 0, "oiio:ColorSpace", "Linear"},
-                           Kind{kRgb, 8, false, false, 0, "XML:com.adobe.xmp", "<x/>"},
-                           Kind{kRgb, 8, false, false, 0, "Raw profile type exif", "\nexif\n 1\n00\n"},
-                           Kind{kRgb, 8, false, false, 0, "Orientation", "6"}, Kind{kRgb, 8, false, false, 0, "", "", 3}}) {
+  for (const Kind& kind :
+       {Kind{kRgb, 8, false, false, 1.0}, Kind{kRgb, 8, false, false, 0, "oiio:ColorSpace", "Linear"},
+        Kind{kRgb, 8, false, false, 0, "XML:com.adobe.xmp", "<x/>"},
+        Kind{kRgb, 8, false, false, 0, "Raw profile type exif", "\nexif\n 1\n00\n"},
+        Kind{kRgb, 8, false, false, 0, "Orientation", "6"}, Kind{kRgb, 8, false, false, 0, "", "", 3}}) {
     Write(folder / "p.png", kind, 5, 4);
     const auto bytes = *ReadWholeFile(folder / "p.png");
     EXPECT_FALSE(internal::ReadPlainPng(bytes)) << kind.gamma << kind.key;
@@ -278,7 +306,8 @@ TEST(PngReader, LeavesToThePictureLibraryWhatSaysMore) {
 
 TEST(PngReader, DamageIsNotPlain) {
   const auto bytes = internal::WritePng(Make(60, 50, 8, false), {});
-  for (std::size_t length = 0; length + 12 < bytes.size(); length += 1 + length / 7) {  // 12: what ends the file may lack
+  for (std::size_t length = 0; length + 12 < bytes.size();
+       length += 1 + length / 7) {  // 12: what ends the file may lack
     EXPECT_FALSE(internal::ReadPlainPng(std::span(bytes).first(length))) << length;
   }
   for (std::size_t i = 0; i < bytes.size(); i += 1 + i / 9) {
@@ -311,7 +340,10 @@ TEST(ForEachIndex, EachOnceAndTheFirstFailureIsThrownOn) {
     std::vector<std::atomic<int>> calls(100);
     internal::ForEachIndex(100, threads, [&](int i) { ++calls[std::size_t(i)]; });
     for (const auto& count : calls) EXPECT_EQ(count, 1);
-    EXPECT_THROW(internal::ForEachIndex(100, threads, [](int i) { if (i == 50) throw std::runtime_error("50"); }),
+    EXPECT_THROW(internal::ForEachIndex(100, threads,
+                                        [](int i) {
+                                          if (i == 50) throw std::runtime_error("50");
+                                        }),
                  std::runtime_error);
   }
   internal::ForEachIndex(0, 2, [](int) { FAIL(); });

@@ -1,4 +1,6 @@
 // The camera that is solved from a Position pass against the true one.
+#include "core/io/blender/solve_camera.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/io/blender/solve_camera.h"
 #include "tests/support/refusal.h"
 #include "tests/support/true_camera.h"
 

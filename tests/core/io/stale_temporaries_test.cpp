@@ -1,4 +1,6 @@
 // Temporary files that killed runs leave: which are taken away, and which are not.
+#include "core/io/file/stale_temporaries.h"
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -14,7 +16,6 @@
 #include <vector>
 
 #include "core/io/file/atomic_file.h"
-#include "core/io/file/stale_temporaries.h"
 #include "core/io/file/pending_temporaries.h"
 #include "tests/support/temporary_folder.h"
 
@@ -36,7 +37,7 @@ void WriteText(const fs::path& path, const std::string& text) { std::ofstream(pa
 void LeaveOne(const fs::path& target) {
   const pid_t child = ::fork();
   if (child == 0) {
-    const UnfinishedFile file(target);
+    const PendingTemporary file(target);
     if (::write(file.descriptor(), "half", 4) != 4) ::_exit(1);
     ::kill(::getpid(), SIGKILL);
   }
@@ -51,31 +52,32 @@ void MakeOld(const fs::path& path, std::chrono::hours age) {
 
 TEST(LeftoverFiles, AreThoseOfProcessesThatAreNoMore) {
   const TemporaryFolder folder;
-  RemoveLeftoversOnce(folder.path());  // or the second process would take away what the first one left
+  RemoveStaleTemporariesOnce(folder.path());  // or the second process would take away what the first one left
   LeaveOne(folder / "a picture.png");
   LeaveOne(folder / std::string(250, 'n'));
   ASSERT_EQ(Names(folder).size(), 2u);
   for (const std::string& name : Names(folder)) {
-    EXPECT_TRUE(name.starts_with(".") && name.ends_with(kLeftoverSuffix)) << name;
+    EXPECT_TRUE(name.starts_with(".") && name.ends_with(kTemporarySuffix)) << name;
     EXPECT_NE(name.find("." + KernelMark() + "-"), std::string::npos) << name;
   }
-  const UnfinishedFile alive(folder / "mine.png");
+  const PendingTemporary alive(folder / "mine.png");
   ASSERT_GE(alive.descriptor(), 0);
   ::close(alive.descriptor());  // as writers do before it gets its name: it stays locked
-  RemoveLeftovers(folder.path());
+  RemoveStaleTemporaries(folder.path());
   ASSERT_EQ(Names(folder).size(), 1u) << "what is being written stays";
   EXPECT_TRUE(Names(folder).front().starts_with(".mine.png."));
-  EXPECT_EQ(const_cast<UnfinishedFile&>(alive).Finish(folder / "mine.png"), 0);
+  EXPECT_EQ(const_cast<PendingTemporary&>(alive).Finish(folder / "mine.png"), 0);
   EXPECT_EQ(Names(folder), std::vector<std::string>{"mine.png"});
 }
 
 // With one descriptor left the file can be made and cannot be locked: another run would take it for a leftover.
 TEST(LeftoverFiles, AFileThatCannotBeLockedIsNotWritten) {
 #ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "UndefinedBehaviorSanitizer looks at an object's type through a pipe, and here is no descriptor for one";
+  GTEST_SKIP()
+      << "UndefinedBehaviorSanitizer looks at an object's type through a pipe, and here is no descriptor for one";
 #endif
   const TemporaryFolder folder;
-  RemoveLeftoversOnce(folder.path());
+  RemoveStaleTemporariesOnce(folder.path());
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
   const int next = ::dup(0);
@@ -84,7 +86,7 @@ TEST(LeftoverFiles, AFileThatCannotBeLockedIsNotWritten) {
   const auto descriptor_with = [&](int descriptors) {
     const rlimit limit{static_cast<rlim_t>(next + descriptors), before.rlim_max};
     EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
-    const UnfinishedFile file(folder / "p.png");
+    const PendingTemporary file(folder / "p.png");
     const int reason = file.descriptor() < 0 ? errno : 0;
     if (file.descriptor() >= 0) ::close(file.descriptor());
     EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
@@ -104,13 +106,13 @@ TEST(LeftoverFiles, OfAnotherMachineStayForADay) {
   for (const std::string& name : {fresh, old}) WriteText(folder / name, "half");
   MakeOld(folder / fresh, std::chrono::hours(23));
   MakeOld(folder / old, std::chrono::hours(25));
-  UnfinishedFile writer(folder / "c.png");
+  PendingTemporary writer(folder / "c.png");
   ::close(writer.descriptor());
   for (const std::string& name : Names(folder)) {
     if (name.starts_with(".c.png")) fs::rename(folder / name, folder / locked);
   }
   MakeOld(folder / locked, std::chrono::hours(25));
-  RemoveLeftovers(folder.path());
+  RemoveStaleTemporaries(folder.path());
   EXPECT_EQ(Names(folder), (std::vector<std::string>{fresh, locked}));
 }
 
@@ -129,9 +131,9 @@ TEST(LeftoverFiles, AreNotWhatOnlyLooksAlike) {
   ASSERT_EQ(::mkfifo(like("pipe").c_str(), 0600), 0);
   const std::vector<std::string> before = Names(folder);
   for (const std::string& name : others) MakeOld(folder / name, std::chrono::hours(1000));
-  RemoveLeftovers(folder.path());
+  RemoveStaleTemporaries(folder.path());
   EXPECT_EQ(Names(folder), before);
-  RemoveLeftovers(folder / "there is none");
+  RemoveStaleTemporaries(folder / "there is none");
 }
 
 TEST(LeftoverFiles, AreTakenAwayByTheFirstWriteToTheirFolder) {

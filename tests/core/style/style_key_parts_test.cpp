@@ -30,7 +30,8 @@ TEST(KeyParts, AreCountedInEveryKindOfKey) {
   for (const std::string part : {"a", "\"a.b # \\\" =\"", "'a.b # ='"}) {
     for (const std::string dot : {".", " . ", "\t.\t"}) {
       const std::string most = Key(kMostKeyParts, part, dot), more = Key(kMostKeyParts + 1, part, dot);
-      EXPECT_TRUE(CheckKeyParts(most + " = 1\n[" + most + "]\n[[ " + most + " ]]\nb = {" + most + " = 1, " + most + " = 2}\n", ""))
+      EXPECT_TRUE(CheckKeyParts(
+          most + " = 1\n[" + most + "]\n[[ " + most + " ]]\nb = {" + most + " = 1, " + most + " = 2}\n", ""))
           << most;
       ExpectTooMany("\n" + more + " = 1", 2);
       ExpectTooMany("b = 1\r\n[" + more + "]", 2);
@@ -44,12 +45,20 @@ TEST(KeyParts, AreCountedInEveryKindOfKey) {
 // A text that is taken for a string or a comment longer than it is would hide what stands behind it.
 TEST(KeyParts, NothingHidesAKeyAndNoTextIsTakenForOne) {
   const std::string dots(100, '.'), more = "\n" + Key(kMostKeyParts + 1) + " = 1";
-  const std::string texts[] = {
-      "# don't \"\"\" '''" + dots,           "a = \"" + dots + "\"",          "a = '" + dots + "\\'",
-      "a = '''\n" + dots + "'' \\''''",      "a = \"\"\"\n" + dots + "\"\" \\\"\"\"\"\"\"", "a = \"\"",
-      "a = \"\\\\\"",                        "a = \"\\\"" + dots + "\"",      "a = \"\"\"\"\"\"",
-      "a = \"\"\"x\"\"\"\"\" # " + dots,     "a = ''''''",                    "a = [1.5, 2.5, '" + dots + "']",
-      "a = 1.5 # " + dots,                   "a = 1979-05-27T07:32:00.999"};
+  const std::string texts[] = {"# don't \"\"\" '''" + dots,
+                               "a = \"" + dots + "\"",
+                               "a = '" + dots + "\\'",
+                               "a = '''\n" + dots + "'' \\''''",
+                               "a = \"\"\"\n" + dots + "\"\" \\\"\"\"\"\"\"",
+                               "a = \"\"",
+                               "a = \"\\\\\"",
+                               "a = \"\\\"" + dots + "\"",
+                               "a = \"\"\"\"\"\"",
+                               "a = \"\"\"x\"\"\"\"\" # " + dots,
+                               "a = ''''''",
+                               "a = [1.5, 2.5, '" + dots + "']",
+                               "a = 1.5 # " + dots,
+                               "a = 1979-05-27T07:32:00.999"};
   for (const std::string& text : texts) {
     EXPECT_TRUE(CheckKeyParts(text, "")) << text;
     const int lines = 2 + int(std::count(text.begin(), text.end(), '\n'));

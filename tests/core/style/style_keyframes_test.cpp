@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/frame_range.h"
 #include "core/io/picture_file.h"
 #include "core/style/style_file.h"
+#include "pipeline/frame_range.h"
 #include "tests/support/refusal.h"
 #include "tests/support/temporary_folder.h"
 
@@ -152,8 +152,8 @@ TEST_F(StyleKeyframes, LayersOfAllFramesAreKnownWithoutReadingPaper) {
   EXPECT_FALSE(SetStyleFrame(style, 48)) << "the frame that shows it reads it";
 }
 
-// As many frames as a style.toml of 1 MB names. To look at half the track for each of them and for the one behind comes to
-// 10¹⁰ keys of 48 bytes, seconds at any speed of memory; halving it, to 200,000 times 17, a thousandth of that.
+// As many frames as a style.toml of 1 MB names. To look at half the track for each of them and for the one behind comes
+// to 10¹⁰ keys of 48 bytes, seconds at any speed of memory; halving it, to 200,000 times 17, a thousandth of that.
 TEST_F(StyleKeyframes, TracksOfManyFramesAreSearchedByHalves) {
   Style style = Loaded("");
   StyleTrack track;

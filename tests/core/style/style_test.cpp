@@ -249,7 +249,8 @@ TEST_F(StyleFile, GuideWeightsAreATableOfLayers) {
   };
   refuse("[transfer.guide_weights]\nluminance = 1\n" + std::string(kExemplar), {"lit.png has no guides", "luminance"});
   refuse("[transfer.guide_weights]\nshadow = 1\n" + exemplar, {"guides.exr holds", "asks for shadow", "--layers"});
-  refuse("[transfer.guide_weights]\ndepth = 1\n" + exemplar, {"style.toml:2", "unknown key", "there are normal, albedo"});
+  refuse("[transfer.guide_weights]\ndepth = 1\n" + exemplar,
+         {"style.toml:2", "unknown key", "there are normal, albedo"});
   refuse("[transfer.guide_weights]\nluminance = -1\n" + exemplar, {"style.toml:2", "0 to 1000"});
   refuse("[transfer.guide_weights]\nluminance = [[1, 0], [9, 1]]\n" + exemplar, {"cannot change over time"});
 }
@@ -413,7 +414,10 @@ TEST_F(StyleFile, UpToFourLightingConditions) {
   EXPECT_EQ(style->exemplars[1].luminance, std::nullopt);
   EXPECT_EQ(style->exemplars[2].luminance, 0.0);
   EXPECT_TRUE(RequiredLayers(*style).Has(Layer::kLuminance));
-  style = Load(std::string("[transfer]\ncolorize = 0.5\ncolorize_mode = 'oklab'\nvariety = 10\nluminance_error = 'published'\n") + e);
+  style =
+      Load(std::string(
+               "[transfer]\ncolorize = 0.5\ncolorize_mode = 'oklab'\nvariety = 10\nluminance_error = 'published'\n") +
+           e);
   ASSERT_TRUE(style) << style.error().message;
   EXPECT_EQ(style->transfer.colorize, 0.5);
   EXPECT_EQ(style->transfer.colorize_mode, ColorizeMode::kOklab);

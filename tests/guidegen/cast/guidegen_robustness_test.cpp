@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/light/direct_light.h"
-#include "guidegen/guidegen.h"
 #include "core/image/check.h"
 #include "core/image/hash.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/light/direct_light.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"

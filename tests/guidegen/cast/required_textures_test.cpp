@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/io/picture_file.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/scene_textures.h"
-#include "core/io/picture_file.h"
 #include "tests/support/gltf_builder.h"
 
 namespace scumble {

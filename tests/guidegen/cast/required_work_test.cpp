@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "guidegen/scene_textures.h"
 #include "core/image/plane_count.h"
+#include "guidegen/scene_textures.h"
 #include "tests/support/light_path_scenes.h"
 
 namespace scumble {
@@ -107,7 +107,8 @@ TEST(RequiredWork, NormalsAloneCostOneRayAPixel) {
   Scene scene = SceneOf(CubeMesh(), glm::rotate(glm::dmat4(1.0), 0.6, glm::dvec3(1, 2, 3)));
   for (Mesh& mesh : scene.meshes) mesh.uvs[0].assign(mesh.positions.size(), glm::vec2(0.25f));
   Material& material = scene.materials[0];
-  for (TextureUse* use : {&material.base_color_texture, &material.metallic_roughness_texture, &material.emission_texture}) {
+  for (TextureUse* use :
+       {&material.base_color_texture, &material.metallic_roughness_texture, &material.emission_texture}) {
     use->texture = int(scene.textures.size());
     scene.textures.emplace_back();
     scene.encoded_textures.push_back(Untouchable());
@@ -192,7 +193,8 @@ TEST(RequiredWork, AnAreaLightCostsItsSamples) {
   scene.lights = {Panel(), Panel()};
   ExpectWork(scene, AboveFloor(), Asking({Layer::kLuminance}), {.shadow = 2 * all, .light_samples = 2 * all});
   scene.lights = {Panel(), Sun()};
-  ExpectWork(scene, AboveFloor(), Asking({Layer::kLuminance}), {.shadow = all + kPixels, .light_samples = all + kPixels});
+  ExpectWork(scene, AboveFloor(), Asking({Layer::kLuminance}),
+             {.shadow = all + kPixels, .light_samples = all + kPixels});
   // One that is turned away is sampled in vain, and no ray is cast for it.
   scene.lights = {Panel()};
   scene.lights[0].world_from_light *= glm::rotate(glm::dmat4(1.0), kPi, glm::dvec3(0, 1, 0));
@@ -220,7 +222,8 @@ TEST(RequiredWork, ANormalMapCostsOneLookupAPixel) {
   ExpectWork(scene, AboveFloor(), Asking({}), {.texture_lookups = kPixels, .texels = 4 * kPixels});
 }
 
-// Without a light nothing is lit, and a path that the scene's materials or the number of bounces rule out is not traced.
+// Without a light nothing is lit, and a path that the scene's materials or the number of bounces rule out is not
+// traced.
 TEST(RequiredWork, PathsThatCannotExistCostNothing) {
   Scene dark = WholeFloor();
   dark.materials[0].base_color_texture.texture = 0;

@@ -5,8 +5,8 @@
 #include <glm/gtc/constants.hpp>
 #include <utility>
 
-#include "guidegen/guidegen.h"
 #include "core/image/direction.h"
+#include "guidegen/guidegen.h"
 #include "tests/support/guidegen_checks.h"
 
 namespace scumble::testing {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/rays/camera_rays.h"
-#include "guidegen/cast/tile_store.h"
 #include "core/image/plane_allocator.h"
+#include "guidegen/cast/tile_store.h"
+#include "guidegen/rays/camera_rays.h"
 #include "tests/support/guidegen_scenes.h"
 
 namespace scumble::testing {

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/rays/camera_rays.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/rays/camera_rays.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/guidegen_checks.h"
 #include "tests/support/guidegen_scenes.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/light/direct_light.h"
 #include "core/image/stopwatch.h"
+#include "guidegen/light/direct_light.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/light_path_scenes.h"
 

@@ -44,10 +44,9 @@ class ExtremePlace : public LoaderTest {
       children.push_back(gltf.Append("nodes", {{"name", "lamp"},
                                                {"translation", {0.75, 0.5, 2.5}},
                                                {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
-      children.push_back(gltf.Append("nodes", {{"name", "lid"},
-                                               {"mesh", mesh},
-                                               {"translation", {0.375, 0.25, 1.25}},
-                                               {"scale", {0.25, 0.25, 0.25}}}));
+      children.push_back(gltf.Append(
+          "nodes",
+          {{"name", "lid"}, {"mesh", mesh}, {"translation", {0.375, 0.25, 1.25}}, {"scale", {0.25, 0.25, 0.25}}}));
     }
     gltf.Root({{"name", "far"}, {"children", children}, {"translation", {place.x, place.y, place.z}}});
     return LoadScene(Write("far.glb", gltf.Glb()));
@@ -64,8 +63,8 @@ class ExtremePlace : public LoaderTest {
 TEST_F(ExtremePlace, NodesTenThousandKilometresAwayLoseNothing) {
   const auto here = SceneAt({0, 0, 0}, kQuad, true);
   ASSERT_TRUE(here) << here.error().message;
-  GuidegenOptions options = Sized(40, 40, {Layer::kPosition, Layer::kPref, Layer::kLuminance, Layer::kShadow,
-                                           Layer::kLpeLDE, Layer::kLpeFull});
+  GuidegenOptions options = Sized(
+      40, 40, {Layer::kPosition, Layer::kPref, Layer::kLuminance, Layer::kShadow, Layer::kLpeLDE, Layer::kLpeFull});
   options.samples = 4;
   auto near_by = Render(*here, here->cameras[0], options);
   for (const Layer light : {Layer::kLuminance, Layer::kLpeLDE, Layer::kLpeFull}) {

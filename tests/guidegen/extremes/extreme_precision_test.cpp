@@ -12,10 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
 #include "core/image/hash.h"
 #include "core/io/guides/guide_storage.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/nearest/lookup_table.h"
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/guidegen_scenes.h"
 #include "tests/support/temporary_folder.h"
@@ -141,7 +142,8 @@ TEST_F(ExtremeSurvey, PlyPolygonsAreCutAsTheirCornersStand) {
 // The walls share an origin, and so a smooth edge. The stone has a corner at the numbers that a corner of theirs has
 // relative to that origin, and its normals are its own all the same.
 TEST_F(ExtremeSurvey, ObjObjectsTooFarApartHaveOriginsOfTheirOwn) {
-  const Places wall = WallAt(kEast, kNorth), tower = WallAt(kEast + 1.0, kNorth - 1e6);  // between the others in the order of places
+  const Places wall = WallAt(kEast, kNorth),
+               tower = WallAt(kEast + 1.0, kNorth - 1e6);  // between the others in the order of places
   const double x = kEast + 1.05;
   const Places wing = {
       {x, kNorth - 1.05, 0.25}, {x, kNorth - 1.05, -1.75}, {x, kNorth + 0.95, -1.75}, {x, kNorth + 0.95, 0.25}};

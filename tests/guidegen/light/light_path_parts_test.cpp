@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/surface/bsdf.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/path_expression.h"
 #include "guidegen/light/path_layers.h"
 #include "guidegen/light/sampler.h"
+#include "guidegen/surface/bsdf.h"
 #include "tests/support/guidegen_scenes.h"
 
 namespace scumble::testing {
@@ -272,7 +272,7 @@ TEST(LightSet, DrawnDirectionsMeetTheLightWithTheSameDensity) {
         EXPECT_NEAR(density / draw.density, 1.0, 1e-9);
         EXPECT_NEAR(radiance.g, draw.radiance.g, 1e-9 * (1.0 + radiance.g));
       };
-      lights.VisitLamps(point, draw.direction, std::numeric_limits<double>::infinity(), visit);
+      lights.VisitAnalytic(point, draw.direction, std::numeric_limits<double>::infinity(), visit);
     }
     EXPECT_EQ(met, n);
     // By chance, from all around.
@@ -283,8 +283,8 @@ TEST(LightSet, DrawnDirectionsMeetTheLightWithTheSameDensity) {
       const double z = 2.0 * u[0] - 1.0;
       const double side = std::sqrt(1.0 - z * z);
       const glm::dvec3 direction(side * std::cos(2.0 * kPi * u[1]), side * std::sin(2.0 * kPi * u[1]), z);
-      lights.VisitLamps(point, direction, std::numeric_limits<double>::infinity(),
-                        [&](int, const glm::dvec3&, double) { seen += 4.0 * kPi / many; });
+      lights.VisitAnalytic(point, direction, std::numeric_limits<double>::infinity(),
+                           [&](int, const glm::dvec3&, double) { seen += 4.0 * kPi / many; });
     }
     EXPECT_NEAR(seen / solid_angle, 1.0, 0.01);
   }

@@ -6,9 +6,9 @@
 #include <set>
 #include <vector>
 
+#include "core/image/hash.h"
 #include "guidegen/light/light_sampling.h"
 #include "guidegen/light/sampler.h"
-#include "core/image/hash.h"
 
 namespace scumble::testing {
 namespace {
@@ -119,11 +119,12 @@ TEST(LightTree, RaysMeetTheSameLampsAsWhenEveryOneIsAsked) {
   for (int which = 0; which < 600; ++which) {
     const SurfacePoint ray = Somewhere(which);
     std::set<int> by_tree;
-    all.VisitLamps(ray.position, ray.normal, 3.0, [&](int light, const glm::dvec3&, double) { by_tree.insert(light); });
+    all.VisitAnalytic(ray.position, ray.normal, 3.0,
+                      [&](int light, const glm::dvec3&, double) { by_tree.insert(light); });
     std::set<int> one_by_one;
     for (int light = 0; light < int(lamps.size()); ++light) {
-      alone[std::size_t(light)].VisitLamps(ray.position, ray.normal, 3.0,
-                                           [&](int, const glm::dvec3&, double) { one_by_one.insert(light); });
+      alone[std::size_t(light)].VisitAnalytic(ray.position, ray.normal, 3.0,
+                                              [&](int, const glm::dvec3&, double) { one_by_one.insert(light); });
     }
     EXPECT_EQ(by_tree, one_by_one) << which;
     met += by_tree.size();

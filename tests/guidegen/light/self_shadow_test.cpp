@@ -14,9 +14,10 @@
 #include <utility>
 #include <vector>
 
-#include "guidegen/surface/bsdf.h"
-#include "guidegen/light/direct_light.h"
 #include "core/image/hash.h"
+#include "guidegen/light/direct_light.h"
+#include "guidegen/rays/ray_offset.h"
+#include "guidegen/surface/bsdf.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/light_path_scenes.h"
 
@@ -576,7 +577,7 @@ TEST(LightLeaks, AnOpenBoxIsLitAndALidClosesIt) {
 }
 
 // Height above the plane, by its definition, to double's rounding of the coordinates themselves.
-TEST(ShadowRayOrigin, StandsAtItsHeightOnTheClearWay) {
+TEST(ShadowRayOrigin, StandsAtItsHeightOnTheRayOffset) {
   for (const double coordinate : {1e-3, 1.0, 1e7}) {
     SurfacePoint point;
     point.position = glm::dvec3(0.3, -0.2, -0.9) * coordinate;
@@ -589,15 +590,15 @@ TEST(ShadowRayOrigin, StandsAtItsHeightOnTheClearWay) {
     MakeFrame(point.facing, x, y);
     for (const double cosine : {1.0, 0.5, 0.02}) {
       const glm::dvec3 way = point.facing * cosine + x * std::sqrt(1.0 - cosine * cosine);
-      point.clear_way = way * (2.0 * coordinate);
+      point.max_ray_offset = way * (2.0 * coordinate);
       EXPECT_NEAR(up(), height, rounding) << cosine;
       const glm::dvec3 moved = ShadowRayOrigin(point) - point.position;
       EXPECT_LE(glm::length(moved - way * (height / cosine)), 2.0 * rounding) << cosine;
     }
     // Flatter, and with less room than that: at the same height still, never past where the ray came from.
-    point.clear_way = x * coordinate;
+    point.max_ray_offset = x * coordinate;
     EXPECT_NEAR(up(), height, rounding);
-    point.clear_way = point.facing * (0.25 * height);
+    point.max_ray_offset = point.facing * (0.25 * height);
     EXPECT_NEAR(up(), height, rounding);
   }
 }

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "tests/support/animation_fixtures.h"
 #include "guidegen/guidegen.h"
+#include "tests/support/animation_fixtures.h"
 
 namespace scumble {
 namespace {

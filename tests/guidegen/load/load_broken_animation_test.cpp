@@ -1,6 +1,6 @@
 // Animations, skins and morph targets that are broken: refused by file and place, or harmless.
-#include "tests/support/animation_fixtures.h"
 #include "guidegen/guidegen.h"
+#include "tests/support/animation_fixtures.h"
 
 namespace scumble {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "tests/support/gltf_builder.h"
-#include "guidegen/load/load_scene.h"
 #include "core/io/picture_file.h"
+#include "guidegen/load/load_scene.h"
+#include "tests/support/gltf_builder.h"
 
 namespace scumble {
 namespace {
@@ -245,8 +245,8 @@ TEST_F(LoadGltf, MaterialsAndTextures) {
   EXPECT_EQ(scene.meshes[0].uvs[1][2], glm::vec2(2, 2));
 }
 
-// What a primitive has of a list that others share is what it would have of a list of its own, in the order in which its
-// triangles name it. Nothing else of the list is read: it may be NaN.
+// What a primitive has of a list that others share is what it would have of a list of its own, in the order in which
+// its triangles name it. Nothing else of the list is read: it may be NaN.
 TEST_F(LoadGltf, SharedListsGiveWhatListsOfTheirOwnWould) {
   constexpr int kLong = 40;
   const std::vector<std::uint16_t> used = {31, 7, 12};
@@ -267,9 +267,15 @@ TEST_F(LoadGltf, SharedListsGiveWhatListsOfTheirOwnWould) {
       }
       return b.Floats(shared ? values : own, components);
     };
-    const json attributes = {{"POSITION", list(0, 3)},   {"NORMAL", list(1, 3)},     {"TEXCOORD_0", list(2, 2)},
-                             {"TEXCOORD_1", list(3, 2)}, {"COLOR_0", list(4, 4)},    {"TANGENT", list(5, 4)},
-                             {"JOINTS_0", 0},            {"WEIGHTS_0", list(6, 4)}, {"_SCUMBLE_REST", list(7, 3)}};
+    const json attributes = {{"POSITION", list(0, 3)},
+                             {"NORMAL", list(1, 3)},
+                             {"TEXCOORD_0", list(2, 2)},
+                             {"TEXCOORD_1", list(3, 2)},
+                             {"COLOR_0", list(4, 4)},
+                             {"TANGENT", list(5, 4)},
+                             {"JOINTS_0", 0},
+                             {"WEIGHTS_0", list(6, 4)},
+                             {"_SCUMBLE_REST", list(7, 3)}};
     json primitive = {{"attributes", attributes}};
     const std::vector<std::uint8_t> joints((shared ? kLong : used.size()) * 4, 0);
     primitive["attributes"]["JOINTS_0"] = b.Accessor(b.View(joints), kUbyte, joints.size() / 4, "VEC4");
@@ -327,8 +333,8 @@ TEST_F(LoadGltf, SharedListsMayBeSparse) {
   EXPECT_EQ(scene.meshes[1].triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 1}}));
 }
 
-// The extension's own defaults: white, glossiness 1. Its metals are their specular colour, which nothing here can hold, so
-// what it means is never metallic.
+// The extension's own defaults: white, glossiness 1. Its metals are their specular colour, which nothing here can hold,
+// so what it means is never metallic.
 TEST_F(LoadGltf, SpecularGlossinessIsReadAsFarAsItGoes) {
   const char* name = "KHR_materials_pbrSpecularGlossiness";
   GltfBuilder b = TexturedSquare();
@@ -631,9 +637,9 @@ TEST_F(LoadGltf, WhatIsIgnoredIsSaid) {
   b.Root({{"mesh", 0}, {"scale", {1, 0, 1}}});
   const Scene scene = Load(b);
   EXPECT_EQ(scene.instances.size(), 1u);
-  EXPECT_THAT(scene.warnings,
-              testing::UnorderedElementsAre(HasSubstr("points and lines"), HasSubstr("without JOINTS_0"),
-                                            HasSubstr("animations are not played without a frame"), HasSubstr("flattens")));
+  EXPECT_THAT(scene.warnings, testing::UnorderedElementsAre(
+                                  HasSubstr("points and lines"), HasSubstr("without JOINTS_0"),
+                                  HasSubstr("animations are not played without a frame"), HasSubstr("flattens")));
 }
 
 TEST_F(LoadGltf, ASceneWithoutGeometryIsLegal) {

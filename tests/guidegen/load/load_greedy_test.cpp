@@ -1,5 +1,5 @@
-// Small scene files that ask for much memory or time, by naming a thing again and again or by what a few bytes stand for:
-// that is counted beforehand, kept once or left out.
+// Small scene files that ask for much memory or time, by naming a thing again and again or by what a few bytes stand
+// for: that is counted beforehand, kept once or left out.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 
@@ -7,11 +7,11 @@
 #include <ctime>
 #include <iterator>
 
-#include "tests/support/animation_fixtures.h"
-#include "guidegen/load/loader_util.h"
-#include "guidegen/scene_textures.h"
 #include "core/image/hash.h"
 #include "core/io/picture_file.h"
+#include "guidegen/load/loader_util.h"
+#include "guidegen/scene_textures.h"
+#include "tests/support/animation_fixtures.h"
 
 namespace scumble {
 namespace {
@@ -41,8 +41,9 @@ class Greedy : public RefusedScenes {
   }
 };
 
-// 600 leaves of one name, 1000 nodes deep, each of those with a name of 1000 bytes: paths of 1,001,001 bytes, of which 537
-// are more than 2^29. A file of 1 MB; the paths of the 100,000 leaves that fit into 4 MB would be 100 GB, kept twice.
+// 600 leaves of one name, 1000 nodes deep, each of those with a name of 1000 bytes: paths of 1,001,001 bytes, of which
+// 537 are more than 2^29. A file of 1 MB; the paths of the 100,000 leaves that fit into 4 MB would be 100 GB, kept
+// twice.
 TEST_F(Greedy, PathsAreCountedBeforeTheyAreMade) {
   GltfBuilder b;
   b.Triangle("A");
@@ -65,7 +66,8 @@ TEST_F(Greedy, NamesCountWhereverTheyAreKept) {
   for (int i = 1; i < 600; ++i) object.json["meshes"][0]["primitives"].push_back(primitive);
   EXPECT_THAT(Refusal(object), HasSubstr("536870912 bytes"));
   GltfBuilder cameras;
-  cameras.Append("cameras", {{"type", "perspective"}, {"name", name}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}});
+  cameras.Append("cameras",
+                 {{"type", "perspective"}, {"name", name}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}});
   for (int i = 0; i < 600; ++i) cameras.Root({{"camera", 0}});
   EXPECT_THAT(Refusal(cameras), HasSubstr("536870912 bytes"));
   GltfBuilder lights;
@@ -123,11 +125,13 @@ TEST_F(Greedy, SparseAccessorsCountLess) {
       {"count", 2},
       {"indices", {{"bufferView", b.View(std::vector<std::uint16_t>{1, 2})}, {"componentType", kUshort}}},
       {"values", {{"bufferView", b.View(std::vector<float>{5, 0, 0, 0, 7, 0})}}}};
-  EXPECT_THAT(Refusal(b), HasSubstr("has 16000032 elements and no data")) << "what one accessor may have does not change";
+  EXPECT_THAT(Refusal(b), HasSubstr("has 16000032 elements and no data"))
+      << "what one accessor may have does not change";
 }
 
-// Where a primitive uses few vertices of a list, only those are read, but all values of a sparse accessor are looked through,
-// and count: 501 times a million and three vertices. What it claims is counted before it is read, and found to be too many.
+// Where a primitive uses few vertices of a list, only those are read, but all values of a sparse accessor are looked
+// through, and count: 501 times a million and three vertices. What it claims is counted before it is read, and found to
+// be too many.
 TEST_F(Greedy, SparseValuesCountForEachReading) {
   GltfBuilder b;
   b.Triangle();
@@ -153,8 +157,8 @@ TEST_F(Greedy, MorphTargetsCountForEachNode) {
   EXPECT_THAT(Refusal(b), testing::AllOf(HasSubstr("at least 64025000 morph targets"), HasSubstr("at most 64000000")));
 }
 
-// 100,000 empty targets for 300,000 vertices without data. Looked at for each vertex, once for its place and once for its
-// normal, they were 6·10¹⁰ steps, twelve seconds at one in each cycle of 5 GHz.
+// 100,000 empty targets for 300,000 vertices without data. Looked at for each vertex, once for its place and once for
+// its normal, they were 6·10¹⁰ steps, twelve seconds at one in each cycle of 5 GHz.
 TEST_F(Greedy, TargetsThatHoldNothingCostNoVertexAnything) {
   GltfBuilder b;
   b.Triangle();
@@ -170,8 +174,8 @@ TEST_F(Greedy, TargetsThatHoldNothingCostNoVertexAnything) {
   EXPECT_EQ(scene.meshes[0].positions.size(), 300'000u);
 }
 
-// `{}` became a material of 2 KB, a node of half a KB. As many as may be are left to the parser, which here finds a bracket too
-// many.
+// `{}` became a material of 2 KB, a node of half a KB. As many as may be are left to the parser, which here finds a
+// bracket too many.
 TEST_F(Greedy, ListsAreCountedBeforeTheyAreMade) {
   const auto refusal = [&](const std::string& list, std::size_t elements, const std::string& behind = "") {
     std::string text = R"({"asset":{"version":"2.0"},")" + list + R"(":[{})";
@@ -186,8 +190,9 @@ TEST_F(Greedy, ListsAreCountedBeforeTheyAreMade) {
   EXPECT_THAT(refusal("materials", 100'000, "]"), HasSubstr("cannot be read as glTF 2.0"));
 }
 
-// tinygltf gives each sampler the extensions of its animation: 4002 copies of 4000 numbers, 150 bytes each, from 100 KB. The
-// look ahead counts brackets and commas, 4002 of them, once for each of the 4001 commas between samplers and once more.
+// tinygltf gives each sampler the extensions of its animation: 4002 copies of 4000 numbers, 150 bytes each, from 100
+// KB. The look ahead counts brackets and commas, 4002 of them, once for each of the 4001 commas between samplers and
+// once more.
 TEST_F(Greedy, ExtensionsThatAreCopiedAreCounted) {
   const auto scene = [&](int samplers) {
     GltfBuilder b;
@@ -220,8 +225,8 @@ TEST_F(Greedy, AnimationsWithoutDataAreCounted) {
   EXPECT_EQ(refusal(2, 1000), "");
 }
 
-// As many matrices as joints are of use. The list may be longer, but not so long that reading it costs more than all else:
-// 16 million without data took 3 GB before they were refused as matrices of zeros.
+// As many matrices as joints are of use. The list may be longer, but not so long that reading it costs more than all
+// else: 16 million without data took 3 GB before they were refused as matrices of zeros.
 TEST_F(Greedy, SkinsHaveNoMoreMatricesThanTheyNeed) {
   for (const std::size_t count : {std::size_t(2 + 1025), std::size_t(16'000'000)}) {
     Bar bar;
@@ -261,7 +266,8 @@ TEST_F(Greedy, PicturesInBuffersAreKeptOnce) {
   const Scene scene = Load(with_views([](json&, int) {}));
   ASSERT_EQ(scene.textures.size(), std::size_t(kImages));
   for (const Picture& texture : scene.textures) EXPECT_EQ(texture.rgba, picture.rgba);
-  const GltfBuilder nested = with_views([](json& view, int i) { view["byteLength"] = view["byteLength"].get<int>() - i; });
+  const GltfBuilder nested =
+      with_views([](json& view, int i) { view["byteLength"] = view["byteLength"].get<int>() - i; });
   EXPECT_THAT(Refusal(nested), HasSubstr("lie on each other"));
 }
 
@@ -283,8 +289,8 @@ std::vector<unsigned char> GlbOf(std::string json, std::vector<unsigned char> da
   return glb;
 }
 
-// One buffer is the binary chunk. Copied for each of 10,000, a chunk of 1 MB in a file of 1.3 MB would be 10 GB. Keys may
-// have escapes, the last of equal ones counts, and a uri is a text with something in it.
+// One buffer is the binary chunk. Copied for each of 10,000, a chunk of 1 MB in a file of 1.3 MB would be 10 GB. Keys
+// may have escapes, the last of equal ones counts, and a uri is a text with something in it.
 TEST_F(Greedy, BuffersShareNoChunk) {
   GltfBuilder b;
   b.Triangle(R"("buffers":[{},{}])");
@@ -415,8 +421,8 @@ std::vector<glm::vec3> Spiral(int corners, double turns) {
 }
 
 // The same triangles as by plain clipping, on polygons that touch and cross themselves, too. Each cut makes two new
-// triangles to look into, so there are at most 3 n, each of which looks at n corners once; and n²/2 corners found before are
-// looked at again. Plain clipping takes 72 n² of the last spiral: a file of 125 such faces took minutes.
+// triangles to look into, so there are at most 3 n, each of which looks at n corners once; and n²/2 corners found
+// before are looked at again. Plain clipping takes 72 n² of the last spiral: a file of 125 such faces took minutes.
 TEST(GreedyPolygons, EarsCostTheSquareOfTheCorners) {
   const auto expect_same = [](const std::vector<glm::vec3>& polygon, bool compare = true) {
     std::vector<glm::uvec3> triangles;
@@ -445,21 +451,22 @@ TEST_F(Greedy, ObjLinesThatNobodyLooksAtTakeNoMemory) {
   for (int i = 0; i < 1000; ++i) tags += i % 2 == 0 ? "t a 8192/8192/8192\n" : " \tt\ta 8192/8192/8192\r\n";
   for (int i = 0; i < 3000; ++i) lines += "l 1 2\np 1 2\n", changes += "usemtl m\nusemtl none\n";
   const double before = PeakMegabytes();
-  const Scene scene =
-      Load(Write("a.obj", "mtllib m.mtl\n" + tags + "o A\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + lines + changes +
-                              "o B\nf 1 2 3\no C\nl 1 2 3\nf 3 2 1\n"));
+  const Scene scene = Load(Write("a.obj", "mtllib m.mtl\n" + tags + "o A\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" +
+                                              lines + changes + "o B\nf 1 2 3\no C\nl 1 2 3\nf 3 2 1\n"));
   EXPECT_LT(PeakMegabytes() - before, 200);
   ASSERT_EQ(scene.instances.size(), 3u);
   EXPECT_EQ(scene.instances[2].object, "C");
-  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("points and lines are left out, only faces are seen (first: 'A', 2")));
+  EXPECT_THAT(scene.warnings,
+              ElementsAre(HasSubstr("points and lines are left out, only faces are seen (first: 'A', 2")));
 }
 
 // A library is itself whatever it is called; before, each of its names read it anew, its materials too.
 TEST_F(Greedy, ObjLibrariesAreReadOnce) {
   Write("a.mtl", std::string("newmtl m\nKd 1 0 0\n"));
   std::filesystem::create_symlink("a.mtl", Path("link.mtl"));
-  const Scene scene = Load(Write("a.obj", std::string("mtllib a.mtl\nmtllib ./a.mtl\nmtllib ././a.mtl\nmtllib link.mtl\n"
-                                                      "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")));
+  const Scene scene =
+      Load(Write("a.obj", std::string("mtllib a.mtl\nmtllib ./a.mtl\nmtllib ././a.mtl\nmtllib link.mtl\n"
+                                      "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n")));
   ASSERT_EQ(scene.materials.size(), 1u);
   EXPECT_EQ(scene.materials[0].name, "m");
   EXPECT_EQ(scene.meshes[0].material, 0);
@@ -483,7 +490,8 @@ TEST_F(Greedy, MissingTexturesConcernTheirOwnMaterials) {
   EXPECT_EQ(scene.materials[2].roughness, 1.0f);
 }
 
-// Files of the system's say that they are empty and need not end, as /proc/self/pagemap does not. An empty file is read.
+// Files of the system's say that they are empty and need not end, as /proc/self/pagemap does not. An empty file is
+// read.
 TEST_F(Greedy, FilesThatHaveMoreThanTheySayAreRefused) {
   const Expected<std::vector<std::byte>> empty = ReadRegularFile(Write("empty", std::string()));
   ASSERT_TRUE(empty.ok());

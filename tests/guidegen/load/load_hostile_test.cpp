@@ -7,12 +7,12 @@
 #include <memory>
 #include <set>
 
-#include "tests/support/gltf_builder.h"
+#include "core/image/hash.h"
+#include "core/io/picture_file.h"
 #include "guidegen/load/load_scene.h"
 #include "guidegen/load/texture_budget.h"
 #include "guidegen/scene_textures.h"
-#include "core/image/hash.h"
-#include "core/io/picture_file.h"
+#include "tests/support/gltf_builder.h"
 
 namespace scumble {
 namespace {

@@ -5,11 +5,12 @@
 
 #include <cmath>
 
-#include "tests/support/gltf_builder.h"
-#include "guidegen/load/loader_util.h"
-#include "guidegen/load/mesh_normals.h"
 #include "core/image/color.h"
 #include "core/io/picture_file.h"
+#include "guidegen/load/loader_util.h"
+#include "guidegen/load/mesh_normals.h"
+#include "guidegen/scene/framing.h"
+#include "tests/support/gltf_builder.h"
 
 namespace scumble {
 namespace {

@@ -1,4 +1,5 @@
-// Numbers at the ends of their formats: in style files, options and calls the same, and in the half floats of EXR files.
+// Numbers at the ends of their formats: in style files, options and calls the same, and in the half floats of EXR
+// files.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +44,8 @@ class ExtremeFiles : public CliTest {
     GuideSet guides = Ball(24);
     guides.Add(Layer::kAlbedo);
     for (int c = 0; c < 3; ++c) {
-      for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kAlbedo, c)[i] = values[(i + std::size_t(c)) % values.size()];
+      for (std::size_t i = 0; i < guides.pixel_count(); ++i)
+        guides.Plane(Layer::kAlbedo, c)[i] = values[(i + std::size_t(c)) % values.size()];
     }
     return guides;
   }
@@ -98,8 +100,8 @@ struct Written {
   std::optional<float> expected;  // nothing: refused
 };
 
-// What a double holds and a float does not is the nearest float that says the same: infinite where it is larger than all,
-// and above 0 where it is above 0, because a threshold of 0 accepts nothing and any other exact copies.
+// What a double holds and a float does not is the nearest float that says the same: infinite where it is larger than
+// all, and above 0 where it is above 0, because a threshold of 0 accepts nothing and any other exact copies.
 TEST_F(ExtremeFiles, ThresholdsMeanTheSameInFilesOptionsAndCalls) {
   const Written all[] = {
       {"0", 0.0f},
@@ -121,7 +123,8 @@ TEST_F(ExtremeFiles, ThresholdsMeanTheSameInFilesOptionsAndCalls) {
       {"-1", std::nullopt},
       {"\"much\"", std::nullopt},
   };
-  for (const auto& [key, field] : {std::pair("threshold", &TransferSettings::threshold), {"luminance_weight", &TransferSettings::luminance_weight}}) {
+  for (const auto& [key, field] : {std::pair("threshold", &TransferSettings::threshold),
+                                   {"luminance_weight", &TransferSettings::luminance_weight}}) {
     for (const auto& [text, expected] : all) {
       EXPECT_EQ(InFile(key, text, field), expected) << key << " = " << text;
       EXPECT_EQ(InOption(key, text, field), expected) << key << "=" << text;
@@ -135,8 +138,10 @@ TEST_F(ExtremeFiles, ThresholdsMeanTheSameInFilesOptionsAndCalls) {
     return Prepare(style, 100).ok();
   };
   for (const auto field : {&TransferSettings::threshold, &TransferSettings::luminance_weight}) {
-    for (const float good : {0.0f, -0.0f, std::numeric_limits<float>::denorm_min(), 1e30f, kInfinity}) EXPECT_TRUE(prepares(good, field));
-    for (const float bad : {kNan, -kNan, -std::numeric_limits<float>::denorm_min(), -kInfinity}) EXPECT_FALSE(prepares(bad, field));
+    for (const float good : {0.0f, -0.0f, std::numeric_limits<float>::denorm_min(), 1e30f, kInfinity})
+      EXPECT_TRUE(prepares(good, field));
+    for (const float bad : {kNan, -kNan, -std::numeric_limits<float>::denorm_min(), -kInfinity})
+      EXPECT_FALSE(prepares(bad, field));
   }
 }
 
@@ -148,7 +153,8 @@ TEST_F(ExtremeFiles, TheProgramRefusesThemToo) {
   ExpectError(With(transfer, {"--set", "transfer.threshold=nan"}), 2, {"transfer.threshold", "0 or more"});
   ExpectError(With(transfer, {"--set", "transfer.levels=17"}), 2, {"transfer.levels", "1 to 16"});
   ExpectError(With(transfer, {"--set", "transfer.blend_radius=65"}), 2, {"transfer.blend_radius", "0 to 64"});
-  RunOk(With(transfer, {"--set", "transfer.threshold=inf", "--set", "transfer.levels=16", "--set", "transfer.blend_radius=64"}));
+  RunOk(With(transfer,
+             {"--set", "transfer.threshold=inf", "--set", "transfer.levels=16", "--set", "transfer.blend_radius=64"}));
   WriteText("style/style.toml", "[transfer]\nthreshold = nan\n[[exemplar]]\nimage = \"lit.png\"\n");
   ExpectError(transfer, 3, {"style.toml:2", "transfer.threshold"});
 }
@@ -165,12 +171,13 @@ TEST_F(ExtremeFiles, TheSmallestThresholdIsTheSameInOneStepAndInTwo) {
 
 // ---- half floats ---------------------------------------------------------------------------------------------------
 
-// Half floats end at 65504: a colour beyond becomes that, not infinity, which would be no colour. Halves below are rounded to
-// the nearest (65520 is the middle to the next step of 32, which there is none of). OpenImageIO reads what was written.
+// Half floats end at 65504: a colour beyond becomes that, not infinity, which would be no colour. Halves below are
+// rounded to the nearest (65520 is the middle to the next step of 32, which there is none of). OpenImageIO reads what
+// was written.
 TEST_F(ExtremeFiles, WhatIsWrittenAsHalfStaysFinite) {
   const std::vector<float> values = {65504.0f, 65519.0f, 65520.0f, 1e6f, 3e38f, -1e6f, 65503.0f, 2049.0f, 1e-8f};
-  const std::vector<float> expected = {kLargestHalf, kLargestHalf, kLargestHalf, kLargestHalf, kLargestHalf,
-                                       -kLargestHalf, 65504.0f, 2048.0f, 0.0f};
+  const std::vector<float> expected = {kLargestHalf,  kLargestHalf, kLargestHalf, kLargestHalf, kLargestHalf,
+                                       -kLargestHalf, 65504.0f,     2048.0f,      0.0f};
   GuideSet guides = Tinted(values);
   ASSERT_TRUE(WriteGuides(At("half.exr"), guides, {.half = true}));
   const Channels found = ByOpenImageIO("half.exr");
@@ -206,12 +213,14 @@ TEST_F(ExtremeFiles, InfiniteHalvesAreRefusedWithTheirPlace) {
   std::filesystem::remove(At("p.png"));
   for (const float beyond : {1e6f, kInfinity, -kInfinity, kNan}) {
     WriteHalfByOpenImageIO("bad.exr", Tinted({0.5f, beyond, 0.5f, 0.5f}));
-    ExpectError(With({"transfer", "bad.exr"}, tint), 3, {"bad.exr", "layer albedo is NaN or infinite on ", "first at ("});
+    ExpectError(With({"transfer", "bad.exr"}, tint), 3,
+                {"bad.exr", "layer albedo is NaN or infinite on ", "first at ("});
     EXPECT_FALSE(Exists("p.png"));
   }
 }
 
-// Whatever a base colour is, paint is 0 to 1: the brightest tint is white where the paint is not black, a negative one black.
+// Whatever a base colour is, paint is 0 to 1: the brightest tint is white where the paint is not black, a negative one
+// black.
 TEST_F(ExtremeFiles, TintsBeyondOneSaturate) {
   WriteStyle("style");
   const auto painted = [&](float albedo) {
@@ -221,7 +230,8 @@ TEST_F(ExtremeFiles, TintsBeyondOneSaturate) {
     EXPECT_TRUE(picture);
     return std::vector<int>(picture->At(12, 12), picture->At(12, 12) + 4);
   };
-  for (const float bright : {kLargestHalf, 1e30f, std::numeric_limits<float>::max()}) EXPECT_EQ(painted(bright), std::vector<int>({65535, 65535, 65535, 65535})) << bright;
+  for (const float bright : {kLargestHalf, 1e30f, std::numeric_limits<float>::max()})
+    EXPECT_EQ(painted(bright), std::vector<int>({65535, 65535, 65535, 65535})) << bright;
   for (const float dark : {0.0f, -1.0f, -1e30f}) EXPECT_EQ(painted(dark), std::vector<int>({0, 0, 0, 65535})) << dark;
 }
 
@@ -246,15 +256,17 @@ TEST_F(ExtremeFiles, ExemplarsInFloatsSaturate) {
 
 // ---- luminances of files -------------------------------------------------------------------------------------------
 
-// Half floats end at 65504, and what is farther is written as infinite. Two such pixels are as far away as each other, so
-// they are no edge: the picture is that of a wall at 60000 m, with the same step before it.
+// Half floats end at 65504, and what is farther is written as infinite. Two such pixels are as far away as each other,
+// so they are no edge: the picture is that of a wall at 60000 m, with the same step before it.
 TEST_F(ExtremeFiles, DepthsBeyondHalfFloats) {
   WritePainted("style/lit.png", 32, 32);
-  WriteText("style/style.toml", "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = 3\n[[exemplar]]\nimage = \"lit.png\"\n");
+  WriteText("style/style.toml",
+            "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = 3\n[[exemplar]]\nimage = \"lit.png\"\n");
   const auto painted = [&](float wall, bool stepped) {
     GuideSet guides = Ball(32);
     for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-      if (guides.Plane(Layer::kCoverage)[i] > 0.0f) guides.Plane(Layer::kDepth)[i] = stepped && i % 32 < 16 ? 2.0f : wall;
+      if (guides.Plane(Layer::kCoverage)[i] > 0.0f)
+        guides.Plane(Layer::kDepth)[i] = stepped && i % 32 < 16 ? 2.0f : wall;
     }
     WriteGuideFile("g.exr", guides);
     RunOk({"transfer", "g.exr", "--style", "style", "-o", "p.png"});

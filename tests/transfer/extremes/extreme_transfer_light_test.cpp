@@ -53,10 +53,10 @@ std::size_t NotTheBest(const SourceField& field, const GuideSet& guides) {
   return count;
 }
 
-// The excess of the other exemplar is |L - ¾| - |L - ¼| = 2·|L - ½|, exact in float near ½ (Sterbenz: both differences are,
-// and so is that of these). The least that is not 0 is at the float below ½, 2·2^-25 = 2^-24. A weight of 2^21 makes it
-// 2^-3, the threshold: nothing is left of it, so nothing is accepted from an exemplar that is not the best, at this weight
-// and any above. Half of it leaves a half of the threshold, which the distance 0 is below.
+// The excess of the other exemplar is |L - ¾| - |L - ¼| = 2·|L - ½|, exact in float near ½ (Sterbenz: both differences
+// are, and so is that of these). The least that is not 0 is at the float below ½, 2·2^-25 = 2^-24. A weight of 2^21
+// makes it 2^-3, the threshold: nothing is left of it, so nothing is accepted from an exemplar that is not the best, at
+// this weight and any above. Half of it leaves a half of the threshold, which the distance 0 is below.
 TEST(ExtremeLight, TheLimitIsReachedWhereTheLeastExcessUsesUpTheThreshold) {
   const GuideSet guides = LitSphere(128, {kBelow, kMiddle, kAbove, 0.1f, 0.9f});
   ASSERT_EQ(2.0f * (kMiddle - kBelow), 0x1.0p-24f);
@@ -79,11 +79,12 @@ std::size_t TakenInOtherLight(const SourceField& field, const GuideSet& guides) 
   return count;
 }
 
-// Every pixel is as bright as one of the lights, whose errors for the other's pixels are both ½: a weight of the threshold takes
-// half of it, exactly, and leaves half. The square of that is 2.5e-41 for 1e-20 and rounds to 0 for the others. The sphere's
-// normals are the exemplar's own, so every offer is at distance 0, which is less than what is left: the field is that of no
-// weight at all, and in every chunk the pixels in the other light, about half of them, are taken above level 0, where each
-// would take its own light's exemplar. Twice the weight leaves nothing, and none is.
+// Every pixel is as bright as one of the lights, whose errors for the other's pixels are both ½: a weight of the
+// threshold takes half of it, exactly, and leaves half. The square of that is 2.5e-41 for 1e-20 and rounds to 0 for the
+// others. The sphere's normals are the exemplar's own, so every offer is at distance 0, which is less than what is
+// left: the field is that of no weight at all, and in every chunk the pixels in the other light, about half of them,
+// are taken above level 0, where each would take its own light's exemplar. Twice the weight leaves nothing, and none
+// is.
 void ExpectCopiesWithinTinyThresholds(LuminanceError form, float normal_weight) {
   const GuideSet guides = LitSphere(48, {kBright, kDark});
   for (const float threshold : {1e-20f, 1e-30f, 0x1.0p-148f}) {
@@ -134,8 +135,8 @@ TEST(ExtremeLight, WithoutWeightLightCutsNothing) {
   }
 }
 
-// The published error is 0 at an exemplar's own luminance alone, and infinity times 0 counts as 0: such pixels take pieces of
-// exemplars of their light, all others their own nearest neighbour.
+// The published error is 0 at an exemplar's own luminance alone, and infinity times 0 counts as 0: such pixels take
+// pieces of exemplars of their light, all others their own nearest neighbour.
 TEST(ExtremeLight, ThePublishedErrorAtItsLimit) {
   const GuideSet guides = LitSphere(96, {0.75f, 0.25f, 0.3f});
   const SourceField field = MustTransfer(TwoLights(96, kInfinity, LuminanceError::kPublished), guides).field;
@@ -172,15 +173,16 @@ TEST(ExtremeLight, NegativeAndNanAreDarkness) {
   const GuideSet odd = LitSphere(96, dark), zero = LitSphere(96, {0.0f});
   for (const LuminanceError form : {LuminanceError::kExcess, LuminanceError::kPublished}) {
     for (const float weight : {0.0f, 0.3f, 1e9f, kInfinity}) {
-      const Transferred a = MustTransfer(TwoLights(96, weight, form), odd), b = MustTransfer(TwoLights(96, weight, form), zero);
+      const Transferred a = MustTransfer(TwoLights(96, weight, form), odd),
+                        b = MustTransfer(TwoLights(96, weight, form), zero);
       EXPECT_TRUE(SameField(a.field, b.field) && a.field.exemplar == b.field.exemplar) << weight;
     }
   }
 }
 
-// Whatever is brighter than the brightest exemplar is nearest to it, by (L - e) - (L - b) = b - e however large L is. Float
-// rounds L - e and L - b to one value from 2^24 on, and infinity less anything is infinity; the exemplars stand with the
-// dark one first, so that a tie would take it.
+// Whatever is brighter than the brightest exemplar is nearest to it, by (L - e) - (L - b) = b - e however large L is.
+// Float rounds L - e and L - b to one value from 2^24 on, and infinity less anything is infinity; the exemplars stand
+// with the dark one first, so that a tie would take it.
 TEST(ExtremeLight, HoweverBrightTheBrightestIsTaken) {
   for (const LuminanceError form : {LuminanceError::kExcess, LuminanceError::kPublished}) {
     const double luminances[] = {0.15, 0.8, 0.4};
@@ -205,7 +207,8 @@ TEST(ExtremeLight, TheExposureIsMeasuredOnLight) {
   for (const float odd : {-1.0f, -kInfinity, kNan, 0.0f}) {
     EXPECT_EQ(MeasureExposure(LitSphere(64, {odd}), luminances), 0.0) << "nothing is lit";
   }
-  // A twentieth is odd and as 0: the 90th percentile is 0.5 whatever it is, and exposing it to 0.75 takes log2(1.5) stops.
+  // A twentieth is odd and as 0: the 90th percentile is 0.5 whatever it is, and exposing it to 0.75 takes log2(1.5)
+  // stops.
   std::vector<float> mostly(20, 0.5f);
   for (const float odd : {-1.0f, kNan, -kInfinity, 0.0f}) {
     mostly[0] = odd;

@@ -1,5 +1,6 @@
-// The same bytes at the ends of every scale: with 1, 2, 3 and 7 threads, with every set of vector instructions, by bands of
-// rows and through a field, whole and in pieces. What they are compared with is one thread with the least instructions.
+// The same bytes at the ends of every scale: with 1, 2, 3 and 7 threads, with every set of vector instructions, by
+// bands of rows and through a field, whole and in pieces. What they are compared with is one thread with the least
+// instructions.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -38,7 +39,8 @@ GuideSet Guides(int width, int height) {
   return guides;
 }
 
-// The same with numbers that are none, here and there on what is covered: through the public call, which no file precedes.
+// The same with numbers that are none, here and there on what is covered: through the public call, which no file
+// precedes.
 GuideSet OddGuides(int width, int height) {
   GuideSet guides = Guides(width, height);
   const float odd[] = {-1.0f, kNan, kInfinity, -kInfinity, 65504.0f, 65520.0f, 1e38f, kDenormal, -0.0f};
@@ -46,7 +48,8 @@ GuideSet OddGuides(int width, int height) {
        {Layer::kLuminance, Layer::kAlbedo, Layer::kNormal, Layer::kDepth, Layer::kObject, Layer::kPref}) {
     for (int c = 0; c < ChannelCount(layer); ++c) {
       for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-        if (Hash(int(layer), c, i, 9) % 11 == 0) guides.Plane(layer, c)[i] = odd[Hash(i, c, int(layer)) % std::size(odd)];
+        if (Hash(int(layer), c, i, 9) % 11 == 0)
+          guides.Plane(layer, c)[i] = odd[Hash(i, c, int(layer)) % std::size(odd)];
       }
     }
   }
@@ -91,7 +94,8 @@ std::vector<Extreme> Extremes(const GuideSet& guides) {
     Style style = Base();
     style.transfer.levels = levels;
     add("levels " + std::to_string(levels), style);
-    // The coarsest seed stands in the picture, and takes what is at any distance. In rows and single pixels hardly one does.
+    // The coarsest seed stands in the picture, and takes what is at any distance. In rows and single pixels hardly one
+    // does.
     if (levels < 3 || guides.height() == 1 || guides.width() == 1) continue;
     all.back().style.transfer.threshold = kInfinity;
     all.back().reached = levels - 1, all.back().seed = SeedThatReaches(levels - 1, guides);

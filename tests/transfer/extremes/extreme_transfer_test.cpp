@@ -36,7 +36,8 @@ Style ChunkStyle(int exemplar, float threshold, ThresholdMetric metric = Thresho
 int CoarsestLevel(const SourceField& field) { return *std::max_element(field.level.begin(), field.level.end()); }
 
 // Every covered pixel's source and level are the plain engine's. Returns the coarsest level that settled one.
-int ExpectPlainField(const Style& style, const GuideSet& guides, const std::string& what, std::uint64_t seed = kPlainSeed) {
+int ExpectPlainField(const Style& style, const GuideSet& guides, const std::string& what,
+                     std::uint64_t seed = kPlainSeed) {
   const PreparedExemplar exemplar(style.exemplars[0].picture, style.transfer.rim, style.exemplars[0].picture.width);
   const SourceField field = MustTransfer(style, guides, PlainOptions(seed)).field;
   std::size_t wrong = 0;
@@ -54,8 +55,8 @@ int ExpectPlainField(const Style& style, const GuideSet& guides, const std::stri
 
 // ---- the threshold -------------------------------------------------------------------------------------------------
 
-// The test is strict, and no distance is below 0: nothing is accepted, every pixel takes its own nearest neighbour, which is
-// the Lit Sphere. -0 is 0.
+// The test is strict, and no distance is below 0: nothing is accepted, every pixel takes its own nearest neighbour,
+// which is the Lit Sphere. -0 is 0.
 TEST(ExtremeThreshold, ZeroIsTheLitSphere) {
   const GuideSet guides = HillGuides(150, 110);
   for (const ThresholdMetric metric : {ThresholdMetric::kL2, ThresholdMetric::kL1}) {
@@ -70,10 +71,10 @@ TEST(ExtremeThreshold, ZeroIsTheLitSphere) {
   }
 }
 
-// Below any threshold above 0 lies the distance 0, and nothing else lies below the smallest float. The guides are the very
-// normals of the exemplar's pixels, by the same operations in float: each pixel's own source is itself, an offer moves the
-// seed's itself by the pixel's way from the seed, which is the pixel: distance 0. So the picture is the exemplar, as with
-// any threshold; but a seed settles it now, where at threshold 0 none may.
+// Below any threshold above 0 lies the distance 0, and nothing else lies below the smallest float. The guides are the
+// very normals of the exemplar's pixels, by the same operations in float: each pixel's own source is itself, an offer
+// moves the seed's itself by the pixel's way from the seed, which is the pixel: distance 0. So the picture is the
+// exemplar, as with any threshold; but a seed settles it now, where at threshold 0 none may.
 TEST(ExtremeThreshold, TheSmallestTakesExactCopiesAndNothingElse) {
   constexpr int kSize = 96;
   const GuideSet sphere = SphereGuides(kSize);
@@ -94,14 +95,15 @@ TEST(ExtremeThreshold, TheSmallestTakesExactCopiesAndNothingElse) {
       }
       EXPECT_GT(settled, sphere.pixel_count() / 2) << threshold;
       // On hills, whose normals are nobody's, hardly a distance is 0: all of them are found by the plain engine, too.
-      ExpectPlainField(ChunkStyle(64, threshold, metric), HillGuides(150, 110), "threshold " + std::to_string(threshold));
+      ExpectPlainField(ChunkStyle(64, threshold, metric), HillGuides(150, 110),
+                       "threshold " + std::to_string(threshold));
     }
   }
 }
 
-// Distances of 2^-75 and less have squares that float rounds to 0 (the smallest is 2^-149; a half of it is rounded to even).
-// They count as 0 by the Euclidean metric, so by a threshold of any size above 0 they are accepted; by the sum of absolute
-// differences they are themselves.
+// Distances of 2^-75 and less have squares that float rounds to 0 (the smallest is 2^-149; a half of it is rounded to
+// even). They count as 0 by the Euclidean metric, so by a threshold of any size above 0 they are accepted; by the sum
+// of absolute differences they are themselves.
 TEST(ExtremeThreshold, SquaresThatVanishAreZero) {
   const float tiny = std::ldexp(1.0f, -75), more = std::ldexp(1.0f, -74);
   const glm::vec3 zero(0.0f);
@@ -113,9 +115,9 @@ TEST(ExtremeThreshold, SquaresThatVanishAreZero) {
   EXPECT_FALSE(sums.Alike(zero, {kDenormal, 0, 0})) << "strict";
 }
 
-// So they do in the transfer, by every set of vector instructions. The scene faces (0, 0, 1) and the paint (off, 0, 1): everything
-// is `off` away from everything. Where that counts as 0 the field is that of no distance at all, in which seeds settle their own
-// pixels at the least; where it does not, nothing is accepted.
+// So they do in the transfer, by every set of vector instructions. The scene faces (0, 0, 1) and the paint (off, 0, 1):
+// everything is `off` away from everything. Where that counts as 0 the field is that of no distance at all, in which
+// seeds settle their own pixels at the least; where it does not, nothing is accepted.
 TEST(ExtremeThreshold, SquaresThatVanishAreZeroToTheTransfer) {
   const auto facing = [](int width, int height, float off) {
     return MakeGuides(width, height, [off](int, int) { return glm::vec3(off, 0, 1); });
@@ -179,10 +181,11 @@ TEST(ExtremeLevels, OneToSixteenAreThePlainEngines) {
   }
 }
 
-// A cell has one seed, which offers its paint if it stands on the object. By the random seed of the other tests none of level 9
-// or coarser does: both engines pass over those levels. Here each has a random seed by which it does, and then settles that
-// seed's own pixel at the least: nothing is nearer to it, and its source is in the same place of the exemplar to half a pixel's
-// diagonal, 0.01·√2 on the disc and 0.04 on the sphere, where hills are steepest (their sine is 0.91, the cosine 0.39 or more).
+// A cell has one seed, which offers its paint if it stands on the object. By the random seed of the other tests none of
+// level 9 or coarser does: both engines pass over those levels. Here each has a random seed by which it does, and then
+// settles that seed's own pixel at the least: nothing is nearer to it, and its source is in the same place of the
+// exemplar to half a pixel's diagonal, 0.01·√2 on the disc and 0.04 on the sphere, where hills are steepest (their sine
+// is 0.91, the cosine 0.39 or more).
 TEST(ExtremeLevels, EveryLevelIsReachedAndIsThePlainEngines) {
   const GuideSet guides = HillGuides(72, 50);
   for (int level = 8; level <= 15; ++level) {
@@ -242,7 +245,8 @@ TEST(ExtremeRadius, OneColourStaysItInEveryWindow) {
 
 // ---- sizes ---------------------------------------------------------------------------------------------------------
 
-// Single pixels, rows and columns, below, at and beyond the sides of blocks, tiles and bands (16, 512 and 128, 24 rows).
+// Single pixels, rows and columns, below, at and beyond the sides of blocks, tiles and bands (16, 512 and 128, 24
+// rows).
 TEST(ExtremeSizes, RowsAndColumnsAreThePlainEngines) {
   for (const int length : {1, 2, 15, 16, 17, 127, 129, 511, 512, 513, 1100}) {
     for (const auto& [width, height] : {std::pair{length, 1}, {1, length}, {length, 2}, {2, length}}) {
@@ -255,8 +259,8 @@ TEST(ExtremeSizes, RowsAndColumnsAreThePlainEngines) {
   }
 }
 
-// Whatever may be asked for of it: a sphere of one pixel has one direction and one colour, so all that is covered has that
-// colour. (Oklab's tint and a base colour of 0 would change it; they are not asked for.)
+// Whatever may be asked for of it: a sphere of one pixel has one direction and one colour, so all that is covered has
+// that colour. (Oklab's tint and a base colour of 0 would change it; they are not asked for.)
 TEST(ExtremeSizes, AnExemplarOfOnePixelPaintsAllInItsColour) {
   Picture one(1, 1);
   one.rgba = {40000, 3, 65535, 65535};
@@ -278,7 +282,8 @@ TEST(ExtremeSizes, AnExemplarOfOnePixelPaintsAllInItsColour) {
       {"threshold 0", [](Style& s) { s.transfer.threshold = 0.0f; }},
       {"all of it rim", [](Style& s) { s.transfer.rim = 1e4; }},
       {"four lights", [](Style& s) { s.exemplars.resize(4, s.exemplars[0]), s.exemplars[1].luminance = 0.5; }},
-      {"weighed light", [](Style& s) {
+      {"weighed light",
+       [](Style& s) {
          s.exemplars[0].guides = MakeGuides(1, 1, [](int, int) { return glm::vec3(0, 0, 1); });
          s.exemplars[0].guides->Add(Layer::kLuminance), s.transfer.guide_weights[Layer::kLuminance] = 1.0f;
          s.exemplars[0].is_sphere = false, s.transfer.rim = 0.0;

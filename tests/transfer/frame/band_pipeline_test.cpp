@@ -1,4 +1,5 @@
-// Frames painted by bands of rows against frames painted through a field of the whole picture: one picture, to the byte.
+// Frames painted by bands of rows against frames painted through a field of the whole picture: one picture, to the
+// byte.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -27,12 +28,14 @@ GuideSet RandomGuides(int width, int height, Cover cover, std::uint64_t seed) {
     const int x = int(i) % width, y = int(i) / width;
     float& coverage = guides.Plane(Layer::kCoverage)[i];
     const bool one = x == width / 2 && y == height / 2;
-    if (cover == Cover::kNone || (cover == Cover::kOne && !one) || (cover == Cover::kLastRow && y != height - 1)) coverage = 0;
+    if (cover == Cover::kNone || (cover == Cover::kOne && !one) || (cover == Cover::kLastRow && y != height - 1))
+      coverage = 0;
     if (cover >= Cover::kHoles && Hash(seed, x / 19, y / 13, 2) % 3 == 0) coverage = 0.0f;
     if (cover == Cover::kSoft && coverage > 0.0f && Hash(seed, x, y, 3) % 5 == 0) coverage = 0.4f;
     if (Hash(seed, i, 4) % 97 == 0) coverage = std::numeric_limits<float>::quiet_NaN();
     guides.Plane(Layer::kObject)[i] = static_cast<float>(1 + Hash(seed, x / 31, y / 29, 5) % 4);
-    guides.Plane(Layer::kDepth)[i] = 5.0f + static_cast<float>(Hash(seed, x / 11, y / 7, 6) % 3) + 0.01f * static_cast<float>(x);
+    guides.Plane(Layer::kDepth)[i] =
+        5.0f + static_cast<float>(Hash(seed, x / 11, y / 7, 6) % 3) + 0.01f * static_cast<float>(x);
     guides.Plane(Layer::kLuminance)[i] = 2.0f * UnitFloat(Hash(seed, i, 7));
     for (int c = 0; c < 3; ++c) guides.Plane(Layer::kAlbedo, c)[i] = UnitFloat(Hash(seed, x / 9, y / 9, c + 8));
   }
@@ -45,7 +48,9 @@ StyleMap RandomMap(int width, int height, std::uint64_t styles, std::uint64_t se
   for (std::size_t i = 0; i < map.style.size(); ++i) {
     const int x = int(i) % width, y = int(i) / width, side = seed % 3 == 0 ? 1 : 14;
     const std::uint64_t piece = Hash(seed, x / side, y / side) % (styles + 2);
-    map.style[i] = piece < styles ? static_cast<std::uint16_t>(piece) : piece == styles ? StyleMap::kLeave : StyleMap::kCatch;
+    map.style[i] = piece < styles    ? static_cast<std::uint16_t>(piece)
+                   : piece == styles ? StyleMap::kPassThrough
+                                     : StyleMap::kShadowCatcher;
   }
   return map;
 }
@@ -72,7 +77,8 @@ Style StyleOf(int kind, int radius, std::uint64_t seed) {
       style.transfer.variety = 20.0;
       style.transfer.edge_aware = true;
       break;
-    default: break;
+    default:
+      break;
   }
   return style;
 }
@@ -109,7 +115,8 @@ void ExpectSame(const Job& job) {
     ASSERT_EQ(banded.width, whole.width);
     for (int y = 0; y < whole.height; ++y) {
       for (int x = 0; x < whole.width; ++x) {
-        for (int c = 0; c < 4; ++c) ASSERT_EQ(banded.At(x, y)[c], whole.At(x, y)[c]) << x << ", " << y << ", " << threads;
+        for (int c = 0; c < 4; ++c)
+          ASSERT_EQ(banded.At(x, y)[c], whole.At(x, y)[c]) << x << ", " << y << ", " << threads;
       }
     }
   }
@@ -132,7 +139,7 @@ TEST(Bands, OneStyleIsPaintedAsThroughAField) {
         ASSERT_TRUE(prepared.ok()) << prepared.error().message;
         for (const std::optional<Region>& region : RegionsOf(width, height)) {
           SCOPED_TRACE(::testing::Message() << width << "×" << height << ", cover " << int(cover) << ", kind " << kind
-                                          << ", radius " << radius << (region ? ", region" : ""));
+                                            << ", radius " << radius << (region ? ", region" : ""));
           Job job{{&*prepared}, nullptr, guides, {}};
           job.options.region = region, job.options.seed = seed, job.options.exposure = kind == 3 ? 0.3 : 0.0;
           ExpectSame(job);

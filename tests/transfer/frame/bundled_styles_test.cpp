@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
+#include "core/filter/resample.h"
 #include "core/image/hash.h"
 #include "core/style/style_file.h"
-#include "core/filter/resample.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "transfer/transfer.h"
 
 namespace scumble {
@@ -133,8 +134,8 @@ Painter MakePainter(Style style, const Variant& variant, const GuideSet& guides)
     style.transfer.scale *= 0.7, style.transfer.blend_radius = 2;
     prepare();
     StyleAssignment assignment;
-    assignment.of_object = {{IdOf(guides, "Floor"), StyleMap::kCatch},
-                            {IdOf(guides, "Curtain"), StyleMap::kLeave},
+    assignment.of_object = {{IdOf(guides, "Floor"), StyleMap::kShadowCatcher},
+                            {IdOf(guides, "Curtain"), StyleMap::kPassThrough},
                             {IdOf(guides, "WallLeft"), 1}};
     painter.map = MapStyles(guides, assignment);
   }

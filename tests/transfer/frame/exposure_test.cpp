@@ -40,7 +40,11 @@ TEST(BrightPercentile, IsTheOneThatSortingFinds) {
         for (int c = 0; c < 4; ++c) {
           float& light = c < 3 ? guides.Plane(Layer::kLpeLDE, c)[i] : guides.Plane(Layer::kLuminance)[i];
           const float u = UnitFloat(Hash(i, kind, c));
-          light = kind == 0 ? u : kind == 1 ? std::exp2(60.0f * u - 30.0f) : kind == 2 ? 0.7f : kind == 3 ? 0.5f + 1e-6f * u : u;
+          light = kind == 0   ? u
+                  : kind == 1 ? std::exp2(60.0f * u - 30.0f)
+                  : kind == 2 ? 0.7f
+                  : kind == 3 ? 0.5f + 1e-6f * u
+                              : u;
           if (kind == 4 && Hash(i, c) % 4 == 0) light = kOdd[Hash(i, c, 1) % std::size(kOdd)];
         }
       }

@@ -8,9 +8,9 @@
 
 #include "core/image/color.h"
 #include "core/image/oklab.h"
-#include "transfer/tint/colorize.h"
-#include "transfer/seeds/seeds.h"
 #include "tests/support/transfer_fixtures.h"
+#include "transfer/seeds/seeds.h"
+#include "transfer/tint/colorize.h"
 
 namespace scumble {
 namespace {
@@ -52,12 +52,11 @@ Style TwoLights(double bright, double dark) {
 
 // A wall of one normal, a hole in it, and nothing else.
 GuideSet Wall(int width, int height, glm::vec3 normal) {
-  return MakeGuides(width, height, [=](int x, int y) {
-    return x > width - 40 && y < 40 ? glm::vec3(0.0f) : normal;
-  });
+  return MakeGuides(width, height, [=](int x, int y) { return x > width - 40 && y < 40 ? glm::vec3(0.0f) : normal; });
 }
 
-// ---- Neutral values --------------------------------------------------------------------------------------------------
+// ---- Neutral values
+// --------------------------------------------------------------------------------------------------
 
 TEST(Extensions, NeutralValuesAreThePlainEngine) {
   const GuideSet guides = LitHills(160, 120);
@@ -85,7 +84,8 @@ TEST(Extensions, NeutralValuesAreThePlainEngine) {
   EXPECT_EQ(picture.rgba, expected.picture.rgba) << "a map of one style";
 }
 
-// ---- Light -----------------------------------------------------------------------------------------------------------
+// ---- Light
+// -----------------------------------------------------------------------------------------------------------
 
 TEST(Illumination, ChoosesTheNearestAndTheFirstOfEquals) {
   const double luminances[] = {0.2, 0.9, 0.2, 0.5};
@@ -139,7 +139,8 @@ SourceField PlainIlluminated(const Style& style, const GuideSet& guides, std::ui
         std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
         for (int dy = -1; dy <= 1; ++dy) {
           for (int dx = -1; dx <= 1; ++dx) {
-            const PixelPosition s = SeedOfCell({seed, 0, style.transfer.jitter, 0}, level, (x >> level) + dx, (y >> level) + dy);
+            const PixelPosition s =
+                SeedOfCell({seed, 0, style.transfer.jitter, 0}, level, (x >> level) + dx, (y >> level) + dy);
             const std::int64_t d = std::int64_t(s.x - x) * (s.x - x) + std::int64_t(s.y - y) * (s.y - y);
             if (d < nearest) nearest = d, q = s;
           }
@@ -153,7 +154,8 @@ SourceField PlainIlluminated(const Style& style, const GuideSet& guides, std::ui
         if (!exemplar.Usable(c.x, c.y)) continue;
         const double off = std::fabs(luminance[p] - float(*style.exemplars[e].luminance));
         const double least = std::fabs(luminance[p] - float(*style.exemplars[best_of(luminance[p])].luminance));
-        const double light = style.transfer.luminance_error == LuminanceError::kExcess ? std::max(0.0, off - least) : off;
+        const double light =
+            style.transfer.luminance_error == LuminanceError::kExcess ? std::max(0.0, off - least) : off;
         const double error = glm::length(glm::dvec3(guide) - glm::dvec3(exemplar.Normal(c.x, c.y))) +
                              style.transfer.luminance_weight * light;
         if (error < style.transfer.threshold) field.Set(p, c.x, c.y, e, level), found = true;
@@ -251,7 +253,8 @@ TEST(Illumination, ExemplarsOfOtherSizesBecomeTheFirstOnes) {
   EXPECT_EQ(prepared->exemplar->picture(1).width, 96);
 }
 
-// ---- Colour ----------------------------------------------------------------------------------------------------------
+// ---- Colour
+// ----------------------------------------------------------------------------------------------------------
 
 TEST(Colorize, MultipliesByTheAlbedoInLinearLight) {
   const GuideSet guides = LitHills(60, 40);
@@ -325,7 +328,8 @@ TEST(Oklab, RoundTripsAndKnowsItsPublishedValues) {
   }
 }
 
-// ---- Several styles --------------------------------------------------------------------------------------------------
+// ---- Several styles
+// --------------------------------------------------------------------------------------------------
 
 TEST(StyleMap, EveryStylePaintsAsIfNothingElseWereThere) {
   GuideSet guides = LitHills(170, 120);
@@ -343,7 +347,7 @@ TEST(StyleMap, EveryStylePaintsAsIfNothingElseWereThere) {
   std::vector<PreparedStyle> prepared;
   for (const Style& style : styles) prepared.push_back(*Prepare(style, guides.height()));
   const PreparedStyle* const pointers[] = {&prepared[0], &prepared[1], &prepared[2]};
-  const StyleMap map = MapStyles(guides, {of_object, {}, StyleMap::kLeave});
+  const StyleMap map = MapStyles(guides, {of_object, {}, StyleMap::kPassThrough});
   TransferScratch scratch;
   Picture picture;
   ASSERT_TRUE(Transfer(pointers, map, guides, {}, scratch, picture).ok());
@@ -371,7 +375,8 @@ TEST(StyleMap, LeftAsRenderedShowsThePictureUnderneath) {
   options.over = &render;
   TransferScratch scratch;
   Picture picture;
-  ASSERT_TRUE(Transfer(styles, MapStyles(guides, {{}, {}, StyleMap::kLeave}), guides, options, scratch, picture).ok());
+  ASSERT_TRUE(
+      Transfer(styles, MapStyles(guides, {{}, {}, StyleMap::kPassThrough}), guides, options, scratch, picture).ok());
   EXPECT_EQ(picture.rgba, render.rgba);
 }
 
@@ -403,7 +408,8 @@ TEST(StyleMap, EveryPixelIsLookedUp) {
   RankedAssignment ranked{{{1, {0, 11}}, {2, {2, 12}}}, {{3, {1, 13}}, {0, {2, 14}}}};
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     guides.Plane(Layer::kObject)[i] = static_cast<float>(Hash(i / 5, 1) % 9);
-    guides.Plane(Layer::kMaterial)[i] = Hash(i, 2) % 50 == 0 ? std::nanf("") : static_cast<float>(Hash(i / 3, 3) % 10) - 1.0f;
+    guides.Plane(Layer::kMaterial)[i] =
+        Hash(i, 2) % 50 == 0 ? std::nanf("") : static_cast<float>(Hash(i / 3, 3) % 10) - 1.0f;
   }
   StyleMap map = MapStyles(guides, assignment);
   const StyleMap before = map;
@@ -418,7 +424,8 @@ TEST(StyleMap, EveryPixelIsLookedUp) {
                                                                      : assignment.otherwise;
     ASSERT_EQ(before.style[i], style) << i;
     const RankedStyle* best = ranked.of_object.contains(o) ? &ranked.of_object[o] : nullptr;
-    if (ranked.of_material.contains(m) && (!best || ranked.of_material[m].rank > best->rank)) best = &ranked.of_material[m];
+    if (ranked.of_material.contains(m) && (!best || ranked.of_material[m].rank > best->rank))
+      best = &ranked.of_material[m];
     if (best) ++expected[best->rank];
     ASSERT_EQ(map.style[i], best ? best->style : style) << i;
   }
@@ -434,7 +441,8 @@ TEST(StyleMap, ThousandsOfObjectsWithAStyleEach) {
   for (int s = 0; s < (size / cell) * (size / cell); ++s) assignment.of_object[s + 1] = static_cast<std::uint16_t>(s);
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     const int x = int(i) % size, y = int(i) / size;
-    if (guides.Plane(Layer::kCoverage)[i] > 0.0f) guides.Plane(Layer::kObject)[i] = 1.0f + (y / cell) * (size / cell) + x / cell;
+    if (guides.Plane(Layer::kCoverage)[i] > 0.0f)
+      guides.Plane(Layer::kObject)[i] = 1.0f + (y / cell) * (size / cell) + x / cell;
   }
   for (std::size_t s = 0; s < assignment.of_object.size(); ++s) {
     const auto tone = static_cast<std::uint16_t>(s * 15);
@@ -450,7 +458,8 @@ TEST(StyleMap, ThousandsOfObjectsWithAStyleEach) {
   }
 }
 
-// ---- Flat surfaces ---------------------------------------------------------------------------------------------------
+// ---- Flat surfaces
+// ---------------------------------------------------------------------------------------------------
 
 // How often each source pixel that is used at all shows.
 double Repetition(const SourceField& field) {
@@ -491,7 +500,8 @@ TEST(Variety, LeavesCurvedSurfacesAsTheyAre) {
   EXPECT_EQ(MustTransfer(style, LitHills(200, 150)).picture.rgba, before.rgba);
 }
 
-// ---- The same bytes --------------------------------------------------------------------------------------------------
+// ---- The same bytes
+// --------------------------------------------------------------------------------------------------
 
 TEST(Extensions, SameBytesForAnyThreadsAndRegions) {
   GuideSet guides = Wall(220, 180, glm::vec3(0, 0, 1));
@@ -513,7 +523,8 @@ TEST(Extensions, SameBytesForAnyThreadsAndRegions) {
   const auto prepared = Prepare(style, guides.height());
   TransferScratch scratch;
   Picture pieces(220, 180);
-  for (const Region& region : {Region{0, 0, 97, 61}, Region{97, 0, 220, 61}, Region{0, 61, 220, 62}, Region{0, 62, 220, 180}}) {
+  for (const Region& region :
+       {Region{0, 0, 97, 61}, Region{97, 0, 220, 61}, Region{0, 61, 220, 62}, Region{0, 62, 220, 180}}) {
     options.region = region;
     ASSERT_TRUE(Transfer(*prepared, guides, options, scratch, pieces).ok());
   }

@@ -1,10 +1,11 @@
 // A frame begins with whatever the one before left behind, and must not show it.
+#include "transfer/frame/frame_setup.h"
+
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/frame/frame_setup.h"
 
 namespace scumble {
 namespace {
@@ -31,8 +32,8 @@ StyleMap StripedMap(int styles) {
     const int x = int(i) % kWidth, y = int(i) / kWidth;
     const std::uint64_t piece = Hash(x / 17, y / 13) % (std::uint64_t(styles) + 2);
     map.style[i] = piece < std::uint64_t(styles)    ? static_cast<std::uint16_t>(piece)
-                   : piece == std::uint64_t(styles) ? StyleMap::kLeave
-                                                    : StyleMap::kCatch;
+                   : piece == std::uint64_t(styles) ? StyleMap::kPassThrough
+                                                    : StyleMap::kShadowCatcher;
   }
   return map;
 }
@@ -47,8 +48,9 @@ void Spoil(TransferScratch& scratch, Picture& out) {
   std::fill(out.rgba.begin(), out.rgba.end(), std::uint16_t{4711});
 }
 
-TEST(FrameStart, NothingOfTheFrameBeforeIsLeft) {
-  Style first = PlainStyle(NoisePicture(96)), second = PlainStyle(PositionPicture(80)), third = PlainStyle(NoisePicture(64));
+TEST(FrameSetup, NothingOfTheFrameBeforeIsLeft) {
+  Style first = PlainStyle(NoisePicture(96)), second = PlainStyle(PositionPicture(80)),
+        third = PlainStyle(NoisePicture(64));
   third.transfer.method = Method::kLitSphere;
   const Picture under = NoisePicture(200);
   Picture over(kWidth, kHeight);
@@ -101,14 +103,14 @@ TEST(FrameStart, NothingOfTheFrameBeforeIsLeft) {
   }
 }
 
-TEST(FrameStart, TilesAndExtentsHoldEachStylesPixels) {
+TEST(FrameSetup, TilesAndExtentsHoldEachStylesPixels) {
   const GuideSet guides = HoledGuides(false);
   const StyleMap map = StripedMap(12);
   SourceField field;
   std::vector<std::uint8_t> active;
   Picture out;
   const internal::FrameInput input{guides, &map, 12, {0, 0, kWidth, kHeight}};
-  const internal::FrameStart start = internal::StartFrame(input, field, active, out);
+  const internal::FrameSetup start = internal::StartFrame(input, field, active, out);
   EXPECT_FALSE(start.softly_covered);
   EXPECT_EQ(active, std::vector<std::uint8_t>(guides.pixel_count(), 0));
   for (int s = 0; s < 12; ++s) {
@@ -119,7 +121,8 @@ TEST(FrameStart, TilesAndExtentsHoldEachStylesPixels) {
         const std::size_t i = guides.Index(x, y);
         expected[i] = guides.Plane(Layer::kCoverage)[i] > 0.0f && map.style[i] == s;
         if (expected[i]) {
-          extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1), std::max(extent.y1, y + 1)};
+          extent = {std::min(extent.x0, x), std::min(extent.y0, y), std::max(extent.x1, x + 1),
+                    std::max(extent.y1, y + 1)};
         }
       }
     }
@@ -132,7 +135,8 @@ TEST(FrameStart, TilesAndExtentsHoldEachStylesPixels) {
     if (extent.empty()) continue;
     EXPECT_TRUE(found.x0 == extent.x0 && found.y0 == extent.y0 && found.x1 == extent.x1 && found.y1 == extent.y1) << s;
   }
-  EXPECT_TRUE(internal::StartFrame({HoledGuides(true), &map, 12, {0, 0, kWidth, kHeight}}, field, active, out).softly_covered);
+  EXPECT_TRUE(
+      internal::StartFrame({HoledGuides(true), &map, 12, {0, 0, kWidth, kHeight}}, field, active, out).softly_covered);
 }
 
 }  // namespace

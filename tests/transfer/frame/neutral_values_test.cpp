@@ -150,9 +150,9 @@ TEST(Neutral, ValuesThatMakeNoDifference) {
   }
 }
 
-// Where one object fills the picture, a tolerance of its whole distance and creases that none is let every vote through:
-// the largest values that a style can have are those of edge_aware = false. (A gap of background is an edge whatever the
-// values are: no vote goes over it.)
+// Where one object fills the picture, a tolerance of its whole distance and creases that none is let every vote
+// through: the largest values that a style can have are those of edge_aware = false. (A gap of background is an edge
+// whatever the values are: no vote goes over it.)
 TEST(Neutral, TheWidestEdgesAreNone) {
   for (GuideSet guides : {Hills(), Wall()}) {
     for (std::size_t i = 0; i < guides.pixel_count(); ++i) {

@@ -165,13 +165,16 @@ Picture DirectionPaint(int size) {
 }
 
 // The direction that a pixel's colour tells, in radians from +X towards +Y down.
-double DirectionOf(const std::uint16_t* pixel) { return std::atan2(pixel[1] / 65535.0 - 0.3, pixel[0] / 65535.0 - 0.3); }
+double DirectionOf(const std::uint16_t* pixel) {
+  return std::atan2(pixel[1] / 65535.0 - 0.3, pixel[0] / 65535.0 - 0.3);
+}
 
 double Turn(double a, double b) { return std::fabs(std::remainder(a - b, 2.0 * 3.14159265358979)); }
 
 GuideSet BallOf(int size, double radius) {
   return MakeGuides(size, size, [=](int x, int y) {
-    const double nx = (x + 0.5 - size / 2.0) / radius, ny = -(y + 0.5 - size / 2.0) / radius, z2 = 1.0 - nx * nx - ny * ny;
+    const double nx = (x + 0.5 - size / 2.0) / radius, ny = -(y + 0.5 - size / 2.0) / radius,
+                 z2 = 1.0 - nx * nx - ny * ny;
     return z2 > 0.0 ? glm::vec3(nx, ny, std::sqrt(z2)) : glm::vec3(0.0f);
   });
 }
@@ -181,10 +184,12 @@ struct Turns {
   int count = 0;
 };
 
-// How far the rim's direction is from the ball's on the ring from 1 pixel inside the silhouette to 0.6 of the paint outside.
+// How far the rim's direction is from the ball's on the ring from 1 pixel inside the silhouette to 0.6 of the paint
+// outside.
 Turns TurnsOnBall(int size, double radius, int exemplar) {
   Style style = PlainStyle(DirectionPaint(exemplar));
-  style.transfer.edge = EdgeMode::kExemplar, style.transfer.method = Method::kLitSphere, style.transfer.blend_radius = 0;
+  style.transfer.edge = EdgeMode::kExemplar, style.transfer.method = Method::kLitSphere,
+  style.transfer.blend_radius = 0;
   const Picture picture = MustTransfer(style, BallOf(size, radius)).picture;
   Turns turns;
   for (int y = 0; y < size; ++y) {
@@ -222,7 +227,8 @@ std::vector<double> DirectionsAlongAStraightOutline(int width, int reference, st
   Style style = PlainStyle(DirectionPaint(400));
   style.transfer.edge = EdgeMode::kExemplar, style.transfer.jitter = 0.0f, style.transfer.reference_height = reference;
   const int height = width / 2;
-  const GuideSet guides = MakeGuides(width, height, [=](int, int y) { return y < height / 2 ? glm::vec3(0) : glm::vec3(0, 0, 1); });
+  const GuideSet guides =
+      MakeGuides(width, height, [=](int, int y) { return y < height / 2 ? glm::vec3(0) : glm::vec3(0, 0, 1); });
   TransferOptions options;
   options.seed = seed;
   const Picture picture = MustTransfer(style, guides, options).picture;
@@ -265,7 +271,8 @@ GuideSet DiscBefore(float wall_depth) {
   for (int y = 0; y < 180; ++y) {
     for (int x = 0; x < 200; ++x) {
       if (std::hypot(x + 0.5 - 100, y + 0.5 - 90) < 60.0) continue;
-      guides.Plane(Layer::kObject)[guides.Index(x, y)] = 2.0f, guides.Plane(Layer::kDepth)[guides.Index(x, y)] = wall_depth;
+      guides.Plane(Layer::kObject)[guides.Index(x, y)] = 2.0f,
+                                                   guides.Plane(Layer::kDepth)[guides.Index(x, y)] = wall_depth;
     }
   }
   return guides;
@@ -276,7 +283,8 @@ TEST(PaintedEdge, AnObjectClearlyBeforeAnotherHasOneAndOneHardlyBeforeItHasNone)
   painted.transfer.edge = EdgeMode::kExemplar;
   EXPECT_EQ(MustTransfer(painted, DiscBefore(10.1f)).picture.rgba, MustTransfer(exact, DiscBefore(10.1f)).picture.rgba);
   EXPECT_EQ(MustTransfer(painted, DiscBefore(10.0f)).picture.rgba, MustTransfer(exact, DiscBefore(10.0f)).picture.rgba);
-  const Picture without = MustTransfer(exact, DiscBefore(10.32f)).picture, with = MustTransfer(painted, DiscBefore(10.32f)).picture;
+  const Picture without = MustTransfer(exact, DiscBefore(10.32f)).picture,
+                with = MustTransfer(painted, DiscBefore(10.32f)).picture;
   int outside = 0, ring = 0;
   for (int y = 0; y < 180; ++y) {
     for (int x = 0; x < 200; ++x) {
@@ -314,7 +322,7 @@ TEST(PaintedEdge, WhatIsLeftUnpaintedCountsAsNothingUnlessItStandsBefore) {
   Style style = PlainStyle(PaintOnPaper(400, 1.02, 0.0));
   style.transfer.edge = EdgeMode::kExemplar;
   const auto prepared = Prepare(style, 180);
-  for (const std::uint16_t unpainted : {StyleMap::kLeave, StyleMap::kCatch}) {
+  for (const std::uint16_t unpainted : {StyleMap::kPassThrough, StyleMap::kShadowCatcher}) {
     for (const float depth : {10.0f, 10.05f, 12.0f, 8.0f}) {
       GuideSet guides = Ball();
       for (int y = 95; y < 180; ++y) {
@@ -387,7 +395,8 @@ TEST(PaintedEdge, MeetsWhatIsBehindInLinearLight) {
   const GuideSet guides = DiscBefore(20.0f);
   TransferScratch scratch;
   Picture picture;
-  ASSERT_TRUE(Transfer(styles, MapStyles(guides, {{{2u, std::uint16_t{1}}}, {}, 0}), guides, {}, scratch, picture).ok());
+  ASSERT_TRUE(
+      Transfer(styles, MapStyles(guides, {{{2u, std::uint16_t{1}}}, {}, 0}), guides, {}, scratch, picture).ok());
   EXPECT_NEAR(picture.At(100 + 43, 90 + 43)[0], 0.735357 * 65535, 700) << "half of the light is sRGB 0.7354";
 }
 

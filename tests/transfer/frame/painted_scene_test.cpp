@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
 #include "core/io/guide_file.h"
 #include "core/style/style_file.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "transfer/transfer.h"
 
 namespace scumble {

@@ -71,7 +71,8 @@ TEST(Compose, AlphaIsCoverageTimesPaint) {
   guides.Plane(Layer::kCoverage)[1] = 0.25f;
   const Style opaque = PlainStyle(FlatPicture(32, 32, 11111, 22222, 33333, 65535));
   const Picture picture = MustTransfer(opaque, guides).picture;
-  EXPECT_EQ(picture.rgba, (std::vector<std::uint16_t>{11111, 22222, 33333, 65535, 11111, 22222, 33333, 16384, 0, 0, 0, 0}));
+  EXPECT_EQ(picture.rgba,
+            (std::vector<std::uint16_t>{11111, 22222, 33333, 65535, 11111, 22222, 33333, 16384, 0, 0, 0, 0}));
   const Style glass = PlainStyle(FlatPicture(32, 32, 11111, 22222, 33333, 32768));
   EXPECT_EQ(MustTransfer(glass, guides).picture.At(0, 0)[3], 32768);
   EXPECT_EQ(MustTransfer(glass, guides).picture.At(1, 0)[3], 8192);

@@ -1,13 +1,14 @@
 // The published figures that a number can hold, rebuilt from bundled scenes and styles: chunks by the weight of light
-// (illuminated StyleBlit, figure 23) and a pattern of colours that paint keeps (colorized, figure 21). No ghosting at any
-// depth tolerance (figure 20) is in transfer_vote_test.cpp.
+// (illuminated StyleBlit, figure 23) and a pattern of colours that paint keeps (colorized, figure 21). No ghosting at
+// any depth tolerance (figure 20) is in transfer_vote_test.cpp.
 #include <limits>
 #include <tuple>
 
-#include "guidegen/guidegen.h"
-#include "guidegen/load/load_scene.h"
 #include "core/image/color.h"
 #include "core/style/style_file.h"
+#include "guidegen/guidegen.h"
+#include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/seeds/seeds.h"
 

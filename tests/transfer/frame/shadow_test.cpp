@@ -44,7 +44,7 @@ TEST(Shadow, CatchersShowDarkPaintWhereTheyAreInShadowAndNothingElse) {
   EXPECT_NEAR(prepared->shadow->dark().center.x, 256 * 0.3, 20);
   EXPECT_NEAR(prepared->shadow->dark().center.y, 256 * 0.65, 20);
   const PreparedStyle* styles[] = {&*prepared};
-  const StyleMap map = MapStyles(guides, {{{2u, StyleMap::kCatch}}, {}, 0});
+  const StyleMap map = MapStyles(guides, {{{2u, StyleMap::kShadowCatcher}}, {}, 0});
   TransferScratch scratch;
   Picture picture;
   ASSERT_TRUE(Transfer(styles, map, guides, {}, scratch, picture).ok());
@@ -66,7 +66,8 @@ TEST(Shadow, CatchersShowDarkPaintWhereTheyAreInShadowAndNothingElse) {
 
   TransferOptions over;
   Picture below(120, 80);
-  for (std::size_t i = 0; i < below.rgba.size(); ++i) below.rgba[i] = static_cast<std::uint16_t>(i % 4 == 3 ? 65535 : 40000);
+  for (std::size_t i = 0; i < below.rgba.size(); ++i)
+    below.rgba[i] = static_cast<std::uint16_t>(i % 4 == 3 ? 65535 : 40000);
   over.over = &below;
   ASSERT_TRUE(Transfer(styles, map, guides, over, scratch, picture).ok());
   EXPECT_EQ(picture.At(60, 40)[0], 40000) << "no shadow, the picture underneath as it is";
@@ -94,7 +95,8 @@ TEST(Shadow, TheDarkPlaceOfAPaintedSceneIsUsable) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         std::uint16_t* texel = style.exemplars[0].picture.At(x, y);
-        const std::uint16_t tone = covered(x, y) ? static_cast<std::uint16_t>(50000 - 20 * x - 20 * y) : std::uint16_t{0};
+        const std::uint16_t tone =
+            covered(x, y) ? static_cast<std::uint16_t>(50000 - 20 * x - 20 * y) : std::uint16_t{0};
         texel[0] = texel[1] = texel[2] = tone, texel[3] = 65535;
       }
     }
@@ -116,7 +118,8 @@ TEST(Shadow, TheDarkPlaceOfAPaintedSceneIsUsable) {
 }
 
 // A wall of 400 × 300 that catches a shadow of the given strength, painted in the style.
-Picture ShadowOn(const Style& style, const std::function<float(int x, int y)>& strength, int width = 400, std::uint64_t seed = 0) {
+Picture ShadowOn(const Style& style, const std::function<float(int x, int y)>& strength, int width = 400,
+                 std::uint64_t seed = 0) {
   GuideSet guides = MakeGuides(width, width * 3 / 4, [](int, int) { return glm::vec3(0, 0, 1); });
   guides.Add(Layer::kShadow);
   for (int y = 0; y < guides.height(); ++y) {
@@ -129,7 +132,9 @@ Picture ShadowOn(const Style& style, const std::function<float(int x, int y)>& s
   TransferOptions options;
   options.seed = seed;
   Picture picture;
-  EXPECT_TRUE(Transfer(styles, MapStyles(guides, {{{1u, StyleMap::kCatch}}, {}, 0}), guides, options, scratch, picture).ok());
+  EXPECT_TRUE(
+      Transfer(styles, MapStyles(guides, {{{1u, StyleMap::kShadowCatcher}}, {}, 0}), guides, options, scratch, picture)
+          .ok());
   return picture;
 }
 
@@ -138,7 +143,8 @@ Picture Stippled(int size, bool bare_corners) {
   Picture picture(size, size);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      const double r = std::hypot(x + 0.5 - size / 2.0, y + 0.5 - size / 2.0) / (size / 2.0), share = 1.4 * x / size - 0.2;
+      const double r = std::hypot(x + 0.5 - size / 2.0, y + 0.5 - size / 2.0) / (size / 2.0),
+                   share = 1.4 * x / size - 0.2;
       const bool paint = bare_corners && r > 1.0 ? false : UnitFloat(Hash(x / 2, y / 2)) < share;
       std::uint16_t* texel = picture.At(x, y);
       texel[0] = texel[1] = texel[2] = paint ? 0 : 65535, texel[3] = 65535;
@@ -161,7 +167,8 @@ TEST(Shadow, ItsStrengthIsTheToneOfWhatItIsPaintedWith) {
     const Picture picture = ShadowOn(style, [&](int, int) { return strength; });
     EXPECT_NEAR(MeanAlpha(picture), strength, 0.05) << strength;
     int between = 0;
-    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) between += picture.rgba[i] > 6000 && picture.rgba[i] < 60000;
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
+      between += picture.rgba[i] > 6000 && picture.rgba[i] < 60000;
     EXPECT_LT(between, 400 * 300 / 50) << strength << ": dots, not grey";
   }
   EXPECT_EQ(MeanAlpha(ShadowOn(style, [](int, int) { return 0.0f; })), 0.0);
@@ -175,7 +182,8 @@ TEST(Shadow, PaintThatCoversTheSheetIsLaidOnThinlyWithItsStrokes) {
     const Picture picture = ShadowOn(style, [&](int, int) { return strength; });
     EXPECT_NEAR(MeanAlpha(picture), strength, 0.04) << strength;
     double squares = 0.0;
-    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) squares += std::pow(picture.rgba[i] / 65535.0 - strength, 2.0);
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
+      squares += std::pow(picture.rgba[i] / 65535.0 - strength, 2.0);
     if (strength < 0.95f) {
       EXPECT_GT(std::sqrt(squares / (400 * 300)), 0.05) << strength;
     }
@@ -221,7 +229,8 @@ TEST(Shadow, APreviewOfHalfTheSizeShowsTheSamePieces) {
     int same = 0;
     for (int y = 0; y < 300; ++y) {
       for (int x = 0; x < 400; ++x) {
-        same += std::abs(half.At(x, y)[0] - whole.At(2 * x, 2 * y)[0]) < 500 && std::abs(half.At(x, y)[1] - whole.At(2 * x, 2 * y)[1]) < 500;
+        same += std::abs(half.At(x, y)[0] - whole.At(2 * x, 2 * y)[0]) < 500 &&
+                std::abs(half.At(x, y)[1] - whole.At(2 * x, 2 * y)[1]) < 500;
       }
     }
     return same / (400.0 * 300.0);
@@ -240,7 +249,7 @@ TEST(Shadow, ThreadsAndRegionsDoNotChangeAByte) {
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kShadow)[i] = UnitFloat(Hash(i / 7));
   const auto prepared = Prepare(style, 150);
   const PreparedStyle* styles[] = {&*prepared};
-  const StyleMap map = MapStyles(guides, {{{1u, StyleMap::kCatch}}, {}, 0});
+  const StyleMap map = MapStyles(guides, {{{1u, StyleMap::kShadowCatcher}}, {}, 0});
   TransferScratch scratch;
   Picture whole, tiled;
   ASSERT_TRUE(Transfer(styles, map, guides, {}, scratch, whole).ok());

@@ -1,12 +1,13 @@
 // The distance field of outlines, against a search of everything.
+#include "transfer/outline/silhouettes.h"
+
 #include <cmath>
 #include <tuple>
 
+#include "core/image/bare_paper.h"
 #include "core/image/color.h"
 #include "core/image/oklab.h"
 #include "tests/support/transfer_fixtures.h"
-#include "core/image/bare_paper.h"
-#include "transfer/outline/silhouettes.h"
 
 namespace scumble {
 namespace {
@@ -20,7 +21,8 @@ GuideSet Discs(int width, int height) {
   GuideSet guides = MakeGuides(width, height, [](int, int) { return glm::vec3(0.0f); });
   for (int n = 0; n < 24; ++n) {
     const std::uint64_t hash = Hash(n, 7);
-    const double cx = UnitFloat(hash) * width, cy = UnitFloat(Mix64(hash)) * height, radius = 6 + 40 * UnitFloat(Hash(n, 9));
+    const double cx = UnitFloat(hash) * width, cy = UnitFloat(Mix64(hash)) * height,
+                 radius = 6 + 40 * UnitFloat(Hash(n, 9));
     const float depth = 8.0f + 0.07f * static_cast<float>(Hash(n, 3) % 40);
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
@@ -37,7 +39,8 @@ GuideSet Discs(int width, int height) {
 TEST(Silhouettes, TheNearestOutlineIsTheOneThatASearchOfAllFinds) {
   const GuideSet guides = Discs(260, 200);
   std::vector<std::uint16_t> style(guides.pixel_count());
-  for (std::size_t i = 0; i < style.size(); ++i) style[i] = static_cast<int>(guides.Plane(Layer::kObject)[i]) % 4 == 3 ? 1 : 0;
+  for (std::size_t i = 0; i < style.size(); ++i)
+    style[i] = static_cast<int>(guides.Plane(Layer::kObject)[i]) % 4 == 3 ? 1 : 0;
   const int bands[] = {6, 0};
   const Silhouettes silhouettes({guides, style, bands, {0, 0, 260, 200}, 20});
   ASSERT_GT(silhouettes.outline().size(), 500u);
@@ -99,8 +102,9 @@ TEST(BarePaper, LiftedPaintOverItsPaperIsThePicture) {
     std::uint16_t texel[4] = {std::uint16_t(Hash(n, 0)), std::uint16_t(Hash(n, 1)), std::uint16_t(Hash(n, 2)), 65535};
     const std::uint16_t before[3] = {texel[0], texel[1], texel[2]};
     LiftPaint(paper, texel);
-    const glm::vec3 off = OklabFromLinear({Srgb16ToLinear(before[0]), Srgb16ToLinear(before[1]), Srgb16ToLinear(before[2])}) -
-                          OklabFromLinear(paper.color);
+    const glm::vec3 off =
+        OklabFromLinear({Srgb16ToLinear(before[0]), Srgb16ToLinear(before[1]), Srgb16ToLinear(before[2])}) -
+        OklabFromLinear(paper.color);
     const float alpha = static_cast<float>(texel[3]) / 65535.0f;
     for (int c = 0; c < 3; ++c) {
       const float linear = Srgb16ToLinear(texel[c]) * alpha + paper.color[c] * (1.0f - alpha);

@@ -29,18 +29,26 @@ struct Pixels {
 
 // Albedos of many kinds: even, dark, of every magnitude, nearly 1, the same everywhere, beyond the gamut, and extremes.
 float AnyAlbedo(int kind, std::size_t i, int c) {
-  constexpr float kExtremes[] = {0.0f, -0.0f, 1.0f, 1.0000001f, 2.0f,  1e-30f, 1e-45f,    3.0517578e-5f,
+  constexpr float kExtremes[] = {0.0f,  -0.0f, 1.0f, 1.0000001f, 2.0f, 1e-30f,   1e-45f,     3.0517578e-5f,
                                  1e30f, -1.0f, 0.5f, kInfinity,  kNan, 65504.0f, -kInfinity, 0.0031308f};
   const float u = UnitFloat(Hash(kind, i, c));
   switch (kind % 8) {
-    case 0: return u;
-    case 1: return u * u * u * u;
-    case 2: return std::ldexp(1.0f + u, -int(Hash(i, c, 9) % 30));
-    case 3: return 1.0f - 1e-3f * u;
-    case 4: return UnitFloat(Hash(kind, c));
-    case 5: return 2.5f * u - 0.2f;
-    case 6: return i / 50 % 2 == 0 ? 1.0f : 0.0f;
-    default: return kExtremes[Hash(kind, i, c) % std::size(kExtremes)];
+    case 0:
+      return u;
+    case 1:
+      return u * u * u * u;
+    case 2:
+      return std::ldexp(1.0f + u, -int(Hash(i, c, 9) % 30));
+    case 3:
+      return 1.0f - 1e-3f * u;
+    case 4:
+      return UnitFloat(Hash(kind, c));
+    case 5:
+      return 2.5f * u - 0.2f;
+    case 6:
+      return i / 50 % 2 == 0 ? 1.0f : 0.0f;
+    default:
+      return kExtremes[Hash(kind, i, c) % std::size(kExtremes)];
   }
 }
 
@@ -84,7 +92,8 @@ TEST(FastTint, MultipliesEveryCodeAsThePlainTintDoes) {
 
 // Paint of any colour, and paint that is nearly grey, as much of it is; references as low and as high as they may be.
 TEST(FastTint, TakesHueAndChromaAsThePlainTintDoes) {
-  constexpr float kReferences[] = {0.75f, 0.0f, 1.0f, 0.3f, 0.6f, 0.9f, 1e-7f}, kWeights[] = {1.0f, 0.5f, 0.01f, 1.0f, 0.9f};
+  constexpr float kReferences[] = {0.75f, 0.0f, 1.0f, 0.3f, 0.6f, 0.9f, 1e-7f},
+                  kWeights[] = {1.0f, 0.5f, 0.01f, 1.0f, 0.9f};
   OnEveryInstructionSet([&] {
     for (int kind = 0; kind < 48; ++kind) {
       Pixels pixels = AnyPixels(6000, kind % 24);
@@ -105,7 +114,8 @@ TEST(FastTint, TintsEveryGrey) {
     Pixels pixels(1 << 17);
     for (std::size_t i = 0; i < pixels.count(); ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
-        pixels.albedo[c][i] = i < 65536 ? 0.3f : std::ldexp(1.0f + static_cast<float>(i % 65536) / 65536.0f, -int(i % 70));
+        pixels.albedo[c][i] =
+            i < 65536 ? 0.3f : std::ldexp(1.0f + static_cast<float>(i % 65536) / 65536.0f, -int(i % 70));
         pixels.texels[4 * i + c] = static_cast<std::uint16_t>(i);
       }
     }
@@ -152,9 +162,11 @@ TEST(FastTint, OnlyActivePixelsOfTheRegionChange) {
   for (const ColorizeMode mode : {ColorizeMode::kMultiply, ColorizeMode::kOklab}) {
     for (const int dense : {1, 2, 10, 60}) {
       std::vector<std::uint8_t> active(guides.pixel_count());
-      for (std::size_t i = 0; i < active.size(); ++i) active[i] = Hash(i, dense) % std::uint64_t(dense) != 0 || dense == 1;
+      for (std::size_t i = 0; i < active.size(); ++i)
+        active[i] = Hash(i, dense) % std::uint64_t(dense) != 0 || dense == 1;
       const internal::Tint tint{0.6f, 0.8f, mode};
-      for (const Region& region : {Region{0, 0, kWidth, kHeight}, Region{7, 2, 80, 5}, Region{82, 0, 83, 9}, Region{}}) {
+      for (const Region& region :
+           {Region{0, 0, kWidth, kHeight}, Region{7, 2, 80, 5}, Region{82, 0, 83, 9}, Region{}}) {
         Picture expected = before, found = before;
         for (int y = region.y0; y < region.y1; ++y) {
           for (int x = region.x0; x < region.x1; ++x) {

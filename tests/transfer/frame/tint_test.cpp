@@ -69,7 +69,8 @@ Picture Paint(int size, int darkest, int lightest) {
       const int tone = darkest + static_cast<int>(Hash(x, y) % std::uint64_t(lightest - darkest));
       std::uint16_t* texel = picture.At(x, y);
       for (int c = 0; c < 3; ++c) {
-        texel[c] = static_cast<std::uint16_t>(std::clamp(tone + static_cast<int>(Hash(x, y, c) % 9000) - 4500, 0, 65535));
+        texel[c] =
+            static_cast<std::uint16_t>(std::clamp(tone + static_cast<int>(Hash(x, y, c) % 9000) - 4500, 0, 65535));
       }
       texel[3] = 65535;
     }
@@ -201,8 +202,8 @@ TEST(Tint, ShadowEdgesThatMeltStayBetweenBothSides) {
 
 std::uint16_t Grey(double lightness) { return Srgb16FromLinear(static_cast<float>(lightness * lightness * lightness)); }
 
-// Any albedo, saturated ones included: lightness follows the paint's, and nothing short of white paint reaches the top of
-// a channel.
+// Any albedo, saturated ones included: lightness follows the paint's, and nothing short of white paint reaches the top
+// of a channel.
 TEST(Tint, IsMonotoneInThePaintAndClipsNothing) {
   for (int k = 0; k < 3000; ++k) {
     glm::vec3 albedo(0.9f * UnitFloat(Hash(k, 1)), 0.9f * UnitFloat(Hash(k, 2)), 0.9f * UnitFloat(Hash(k, 3)));
@@ -222,8 +223,8 @@ TEST(Tint, IsMonotoneInThePaintAndClipsNothing) {
   }
 }
 
-// Strokes on light and dark things keep the share of their contrast that the formula promises: L / R below the reference,
-// the room above it.
+// Strokes on light and dark things keep the share of their contrast that the formula promises: L / R below the
+// reference, the room above it.
 TEST(Tint, StrokesKeepTheirContrast) {
   for (const float albedo : {0.9f, 0.6f, 0.3f, 0.1f, 0.02f}) {
     const double scene = std::cbrt(static_cast<double>(albedo)), reference = 0.6;

@@ -7,6 +7,7 @@
 
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "measure/mosaic/coherence.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/nearest/guide_distance.h"
@@ -72,9 +73,9 @@ TEST(Oracle, BothFormsObeyTheSameAcceptanceRuleOnRandomGuides) {
   }
 }
 
-// The parallel form cannot know which anchors a sequential run would choose: its chunks end at the borders of seed cells
-// as well, but it tries several seeds for a pixel where the oracle offers whatever anchor comes first. Measured ratios of
-// coherence are 0.99, 1.11 and 0.95, of chunk area 0.6, 2.6 and 0.8; the bounds leave a fifth.
+// The parallel form cannot know which anchors a sequential run would choose: its chunks end at the borders of seed
+// cells as well, but it tries several seeds for a pixel where the oracle offers whatever anchor comes first. Measured
+// ratios of coherence are 0.99, 1.11 and 0.95, of chunk area 0.6, 2.6 and 0.8; the bounds leave a fifth.
 TEST(Oracle, ParallelChunksComeCloseToTheBruteForceOnes) {
   const GuideSet scenes[] = {HillGuides(256, 192), SphereGuides(200), SampleScene("suzanne.glb", 320, 180)};
   for (const GuideSet& guides : scenes) {
@@ -220,8 +221,8 @@ TEST(Chunks, WithInfiniteThresholdAreTheCellsOfTheSeeds) {
 }
 
 // The exemplar's own sphere, as the ray caster renders it, with an exemplar that encodes its position: every pixel gets
-// its own column and row back. At another scale the offset has no preferred side beyond the rule for ties, which is half
-// a texel of the resized exemplar at most.
+// its own column and row back. At another scale the offset has no preferred side beyond the rule for ties, which is
+// half a texel of the resized exemplar at most.
 TEST(Identity, TheRenderedSphereGivesThePositionBack) {
   for (const int size : {64, 65, 501}) {
     SphereOptions options;

@@ -171,8 +171,8 @@ TEST(MatchStep, MostPixelsKeepTheirSource) {
   }
 }
 
-// A seed that variety has sent elsewhere is compared with the guide that it was sent from, by pixels in between too. (The
-// borders of pieces follow the paint there, pixel by pixel, which matching one pixel of sixteen cannot.)
+// A seed that variety has sent elsewhere is compared with the guide that it was sent from, by pixels in between too.
+// (The borders of pieces follow the paint there, pixel by pixel, which matching one pixel of sixteen cannot.)
 TEST(MatchStep, KnowsWhatVarietyMoved) {
   const GuideSet guides = MakeGuides(200, 160, [](int, int) { return glm::normalize(glm::vec3(0.2f, 0.1f, 1.0f)); });
   Style style = PlainStyle(NoisePicture(300));
@@ -229,7 +229,7 @@ TEST(MatchStep, ThreadsRegionsAndOtherStylesDoNotChangeAByte) {
   StyleMap map{std::vector<std::uint16_t>(guides.pixel_count())};
   for (std::size_t i = 0; i < map.style.size(); ++i) {
     const bool leave = i % 131 > 120;
-    map.style[i] = leave ? StyleMap::kLeave : guides.Plane(Layer::kObject)[i] == 2.0f;
+    map.style[i] = leave ? StyleMap::kPassThrough : guides.Plane(Layer::kObject)[i] == 2.0f;
   }
   for (const int step : {2, 5, 8}) {
     Style first = TwoLights(120), second = PlainStyle(PositionPicture(60));

@@ -1,5 +1,5 @@
-// Coherent mode: seeds on the surface against a plain version of the rules in transfer/seeds/surface_seeds.h, and what they are
-// for: paint that stays where it is while the object or the camera moves.
+// Coherent mode: seeds on the surface against a plain version of the rules in transfer/seeds/surface_seeds.h, and what
+// they are for: paint that stays where it is while the object or the camera moves.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -60,8 +60,8 @@ Style CoherentStyle(int size, int levels) {
   return style;
 }
 
-// The rules, pixel by pixel, without any of the engine's tables and short cuts: 27 cubes are looked at for each pixel and
-// exponent.
+// The rules, pixel by pixel, without any of the engine's tables and short cuts: 27 cubes are looked at for each pixel
+// and exponent.
 class PlainCoherent {
  public:
   PlainCoherent(const GuideSet& guides, const Style& style, std::uint64_t seed)
@@ -137,7 +137,8 @@ class PlainCoherent {
     double low[3];
     float local[3];
     for (int c = 0; c < 3; ++c) {
-      const double at = guides_.Plane(Layer::kPref, c)[i] / std::ldexp(1.0, e) + UnitFloat(Mix64(place + std::uint64_t(c)));
+      const double at =
+          guides_.Plane(Layer::kPref, c)[i] / std::ldexp(1.0, e) + UnitFloat(Mix64(place + std::uint64_t(c)));
       if (!(std::fabs(at) < std::ldexp(1.0, 50))) return {0, 0.0f};
       low[c] = std::floor(at), local[c] = static_cast<float>(at - low[c]);
     }
@@ -335,7 +336,9 @@ TEST(Coherent, PaintDoesNotSlideWhileTheSurfaceTurns) {
   Style style = CoherentStyle(700, 6);
   style.transfer.rim = 0.0;
   const GuideSet before = Wall(200, 10.0f), after = Wall(200, 10.25f);
-  const auto share = [&] { return ShareKept(MustTransfer(style, before).field, MustTransfer(style, after).field, 0, 0); };
+  const auto share = [&] {
+    return ShareKept(MustTransfer(style, before).field, MustTransfer(style, after).field, 0, 0);
+  };
   EXPECT_GT(share(), 0.8);
   EXPECT_LT(share(), 0.999);
   style.transfer.coherent = false;
@@ -380,13 +383,12 @@ TEST(Coherent, JitterFpsBoilsOnTheSurface) {
 
 TEST(Coherent, ObjectsOfOnePixelAndEmptyPicturesTakeTheirOwn) {
   const Style style = CoherentStyle(64, 5);
-  GuideSet specks = WithPref(MakeGuides(20, 20, [](int x, int y) {
-                               return x % 2 || y % 2 ? glm::vec3(0.0f) : glm::vec3(0.0f, 0.6f, 0.8f);
-                             }),
-                             [](int x, int y) { return glm::vec3(x, y, 0.0f); });
+  GuideSet specks = WithPref(
+      MakeGuides(20, 20, [](int x, int y) { return x % 2 || y % 2 ? glm::vec3(0.0f) : glm::vec3(0.0f, 0.6f, 0.8f); }),
+      [](int x, int y) { return glm::vec3(x, y, 0.0f); });
   for (const std::int8_t level : MustTransfer(style, specks).field.level) EXPECT_LE(level, 0);
-  const GuideSet nothing = WithPref(MakeGuides(9, 7, [](int, int) { return glm::vec3(0.0f); }),
-                                    [](int, int) { return glm::vec3(0.0f); });
+  const GuideSet nothing =
+      WithPref(MakeGuides(9, 7, [](int, int) { return glm::vec3(0.0f); }), [](int, int) { return glm::vec3(0.0f); });
   for (const std::int8_t level : MustTransfer(style, nothing).field.level) EXPECT_EQ(level, SourceField::kNoSource);
 }
 

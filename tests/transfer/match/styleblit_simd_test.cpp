@@ -11,6 +11,7 @@
 #include "tests/support/every_instruction_set.h"
 #include "tests/support/transfer_fixtures.h"
 #include "transfer/match/match.h"
+#include "transfer/match/seed_tiles.h"
 
 namespace scumble {
 namespace {
@@ -63,8 +64,9 @@ class Matches {
   SourceField ExpectEqual(const Case& c, const std::string& what, int threads = 2) const {
     const Region whole{0, 0, guides_.width(), guides_.height()};
     const SeedRules rules{c.seed, c.step, c.jitter, c.level_offset};
-    internal::MatchInput input{guides_,  active_,  exemplar_, illumination_,           luminance_, GuideTest(c.threshold, c.metric),
-                               rules,    c.levels, c.variety, 4, c.region.value_or(whole)};
+    internal::MatchInput input{
+        guides_,  active_,   exemplar_, illumination_,           luminance_, GuideTest(c.threshold, c.metric), rules,
+        c.levels, c.variety, 4,         c.region.value_or(whole)};
     input.wanted = wanted_;
     input.least_level = c.least_level;
     SourceField plain = Empty(guides_, c.keep_moved), fast = plain;
@@ -99,11 +101,16 @@ GuideSet MixedGuides(int width, int height, int seed) {
   return MakeGuides(width, height, [=](int x, int y) {
     const std::uint64_t piece = Hash(seed, x / 48, y / 40), pixel = Hash(seed, x, y, 1);
     switch (piece % 5) {
-      case 0: return glm::vec3(0.0f);
-      case 1: return AnyDirection(piece >> 3);
-      case 2: return pixel % 3 == 0 ? AnyDirection(pixel) : glm::vec3(0.0f);
-      case 3: return AnyDirection(pixel);
-      default: break;
+      case 0:
+        return glm::vec3(0.0f);
+      case 1:
+        return AnyDirection(piece >> 3);
+      case 2:
+        return pixel % 3 == 0 ? AnyDirection(pixel) : glm::vec3(0.0f);
+      case 3:
+        return AnyDirection(pixel);
+      default:
+        break;
     }
     const float u = 0.02f * static_cast<float>(x), v = 0.03f * static_cast<float>(y);
     return glm::normalize(glm::vec3(std::sin(u), std::cos(v), 0.4f));
@@ -129,7 +136,8 @@ TEST(TransferTiles, EveryLevelJitterAndThreshold) {
   const GuideSet guides = MixedGuides(531, 259, 2);
   const PreparedExemplar exemplar(NoisePicture(64), 2.0, 300);
   const Matches matches(guides, exemplar);
-  for (const int levels : {1, 2, 3, 6, 7, 8, 9, 10, 16}) matches.ExpectEqual({.levels = levels}, "levels " + std::to_string(levels));
+  for (const int levels : {1, 2, 3, 6, 7, 8, 9, 10, 16})
+    matches.ExpectEqual({.levels = levels}, "levels " + std::to_string(levels));
   for (const float jitter : {0.0f, 0.5f}) matches.ExpectEqual({.jitter = jitter}, "jitter " + std::to_string(jitter));
   const float infinity = std::numeric_limits<float>::infinity();
   for (const float threshold : {0.0f, 1e-40f, 0.5f, 3.0f, infinity}) {
@@ -140,8 +148,8 @@ TEST(TransferTiles, EveryLevelJitterAndThreshold) {
   matches.ExpectEqual({.least_level = 3}, "least level");
 }
 
-// A line of pixels as long as a picture may be, along x or y, which is as long as the largest cells: so seeds of theirs can stand
-// in it, and the runs of pixels that are near to them can end in it too.
+// A line of pixels as long as a picture may be, along x or y, which is as long as the largest cells: so seeds of theirs
+// can stand in it, and the runs of pixels that are near to them can end in it too.
 struct Line {
   static constexpr int kLength = kMaxImageSide;
   bool upright;
@@ -161,8 +169,9 @@ struct Line {
   }
 };
 
-// A random seed by which a seed of the level stands on the line at `at`, and the pixel `end`, at most `reach` from there, is near
-// to another: a run of the first seed's ends between them. One in 2^15 puts a seed of level 15 on the line.
+// A random seed by which a seed of the level stands on the line at `at`, and the pixel `end`, at most `reach` from
+// there, is near to another: a run of the first seed's ends between them. One in 2^15 puts a seed of level 15 on the
+// line.
 struct SeedOnLine {
   std::uint64_t seed = 0;
   int at = 0, end = 0;
@@ -184,8 +193,9 @@ SeedOnLine FindSeedOnLine(const Line& line, int level, int reach) {
   return {};
 }
 
-// The scene faces us; of the paint, a line as long, the middle alone does. So each seed's source is the middle, every pixel that
-// is nearest to it takes what is as far from there, at any distance of normals, and what no seed settles takes the middle.
+// The scene faces us; of the paint, a line as long, the middle alone does. So each seed's source is the middle, every
+// pixel that is nearest to it takes what is as far from there, at any distance of normals, and what no seed settles
+// takes the middle.
 TEST(TransferTiles, SeedsOfTheLargestCells) {
   constexpr int kPaint = 32767, kMiddle = kPaint / 2;
   for (const Line line : {Line{false}, Line{true}}) {
@@ -222,14 +232,16 @@ TEST(TransferTiles, SeedsOfTheLargestCells) {
 
 TEST(TransferTiles, EverySizeAndRegion) {
   const PreparedExemplar exemplar(NoisePicture(32), 1.0, 77);
-  for (const auto& [width, height] : {std::pair{1, 1}, {1, 90}, {90, 1}, {15, 3}, {16, 16}, {17, 2}, {513, 5}, {1100, 7}, {40, 300}}) {
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {1, 90}, {90, 1}, {15, 3}, {16, 16}, {17, 2}, {513, 5}, {1100, 7}, {40, 300}}) {
     const GuideSet guides = HillGuides(width, height);
     Matches matches(guides, exemplar);
     matches.ExpectEqual({}, std::to_string(width) + "×" + std::to_string(height));
   }
   const GuideSet guides = MixedGuides(640, 300, 3);
   const Matches matches(guides, exemplar);
-  for (const Region& region : {Region{0, 0, 640, 1}, Region{639, 299, 640, 300}, Region{13, 20, 29, 270}, Region{100, 50, 633, 199}, Region{40, 40, 40, 40}}) {
+  for (const Region& region : {Region{0, 0, 640, 1}, Region{639, 299, 640, 300}, Region{13, 20, 29, 270},
+                               Region{100, 50, 633, 199}, Region{40, 40, 40, 40}}) {
     matches.ExpectEqual({.region = region}, "region from " + std::to_string(region.x0));
   }
 }
@@ -238,13 +250,13 @@ TEST(TransferTiles, ThreadsDoNotMatter) {
   const GuideSet guides = MixedGuides(1300, 400, 4);
   const PreparedExemplar exemplar(NoisePicture(64), 2.0, 128);
   const Matches matches(guides, exemplar);
-  for (const int threads : {1, 2, 3, 7}) matches.ExpectEqual({.variety = 15.0}, std::to_string(threads) + " threads", threads);
+  for (const int threads : {1, 2, 3, 7})
+    matches.ExpectEqual({.variety = 15.0}, std::to_string(threads) + " threads", threads);
 }
 
 TEST(TransferTiles, VarietyAndItsBorders) {
-  const GuideSet walls = MakeGuides(700, 260, [](int x, int y) {
-    return x % 300 < 3 ? glm::vec3(0.0f) : AnyDirection(Hash(x / 300, y / 200));
-  });
+  const GuideSet walls = MakeGuides(
+      700, 260, [](int x, int y) { return x % 300 < 3 ? glm::vec3(0.0f) : AnyDirection(Hash(x / 300, y / 200)); });
   const PreparedExemplar exemplar(NoisePicture(96), 2.0, 256);
   const Matches matches(walls, exemplar);
   for (const double degrees : {5.0, 15.0, 90.0}) {
@@ -264,7 +276,8 @@ TEST(TransferTiles, SeveralExemplarsAndTheirLight) {
     for (const LuminanceError form : {LuminanceError::kExcess, LuminanceError::kPublished}) {
       const Matches matches(guides, exemplar, Illumination(luminances, weight, form), Light(guides));
       matches.ExpectEqual({}, "weight " + std::to_string(weight));
-      matches.ExpectEqual({.metric = ThresholdMetric::kL1, .variety = 15.0, .keep_moved = true}, "l1, weight " + std::to_string(weight));
+      matches.ExpectEqual({.metric = ThresholdMetric::kL1, .variety = 15.0, .keep_moved = true},
+                          "l1, weight " + std::to_string(weight));
     }
   }
 }
@@ -297,7 +310,8 @@ TEST(TransferTiles, OnlyWhatIsWanted) {
 
 TEST(TransferTiles, NormalsThatAreNone) {
   GuideSet guides = HillGuides(333, 100);
-  const float odd[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 0.0f, 1e-30f, -0.0f, 1e30f};
+  const float odd[] = {
+      std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 0.0f, 1e-30f, -0.0f, 1e30f};
   for (std::size_t i = 0; i < guides.pixel_count(); i += 3) {
     for (int c = 0; c < 3; ++c) guides.Plane(Layer::kNormal, c)[i] = odd[Hash(i, c) % 6];
   }

@@ -1,4 +1,6 @@
 // Freedom of choice on flat surfaces: where the paint comes from, and where the borders run.
+#include "transfer/match/variety.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +12,9 @@
 #include "core/image/hash.h"
 #include "measure/energy/flat_surfaces.h"
 #include "measure/mosaic/repetition.h"
+#include "tests/support/transfer_fixtures.h"
 #include "transfer/exemplar/paint_by_normal.h"
 #include "transfer/seeds/seeds.h"
-#include "transfer/match/variety.h"
-#include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {
@@ -28,17 +29,16 @@ Picture TwoTones(int width, int height) {
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       std::uint16_t* texel = picture.At(x, y);
-      texel[0] = texel[1] = texel[2] =
-          static_cast<std::uint16_t>((2 * x < width ? 50000 : 10000) + Hash(x, y) % 4000);
+      texel[0] = texel[1] = texel[2] = static_cast<std::uint16_t>((2 * x < width ? 50000 : 10000) + Hash(x, y) % 4000);
       texel[3] = 65535;
     }
   }
   return picture;
 }
 
-TEST(Alternatives, ToneIsTheMeanOfTheUsablePixelsAround) {
+TEST(SourceVariation, ToneIsTheMeanOfTheUsablePixelsAround) {
   const PreparedExemplar exemplar(NoisePicture(100), 2.0, 100);  // small: sums of single pixels
-  const Alternatives alternatives(exemplar);
+  const SourceVariation alternatives(exemplar);
   int empty = 0;
   for (const Source at : {Source{50, 50}, Source{12, 40}, Source{3, 50}, Source{80, 20}, Source{0, 0}}) {
     for (const int half : {1, 4, 9}) {
@@ -61,7 +61,7 @@ TEST(Alternatives, ToneIsTheMeanOfTheUsablePixelsAround) {
   EXPECT_GT(empty, 0) << "a corner outside the disc has no tone";
 }
 
-TEST(Alternatives, ToneOfAPixelIsSmooth) {
+TEST(SourceVariation, ToneOfAPixelIsSmooth) {
   // A ramp of 100 a pixel in a large exemplar, whose sums are of squares of 2 pixels: bilinear between them is exact.
   Picture ramp(300, 300);
   for (int y = 0; y < 300; ++y) {
@@ -71,15 +71,15 @@ TEST(Alternatives, ToneOfAPixelIsSmooth) {
     }
   }
   const PreparedExemplar exemplar(ramp, 2.0, 300);
-  const Alternatives alternatives(exemplar);
+  const SourceVariation alternatives(exemplar);
   for (int y = 100; y < 200; y += 7) {
     for (int x = 100; x < 200; ++x) EXPECT_NEAR(alternatives.ToneAt({x, y}, 0)[0], ramp.At(x, y)[0], 2.0);
   }
 }
 
-TEST(Alternatives, ChoosesWithinTheConeAndOfTheWantedTone) {
+TEST(SourceVariation, ChoosesWithinTheConeAndOfTheWantedTone) {
   const PreparedExemplar exemplar(TwoTones(256, 256), 2.0, 256);
-  const Alternatives alternatives(exemplar);
+  const SourceVariation alternatives(exemplar);
   const Source own{112, 120};  // light, near the dark half, which most of the cone is
   const glm::vec3 normal = exemplar.Normal(own.x, own.y);
   std::set<std::pair<int, int>> chosen;
@@ -95,7 +95,7 @@ TEST(Alternatives, ChoosesWithinTheConeAndOfTheWantedTone) {
 }
 
 // An exemplar that is a scene: two flat panes side by side, 30 degrees apart, each with one normal.
-TEST(Alternatives, ASceneOffersAllOfAFlatFace) {
+TEST(SourceVariation, ASceneOffersAllOfAFlatFace) {
   const glm::vec3 left = glm::normalize(glm::vec3(-std::tan(15.0 * kRadians), 0, 1)), right{-left.x, 0, left.z};
   const GuideSet panes = MakeGuides(200, 120, [&](int x, int) { return x < 100 ? left : right; });
   Picture paint = NoisePicture(200);
@@ -103,7 +103,7 @@ TEST(Alternatives, ASceneOffersAllOfAFlatFace) {
   const Picture* const pictures[] = {&paint};
   auto exemplar = PreparedExemplar::OfScene(pictures, panes, 0.0, 200, 120, "panes");
   ASSERT_TRUE(exemplar.ok());
-  const Alternatives alternatives(*exemplar);
+  const SourceVariation alternatives(*exemplar);
   std::set<int> tenths, both;
   for (std::uint64_t hash = 0; hash < 2000; ++hash) {
     const Source source = alternatives.Choose(*exemplar, {{0, 0}, 0, 20.0, 10, Mix64(hash)});
@@ -125,7 +125,8 @@ TEST(Seeds, TheTwoNearestAreThoseOfASearch) {
         std::vector<std::pair<std::int64_t, int>> order;  // by distance, then in row order
         for (int dy = -1; dy <= 1; ++dy) {
           for (int dx = -1; dx <= 1; ++dx) {
-            const PixelPosition seed = SeedOfCell({7, 0, level == 3 ? 0.0f : 1.0f, 0}, level, (x >> level) + dx, (y >> level) + dy);
+            const PixelPosition seed =
+                SeedOfCell({7, 0, level == 3 ? 0.0f : 1.0f, 0}, level, (x >> level) + dx, (y >> level) + dy);
             const std::int64_t ex = seed.x - x, ey = seed.y - y;
             order.emplace_back(ex * ex + ey * ey, 3 * dy + dx);
           }
@@ -172,7 +173,8 @@ TEST(Variety, KeepsTheToneOfTheWall) {
   style.transfer.variety = 30.0;
   const Transferred after = MustTransfer(style, wall);
   EXPECT_NE(after.picture.rgba, before.picture.rgba);
-  EXPECT_LT(ToneSpread(after.picture, all, 8.0), 0.02) << "the dark half is within 30 degrees, and would show as patches";
+  EXPECT_LT(ToneSpread(after.picture, all, 8.0), 0.02)
+      << "the dark half is within 30 degrees, and would show as patches";
   std::set<std::pair<int, int>> sources, own;
   for (std::size_t i = 0; i < after.field.x.size(); ++i) {
     sources.insert({after.field.x[i], after.field.y[i]});
@@ -208,7 +210,8 @@ TEST(Variety, APreviewShowsTheFinalPicturesPieces) {
   EXPECT_LT(other_seeds, 0.3 * same_seeds);
 }
 
-// What measures call a flat surface (measure/energy/flat_surfaces.h) is where the transfer finds one, there or a reach away.
+// What measures call a flat surface (measure/energy/flat_surfaces.h) is where the transfer finds one, there or a reach
+// away.
 TEST(Variety, MeasuresFindTheSameFlatPlaces) {
   constexpr int kSide = 40, kReach = 3;
   GuideSet guides(kSide, kSide);
@@ -221,13 +224,23 @@ TEST(Variety, MeasuresFindTheSameFlatPlaces) {
       active[i] = block % 5 != 0;
       guides.Plane(Layer::kCoverage)[i] = active[i];
       guides.Plane(Layer::kObject)[i] = float(block / 16 % 2);
-      guides.Plane(Layer::kNormal, 0)[i] = float(std::sin(0.4 * kRadians * double(angle)));  // 0.4 degrees are flat, 0.8 not
+      guides.Plane(Layer::kNormal, 0)[i] =
+          float(std::sin(0.4 * kRadians * double(angle)));  // 0.4 degrees are flat, 0.8 not
       guides.Plane(Layer::kNormal, 2)[i] = float(std::cos(0.4 * kRadians * double(angle)));
     }
   }
   const PreparedExemplar exemplar(NoisePicture(32), 2.0, 32);
   const Illumination none;
-  const internal::MatchInput input{guides, active, exemplar, none, {}, GuideTest(0.1f, ThresholdMetric::kL2), {}, 4, 15.0, kReach,
+  const internal::MatchInput input{guides,
+                                   active,
+                                   exemplar,
+                                   none,
+                                   {},
+                                   GuideTest(0.1f, ThresholdMetric::kL2),
+                                   {},
+                                   4,
+                                   15.0,
+                                   kReach,
                                    {0, 0, kSide, kSide}};
   const auto is_flat = [&](int x, int y) {
     if (x < 0 || y < 0 || x >= kSide || y >= kSide || !active[guides.Index(x, y)]) return false;

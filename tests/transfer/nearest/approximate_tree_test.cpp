@@ -26,14 +26,15 @@ double Distance(const float* a, const float* b, std::size_t dimensions) {
 
 double Least(const std::vector<float>& points, const float* query, std::size_t dimensions) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < points.size(); i += dimensions) least = std::min(least, Distance(&points[i], query, dimensions));
+  for (std::size_t i = 0; i < points.size(); i += dimensions)
+    least = std::min(least, Distance(&points[i], query, dimensions));
   return least;
 }
 
 // Rounding is on the safe side in the tree, so what is left is that of the distances here: a few ulps of a double.
 constexpr double kUlps = 1.0 + 1e-14;
 
-TEST(RoughTree, IsNeverFartherThanAllowedAndSometimesFartherThanTheNearest) {
+TEST(ApproximateTree, IsNeverFartherThanAllowedAndSometimesFartherThanTheNearest) {
   for (const std::size_t dimensions : {1u, 3u, 8u, 15u}) {
     const std::vector<float> points = Anywhere(3000 * dimensions, dimensions), queries = Anywhere(300 * dimensions, 77);
     const PointTree tree(static_cast<int>(dimensions), points);
@@ -61,7 +62,7 @@ TEST(RoughTree, IsNeverFartherThanAllowedAndSometimesFartherThanTheNearest) {
   }
 }
 
-TEST(RoughTree, TheAnswerDoesNotDependOnWhatWasAskedBefore) {
+TEST(ApproximateTree, TheAnswerDoesNotDependOnWhatWasAskedBefore) {
   const std::vector<float> points = Anywhere(2000 * 3, 1), queries = Anywhere(200 * 3, 2);
   const PointTree tree(3, points);
   std::vector<std::uint32_t> forward, backward;
@@ -75,7 +76,7 @@ TEST(RoughTree, TheAnswerDoesNotDependOnWhatWasAskedBefore) {
   EXPECT_EQ(forward, backward);
 }
 
-TEST(RoughTree, WithoutErrorItIsTheNearest) {
+TEST(ApproximateTree, WithoutErrorItIsTheNearest) {
   const std::vector<float> points = Anywhere(500 * 3, 3), queries = Anywhere(100 * 3, 4);
   const PointTree tree(3, points);
   std::uint32_t place = 0;
@@ -91,7 +92,7 @@ Style RoughStyle(double error) {
 }
 
 // Directions and usable normals have length 1, so what is compared is what the tree compares.
-TEST(RoughTree, SourcesOfAStyleKeepToItsError) {
+TEST(ApproximateTree, SourcesOfAStyleKeepToItsError) {
   const auto exact = MustPrepare(RoughStyle(0.0)), rough = MustPrepare(RoughStyle(2.0));
   int farther = 0;
   for (int n = 0; n < 500; ++n) {
@@ -111,7 +112,7 @@ TEST(RoughTree, SourcesOfAStyleKeepToItsError) {
   EXPECT_GT(farther, 0);
 }
 
-TEST(RoughTree, GuidesOfLightKeepToItToo) {
+TEST(ApproximateTree, GuidesOfLightKeepToItToo) {
   GuideSet guides = Blobs(50, 40, 2);
   guides.Add(Layer::kLuminance);
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) guides.Plane(Layer::kLuminance)[i] = UnitFloat(Hash(i, 5));
@@ -143,7 +144,7 @@ TEST(RoughTree, GuidesOfLightKeepToItToo) {
   EXPECT_GT(farther, 0);
 }
 
-TEST(RoughTree, TheStyleIsPaintedTheSameByAnyThreads) {
+TEST(ApproximateTree, TheStyleIsPaintedTheSameByAnyThreads) {
   Style style = RoughStyle(0.5);
   style.transfer.method = Method::kStyleBlit;
   const GuideSet guides = HillGuides(120, 90);

@@ -17,8 +17,8 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const Layer kFifteen[] = {Layer::kAlbedo, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE};  // with the normal
 
-// Light of every layer from a lamp of its own for each channel, shadowed in every third of bands of 16 columns; in `steps`
-// even steps, so that equal guides abound, or in none for 0.
+// Light of every layer from a lamp of its own for each channel, shadowed in every third of bands of 16 columns; in
+// `steps` even steps, so that equal guides abound, or in none for 0.
 void AddLight(GuideSet& guides, int steps, float scale = 1.0f) {
   const auto add = [&](Layer layer) {
     guides.Add(layer);
@@ -56,7 +56,10 @@ GuideWeights Weights(std::initializer_list<std::pair<Layer, float>> values) {
 }
 
 GuideWeights FifteenDimensions() {
-  return Weights({{Layer::kNormal, 0.75f}, {Layer::kAlbedo, 0.5f}, {Layer::kLpeLDE, 1.0f}, {Layer::kLpeLSE, 0.3f},
+  return Weights({{Layer::kNormal, 0.75f},
+                  {Layer::kAlbedo, 0.5f},
+                  {Layer::kLpeLDE, 1.0f},
+                  {Layer::kLpeLSE, 0.3f},
                   {Layer::kLpeLDDE, 2.0f}});
 }
 
@@ -84,10 +87,13 @@ float Percentile90(const GuideSet& guides, Layer layer) {
 class Reference {
  public:
   Reference(const Style& style, const PreparedExemplar& exemplar, const GuideSet& guides, float brightness)
-      : weights_(style.transfer.guide_weights), exemplar_(exemplar), own_(*style.exemplars[0].guides), guides_(guides),
+      : weights_(style.transfer.guide_weights),
+        exemplar_(exemplar),
+        own_(*style.exemplars[0].guides),
+        guides_(guides),
         test_(style.transfer.threshold) {
-    for (const Layer layer : {Layer::kLuminance, Layer::kLpeLDE, Layer::kLpeLD12E, Layer::kLpeFull, Layer::kLpeLDDE,
-                              Layer::kLpeLSE}) {
+    for (const Layer layer :
+         {Layer::kLuminance, Layer::kLpeLDE, Layer::kLpeLD12E, Layer::kLpeFull, Layer::kLpeLDDE, Layer::kLpeLSE}) {
       if (!(weights_[layer] > 0.0f)) continue;
       white_ = Percentile90(own_, layer);
       break;
@@ -129,7 +135,8 @@ class Reference {
       double sum = 0.0;
       for (int c = 0; c < 3; ++c) sum += (double(normal[c]) - there[c]) * (double(normal[c]) - there[c]);
       const auto& values = values_[s];
-      for (std::size_t d = 0; d < rest.size(); ++d) sum += (double(rest[d]) - values[d]) * (double(rest[d]) - values[d]);
+      for (std::size_t d = 0; d < rest.size(); ++d)
+        sum += (double(rest[d]) - values[d]) * (double(rest[d]) - values[d]);
       if (sum < least) least = sum, best = u;
     }
     return best;
@@ -240,7 +247,8 @@ TEST(GuideSpace, EveryMethodEqualsThePlainReferenceInFifteenDimensions) {
 TEST(GuideSpace, FewDimensionsAndNormalsThatCountNothing) {
   for (const auto& weights :
        {Weights({{Layer::kLuminance, 0.5f}}), Weights({{Layer::kNormal, 0.0f}, {Layer::kLuminance, 1.0f}}),
-        Weights({{Layer::kShadow, 1.0f}, {Layer::kLpeLSE, 0.25f}}), Weights({{Layer::kNormal, 0.0f}, {Layer::kShadow, 2.0f}})}) {
+        Weights({{Layer::kShadow, 1.0f}, {Layer::kLpeLSE, 0.25f}}),
+        Weights({{Layer::kNormal, 0.0f}, {Layer::kShadow, 2.0f}})}) {
     Style style = LitStyle(true, weights, 4);
     style.transfer.threshold = 0.3f;
     ExpectReference(style, LitHills(4), -1.0f);
@@ -265,7 +273,7 @@ TEST(GuideSpace, DefinedForEveryValue) {
   for (const Layer layer : {Layer::kLuminance, Layer::kAlbedo}) scene.Add(layer);
   const auto read = [&](float luminance, float albedo, float brightness) {
     scene.Plane(Layer::kLuminance)[0] = luminance, scene.Plane(Layer::kAlbedo, 1)[0] = albedo;
-    float rest[GuideSpace::kMaxRest];
+    float rest[GuideSpace::kMaxExtra];
     space.Read(scene, 0, brightness, rest);
     return std::pair(rest[1], rest[3]);  // albedo comes first, its green second
   };
@@ -403,7 +411,7 @@ TEST(GuideSpace, EachExemplarIsSearchedByItsOwnLight) {
     if (both.level[i] == SourceField::kNoSource) continue;
     const int k = both.exemplar[i];
     EXPECT_EQ(k, prepared->illumination.Choose(guides.Plane(Layer::kLuminance)[i]));
-    float rest[GuideSpace::kMaxRest];
+    float rest[GuideSpace::kMaxExtra];
     prepared->space->Read(guides, i, 1.0f, rest);
     ASSERT_EQ((Source{both.x[i], both.y[i]}), prepared->space->Nearest(k, guides.Vec3(Layer::kNormal, i), rest));
     ++of[k];

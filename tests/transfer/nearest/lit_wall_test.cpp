@@ -13,8 +13,8 @@ using namespace testing;
 constexpr int kWidth = 160, kHeight = 120;
 constexpr float kShade = 0.05f;
 
-// A wall that faces us, one unit behind a lamp at `lamp` (in pixels): the luminance of a point light on white Lambert is
-// proportional to cos θ / r² = (1 + d²)^(-3/2), d being the distance along the wall in units of the lamp's. Right of
+// A wall that faces us, one unit behind a lamp at `lamp` (in pixels): the luminance of a point light on white Lambert
+// is proportional to cos θ / r² = (1 + d²)^(-3/2), d being the distance along the wall in units of the lamp's. Right of
 // `shadow` a screen leaves a twentieth of it.
 float Light(float x, float y, glm::vec2 lamp, float unit, int shadow) {
   const float d = glm::length(glm::vec2(x + 0.5f, y + 0.5f) - lamp) / unit;

@@ -5,8 +5,8 @@
 
 #include "tests/support/every_instruction_set.h"
 #include "tests/support/scene_exemplar_fixtures.h"
-#include "transfer/nearest/guide_tree.h"
 #include "transfer/exemplar/usable_mask.h"
+#include "transfer/nearest/guide_tree.h"
 
 namespace scumble {
 namespace {

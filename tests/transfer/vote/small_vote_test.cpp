@@ -1,5 +1,7 @@
 // Votes in small windows, made 64 pixels at a time, against the plain form: every width, radius, instruction set and
 // number of threads gives its bytes.
+#include "transfer/vote/small_vote.h"
+
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
@@ -11,7 +13,6 @@
 #include <vector>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/small_vote.h"
 
 namespace scumble {
 namespace {
@@ -99,7 +100,7 @@ Case MakeCase(int width, int height, int size, Paint paint, Cover cover, int exe
   return made;
 }
 
-struct Way {
+struct Variant {
   int radius = 0;
   bool edges = false;
   bool tell_covered = false;
@@ -109,10 +110,10 @@ struct Way {
 };
 
 template <class Voter>
-Picture Voted(const Case& given, const Way& way, const Voter& voter) {
+Picture Voted(const Case& given, const Variant& way, const Voter& voter) {
   Picture out(given.width, given.height);
   std::fill(out.rgba.begin(), out.rgba.end(), std::uint16_t{4711});  // what is not painted stays
-  internal::LateSlopes slopes(given.guides);
+  internal::LazyDepthGradient slopes(given.guides);
   internal::EdgeRules edges{given.guides, slopes, way.crease, way.tolerance};
   if (way.tell_covered) edges.covered = given.covered;
   const Progress unheard;
@@ -124,7 +125,7 @@ Picture Voted(const Case& given, const Way& way, const Voter& voter) {
   return out;
 }
 
-void ExpectPlain(const Case& given, const Way& way, const std::string& told) {
+void ExpectPlain(const Case& given, const Variant& way, const std::string& told) {
   const Picture plain = Voted(given, way, internal::VotePlainly), fast = Voted(given, way, internal::VoteSmall);
   if (plain.rgba == fast.rgba) return;
   for (std::size_t i = 0; i < plain.rgba.size(); ++i) {
@@ -152,7 +153,7 @@ TEST(SmallVote, EqualsThePlainVoteAtEveryRadiusAndTarget) {
       for (const Paint paint : {Paint::kOpaque, Paint::kExtreme, Paint::kMixed, Paint::kTransparent}) {
         const Case given = MakeCase(width, height, 20 + 31 * int(seed % 4), paint, cover, 1 + int(seed / 2 % 3), seed);
         ++seed;
-        Way way;
+        Variant way;
         way.region = {0, 0, width, height};
         way.tell_covered = seed % 2 == 0;
         way.crease = seed % 5 == 0 ? 180.0 : 60.0;

@@ -1,11 +1,12 @@
 // Votes against their definition written down plainly, and steps on slanted surfaces, which no vote may cross.
+#include "transfer/vote/edge/support_regions.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/edge/support_regions.h"
 #include "transfer/vote/vote.h"
 
 namespace scumble {
@@ -124,8 +125,8 @@ GuideSet RoughGuides(int width, int height, bool extreme) {
       guides.Plane(Layer::kDepth)[i] = 5.0f + 0.02f * x - 0.013f * y + 0.05f * static_cast<float>(block % 3);
       guides.Plane(Layer::kObject)[i] = x + y > width ? 1.0f : 2.0f;
       if (!extreme || block % 4 != 0) continue;
-      const float odd[] = {0.0f, 1e30f, 1e-38f, std::numeric_limits<float>::infinity(),
-                           std::numeric_limits<float>::quiet_NaN(), -3.0f};
+      const float odd[] = {
+          0.0f, 1e30f, 1e-38f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(), -3.0f};
       guides.Plane(Layer::kDepth)[i] = odd[Hash(x, y) % 6];
     }
   }
@@ -141,7 +142,8 @@ SourceField RoughField(const GuideSet& guides, int size) {
       const std::uint64_t chunk = y < field.height / 2 ? Hash(x / 30, y / 25) : Hash(x / 4, y);
       const int ox = static_cast<int>(chunk % 15), oy = static_cast<int>(chunk / 16 % 15);
       if (guides.Plane(Layer::kCoverage)[field.Index(x, y)] > 0.0f) {
-        field.Set(field.Index(x, y), size / 4 + ox + x % (size / 2), size / 4 + oy + y % (size / 2), int(chunk / 999 % 2), 1);
+        field.Set(field.Index(x, y), size / 4 + ox + x % (size / 2), size / 4 + oy + y % (size / 2),
+                  int(chunk / 999 % 2), 1);
       }
     }
   }
@@ -151,7 +153,7 @@ SourceField RoughField(const GuideSet& guides, int size) {
 TEST(Support, VotesEqualTheirPlainForm) {
   for (const bool extreme : {false, true}) {
     const GuideSet guides = RoughGuides(76, 52, extreme);
-    internal::LateSlopes slopes(guides);
+    internal::LazyDepthGradient slopes(guides);
     Picture first = NoisePicture(300), second = NoisePicture(300);
     for (std::size_t i = 0; i < second.rgba.size(); i += 4) {
       first.rgba[i + 3] = static_cast<std::uint16_t>(i % 28 == 0 ? 0 : Hash(i));
@@ -169,11 +171,13 @@ TEST(Support, VotesEqualTheirPlainForm) {
         const internal::EdgeRules edges{guides, slopes, 60.0, tolerance};
         const Limits limits{static_cast<float>(0.5 + 1e-16), static_cast<float>(tolerance)};
         const Picture expected = PlainVote(guides, field, exemplar, radius, &limits);
-        EXPECT_EQ(EngineVote(guides, field, exemplar, radius, &edges, all).rgba, expected.rgba) << radius << ", " << tolerance;
+        EXPECT_EQ(EngineVote(guides, field, exemplar, radius, &edges, all).rgba, expected.rgba)
+            << radius << ", " << tolerance;
         const Region part{13, 21, 57, 44};
         const Picture found = EngineVote(guides, field, exemplar, radius, &edges, part);
         for (int y = part.y0; y < part.y1; ++y) {
-          ASSERT_TRUE(std::equal(found.At(part.x0, y), found.At(part.x0, y) + 4 * (part.x1 - part.x0), expected.At(part.x0, y)));
+          ASSERT_TRUE(std::equal(found.At(part.x0, y), found.At(part.x0, y) + 4 * (part.x1 - part.x0),
+                                 expected.At(part.x0, y)));
         }
       }
     }
@@ -185,7 +189,7 @@ TEST(Support, ArmsAreSymmetricAndHereditary) {
   for (const bool extreme : {false, true}) {
     const GuideSet guides = RoughGuides(60, 44, extreme);
     const std::vector<std::uint8_t> active = Covered(guides);
-    internal::LateSlopes slopes(guides);
+    internal::LazyDepthGradient slopes(guides);
     const internal::EdgeRules edges{guides, slopes, 40.0, 0.002};
     const internal::SupportRegions regions(edges, active, 9, {0, 0, 60, 44});
     std::vector<std::vector<std::uint8_t>> across(active.size(), std::vector<std::uint8_t>(60)), down = across;
@@ -231,19 +235,19 @@ TEST(Support, ArmsEndWhereASurfaceTurnsByTheCrease) {
     return std::fabs(angle) < 1.5f ? glm::vec3(std::sin(angle), 0, std::cos(angle)) : glm::vec3(0.0f);
   });
   const std::vector<std::uint8_t> active = Covered(guides);
-  internal::LateSlopes slopes(guides);
+  internal::LazyDepthGradient slopes(guides);
   const internal::EdgeRules edges{guides, slopes, 60.0, 0.002};
   const internal::SupportRegions regions(edges, active, 9, {0, 0, 40, 30});
   int widest = 0, highest = 0;
-  regions.ForEach(19, 15, [&](std::size_t, int dx, int dy) {
-    widest = std::max(widest, dx), highest = std::max(highest, dy);
-  });
+  regions.ForEach(19, 15,
+                  [&](std::size_t, int dx, int dy) { widest = std::max(widest, dx), highest = std::max(highest, dy); });
   EXPECT_EQ(widest, 6) << "6 · 0.15 rad are 51.6 degrees";
   EXPECT_EQ(highest, 9);
 }
 
 // Black paint on what stands in front and white on what is behind: grey is a vote that crossed.
-std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& front, int radius, double tolerance, bool joined) {
+std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& front, int radius, double tolerance,
+                   bool joined) {
   constexpr int kSize = 200;
   Picture paint(kSize, kSize);
   for (int y = 0; y < kSize; ++y) {
@@ -253,7 +257,7 @@ std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& fron
   SourceField field;
   field.Reset(guides.width(), guides.height());
   for (std::size_t i = 0; i < front.size(); ++i) field.Set(i, front[i] ? kSize / 4 : 3 * kSize / 4, kSize / 2, 0, 0);
-  internal::LateSlopes slopes(guides);
+  internal::LazyDepthGradient slopes(guides);
   const internal::EdgeRules edges{guides, slopes, 180.0, tolerance};
   const Picture out = EngineVote(guides, field, exemplar, radius, joined ? &edges : nullptr,
                                  Region{0, 0, guides.width(), guides.height()});
@@ -262,20 +266,21 @@ std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& fron
   return ghosts;
 }
 
-// One object of one normal: only depth tells. Fingers, stairs, blobs and single pixels stand before a slanted surface, by
-// more than twice its slope per pixel and the tolerance.
+// One object of one normal: only depth tells. Fingers, stairs, blobs and single pixels stand before a slanted surface,
+// by more than twice its slope per pixel and the tolerance.
 TEST(Support, StepsOnSlantedSurfacesAreNeverCrossed) {
-  const auto shapes = std::array{
-      +[](int x, int y) { return y > 8 && x % 16 > 8 && x % 16 < 13; },          // fingers
-      +[](int x, int) { return x >= 40; },                                       // one edge
-      +[](int x, int y) { return 2 * x > 3 * y; },                               // a slanting edge
-      +[](int x, int y) { return Hash(x / 5, y / 5) % 3 == 0; },                 // blobs
-      +[](int x, int y) { return (x + y) % 24 == 0; },                           // a wire one pixel wide
-      +[](int x, int y) { return std::hypot(x - 40.0, y - 28.0) < 14.5; }};      // a disc
+  const auto shapes = std::array{+[](int x, int y) { return y > 8 && x % 16 > 8 && x % 16 < 13; },  // fingers
+                                 +[](int x, int) { return x >= 40; },                               // one edge
+                                 +[](int x, int y) { return 2 * x > 3 * y; },                       // a slanting edge
+                                 +[](int x, int y) { return Hash(x / 5, y / 5) % 3 == 0; },         // blobs
+                                 +[](int x, int y) { return (x + y) % 24 == 0; },  // a wire one pixel wide
+                                 +[](int x, int y) { return std::hypot(x - 40.0, y - 28.0) < 14.5; }};  // a disc
   for (const auto shape : shapes) {
-    for (const glm::vec2 slope : {glm::vec2(0), glm::vec2(0.005f, 0), glm::vec2(0.002f, 0.005f), glm::vec2(0.03f, -0.02f)}) {
+    for (const glm::vec2 slope :
+         {glm::vec2(0), glm::vec2(0.005f, 0), glm::vec2(0.002f, 0.005f), glm::vec2(0.03f, -0.02f)}) {
       for (const double tolerance : {0.0, 1e-4, 2e-3, 1e-2}) {
-        const float step = 1.05f * (2.0f * (std::fabs(slope.x) + std::fabs(slope.y)) + static_cast<float>(tolerance) * 6.0f) + 0.001f;
+        const float step =
+            1.05f * (2.0f * (std::fabs(slope.x) + std::fabs(slope.y)) + static_cast<float>(tolerance) * 6.0f) + 0.001f;
         GuideSet guides = MakeGuides(80, 56, [](int, int) { return glm::vec3(0, 0, 1); });
         std::vector<std::uint8_t> front(guides.pixel_count());
         for (int y = 0; y < 56; ++y) {
@@ -305,7 +310,7 @@ TEST(Support, SlopesAndCurvesAreNoSteps) {
             static_cast<float>(6.0 + 0.01 * x + 0.004 * y + bend * (x * x - 0.5 * y * y + 0.3 * x * y));
       }
     }
-    internal::LateSlopes slopes(guides);
+    internal::LazyDepthGradient slopes(guides);
     const internal::EdgeRules edges{guides, slopes, 60.0, 0.002};
     const Picture paint = NoisePicture(300);
     const PreparedExemplar exemplar(paint, 0.0, 300);

@@ -1,13 +1,14 @@
 // Tone by Lit Sphere, texture by StyleBlit: the split against plain convolution, the sum against its definition.
+#include "transfer/vote/tone_texture_split.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <vector>
 
-#include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/tone_texture_split.h"
 #include "core/filter/masked_blur.h"
+#include "tests/support/transfer_fixtures.h"
 
 namespace scumble {
 namespace {
@@ -351,11 +352,11 @@ TEST(Hybrid, FollowsTheScale) {
   style.transfer.scale = 0.5;
   const auto prepared = Prepare(style, 60);
   ASSERT_TRUE(prepared.ok());
-  EXPECT_EQ(prepared->tones[0].rgba, MakeTones(*prepared->exemplar, 3.0)[0].rgba);
+  EXPECT_EQ(prepared->tones[0].rgba, MakeBaseLayers(*prepared->exemplar, 3.0)[0].rgba);
   style.transfer.scale = 1.0, style.transfer.reference_height = 40;
   const auto taller = Prepare(style, 60);
   ASSERT_TRUE(taller.ok());
-  EXPECT_EQ(taller->tones[0].rgba, MakeTones(*taller->exemplar, 9.0)[0].rgba);
+  EXPECT_EQ(taller->tones[0].rgba, MakeBaseLayers(*taller->exemplar, 9.0)[0].rgba);
 }
 
 TEST(Hybrid, ThreadsAndRegionsDoNotChangeAByte) {

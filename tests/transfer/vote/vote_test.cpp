@@ -1,13 +1,14 @@
 // Voting, edges, and nothing from outside the painted disc.
-#include <limits>
+#include "transfer/vote/vote.h"
 
+#include <limits>
 #include <set>
 
+#include "core/filter/resample.h"
 #include "guidegen/guidegen.h"
 #include "guidegen/load/load_scene.h"
+#include "guidegen/scene/framing.h"
 #include "tests/support/transfer_fixtures.h"
-#include "core/filter/resample.h"
-#include "transfer/vote/vote.h"
 
 namespace scumble {
 namespace {
@@ -154,8 +155,9 @@ TEST(EdgeAware, VotesDoNotCrossPartsOnePixelWide) {
   }
   // Background of a foreign file may have any depth; it is no neighbour.
   GuideSet alone = MakeGuides(64, 32, [](int x, int) {
-    return x == 31 ? glm::normalize(glm::vec3(-0.4f, 0, 1))
-           : x == 32 ? glm::normalize(glm::vec3(0.4f, 0, 1)) : glm::vec3(0.0f);
+    return x == 31   ? glm::normalize(glm::vec3(-0.4f, 0, 1))
+           : x == 32 ? glm::normalize(glm::vec3(0.4f, 0, 1))
+                     : glm::vec3(0.0f);
   });
   for (std::size_t i = 0; i < alone.pixel_count(); ++i) {
     alone.Plane(Layer::kDepth)[i] = i % 64 == 31 ? 5.0f : i % 64 == 32 ? 9.0f : 1e10f;
@@ -235,7 +237,7 @@ GuideSet ThinParts() {
 TEST(EdgeAware, NoGhostingAtAnyTolerance) {
   const GuideSet guides = ThinParts();
   const Ghosting ghosting(guides);
-  internal::LateSlopes slopes(guides);
+  internal::LazyDepthGradient slopes(guides);
   for (const int radius : {1, 8}) {
     EXPECT_GT(ghosting.Count(radius, nullptr), radius == 8 ? 20000u : 5000u) << "plain voting mixes, as it should";
     for (const double tolerance : {0.0, 1e-4, 3e-4, 1e-3, 2e-3, 1e-2, 3e-2, 1e-1, 1.0}) {
@@ -254,7 +256,7 @@ TEST(EdgeAware, DepthAndCreasesAloneStopMostGhosts) {
   const Ghosting ghosting(guides);
   GuideSet one_object = guides;
   for (float& id : one_object.Plane(Layer::kObject)) id = id > 0.0f ? 1.0f : 0.0f;
-  internal::LateSlopes slopes(one_object);
+  internal::LazyDepthGradient slopes(one_object);
   const std::size_t plain = ghosting.Count(8, nullptr);
   std::size_t last = 0;
   for (const double tolerance : {0.0, 1e-4, 1e-3, 2e-3, 1e-2, 1e-1}) {
@@ -280,7 +282,7 @@ TEST(EdgeAware, SmallWindowsLetFewGhostsThrough) {
   const Ghosting ghosting(guides);
   GuideSet one_object = guides;
   for (float& id : one_object.Plane(Layer::kObject)) id = id > 0.0f ? 1.0f : 0.0f;
-  internal::LateSlopes slopes(one_object);
+  internal::LazyDepthGradient slopes(one_object);
   for (const int radius : {1, 2, 3}) {
     const std::size_t plain = ghosting.Count(radius, nullptr);
     const internal::EdgeRules exact{one_object, slopes, 60.0, 0.0}, usual{one_object, slopes, 60.0, 0.002};
@@ -299,7 +301,8 @@ TEST(EdgeAware, FingersSurviveRadiusEight) {
       return glm::normalize(glm::vec3(finger ? 0.4f : -0.4f, 0, 1));
     });
     for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-      const float slanted = distance * (1.0f + 0.004f * static_cast<float>(i % 96) - 0.002f * static_cast<float>(i / 96));
+      const float slanted =
+          distance * (1.0f + 0.004f * static_cast<float>(i % 96) - 0.002f * static_cast<float>(i / 96));
       guides.Plane(Layer::kDepth)[i] = slanted - (guides.Plane(Layer::kNormal)[i] > 0.0f ? 0.1f * distance : 0.0f);
     }
     for (const double tolerance : {0.0, 1e-4, 2e-3, 1e-2, 5e-2}) {
@@ -312,8 +315,9 @@ TEST(EdgeAware, FingersSurviveRadiusEight) {
   }
 }
 
-// An orthographic camera sees the same from wherever it stands, so where it stands is no part of what an edge is: the step
-// is measured by the height that is seen, for steps above 2^-20 of the distance at least. Depths are sixteenths of a metre below 2^20 m, exact wherever the camera stands.
+// An orthographic camera sees the same from wherever it stands, so where it stands is no part of what an edge is: the
+// step is measured by the height that is seen, for steps above 2^-20 of the distance at least. Depths are sixteenths of
+// a metre below 2^20 m, exact wherever the camera stands.
 TEST(EdgeAware, AnOrthographicCameraMayStandAnywhere) {
   Style style = PlainStyle(BlackAndWhite(128));
   for (const int radius : {1, 3, 8}) {
@@ -321,12 +325,12 @@ TEST(EdgeAware, AnOrthographicCameraMayStandAnywhere) {
     for (const double height : {40.0, 2000.0}) {
       std::size_t first = 0;
       for (const float distance : {2.0f, 64.0f, 65536.0f, 524288.0f}) {
-        GuideSet guides = MakeGuides(96, 48, [](int x, int) {
-          return glm::normalize(glm::vec3(x % 16 < 4 ? 0.4f : -0.4f, 0, 1));
-        });
+        GuideSet guides =
+            MakeGuides(96, 48, [](int x, int) { return glm::normalize(glm::vec3(x % 16 < 4 ? 0.4f : -0.4f, 0, 1)); });
         guides.camera = OrthographicCamera(height);
         for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
-          const float slanted = distance + 16.0f + 0.125f * static_cast<float>(i % 96) - 0.0625f * static_cast<float>(i / 96);
+          const float slanted =
+              distance + 16.0f + 0.125f * static_cast<float>(i % 96) - 0.0625f * static_cast<float>(i / 96);
           guides.Plane(Layer::kDepth)[i] = slanted - (guides.Plane(Layer::kNormal)[i] > 0.0f ? 1.0f : 0.0f);
         }
         // 0.002 of 40 m are 0.08 m, less than the step of 1 m; 0.002 of 2000 m are 4 m, more than it.
@@ -344,9 +348,8 @@ TEST(EdgeAware, TheCreaseAngleIsWhatItSays) {
   style.transfer.blend_radius = 3;
   for (const double angle : {20.0, 60.0, 90.0, 150.0}) {
     const float half = static_cast<float>(angle * 3.14159265358979 / 360.0);
-    const GuideSet guides = MakeGuides(64, 32, [&](int x, int) {
-      return glm::vec3((x < 32 ? -1.0f : 1.0f) * std::sin(half), 0.0f, std::cos(half));
-    });
+    const GuideSet guides = MakeGuides(
+        64, 32, [&](int x, int) { return glm::vec3((x < 32 ? -1.0f : 1.0f) * std::sin(half), 0.0f, std::cos(half)); });
     style.transfer.crease = angle - 1.0;
     EXPECT_EQ(GreyPixels(MustTransfer(style, guides).picture), 0u) << angle;
     style.transfer.crease = angle + 1.0;

@@ -1,4 +1,6 @@
 // Voting chunk by chunk in large windows against the definition, vote by vote.
+#include "transfer/vote/wide/wide_vote.h"
+
 #include <hwy/targets.h>
 #include <tbb/task_arena.h>
 
@@ -7,9 +9,8 @@
 #include <limits>
 
 #include "tests/support/transfer_fixtures.h"
-#include "transfer/vote/tone_texture_split.h"
 #include "transfer/exemplar/usable_rows.h"
-#include "transfer/vote/wide/wide_vote.h"
+#include "transfer/vote/tone_texture_split.h"
 
 namespace scumble {
 namespace {
@@ -275,7 +276,7 @@ TEST(WideVote, EdgesAreTheDefinitions) {
         FillGuides(all, extreme);
         // Half of them are seen without perspective: 0.002 of 10 m are 0.02 m, of which steps of 0.04 m are none.
         if (opaque == (pieces == Pieces::kMixed)) all.guides.camera = OrthographicCamera(10.0);
-        internal::LateSlopes slopes(all.guides);
+        internal::LazyDepthGradient slopes(all.guides);
         for (const int radius : {1, 4, 8, 11}) {
           for (const auto& [crease, tolerance] : {std::pair{60.0, 0.002}, {180.0, 0.0}, {25.0, 0.02}, {180.0, 1.0}}) {
             const internal::EdgeRules rules{all.guides, slopes, crease, tolerance};
@@ -308,7 +309,7 @@ TEST(WideVote, EdgesAreTheDefinitionsAtEveryColumn) {
         all.guides.Plane(Layer::kObject)[i] = 1.0f;
       }
     }
-    internal::LateSlopes slopes(all.guides);
+    internal::LazyDepthGradient slopes(all.guides);
     const internal::EdgeRules rules{all.guides, slopes, 180.0, 0.01};
     internal::VoteInput input = all.Input(8, Whole(all));
     input.edges = &rules;
@@ -320,7 +321,7 @@ TEST(WideVote, EdgesInPicturesOfAnyShapeRegionsAndThreads) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 90}, {200, 1}, {65, 63}, {63, 130}}) {
     Case all = MakeCase(width, height, Pieces::kMixed, 120, 2, true, 6);
     FillGuides(all, false);
-    internal::LateSlopes slopes(all.guides);
+    internal::LazyDepthGradient slopes(all.guides);
     const internal::EdgeRules rules{all.guides, slopes, 60.0, 0.002};
     for (const int radius : {4, 17, 64}) {
       for (const Region& region : {Whole(all), Region{width / 3, height / 4, width, (height + 1) / 2}}) {
@@ -338,7 +339,7 @@ TEST(WideVote, EdgesInPicturesOfAnyShapeRegionsAndThreads) {
 TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
   Case all = MakeCase(150, 100, Pieces::kMixed, 90, 2, true, 8);
   FillGuides(all, true);
-  internal::LateSlopes slopes(all.guides);
+  internal::LazyDepthGradient slopes(all.guides);
   const internal::EdgeRules rules{all.guides, slopes, 60.0, 0.002};
   internal::VoteInput input = all.Input(7, Whole(all));
   input.edges = &rules;
@@ -350,13 +351,13 @@ TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
-// What is done to finished pixels (here: turned to their negatives, which doing twice undoes) is done once to each, when
-// nothing writes them any more, by every way to vote.
+// What is done to finished pixels (here: turned to their negatives, which doing twice undoes) is done once to each,
+// when nothing writes them any more, by every way to vote.
 TEST(Vote, TellsOfEveryFinishedPixelOnce) {
   Case all = MakeCase(2300, 70, Pieces::kMixed, 150, 1, true, 20);
   all.guides.Add(Layer::kNormal);
   std::ranges::fill(all.guides.Plane(Layer::kNormal, 2), 1.0f);
-  const std::vector<Picture> tones = MakeTones(all.exemplar, 2.0);
+  const std::vector<Picture> tones = MakeBaseLayers(all.exemplar, 2.0);
   const Illumination even_light;
   for (const Region& region : {Whole(all), Region{13, 21, 1100, 66}, Region{2050, 0, 2299, 1}, Region{5, 5, 5, 9}}) {
     for (const int radius : {0, 1, 3, 9}) {

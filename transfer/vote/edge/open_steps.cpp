@@ -25,7 +25,7 @@ struct StepRow {
   std::ptrdiff_t to_below;  // from a guide's value to the one below
   std::int64_t readable;    // values of the guides from column 0 to their end
   float crease_cosine;
-  DepthGive give;
+  DepthTolerance give;
 };
 
 struct StepWords {
@@ -70,7 +70,7 @@ HWY_INLINE F Slope(F before, F here, F after) {
 HWY_INLINE F Least(F a, F b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
 
 // Whether depth passes between p and the neighbour q; slopes along the step.
-HWY_INLINE hn::Mask<hn::CappedTag<float, 16>> DepthPasses(const DepthGive& give, F depth_p, F depth_q, F slope_p,
+HWY_INLINE hn::Mask<hn::CappedTag<float, 16>> DepthPasses(const DepthTolerance& give, F depth_p, F depth_q, F slope_p,
                                                           F slope_q) {
   const F expected = hn::Mul(hn::Set(kFloat, 0.5f), hn::Add(slope_p, slope_q));
   const F given = hn::Add(hn::Set(kFloat, give.fixed), hn::Mul(hn::Set(kFloat, give.share), Least(depth_p, depth_q)));
@@ -179,13 +179,13 @@ class DepthRows {
 
 }  // namespace
 
-void MarkOpenSteps(const EdgeRules& rules, const MarkedTile& tile, const BitRows& active, const BitRows& wanted,
+void MarkOpenSteps(const EdgeRules& rules, const MaskedTile& tile, const BitMaskRows& active, const BitMaskRows& wanted,
                    OpenSteps& steps) {
   const GuideSet& guides = rules.guides;
   steps.right.Reset(tile, 0), steps.down.Reset(tile, 0);
   DepthRows depths(rules, tile.first_word, tile.words);
   const float crease_cosine = rules.CreaseCosine();
-  const DepthGive give = rules.Give();
+  const DepthTolerance give = rules.Give();
   const int end = std::min(tile.first_row + tile.rows, guides.height());
   int next = std::numeric_limits<int>::min();  // the first row of depths that is not there yet
   for (int y = std::max(0, tile.first_row); y < end; ++y) {

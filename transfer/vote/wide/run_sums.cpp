@@ -196,8 +196,8 @@ HWY_ATTR void SumGroup(const Work& work, const Chunk& chunk, const Group& group,
     }
     for (std::uint64_t cut = work.arms.Short(y) & columns & met; cut; cut &= cut - 1) {
       const int x = std::countr_zero(cut);
-      counts[x] = static_cast<std::uint16_t>(prefix.At(y + work.arms.Down(x, y))[x] -
-                                             prefix.At(y - work.arms.Up(x, y) - 1)[x]);
+      counts[x] =
+          static_cast<std::uint16_t>(prefix.At(y + work.arms.Down(x, y))[x] - prefix.At(y - work.arms.Up(x, y) - 1)[x]);
     }
     if (y + kAhead < group.y1) AskFor(picture, chunk, group.x0, group.x1, y + kAhead);
     if (inside) {
@@ -323,16 +323,16 @@ void WideSums::Sum(const WideTile& tile, const WideArms& arms, const PreparedExe
   if (opaque_) {
     if (!sums_) sums_ = hwy::AllocateAligned<std::uint32_t>(4 * kPixels);
     std::fill_n(sums_.get(), 4 * kPixels, 0u);
-    opaque_ = HWY_DYNAMIC_DISPATCH(SumOpaque)
-    ({tile, arms, exemplar, usable, counted_.data(), sums_.get(), nullptr, nullptr});
+    opaque_ =
+        HWY_DYNAMIC_DISPATCH(SumOpaque)({tile, arms, exemplar, usable, counted_.data(), sums_.get(), nullptr, nullptr});
     weights_count_ = !opaque_;
     if (opaque_) return;
   }
   // The next tile starts as this one should have.
   weights_count_ = true;
   weighted_.assign(4 * kPixels, 0), votes_.assign(kPixels, 0);
-  opaque_ = HWY_DYNAMIC_DISPATCH(SumWeighted)
-  ({tile, arms, exemplar, usable, counted_.data(), nullptr, weighted_.data(), votes_.data()});
+  opaque_ = HWY_DYNAMIC_DISPATCH(SumWeighted)(
+      {tile, arms, exemplar, usable, counted_.data(), nullptr, weighted_.data(), votes_.data()});
 }
 
 void WideSums::Write(const WideTile& tile, Picture& out) {
@@ -355,7 +355,7 @@ void WideSums::WriteWeighted(std::uint64_t active, std::size_t first, std::uint1
   for (; active; active &= active - 1) {
     const std::size_t x = std::size_t(std::countr_zero(active));
     const std::uint64_t* sum = weighted_.data() + 4 * (first + x);
-    Ballot{{sum[0], sum[1], sum[2]}, sum[3], votes_[first + x]}.Count(out + 4 * x);
+    VoteSum{{sum[0], sum[1], sum[2]}, sum[3], votes_[first + x]}.Count(out + 4 * x);
   }
 }
 

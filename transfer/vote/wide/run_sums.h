@@ -14,8 +14,8 @@
 #include "scumble/picture.h"
 #include "transfer/exemplar/prepared_exemplar.h"
 #include "transfer/exemplar/usable_rows.h"
-#include "transfer/vote/wide/wide_arms.h"
 #include "transfer/vote/wide/chunk_runs.h"
+#include "transfer/vote/wide/wide_arms.h"
 
 namespace scumble::internal {
 

@@ -91,12 +91,11 @@ std::uint64_t AlikeBits(const NormalPlanes& planes, std::ptrdiff_t first, std::p
       left &= left - 1;
       continue;
     }
-    const auto product = [&](int c) HWY_ATTR {
-      return hn::Mul(hn::LoadU(kFloat, n[c] + p), hn::LoadU(kFloat, n[c] + q));
-    };
+    const auto product = [&](int c)
+                             HWY_ATTR { return hn::Mul(hn::LoadU(kFloat, n[c] + p), hn::LoadU(kFloat, n[c] + q)); };
     const F cosine = hn::Add(hn::Add(product(0), product(1)), product(2));
     alike |= BitsOf(hn::Gt(cosine, crease)) << i;
-    left &= BitRows::kAll << 1 << std::min(63, i + lanes - 1);
+    left &= BitMaskRows::kAll << 1 << std::min(63, i + lanes - 1);
   }
   return alike & marked;
 }
@@ -175,7 +174,7 @@ void WideArms::MarkActiveAndSteps(const VoteInput& input, const Region& area) {
   marked_.first_row = area.y0 - r, marked_.rows = area.y1 - area.y0 + 2 * r;
   marked_.first_word = (area.x0 - r) >> 6;
   marked_.words = ((area.x0 + kTileSide - 1 + r) >> 6) - marked_.first_word + 1;
-  MarkActive(input.field, input.active, marked_, active_);
+  MaskActive(input.field, input.active, marked_, active_);
   wanted_.Reset(marked_, 0);
   for (int y = seen_.y0; y < seen_.y1; ++y) {
     for (int w = 0; w < marked_.words; ++w) {
@@ -189,7 +188,7 @@ void WideArms::MarkActiveAndSteps(const VoteInput& input, const Region& area) {
     for (int w = -1; w <= marked_.words; ++w) {
       const int column = 64 * (marked_.first_word + w);
       steps_.right.Row(y)[w] |= ~BitRange(seen_.x0 - column, seen_.x1 - 1 - column);
-      steps_.down.Row(y)[w] |= y >= seen_.y0 && y < seen_.y1 - 1 ? 0 : BitRows::kAll;
+      steps_.down.Row(y)[w] |= y >= seen_.y0 && y < seen_.y1 - 1 ? 0 : BitMaskRows::kAll;
     }
   }
 }
@@ -211,7 +210,7 @@ void WideArms::MarkTurns(const VoteInput& input) {
     }
   }
   const float crease_cosine = input.edges->CreaseCosine();
-  const MarkedTile cells{0, down, marked_.first_word, marked_.words};
+  const MaskedTile cells{0, down, marked_.first_word, marked_.words};
   turns_right_.Reset(cells, 0), turns_down_.Reset(cells, 0);
   for (int row = 0; row < down; ++row) {
     for (int column = 0; column < across; ++column) {
@@ -233,9 +232,9 @@ void WideArms::MarkTurns(const VoteInput& input) {
 void WideArms::ReadRow(const VoteInput& input, const Region& area, int y) {
   const int words = marked_.words, cells = (y - seen_.y0) / kCellRows;
   std::uint64_t* const arm = steps_.right.Row(y);  // bit x: it is on one arm with the pixel k further right
-  std::uint64_t open = BitRows::kAll, turns = 0;
+  std::uint64_t open = BitMaskRows::kAll, turns = 0;
   for (int w = 0; w < words; ++w) open &= arm[w], turns |= turns_right_.Row(cells)[w] & wanted_.Row(y)[w];
-  if (open == BitRows::kAll && !turns) return;
+  if (open == BitMaskRows::kAll && !turns) return;
   ends_of_row_[std::size_t(y - area.y0 + radius_)] = ends_.size();
   const std::size_t at = ends_.size();
   ends_.resize(at + 2 * kStride);
@@ -268,7 +267,7 @@ void WideArms::ReadColumns(const VoteInput& input, const Region& area) {
   const int r = radius_, rows = marked_.rows, height = area.y1 - area.y0;
   columns_.resize(std::size_t(rows) * std::size_t(r));
   const auto plane = [&](int k) { return columns_.data() + std::size_t(k - 1) * std::size_t(rows); };
-  std::uint64_t open = BitRows::kAll, turns = 0;
+  std::uint64_t open = BitMaskRows::kAll, turns = 0;
   const std::uint64_t beyond = ~BitRange(0, area.x1 - area.x0);
   for (int y = 0; y < rows; ++y) open &= plane(1)[y] = steps_.down.From(marked_.first_row + y, area.x0) | beyond;
   const auto turns_of = [&](int y) {
@@ -276,7 +275,7 @@ void WideArms::ReadColumns(const VoteInput& input, const Region& area) {
     return turns_down_.From((y - seen_.y0) / kCellRows, area.x0) & active_.From(y, area.x0) & ~beyond;
   };
   for (int y = seen_.y0; y < seen_.y1; ++y) turns |= turns_of(y);
-  if (open == BitRows::kAll && !turns) return;
+  if (open == BitMaskRows::kAll && !turns) return;
   const NormalPlanes planes = PlanesOf(input);
   const float crease_cosine = input.edges->CreaseCosine();
   for (int k = 2; k <= r; ++k) {

@@ -55,13 +55,13 @@ class WideArms {
   std::uint8_t up_[kTileSide][kTileSide], down_[kTileSide][kTileSide];
 
   // Of one tile.
-  MarkedTile marked_;
+  MaskedTile marked_;
   Region seen_;  // the part of the picture that the arms can reach
-  BitRows active_, wanted_;
+  BitMaskRows active_, wanted_;
   OpenSteps steps_;
-  std::vector<NormalBounds> bounds_;         // by cell
-  BitRows turns_right_, turns_down_;         // by row of cells: from these pixels on an arm may turn too far
-  std::vector<std::uint64_t> columns_;       // by length and row: columns whose pixel is on one arm with that far below
+  std::vector<NormalBounds> bounds_;      // by cell
+  BitMaskRows turns_right_, turns_down_;  // by row of cells: from these pixels on an arm may turn too far
+  std::vector<std::uint64_t> columns_;    // by length and row: columns whose pixel is on one arm with that far below
 };
 
 }  // namespace scumble::internal

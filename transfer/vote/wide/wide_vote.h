@@ -1,13 +1,13 @@
 // Voting in large windows (Sýkora et al. 2019, section 3.3): not pixel by pixel, but chunk by chunk.
 #pragma once
 
-#include "scumble/picture.h"
 #include "core/filter/parallel.h"
+#include "scumble/picture.h"
 #include "transfer/exemplar/usable_rows.h"
 #include "transfer/vote/vote.h"
-#include "transfer/vote/wide/wide_arms.h"
-#include "transfer/vote/wide/run_sums.h"
 #include "transfer/vote/wide/chunk_runs.h"
+#include "transfer/vote/wide/run_sums.h"
+#include "transfer/vote/wide/wide_arms.h"
 
 namespace scumble::internal {
 

@@ -28,7 +28,7 @@ struct Stand {
 TEST(ExactCopies, AreCoveredByWhatHidesThemWhole) {
   const Stand stand;
   const auto first_is_covered = [&](const Material& first, const Material& second) {
-    const std::vector<bool> covered = FindCoveredCopies(std::vector{stand.Of(first), stand.Of(second)});
+    const std::vector<bool> covered = FindHiddenCoincident(std::vector{stand.Of(first), stand.Of(second)});
     EXPECT_FALSE(covered[1]);
     return bool(covered[0]);
   };
@@ -47,11 +47,11 @@ TEST(ExactCopies, AreCoveredByWhatHidesThemWhole) {
 TEST(ExactCopies, WithHolesAreNotComparedWithEachOther) {
   const Stand stand;
   const std::vector<PlacedObject> leaves(500'000, stand.Of(stand.holes));
-  const std::vector<bool> covered = FindCoveredCopies(leaves);
+  const std::vector<bool> covered = FindHiddenCoincident(leaves);
   EXPECT_EQ(std::count(covered.begin(), covered.end(), true), 0);
   std::vector<PlacedObject> hidden = leaves;
   hidden.push_back(stand.Of(stand.solid));
-  const std::vector<bool> all = FindCoveredCopies(hidden);
+  const std::vector<bool> all = FindHiddenCoincident(hidden);
   EXPECT_EQ(std::count(all.begin(), all.end(), true), 500'000);
 }
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/run_context.h"
 #include "core/image/guides.h"
 #include "core/image/progress.h"
 #include "core/image/status.h"
 #include "core/io/blender/cycles_light.h"
+#include "pipeline/run_context.h"
 
 namespace scumble {
 
@@ -27,15 +27,16 @@ struct ReferenceOptions {
 struct Reference {
   GuideSet data;
   std::vector<std::uint8_t> only_shines;  // by pixel: 1 where the surface has no albedo and shines
-  std::vector<CyclesLight> light;        // by sample count
-  std::string version;                   // "3.4.1"; empty where Blender did not say
-  std::vector<std::string> unsupported;  // what is not rendered as authored, in the script's words
+  std::vector<CyclesLight> light;         // by sample count
+  std::string version;                    // "3.4.1"; empty where Blender did not say
+  std::vector<std::string> unsupported;   // what is not rendered as authored, in the script's words
 };
 
 // Runs blender_scripts/render_guides.py on the scene; scripts inside a .blend stay asleep. Principled materials are
 // rendered as pure ones. `progress` follows the log of the renders and is called from this thread. kUnavailable where
 // Blender or the script is missing or the version is not supported, kInput where the scene cannot be rendered, with
 // Blender's reason.
-Expected<Reference> RenderReference(const ReferenceOptions& options, const RunContext& context, const Progress& progress);
+Expected<Reference> RenderReference(const ReferenceOptions& options, const RunContext& context,
+                                    const Progress& progress);
 
 }  // namespace scumble

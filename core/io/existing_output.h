@@ -20,8 +20,8 @@ struct PictureShape {
   int channels = 0;
   int bits = 0;          // a channel, as PictureBits has them
   std::string settings;  // as WritePicture keeps them: "scumble 0.1; seed 0; exposure 0.52". All that either side says
-                         // must agree, but for what older versions never told (upsample, fps, measured, samples); a file that says
-                         // nothing, and "" here, are not compared
+                         // must agree, but for what older versions never told (upsample, fps, measured, samples); a
+                         // file that says nothing, and "" here, are not compared
 };
 
 // Channels of a picture that WritePicture writes to a file of that name: 4, and 3 for JPEG, which has no alpha.

@@ -1,4 +1,4 @@
-#include "pipeline/scene/cycles_reference.h"
+#include "pipeline/crosscheck/cycles_reference.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <future>
 
-#include "pipeline/scene/blender_process.h"
 #include "core/io/guide_file.h"
+#include "pipeline/scene/blender_process.h"
 
 namespace scumble {
 namespace {
@@ -82,7 +82,8 @@ void ReadLog(const std::vector<std::string>& lines, Reference& reference) {
 
 }  // namespace
 
-Expected<Reference> RenderReference(const ReferenceOptions& options, const RunContext& context, const Progress& progress) {
+Expected<Reference> RenderReference(const ReferenceOptions& options, const RunContext& context,
+                                    const Progress& progress) {
   const BlenderTask task{options.scene, options.blender, options.blender + " rendered no reference"};
   SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", task, context));
   const ScratchFolder scratch;

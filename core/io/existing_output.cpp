@@ -1,4 +1,4 @@
-#include "core/io/file/existing_output.h"
+#include "core/io/existing_output.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,8 +11,8 @@
 #include "core/io/format_dispatch.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
-#include "core/io/png/png_reader.h"
 #include "core/io/png/png_integrity.h"
+#include "core/io/png/png_reader.h"
 
 namespace scumble {
 namespace {
@@ -73,7 +73,7 @@ Status CheckSettings(const std::filesystem::path& path, const std::string& found
 Expected<StoredPicture> Inspect(const std::filesystem::path& path) {
   if (internal::IsPngFile(path)) {
     SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path));
-    SCUMBLE_RETURN_IF_ERROR(internal::CheckPngIsWhole(bytes, path.string()));
+    SCUMBLE_RETURN_IF_ERROR(internal::CheckPngIntegrity(bytes, path.string()));
     if (auto stored = internal::InspectPlainPng(bytes)) return *std::move(stored);
   }
   SCUMBLE_ASSIGN(const Formats* const formats, LoadFormatsToRead(path));
@@ -114,9 +114,8 @@ Status CheckWholeGuides(const std::filesystem::path& path, const GuideShape& sha
   if (held != shape.layers) {
     return InputError(path.string() + " holds " + held.ToString() + ", not " + shape.layers.ToString());
   }
-  const bool has_color = std::any_of(AllLayers().begin(), AllLayers().end(), [&](const LayerInfo& layer) {
-    return layer.is_color && held.Has(layer.layer);
-  });
+  const bool has_color = std::any_of(AllLayers().begin(), AllLayers().end(),
+                                     [&](const LayerInfo& layer) { return layer.is_color && held.Has(layer.layer); });
   if (has_color && info.has_half != shape.half) {
     return InputError(path.string() + " has its colours in " + (info.has_half ? "half floats" : "floats") + ", not " +
                       (shape.half ? "half floats" : "floats"));

@@ -1,0 +1,15 @@
+// Whether a light is seen from a surface.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "guidegen/light/light_sampling.h"
+#include "guidegen/rays/single_ray.h"
+
+namespace scumble {
+
+// Whether anything of `blockers` lies between a surface and the light that was drawn from it.
+bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw,
+               Blockers blockers = Blockers::kAll);
+
+}  // namespace scumble

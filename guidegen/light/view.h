@@ -1,0 +1,26 @@
+// What a cast looks at besides the objects: the camera's rays, lights, and the next frame.
+#pragma once
+
+#include <vector>
+
+#include "guidegen/light/direct_light.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/rays/camera_rays.h"
+#include "guidegen/surface/surface.h"
+
+namespace scumble {
+
+// All in the camera's view space. The objects are the EmbreeScene's.
+struct View {
+  CameraRays camera;
+  std::vector<PlacedLight> lights;  // these and what follows only where a layer needs them
+  glm::dvec3 world_radiance{0.0};
+  PathSupply supply;
+
+  // For the motion layer; empty where it is not asked for. Each of the scene's objects, in their order, as it stands in
+  // the next frame before that frame's camera; without a mesh where it is gone by then.
+  std::vector<PlacedObject> next_objects;
+  CameraRays next_camera;
+};
+
+}  // namespace scumble

@@ -1,0 +1,28 @@
+// The text of a Wavefront OBJ file and of its material libraries, by tinyobjloader. Nothing is interpreted.
+#pragma once
+
+#include <tiny_obj_loader.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/image/status.h"
+#include "guidegen/load/loader_util.h"
+
+namespace scumble {
+
+struct ObjContents {
+  tinyobj::attrib_t attributes;
+  std::vector<tinyobj::shape_t> shapes;  // faces are polygons; indices are not checked
+  std::vector<tinyobj::material_t> materials;
+};
+
+// Fills `contents` from a file. A library that is missing becomes a warning; what tinyobjloader refuses or throws
+// becomes a kInput error that names the file. Only regular files are read.
+Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, ObjContents& contents);
+
+// The file that a scene names, which stands beside it.
+std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name);
+
+}  // namespace scumble

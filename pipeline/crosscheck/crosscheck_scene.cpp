@@ -1,0 +1,144 @@
+#include "pipeline/crosscheck/crosscheck_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "core/io/guide_file.h"
+#include "guidegen/light/path_layers.h"
+#include "guidegen/scene/pure_materials.h"
+#include "pipeline/crosscheck/cycles_reference.h"
+#include "pipeline/scene/scene_guides.h"
+
+namespace scumble {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Counts of samples at which the light is rendered, so that the noise's slope shows: N/16, N/4, N.
+std::vector<int> SampleCounts(int samples) {
+  std::vector<int> counts;
+  for (const int divisor : {16, 4, 1}) {
+    if (samples / divisor >= 1) counts.push_back(samples / divisor);
+  }
+  return counts;
+}
+
+// Both sides of a scene, and what there is to say about them.
+struct BothSides {
+  Reference reference;
+  GuideSet ours;
+  std::vector<GuideSet> ours_light;  // by sample count
+  std::vector<std::string> unsupported;
+  std::vector<std::string> warnings;
+};
+
+void AddUnknown(const std::string& line, std::vector<std::string>& lines) {
+  if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+}
+
+// Our guides: data as authored, light with pure materials.
+Status MakeOurs(const CrosscheckRequest& request, const std::string& path, const std::vector<int>& counts,
+                const RunContext& context, const Progress& progress, BothSides& sides) {
+  SceneRequest options;
+  options.scene = path;
+  options.size = request.size;
+  options.camera = request.camera;
+  options.key_light = false;  // Blender would not let one shine
+  if (IsBlenderScene(path)) options.blender = {request.blender, request.frame};
+  SCUMBLE_ASSIGN(Scene scene, OpenScene(options, context));
+  sides.unsupported = scene.warnings;
+  SCUMBLE_ASSIGN(SceneGuides data, MakeGuidesOf(scene, options, {Layer::kPosition, Layer::kAlbedo}, context,
+                                                Within(progress, 0.0, 0.02), false));
+  sides.ours = std::move(data.guides);
+  if (counts.empty()) return Ok();
+  if (const std::vector<std::string> replaced = UsePureMaterials(scene); !replaced.empty()) {
+    sides.warnings.push_back(
+        "light is compared with pure materials on both sides, Lambert or GGX without Fresnel, instead of: " +
+        fmt::format("{}", fmt::join(replaced, ", ")));
+  }
+  const RunContext silent = context.WithoutNotes();  // the camera has been noted
+  double begin = 0.02;
+  constexpr double kOursEnd = 0.3;
+  for (const int count : counts) {
+    options.samples = count;
+    options.max_bounces = request.max_bounces;
+    const double end = count == counts.back() ? kOursEnd : begin + 0.03;
+    SCUMBLE_ASSIGN(SceneGuides light,
+                   MakeGuidesOf(scene, options, PathLayers(), silent, Within(progress, begin, end), false));
+    sides.ours_light.push_back(std::move(light.guides));
+    begin = end;
+  }
+  return Ok();
+}
+
+Expected<BothSides> MakeBothSides(const CrosscheckRequest& request, const std::string& path,
+                                  const std::vector<int>& counts, const RunContext& context) {
+  BothSides sides;
+  const Progress progress = context.StartProgress("crosscheck");
+  SCUMBLE_RETURN_IF_ERROR(MakeOurs(request, path, counts, context, progress, sides));
+  ReferenceOptions options{request.blender, path,   request.size.width, request.size.height, request.camera,
+                           request.frame,   counts, request.max_bounces};
+  SCUMBLE_ASSIGN(sides.reference,
+                 RenderReference(options, context, Within(progress, counts.empty() ? 0.02 : 0.3, 1.0)));
+  for (const std::string& line : sides.reference.unsupported) AddUnknown(line, sides.unsupported);
+  return sides;
+}
+
+void AddLayers(const GuideSet& from, GuideSet& to) {
+  for (const LayerInfo& info : AllLayers()) {
+    if (!from.Has(info.layer) || to.Has(info.layer)) continue;
+    to.Add(info.layer);
+    for (int c = 0; c < ChannelCount(info.layer); ++c) {
+      const auto plane = from.Plane(info.layer, c);
+      std::copy(plane.begin(), plane.end(), to.Plane(info.layer, c).begin());
+    }
+  }
+}
+
+// Both sides with the light of the most samples, as files.
+Status KeepGuides(const CrosscheckRequest& request, const std::string& scene, const GuideSet& reference,
+                  const GuideSet& ours, const std::vector<CrosscheckLight>& light, const RunContext& context) {
+  const std::string stem = (fs::path(request.keep) / fs::path(scene).stem()).string();
+  GuideSet theirs_whole = reference, ours_whole = ours;
+  if (!light.empty()) {
+    AddLayers(light.back().reference.guides, theirs_whole);
+    AddLayers(light.back().ours, ours_whole);
+  }
+  GuideWriteOptions write;
+  if (request.fast_io) write.compression = kFastCompression;
+  SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".cycles.exr", theirs_whole, write));
+  SCUMBLE_RETURN_IF_ERROR(WriteGuides(stem + ".ours.exr", ours_whole, write));
+  context.Note(stem + ".cycles.exr, " + stem + ".ours.exr: the guides of both sides");
+  return Ok();
+}
+
+}  // namespace
+
+Expected<CrosscheckReport> CrosscheckScene(const CrosscheckRequest& request, const std::string& scene,
+                                           const RunContext& context) {
+  const std::vector<int> counts = SampleCounts(request.samples);
+  SCUMBLE_ASSIGN(BothSides sides, MakeBothSides(request, scene, counts, context));
+  const CrosscheckOptions options{2, request.heat_maps, std::move(sides.reference.only_shines)};
+  std::vector<CrosscheckLight> light;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    light.push_back({counts[i], std::move(sides.reference.light[i]), std::move(sides.ours_light[i])});
+  }
+  if (!request.keep.empty()) {
+    SCUMBLE_RETURN_IF_ERROR(KeepGuides(request, scene, sides.reference.data, sides.ours, light, context));
+  }
+  SCUMBLE_ASSIGN(CrosscheckReport report, Crosscheck(scene, sides.reference.data, sides.ours, options));
+  SCUMBLE_RETURN_IF_ERROR(CrosscheckLightLayers(sides.reference.data, sides.ours, light, options, report));
+  report.setup.max_bounces = request.samples > 0 ? request.max_bounces : 0;
+  report.setup.camera = request.camera;
+  report.setup.frame = request.frame;
+  report.unsupported = std::move(sides.unsupported);
+  report.warnings = std::move(sides.warnings);
+  report.scumble_version = SCUMBLE_VERSION;
+  report.blender_version = sides.reference.version;
+  return report;
+}
+
+}  // namespace scumble
