@@ -20,10 +20,11 @@ def tiers(build):
     found = {}
     for test in json.loads(shown.stdout)["tests"]:
         path = pathlib.Path(test.get("command", ["none"])[0])
-        labels = next((p["value"] for p in test["properties"] if p["name"] == "LABELS"), [])
+        labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
+        tier = next((tier for tier in ("unit", "oracle", "paint", "cli") if tier in labels and "slow" not in labels), None)
         isolated = any("--gtest_also_run_disabled_tests" in word for word in test.get("command", []))
-        if path.parent.name == "tests" and not isolated and labels[0] in ("unit", "oracle", "cli", "paint"):
-            found[path] = labels[0]
+        if path.parent.name == "tests" and path.name.endswith("_test") and tier and not isolated:
+            found[path] = tier
     return found
 
 
