@@ -1,25 +1,31 @@
 #!/usr/bin/env bash
-# Painting the exemplars twice with one seed gives the same bytes, and another seed another picture; at a small size, to
-# be quick. Usage: painting_repeats.sh PAINT_EXEMPLARS EXEMPLARS
+# Painting an exemplar twice with one seed gives the same bytes, and another seed another picture: every style is painted
+# twice, by turns with one seed and with two. At a small size. Usage: painting_repeats.sh PAINT_EXEMPLARS EXEMPLARS
 set -eu
 paint=$1
 exemplars=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-painters=()
-for each in first:1 second:1 other:2; do
-  "$paint" --style all --size 128 --seed "${each#*:}" -o "$folder/${each%:*}" > /dev/null &
-  painters+=($!)
+"$paint" --style all --size 128 --seed 1 -o "$folder/first" > /dev/null &
+first=$!
+seed=1
+for style in "$exemplars"/*/style.toml; do
+  "$paint" --style "$(basename "$(dirname "$style")")" --size 128 --seed $seed -o "$folder/seed-$seed" > /dev/null
+  seed=$((3 - seed))
 done
-for painter in "${painters[@]}"; do wait "$painter"; done
+wait "$first"
 for style in "$folder"/first/*/; do
   name=$(basename "$style")
   for picture in "$style"/*.png; do
     file=$name/$(basename "$picture")
-    cmp "$picture" "$folder/second/$file"
-    case $file in */paper.png) continue ;; esac
-    if cmp -s "$picture" "$folder/other/$file"; then echo "$file: the seed changes nothing"; exit 1; fi
+    if [ -d "$folder/seed-1/$name" ]; then
+      cmp "$picture" "$folder/seed-1/$file"
+      continue
+    fi
+    case $file in */paper.png) [ -s "$folder/seed-2/$file" ]; continue ;; esac
+    [ -s "$folder/seed-2/$file" ] || { echo "$file: not painted again"; exit 1; }
+    if cmp -s "$picture" "$folder/seed-2/$file"; then echo "$file: the seed changes nothing"; exit 1; fi
   done
 done
 # What the bundled styles list is what is painted.
