@@ -8,6 +8,7 @@
 
 #include "core/image/guides.h"
 #include "core/io/picture_file.h"
+#include "transfer/upsample_guides.h"
 
 namespace scumble {
 
@@ -23,6 +24,20 @@ Status CheckSize(const Size& size, const std::string& text) {
                       " pixels in all, as in 16384x16384");
   }
   return Ok();
+}
+
+Expected<Size> GuideSizeFor(const Size& size, int upsample) {
+  if (upsample < 1 || upsample > kMaxUpsampling) {
+    return UsageError(fmt::format("--upsample {}: expected 1 to {}", upsample, kMaxUpsampling));
+  }
+  if (size.width % upsample || size.height % upsample) {
+    return UsageError(
+        fmt::format("--size {} with --upsample {}: the guides are {} times smaller, so both sides must be "
+                    "multiples of {}; take --size {}x{}",
+                    SizeToText(size), upsample, upsample, upsample, (size.width + upsample - 1) / upsample * upsample,
+                    (size.height + upsample - 1) / upsample * upsample));
+  }
+  return Size{size.width / upsample, size.height / upsample};
 }
 
 bool HasEnding(const std::string& path, std::initializer_list<const char*> endings) {

@@ -34,6 +34,10 @@ std::string SizeToText(const Size& size);
 // Ok, or a kUsage error where a picture of this size cannot be made; `text` is what the user wrote.
 Status CheckSize(const Size& size, const std::string& text);
 
+// The guides' size for a picture of this size that is painted upsampled: both sides must be multiples of `upsample`,
+// which is 1 … kMaxUpsampling. A kUsage error says which size would do.
+Expected<Size> GuideSizeFor(const Size& size, int upsample);
+
 // Whether a path has one of these endings (".exr"), in letters of either case.
 bool HasEnding(const std::string& path, std::initializer_list<const char*> endings);
 

@@ -1,6 +1,7 @@
 // The library's Stylizer, over a Workspace.
 #include "scumble/stylizer.h"
 
+#include <cmath>
 #include <utility>
 
 #include "core/io/library.h"
@@ -68,6 +69,7 @@ Stylizer& Stylizer::operator=(Stylizer&&) noexcept = default;
 
 Expected<Picture> Stylizer::Paint(const SceneSettings& scene, const StyleSettings& style, const PaintSettings& paint) {
   SCUMBLE_ASSIGN(const SceneRequest request, RequestOf(scene));
+  if (paint.exposure && !(std::fabs(*paint.exposure) <= 64.0)) return UsageError("exposure must be -64 to 64 stops");
   StyleRequest style_request;
   style_request.style = style.style, style_request.sets = style.overrides;
   style_request.assigned = style.assignments, style_request.scene_styles = style.follow_scene;

@@ -44,6 +44,9 @@ std::string StyleStamps(const StyleSet& styles) {
   files.ReadsStyles(styles);
   std::vector<std::string> paths = files.Inputs();
   for (const auto& [path, place] : styles.opened) paths.push_back(path);
+  for (const std::string& one : styles.options.assigned) {
+    if (one.size() > 1 && one.front() == '@') paths.push_back(one.substr(1));
+  }
   return StampsOf(paths);
 }
 
@@ -94,7 +97,7 @@ struct Workspace::State {
   std::string style_text, style_stamps;
   std::optional<StyleSet> styles;
   PictureState picture;
-  const SceneGuides* exposed_by = nullptr;  // the guides that picture.exposure was measured on
+  bool exposure_given = false;  // by the last request, not measured
 
   Status Continue() const { return cancelled ? Status(CancelledError()) : Ok(); }
   Status LoadStyles(const StyleRequest& request);
@@ -209,13 +212,14 @@ Status Workspace::State::Cast(const SceneRequest& request, std::optional<int> fr
   SCUMBLE_RETURN_IF_ERROR(made.guides.Validate(request.scene));
   guides = std::make_shared<const SceneGuides>(std::move(made));
   guides_key = key;
+  picture.exposure.reset();  // it is measured on the guides
   return Ok();
 }
 
 Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRequest& style,
                                                const PictureRequest& request) {
   scene.seed = request.seed, scene.fps = request.fps;
-  scene.size = {scene.size.width / request.upsample, scene.size.height / request.upsample};
+  SCUMBLE_ASSIGN(scene.size, GuideSizeFor(scene.size, request.upsample));
   const Progress progress = context.StartProgress("stylize");
   SCUMBLE_RETURN_IF_ERROR(LoadStyles(style));
   SCUMBLE_RETURN_IF_ERROR(Continue());
@@ -224,7 +228,8 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   };
   SCUMBLE_RETURN_IF_ERROR(Cast(scene, request.frame, layers_for, Within(progress, 0.0, 0.5)));
   SCUMBLE_RETURN_IF_ERROR(Continue());
-  if (exposed_by != guides.get() || request.exposure) picture.exposure.reset();
+  if (request.exposure || exposure_given) picture.exposure.reset();
+  exposure_given = request.exposure.has_value();
   picture.width = picture.height = 0;  // another size is no mistake here
   std::vector<std::shared_ptr<const PreparedExemplar>> before;
   for (const PreparedStyle& one : picture.prepared) before.push_back(one.exemplar);
@@ -234,7 +239,6 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   for (std::size_t i = 0; i < picture.prepared.size(); ++i) {
     counters.styles_prepared += i >= before.size() || before[i] != picture.prepared[i].exemplar;
   }
-  exposed_by = guides.get();
   ++counters.frames_painted;
   return PaintedFrame{std::move(painted.picture), std::shared_ptr<const GuideSet>(guides, &guides->guides),
                       std::move(painted.report)};

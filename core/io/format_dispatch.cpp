@@ -100,13 +100,15 @@ Expected<const Formats*> Load() {
 
 Expected<const Formats*> LoadFormats(const std::string& file) {
   try {
-    static const Expected<const Formats*> kFormats = [] {
-      const Expected<const Formats*> loaded = Load();
-      if (loaded) (*loaded)->set_threads(io_threads);
-      is_loaded = loaded.ok();
-      return loaded;
-    }();
-    return kFormats;
+    static std::mutex mutex;
+    static const Formats* formats = nullptr;  // a failure is not kept: SetModuleFolder may come later
+    const std::lock_guard lock(mutex);
+    if (!formats) {
+      SCUMBLE_ASSIGN(formats, Load());
+      formats->set_threads(io_threads);
+      is_loaded = true;
+    }
+    return formats;
   } catch (const std::bad_alloc&) {
     return MemoryError(
         "out of memory for " + file + ": the library that reads and writes its format takes " +

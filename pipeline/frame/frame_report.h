@@ -59,6 +59,7 @@ struct GuidesReport {
   double noise = 0.0;
   bool open_ended = false;  // noise or the clock decided how many samples were taken
   StepTimes times;
+  bool explain = false;  // the plan is wanted as text, too
 };
 
 struct FrameReport {

@@ -168,7 +168,12 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
       state.prepared[i].required = RequiredLayers(styles.styles[i]);
       continue;
     }
-    SCUMBLE_ASSIGN(state.prepared[i], PrepareAndWarn(styles.styles[i], height, context));
+    Expected<PreparedStyle> one = PrepareAndWarn(styles.styles[i], height, context);
+    if (!one) {
+      state.prepared.resize(i);  // the style has moved on: what was prepared of it is stale
+      return std::move(one).error();
+    }
+    state.prepared[i] = *std::move(one);
   }
   if (all) state.prepared.clear();
   // All of them, or those that the scene has asked for since.

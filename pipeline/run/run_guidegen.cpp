@@ -21,9 +21,9 @@ namespace {
 FrameReport ReportOf(const GuidegenRequest& request, const std::string& output, const GuideSet& guides,
                      const SceneGuides& made) {
   const bool open_ended = request.scene.noise > 0.0 || request.scene.time_budget_seconds > 0.0;
-  GuidesReport report{output,       guides.width(), guides.height(), guides.layers(),
-                      made.samples, made.noise,     open_ended,      made.times};
-  return {std::move(report), request.explain ? made.plan : std::vector<PlanItem>(), made.memory, made.cost, 0, 0.0};
+  GuidesReport report{output,     guides.width(), guides.height(), guides.layers(), made.samples,
+                      made.noise, open_ended,     made.times,      request.explain};
+  return {std::move(report), made.plan, made.memory, made.cost, 0, 0.0};
 }
 
 void NameStylesInPlan(std::vector<PlanItem>& plan, const std::optional<StyleSet>& styles) {
@@ -141,6 +141,7 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
   if (plan_only) {
     report.plan = std::move(made.plan);
     report.memory = std::move(made.memory);
+    report.plan_times = std::move(made.times), report.plan_is_timed = true;
     return report;
   }
   report.frame = ReportOf(request, request.output, made.guides, made);

@@ -48,6 +48,8 @@ struct RunReport {
   // Of a plan alone:
   std::vector<PlanItem> plan;
   MemoryNeed memory;
+  StepTimes plan_times;        // of the steps that led to it
+  bool plan_is_timed = false;  // stages are reported, too
 };
 
 // A scene to guide files.

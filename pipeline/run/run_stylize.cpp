@@ -26,17 +26,7 @@ LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene, const File
 
 // The guides' size for a picture of the request's size that is painted upsampled.
 Status ShrinkGuides(StylizeRequest& request) {
-  const int factor = request.picture.upsample;
-  if (factor == 1) return Ok();
-  const Size size = request.scene.size;
-  if (size.width % factor || size.height % factor) {
-    return UsageError(
-        fmt::format("--size {} with --upsample {}: the guides are {} times smaller, so both sides must be "
-                    "multiples of {}; take --size {}x{}",
-                    SizeToText(size), factor, factor, factor, (size.width + factor - 1) / factor * factor,
-                    (size.height + factor - 1) / factor * factor));
-  }
-  request.scene.size = {size.width / factor, size.height / factor};
+  SCUMBLE_ASSIGN(request.scene.size, GuideSizeFor(request.scene.size, request.picture.upsample));
   return Ok();
 }
 

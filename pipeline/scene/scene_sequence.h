@@ -30,7 +30,9 @@ class SceneFrames {
         layers_for_(std::move(layers_for)),
         motion_(motion),
         context_(context),
-        silent_(context.WithoutNotes()) {}
+        silent_(context.WithoutNotes()) {
+    silent_.clock = context.clock;
+  }
 
   // A scene that does not move is loaded and cast here, once for all frames. One that moves is loaded here, and how it
   // is seen is decided as it stands at time 0, whatever the frames: a camera that frames it and a key light stay where

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -190,8 +191,38 @@ TEST(Workspace, CanBeCancelledAgainAndAgain) {
   EXPECT_GT(calls, 3);
 }
 
+TEST(Workspace, AGivenExposureIsThatOfItsRequestAlone) {
+  Workspace workspace(Context());
+  const Picture measured = Painted(workspace, SceneOf("suzanne"), StyleOf("chiaroscuro"));
+  PictureRequest dark;
+  dark.exposure = -6.0;
+  EXPECT_NE(Painted(workspace, SceneOf("suzanne"), StyleOf("chiaroscuro"), dark).rgba, measured.rgba);
+  EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("chiaroscuro")).rgba, measured.rgba);
+}
+
+TEST(Workspace, AnEditedAssignmentFileIsReadAgain) {
+  const TemporaryFolder folder;
+  const std::string sheet = (folder.path() / "sheet.txt").string();
+  const auto write = [&](const std::string& text) { std::ofstream(sheet) << text; };
+  write("Nothing* = ink\n");
+  StyleRequest style = StyleOf("oil");
+  style.assigned = {"@" + sheet};
+  Workspace workspace(Context());
+  const Picture plain = Painted(workspace, SceneOf("suzanne"), style);
+  write("* = charcoal and longer\n");
+  write("* = charcoal\n");
+  EXPECT_NE(Painted(workspace, SceneOf("suzanne"), style).rgba, plain.rgba);
+}
+
 TEST(Workspace, MistakesAreErrorsAndLeaveItUsable) {
   Workspace workspace(Context());
+  PictureRequest upsampled;
+  for (const int factor : {0, -1, 5, 9}) {
+    upsampled.upsample = factor;
+    const auto painted = workspace.Paint(SceneOf("suzanne"), StyleOf("oil"), upsampled);
+    ASSERT_FALSE(painted.ok()) << factor;
+    EXPECT_EQ(painted.error().kind, ErrorKind::kUsage);
+  }
   EXPECT_FALSE(workspace.Paint(SceneOf("nothing"), StyleOf("oil"), {}).ok());
   EXPECT_FALSE(workspace.Paint(SceneOf("suzanne"), StyleOf("no-such-style"), {}).ok());
   EXPECT_FALSE(workspace.Paint(SceneOf("suzanne"), StyleOf("oil", {"transfer.scale=-1"}), {}).ok());

@@ -78,6 +78,7 @@ void GuidesToJson(const GuidesReport& guides, const FrameReport& report, Json& j
     if (guides.noise > 0.0) json["noise"] = guides.noise;
   }
   if (!report.plan.empty()) json["plan"] = PlanToJson(report.plan);
+  json["memory"] = MemoryToJson(report.memory);
   for (const auto& [name, ms] : guides.times) json["ms"][name] = ms;
 }
 
@@ -134,7 +135,8 @@ void PrintTotals(const SequenceTotals& totals, const RunReport& report, const Gl
 
 std::string FrameToText(const FrameReport& report) {
   std::string text;
-  if (!report.plan.empty()) {
+  const auto* const guides = std::get_if<GuidesReport>(&report.made);
+  if (!report.plan.empty() && (!guides || guides->explain)) {
     text = PlanToText(report.plan) + MemoryToText(report.memory);
     if (report.cost) text += CostToText(*report.cost);
   }
@@ -152,7 +154,7 @@ nlohmann::ordered_json FrameToJson(const FrameReport& report) {
   } else {
     GuidesToJson(std::get<GuidesReport>(report.made), report, json);
   }
-  json["memory"] = MemoryToJson(report.memory);
+  if (std::holds_alternative<PictureReport>(report.made)) json["memory"] = MemoryToJson(report.memory);
   json["work"]["bytes_written"] = report.bytes_written;
   return json;
 }
@@ -196,8 +198,13 @@ Expected<ExitCode> PrintRun(const RunReport& report, const Globals& globals, Seq
     return ExitCode::kOk;
   }
   if (!report.frame) {
-    const Json json{{"plan", PlanToJson(report.plan)}, {"memory", MemoryToJson(report.memory)}};
-    Print(globals.json ? JsonText(json) : PlanToText(report.plan) + MemoryToText(report.memory));
+    Json json{{"plan", PlanToJson(report.plan)}, {"memory", MemoryToJson(report.memory)}};
+    for (const auto& [name, ms] : report.plan_times) json["ms"][name] = ms;
+    const bool timed = report.plan_is_timed && globals.clock;
+    if (timed) json["timing"] = ClockToJson(*globals.clock);
+    Print(globals.json
+              ? JsonText(json)
+              : PlanToText(report.plan) + MemoryToText(report.memory) + (timed ? ClockToText(*globals.clock) : ""));
     return ExitCode::kOk;
   }
   if (!globals.json) {
