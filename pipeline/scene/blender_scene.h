@@ -28,7 +28,7 @@ struct BlenderAnimation {
 };
 
 // Runs Blender on blender_scripts/export_scene.py in the background, without the scripts inside the file, and loads the
-// temporary .glb that it makes; says so on stderr. kUnavailable where Blender or the script is missing or the version
+// temporary .glb that it makes; notes it. kUnavailable where Blender or the script is missing or the version
 // is not supported, kInput where the export fails, with Blender's reason. What the export cannot express is among the
 // scene's warnings.
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,

@@ -1,4 +1,4 @@
-// scumble tradeoff: what every variant to stylise a scene costs, and how far off it is.
+// scumble tradeoff: what every way to stylise a scene costs, and how far off it is.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
