@@ -9,25 +9,12 @@
 #include <thread>
 
 #include "tests/support/cli_harness.h"
+#include "tests/support/scoped_variable.h"
 
 namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A variable that is as before when this is gone.
-class Setting {
- public:
-  Setting(const char* name, const std::string& value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    ::setenv(name, value.c_str(), 1);
-  }
-  ~Setting() { before_.empty() ? ::unsetenv(name_) : ::setenv(name_, before_.c_str(), 1); }
-
- private:
-  const char* name_;
-  std::string before_;
-};
 
 class BlenderProcess : public CliTest {
  protected:
@@ -46,9 +33,10 @@ TEST_F(BlenderProcess, AVirtualEnvironmentIsNotItsOwn) {
   WriteProgram("venv/bin/python3", "exit 1");
   WriteProgram("real/blender", "{ command -v python3; command -v blender; env; } > \"" + At("seen").string() + "\"");
   fs::create_directory_symlink(At("real"), At("linked"));
-  const Setting path("PATH", At("venv/bin").string() + ":" + At("linked").string() + ":" + std::getenv("PATH"));
-  const Setting home("PYTHONHOME", "/nowhere"), packages("PYTHONPATH", "/nowhere"), first("PYTHONSTARTUP", "/nowhere");
-  const Setting venv("VIRTUAL_ENV", At("venv").string()), kept("SCUMBLE_KEPT", "yes");
+  const ScopedVariable path("PATH", At("venv/bin").string() + ":" + At("linked").string() + ":" + std::getenv("PATH"));
+  const ScopedVariable home("PYTHONHOME", "/nowhere"), packages("PYTHONPATH", "/nowhere"),
+      first("PYTHONSTARTUP", "/nowhere");
+  const ScopedVariable venv("VIRTUAL_ENV", At("venv").string()), kept("SCUMBLE_KEPT", "yes");
   EXPECT_EQ(Export("blender").code, 3);
   const std::string seen = Bytes("seen");
   const std::string real = fs::canonical(At("real")).string();
@@ -74,7 +62,7 @@ bool EndsSoon(const std::string& pid) {
 
 TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
   fs::create_directory(At("tmp"));
-  const Setting temporary("TMPDIR", At("tmp").string());
+  const ScopedVariable temporary("TMPDIR", At("tmp").string());
   for (const auto& [name, number] : {std::pair("TERM", SIGTERM), {"INT", SIGINT}, {"HUP", SIGHUP}}) {
     // Its own temporary files, a child that sleeps, and then the user's signal to the program that waits for it.
     WriteProgram("blender", "echo x > \"$TMPDIR/of_blender\"; sleep 50 & echo $! > sleeper; echo $$ > self; kill -" +
@@ -99,7 +87,7 @@ TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
 // would take longer than the test has patience.
 TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
   fs::create_directory(At("tmp"));
-  const Setting temporary("TMPDIR", At("tmp").string());
+  const ScopedVariable temporary("TMPDIR", At("tmp").string());
   WriteText("shot.blend", "");
   const auto exported = [&](const std::string& frame) {
     for (const auto& folder : fs::directory_iterator(At("tmp"))) {
