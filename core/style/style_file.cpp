@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/io/file/atomic_file.h"
+#include "core/io/file/readable_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/sphere_template.h"
@@ -20,13 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxStyleBytes = 1 << 20;
-
-// Like std::filesystem::exists, but a link to itself or a locked folder is no exception.
-bool Exists(const fs::path& path) {
-  std::error_code failed;
-  return fs::exists(path, failed);
-}
+using internal::Exists;
 
 // What a style without a name is called: its folder, or its file without the ending.
 std::string NameFor(const fs::path& path, bool is_folder) {

@@ -12,6 +12,9 @@
 
 namespace scumble {
 
+// A style.toml that is larger is refused.
+inline constexpr std::size_t kMaxStyleBytes = 1 << 20;
+
 // Asked before so many bytes are taken for a picture of an exemplar or its guides, besides those before: what it
 // refuses is not read. Null: there is room for everything.
 using StyleRoom = std::function<Status(std::uint64_t bytes)>;

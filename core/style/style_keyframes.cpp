@@ -11,12 +11,6 @@ namespace {
 
 constexpr const char* kPaperKey = "transfer.paper";
 
-std::optional<double> AsNumber(const KeyValue& value) {
-  if (const auto* number = std::get_if<double>(&value)) return *number;
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
-  return std::nullopt;
-}
-
 // Whether all values between two of the track's are ones that the key takes: whole numbers, flags and words have none.
 bool TakesFractions(const StyleKey& key, const StyleTrack& track) {
   if (key.name == "transfer.jitter_fps") return false;

@@ -18,12 +18,6 @@ using Setter = decltype(StyleKey::set);
 
 constexpr double kMaxGuideWeight = 1000.0;
 
-std::optional<double> AsNumber(const KeyValue& value) {
-  if (const auto* number = std::get_if<double>(&value)) return *number;
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
-  return std::nullopt;
-}
-
 std::string Range(double low, double high) {
   char text[80];
   if (std::isinf(high))
@@ -241,6 +235,12 @@ std::vector<StyleKey> MakeKeys() {
 }
 
 }  // namespace
+
+std::optional<double> AsNumber(const KeyValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+  return std::nullopt;
+}
 
 std::span<const StyleKey> StyleKeys() {
   static const std::vector<StyleKey> keys = MakeKeys();

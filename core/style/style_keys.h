@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -18,6 +19,9 @@ inline constexpr const char* kGuideWeights = "transfer.guide_weights.";
 
 // A value as TOML has it.
 using KeyValue = std::variant<bool, std::int64_t, double, std::string>;
+
+// Of a number, whole or not; of others none.
+std::optional<double> AsNumber(const KeyValue& value);
 
 struct StyleKey {
   std::string name;           // "transfer.threshold"

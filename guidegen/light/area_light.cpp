@@ -13,8 +13,6 @@
 namespace scumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Seen from a white Lambert surface: the density with which it samples directions is also what it reflects.
 double DiffuseDensity(const SurfacePoint& point, const glm::dvec3& direction) {
   const double cosine = glm::dot(point.normal, direction);
@@ -94,13 +92,13 @@ struct Sample {
     if (near_emitter) ++rays.shadow;
     const double emitted =
         near_emitter ? Emitted(CastAmongEmitters(scene, origin, direction), direction, reflected) : 0.0;
-    const double unoccluded = met_before(kInfinity) + emitted;
+    const double unoccluded = met_before(std::numeric_limits<double>::infinity()) + emitted;
     if (!(unoccluded > 0.0)) return;
     sum.unoccluded += unoccluded;
     ++rays.shadow;
     const RTCRayHit hit = CastSingleRay(scene, origin, direction);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-      sum.reached += met_before(kInfinity);
+      sum.reached += met_before(std::numeric_limits<double>::infinity());
     } else {
       sum.reached += met_before(double(hit.ray.tfar)) + (emitted > 0.0 ? Emitted(hit, direction, reflected) : 0.0);
     }

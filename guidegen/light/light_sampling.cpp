@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <numbers>
 
 #include "guidegen/rays/ray_offset.h"
 #include "guidegen/surface/bsdf.h"
@@ -11,10 +12,7 @@
 namespace scumble {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
-
-// Squared distances below this are lights inside the surface.
-constexpr double kLeastSquare = 1e-30;
+using std::numbers::pi;
 
 // The distance from a plane, over the largest coordinate, that doubles cannot be trusted to tell.
 constexpr double kFlat = 0x1.0p-40;
@@ -24,13 +22,13 @@ constexpr double kMostIrradiance = std::numeric_limits<float>::max();
 
 double AreaOf(const PlacedLight& light) {
   const double sides = glm::length(light.half_x) * glm::length(light.half_y);
-  return light.ellipse ? kPi * sides : 4.0 * sides;
+  return light.ellipse ? pi * sides : 4.0 * sides;
 }
 
 // A sun is a disc at a distance of 1, sampled by area; `cosine` is that of the angle to its middle.
 double SunDensity(const PlacedLight& sun, double cosine) {
   const double radius = std::tan(sun.half_angle);
-  return 1.0 / (kPi * radius * radius * cosine * cosine * cosine);
+  return 1.0 / (pi * radius * radius * cosine * cosine * cosine);
 }
 
 // From a density per area to one per solid angle.
@@ -52,7 +50,7 @@ LightDraw DrawDelta(const PlacedLight& light, const glm::dvec3& point) {
   if (!(length > 0.0)) return draw;
   draw.direction = to_light / length;
   draw.target = light.position;
-  const double share = SpotAttenuation(light, -draw.direction) / std::max(length * length, kLeastSquare);
+  const double share = SpotAttenuation(light, -draw.direction) / std::max(length * length, kLeastSquaredDistance);
   for (int i = 0; i < 3; ++i) draw.radiance[i] = std::min(light.color[i] * share, kMostIrradiance);
   return draw;
 }
@@ -83,7 +81,7 @@ LightDraw DrawBall(const PlacedLight& light, const glm::dvec3& point, double u, 
   const glm::dvec3 to_target = draw.target - point;
   const double square = glm::dot(to_target, to_target);
   draw.direction = to_target / std::sqrt(square);
-  const double area = kPi * light.radius * light.radius;
+  const double area = pi * light.radius * light.radius;
   draw.density = PerSolidAngle(area, square, glm::dot(axis, draw.direction));
   draw.radiance = light.color * (SpotAttenuation(light, -draw.direction) / area);
   return draw;
@@ -95,7 +93,7 @@ LightDraw DrawArea(const PlacedLight& light, const glm::dvec3& point, double u, 
   draw.target = light.position + light.half_x * at.x + light.half_y * at.y;
   const glm::dvec3 to_target = draw.target - point;
   const double square = glm::dot(to_target, to_target);
-  if (!(square > kLeastSquare)) return draw;
+  if (!(square > kLeastSquaredDistance)) return draw;
   draw.direction = to_target / std::sqrt(square);
   draw.density = PerSolidAngle(AreaOf(light), square, -glm::dot(light.axis, draw.direction));
   if (draw.density > 0.0) draw.radiance = light.color;
@@ -123,7 +121,7 @@ LightDraw MeetBall(const PlacedLight& light, const glm::dvec3& point, const glm:
   if (!(t - LightGap(point, point + direction * t) < length)) return met;
   const glm::dvec3 off = direction * t - to_light;
   if (glm::dot(off, off) > light.radius * light.radius) return met;
-  const double area = kPi * light.radius * light.radius;
+  const double area = pi * light.radius * light.radius;
   met.density = PerSolidAngle(area, t * t, along / distance);
   met.radiance = light.color * (SpotAttenuation(light, -direction) / area);
   return met;
@@ -274,7 +272,7 @@ LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point,
   draw.target = triangle.corner[0] + first * barycentric.x + second * barycentric.y;
   const glm::dvec3 to_target = draw.target - point;
   const double square = glm::dot(to_target, to_target);
-  if (!(square > kLeastSquare)) return draw;
+  if (!(square > kLeastSquaredDistance)) return draw;
   draw.direction = to_target / std::sqrt(square);
   const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
   double largest = LargestCoordinate(point);
@@ -297,7 +295,7 @@ double LightSet::EmitterDensity(int light, const glm::dvec3& point, const Surfac
   const Emitter& emitter = emitters_[std::size_t(light) - analytic_.size()];
   const glm::dvec3 to_emitter = on_emitter.position - point;
   const double square = glm::dot(to_emitter, to_emitter);
-  if (!(square > kLeastSquare)) return 0.0;
+  if (!(square > kLeastSquaredDistance)) return 0.0;
   const double cosine = std::abs(glm::dot(on_emitter.facing, to_emitter)) / std::sqrt(square);
   return PerSolidAngle(emitter.areas_up_to.back(), square, cosine);
 }

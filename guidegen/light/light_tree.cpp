@@ -8,16 +8,14 @@
 namespace scumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastCosine = 0.1;
-constexpr double kLeastSquare = 1e-30;
 
 }  // namespace
 
 double BallWeight(const glm::dvec3& centre, double radius, double power, const SurfacePoint& point) {
   const glm::dvec3 to_centre = centre - point.position;
   if (glm::dot(point.facing, to_centre) < -radius) return 0.0;
-  const double square = std::max(glm::dot(to_centre, to_centre), kLeastSquare);
+  const double square = std::max(glm::dot(to_centre, to_centre), kLeastSquaredDistance);
   const double cosine = (glm::dot(point.normal, to_centre) + radius) / std::sqrt(square);
   return power * std::clamp(cosine, kLeastCosine, 1.0) / std::max(square, radius * radius);
 }
@@ -41,8 +39,8 @@ std::uint32_t LightTree::Build(std::span<const TreeLight> lights, std::uint32_t 
   nodes_.emplace_back();
   Node node;
   const std::span<int> mine(order_.data() + begin, end - begin);
-  glm::dvec3 low(kInfinity);
-  glm::dvec3 high(-kInfinity);
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high(-std::numeric_limits<double>::infinity());
   std::uint32_t suns = 0;
   for (const int light : mine) {
     const TreeLight& one = lights[std::size_t(light)];
@@ -56,7 +54,8 @@ std::uint32_t LightTree::Build(std::span<const TreeLight> lights, std::uint32_t 
   node.centre = suns > 0 ? glm::dvec3(0.0) : 0.5 * (low + high);
   for (const int light : mine) {
     const TreeLight& one = lights[std::size_t(light)];
-    node.radius = std::max(node.radius, suns > 0 ? kInfinity : glm::length(one.centre - node.centre) + one.radius);
+    node.radius = std::max(node.radius, suns > 0 ? std::numeric_limits<double>::infinity()
+                                                 : glm::length(one.centre - node.centre) + one.radius);
   }
   if (mine.size() <= kLeafSize) {
     node.begin = begin;
@@ -99,7 +98,7 @@ bool LightTree::MayMeet(const Node& node, const glm::dvec3& origin, const glm::d
   const double along = glm::dot(to_centre, direction);
   if (along < -node.radius) return false;
   const glm::dvec3 off = to_centre - direction * along;
-  return glm::dot(off, off) <= node.radius * node.radius * (1.0 + 1e-9) + kLeastSquare;
+  return glm::dot(off, off) <= node.radius * node.radius * (1.0 + 1e-9) + kLeastSquaredDistance;
 }
 
 }  // namespace scumble

@@ -16,6 +16,9 @@
 
 namespace scumble {
 
+// Smaller squared distances are lights inside the surface.
+inline constexpr double kLeastSquaredDistance = 1e-30;
+
 // A light that was chosen for sampling.
 struct LightChoice {
   int light = -1;  // −1: none can reach the point

@@ -12,8 +12,6 @@
 namespace scumble {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Reflections after which roulette begins: before, paths carry most of the light.
 constexpr int kFirstRoulette = 1;
 constexpr double kLeastSurvival = 0.05;
@@ -150,7 +148,7 @@ bool LightPathTracer::MayMeetLight(const Vertex& vertex, const Flight& flight) c
   if (lights_.has_world() || lights_.has_emitters()) return true;
   bool met = false;
   const auto visit = [&](int light, const glm::dvec3&, double) { met = met || LooksFor(light, vertex, flight.lobe); };
-  lights_.VisitAnalytic(vertex.origin, flight.direction, kInfinity, visit);
+  lights_.VisitAnalytic(vertex.origin, flight.direction, std::numeric_limits<double>::infinity(), visit);
   return met;
 }
 
@@ -225,7 +223,7 @@ std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex
   ++(goes_on ? rays.bounce : rays.shadow);
   const RTCRayHit hit = CastSingleRay(scene_, vertex.origin, flight.direction);
   if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-    if (lit) AddMet(vertex, state, flight, kInfinity, sums);
+    if (lit) AddMet(vertex, state, flight, std::numeric_limits<double>::infinity(), sums);
     return std::nullopt;
   }
   const Vertex next =

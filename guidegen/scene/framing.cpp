@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <sstream>
 
 #include "core/image/check.h"
@@ -10,8 +11,9 @@
 namespace scumble {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadiansPerDegree = kPi / 180.0;
+using std::numbers::pi;
+
+constexpr double kRadiansPerDegree = pi / 180.0;
 constexpr double kFramingYfovDegrees = 35.0;
 constexpr double kFramingMargin = 1.1;  // the sphere fills 1 / 1.1 of the narrower side
 
@@ -94,7 +96,7 @@ Light KeyLight(const Camera& camera, double azimuth, double elevation) {
   Light light;
   light.name = "key";
   light.type = LightType::kSun;
-  light.intensity = kPi;
+  light.intensity = pi;
   light.world_from_light = camera.world_from_camera * Facing(azimuth, elevation);
   return light;
 }

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
+#include <numbers>
 
 #include "guidegen/surface/work_counters.h"
 
 namespace scumble {
 namespace {
 
-constexpr double kPi = glm::pi<double>();
+using std::numbers::pi;
 
 // What glTF gives every dielectric: an index of refraction of 1.5.
 constexpr double kDielectricF0 = 0.04;
@@ -36,7 +37,7 @@ double GgxD(double cosine, double alpha) {
   const double a2 = alpha * alpha;
   // 1 + (a² − 1)cos², arranged so that small α keeps its digits near cos = 1.
   const double d = (1.0 - cosine * cosine) + a2 * cosine * cosine;
-  return a2 / (kPi * d * d);
+  return a2 / (pi * d * d);
 }
 
 glm::dvec3 NotNegative(const glm::dvec3& c) {
@@ -61,7 +62,7 @@ glm::dvec2 SquareToDisc(double u, double v) {
   if (a == 0.0 && b == 0.0) return glm::dvec2(0.0);
   const bool wide = std::abs(a) > std::abs(b);
   const double radius = wide ? a : b;
-  const double angle = wide ? kPi / 4.0 * (b / a) : kPi / 2.0 - kPi / 4.0 * (a / b);
+  const double angle = wide ? pi / 4.0 * (b / a) : pi / 2.0 - pi / 4.0 * (a / b);
   return radius * glm::dvec2(std::cos(angle), std::sin(angle));
 }
 
@@ -121,7 +122,7 @@ double SurfaceBsdf::SpecularShare() const {
 SurfaceBsdf::Value SurfaceBsdf::Diffuse(const glm::dvec3& to_light) const {
   const double cosine = glm::dot(normal_, to_light);
   if (!(cosine > 0.0) || !(glm::dot(facing_, to_light) > 0.0)) return {};
-  return {diffuse_ * (Coupling(cosine) * cosine / kPi), cosine / kPi};
+  return {diffuse_ * (Coupling(cosine) * cosine / pi), cosine / pi};
 }
 
 SurfaceBsdf::Value SurfaceBsdf::Specular(const glm::dvec3& to_light) const {
@@ -146,7 +147,7 @@ SurfaceBsdf::Bounce SurfaceBsdf::SampleDiffuse(double u, double v) const {
   bounce.direction = glm::normalize(x * disc.x + y * disc.y + normal_ * cosine);
   if (!(cosine > 0.0) || !(glm::dot(facing_, bounce.direction) > 0.0)) return bounce;
   bounce.weight = diffuse_ * Coupling(cosine);
-  bounce.density = cosine / kPi;
+  bounce.density = cosine / pi;
   return bounce;
 }
 

@@ -11,22 +11,22 @@
 namespace scumble {
 namespace {
 
-using Color = std::array<double, 3>;
+using MeanColor = std::array<double, 3>;
 
 constexpr float kCovered = 0.999f;
 constexpr double kDepthChange = 0.05;
 
-Color In255OnWhite(const Picture& picture, int x, int y) {
-  Color color = OnWhite(picture, x, y);
+MeanColor In255OnWhite(const Picture& picture, int x, int y) {
+  MeanColor color = OnWhite(picture, x, y);
   for (double& value : color) value *= 255.0;
   return color;
 }
 
-void Add(Color& sum, double weight, const Color& color) {
+void Add(MeanColor& sum, double weight, const MeanColor& color) {
   for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * color[c];
 }
 
-double MeanDifference(const Color& a, const Color& b) {
+double MeanDifference(const MeanColor& a, const MeanColor& b) {
   return (std::fabs(a[0] - b[0]) + std::fabs(a[1] - b[1]) + std::fabs(a[2] - b[2])) / 3.0;
 }
 
@@ -61,7 +61,7 @@ class Flicker {
           ++report.hidden;
           continue;
         }
-        const Color from = In255OnWhite(a_, x, y);
+        const MeanColor from = In255OnWhite(a_, x, y);
         const double change = MeanDifference(from, Moved(target));
         report.changes[guides_.Index(x, y)] = static_cast<float>(change);
         sum += change;
@@ -132,8 +132,8 @@ class Flicker {
     return step;
   }
 
-  Color Moved(const Target& target) const {
-    Color sum{};
+  MeanColor Moved(const Target& target) const {
+    MeanColor sum{};
     for (int dy = 0; dy < 2; ++dy) {
       for (int dx = 0; dx < 2; ++dx) {
         const double weight = target.Weight(dx, dy);
@@ -144,12 +144,12 @@ class Flicker {
   }
 
   // a moved bilinearly by the same fractions of a pixel, then read as b is.
-  Color MovedByItself(int x, int y, const Target& target) const {
+  MeanColor MovedByItself(int x, int y, const Target& target) const {
     const auto weights = [](double t) {
       return std::array<double, 3>{t * (1 - t), (1 - t) * (1 - t) + t * t, t * (1 - t)};
     };
     const auto across = weights(target.along_x), down = weights(target.along_y);
-    Color sum{};
+    MeanColor sum{};
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         Add(sum, across[std::size_t(dx + 1)] * down[std::size_t(dy + 1)], In255OnWhite(a_, x + dx, y + dy));

@@ -15,7 +15,7 @@
 namespace scumble {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 // The paper's constants, by its names.
 constexpr double kQc = 0.7, kPc = 0.4, kPt = 0.95, kQf = 0.5, kW = 0.082;
@@ -102,7 +102,7 @@ Weights SensitivityGaussian(double b, int radius, double pixels_per_degree) {
   Weights weights;
   for (int i = -radius; i <= radius; ++i) {
     const double x = i / pixels_per_degree;
-    weights.push_back(std::exp(-kPi * kPi * x * x / b));
+    weights.push_back(std::exp(-pi * pi * x * x / b));
   }
   return weights;
 }
@@ -128,14 +128,14 @@ struct Filters {
   explicit Filters(double pixels_per_degree) {
     constexpr double kLuminance = 0.0047, kRedGreen = 0.0053, kBlueYellow[2] = {0.04, 0.025}, kAmount[2] = {34.1, 13.5};
     const int radius =
-        static_cast<int>(std::ceil(3.0 * std::sqrt(kBlueYellow[0] / (2.0 * kPi * kPi)) * pixels_per_degree));
+        static_cast<int>(std::ceil(3.0 * std::sqrt(kBlueYellow[0] / (2.0 * pi * pi)) * pixels_per_degree));
     y = SensitivityGaussian(kLuminance, radius, pixels_per_degree);
     cx = SensitivityGaussian(kRedGreen, radius, pixels_per_degree);
     y = Scaled(y, 1.0 / Sum(y)), cx = Scaled(cx, 1.0 / Sum(cx));
     double total = 0.0, amount[2];
     for (int i = 0; i < 2; ++i) {
       cz[i] = SensitivityGaussian(kBlueYellow[i], radius, pixels_per_degree);
-      amount[i] = kAmount[i] * std::sqrt(kPi / kBlueYellow[i]);
+      amount[i] = kAmount[i] * std::sqrt(pi / kBlueYellow[i]);
       total += amount[i] * Sum(cz[i]) * Sum(cz[i]);
     }
     for (int i = 0; i < 2; ++i) cz[i] = Scaled(cz[i], std::sqrt(amount[i] / total));

@@ -11,13 +11,13 @@
 namespace scumble {
 namespace {
 
-using Color = std::array<std::uint16_t, 3>;
+using HeatColor = std::array<std::uint16_t, 3>;
 
 // From dark blue to yellow, both inside the gamut of Rec.709.
-Color RampColor(double share) {
+HeatColor RampColor(double share) {
   constexpr glm::vec3 kBlue(0.26f, -0.01f, -0.12f), kYellow(0.92f, -0.04f, 0.17f);
   const glm::vec3 linear = LinearFromOklab(kBlue + static_cast<float>(share) * (kYellow - kBlue));
-  Color color;
+  HeatColor color;
   for (int i = 0; i < 3; ++i) color[static_cast<std::size_t>(i)] = Srgb16FromLinear(linear[i]);
   return color;
 }
@@ -58,11 +58,11 @@ Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b
     }
   }
   constexpr int kSteps = 1023;
-  std::array<Color, kSteps + 1> ramp;
+  std::array<HeatColor, kSteps + 1> ramp;
   for (int i = 0; i <= kSteps; ++i) ramp[static_cast<std::size_t>(i)] = RampColor(double(i) / kSteps);
   map.picture = Picture(a.width, a.height);
   for (std::size_t i = 0; i < largest.size(); ++i) {
-    Color color = {65535, 0, 65535};
+    HeatColor color = {65535, 0, 65535};
     if (std::isfinite(largest[i])) {
       const double share = largest[i] == 0.0 ? 0.0 : std::min(largest[i] / map.full_scale, 1.0);
       color = ramp[static_cast<std::size_t>(std::lround(share * kSteps))];
@@ -78,7 +78,7 @@ Picture ValueHeatMap(std::span<const float> values, int width, int height, doubl
   Picture picture(width, height);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    const Color color = RampColor(std::clamp(values[i] / full_scale, 0.0, 1.0));
+    const HeatColor color = RampColor(std::clamp(values[i] / full_scale, 0.0, 1.0));
     std::copy(color.begin(), color.end(), picture.rgba.begin() + std::ptrdiff_t(4 * i));
     picture.rgba[4 * i + 3] = 65535;
   }

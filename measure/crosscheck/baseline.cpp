@@ -10,8 +10,6 @@
 namespace scumble {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr int kVersion = 1;
 constexpr const char* kMend = "write it with scumble crosscheck --write-baseline";
 
@@ -33,7 +31,7 @@ bool ReadSize(const std::string& text, CrosscheckSetup& setup) {
 }
 
 // A whole number that an int holds.
-bool ReadInt(const Json& json, int least, int& value) {
+bool ReadInt(const nlohmann::json& json, int least, int& value) {
   if (!json.is_number_integer()) return false;
   const auto wide = json.is_number_unsigned() ? static_cast<double>(json.get<std::uint64_t>())
                                               : static_cast<double>(json.get<std::int64_t>());
@@ -42,7 +40,7 @@ bool ReadInt(const Json& json, int least, int& value) {
   return true;
 }
 
-Status ReadLimits(const Json& json, const std::string& file, const std::string& place, BaselineScene& scene) {
+Status ReadLimits(const nlohmann::json& json, const std::string& file, const std::string& place, BaselineScene& scene) {
   if (!json.is_object() || json.empty()) return Wrong(file, place, "is no object of figures");
   for (const auto& [figure, limit] : json.items()) {
     const double value = limit.is_number() ? limit.get<double>() : 0.0;
@@ -56,7 +54,7 @@ Status ReadLimits(const Json& json, const std::string& file, const std::string& 
   return Ok();
 }
 
-Expected<BaselineScene> ReadScene(const Json& json, const std::string& file, const std::string& place) {
+Expected<BaselineScene> ReadScene(const nlohmann::json& json, const std::string& file, const std::string& place) {
   if (!json.is_object()) return Wrong(file, place, "is no object");
   BaselineScene scene;
   bool has_size = false, has_samples = false, has_bounces = false, has_limits = false;
@@ -101,9 +99,9 @@ double RoundedUp(double value) {
 }  // namespace
 
 Expected<Baseline> ParseBaseline(std::string_view text, const std::string& file) {
-  Json json;
+  nlohmann::json json;
   try {
-    json = Json::parse(text);
+    json = nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& problem) {  // whose own words quote what it read, of any length
     const std::string_view read = text.substr(0, problem.byte == 0 ? 0 : problem.byte - 1);
     const auto line = 1 + std::count(read.begin(), read.end(), '\n');

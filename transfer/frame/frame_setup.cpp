@@ -11,7 +11,7 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kTileWidth = 64, kTileHeight = 16;
+constexpr int kSetupTileWidth = 64, kSetupTileHeight = 16;
 
 Region Around(const Region& a, const Region& b) {
   if (a.empty()) return b;
@@ -38,22 +38,23 @@ class Starter {
 
   void Start(int y0, int y1, StartedRows& rows) {
     if (input_.map) {
-      for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
+      for (int x0 = 0; x0 < width_; x0 += kSetupTileWidth) {
         const std::size_t known = rows.tiles.size();
-        for (int y = y0; y < y1; ++y) ReadMap(y, known, {x0, y0, std::min(width_, x0 + kTileWidth), y1}, rows);
+        for (int y = y0; y < y1; ++y) ReadMap(y, known, {x0, y0, std::min(width_, x0 + kSetupTileWidth), y1}, rows);
       }
       return;
     }
-    std::vector<std::uint8_t> any(static_cast<std::size_t>((width_ + kTileWidth - 1) / kTileWidth));
+    std::vector<std::uint8_t> any(static_cast<std::size_t>((width_ + kSetupTileWidth - 1) / kSetupTileWidth));
     for (int y = y0; y < y1; ++y) {
-      for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
-        const int x1 = std::min(width_, x0 + kTileWidth), painted = Cover(x0, x1, y, covered_->At(x0, y));
+      for (int x0 = 0; x0 < width_; x0 += kSetupTileWidth) {
+        const int x1 = std::min(width_, x0 + kSetupTileWidth), painted = Cover(x0, x1, y, covered_->At(x0, y));
         Finish(x0, x1, y, painted, rows);
-        any[std::size_t(x0 / kTileWidth)] |= painted > 0;
+        any[std::size_t(x0 / kSetupTileWidth)] |= painted > 0;
       }
     }
-    for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
-      if (any[std::size_t(x0 / kTileWidth)]) rows.tiles.push_back({0, {x0, y0, std::min(width_, x0 + kTileWidth), y1}});
+    for (int x0 = 0; x0 < width_; x0 += kSetupTileWidth) {
+      if (any[std::size_t(x0 / kSetupTileWidth)])
+        rows.tiles.push_back({0, {x0, y0, std::min(width_, x0 + kSetupTileWidth), y1}});
     }
   }
 
@@ -82,7 +83,7 @@ class Starter {
   // Finds the pixels that some style paints, notes which and where.
   void ReadMap(int y, std::size_t known, const Region& tile, StartedRows& rows) {
     const int x0 = tile.x0, x1 = tile.x1;
-    std::uint8_t here_covered[kTileWidth];
+    std::uint8_t here_covered[kSetupTileWidth];
     std::uint8_t* const covered = covered_ ? covered_->At(x0, y) : here_covered;
     int painted = 0;
     if (Cover(x0, x1, y, covered) > 0) painted = CountPainted(y, known, tile, covered, rows);
@@ -155,12 +156,12 @@ FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<s
   field.Resize(width, height);
   active.resize(input.guides.pixel_count());
   if (out.width != width || out.height != height) out = Picture(width, height);
-  const int count = (height + kTileHeight - 1) / kTileHeight;
+  const int count = (height + kSetupTileHeight - 1) / kSetupTileHeight;
   std::vector<StartedRows> bands(static_cast<std::size_t>(count));
   tbb::parallel_for(0, count, [&](int b) {
     StartedRows& rows = bands[std::size_t(b)];
     if (input.map) rows.extents.resize(input.styles);
-    const int y0 = b * kTileHeight, y1 = std::min(height, y0 + kTileHeight);
+    const int y0 = b * kSetupTileHeight, y1 = std::min(height, y0 + kSetupTileHeight);
     const ActiveRows all{active.data(), width};
     if (input.map) std::fill_n(all.At(0, y0), std::size_t(y1 - y0) * width, std::uint8_t{0});
     Starter(input, &field, input.map ? nullptr : &all, out).Start(y0, y1, rows);

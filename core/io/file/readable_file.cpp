@@ -9,6 +9,11 @@
 
 namespace scumble::internal {
 
+bool Exists(const std::filesystem::path& path) {
+  std::error_code failed;
+  return std::filesystem::exists(path, failed);
+}
+
 Status CheckReadable(const std::filesystem::path& path) {
   const auto refuse = [&](const std::string& why) { return InputError("cannot read " + path.string() + ": " + why); };
   std::error_code failed;

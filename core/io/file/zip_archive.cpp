@@ -9,13 +9,20 @@
 #include <limits>
 
 namespace scumble {
+namespace internal {
+
+struct DiscardArchive {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+
+}  // namespace internal
+
 namespace {
+
+using internal::DiscardArchive;
 
 struct CloseSource {
   void operator()(zip_source_t* source) const { zip_source_free(source); }
-};
-struct DiscardArchive {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
 };
 struct CloseEntry {
   void operator()(zip_file_t* entry) const { zip_fclose(entry); }
@@ -80,7 +87,7 @@ bool IsZip(const std::filesystem::path& path) {
 }
 
 struct ZipReader::Archive {
-  std::unique_ptr<zip_t, DiscardArchive> handle;
+  std::unique_ptr<zip_t, internal::DiscardArchive> handle;
 };
 
 ZipReader::ZipReader(std::unique_ptr<Archive> archive, std::string file, std::vector<std::string> names)

@@ -13,8 +13,6 @@
 namespace scumble::internal {
 namespace {
 
-constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-
 std::uint32_t Sum(std::span<const std::byte> bytes) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
@@ -49,15 +47,15 @@ std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes) {
 }
 
 bool IsPng(std::span<const std::byte> bytes) {
-  return bytes.size() >= kSignature.size() &&
-         std::equal(kSignature.begin(), kSignature.end(), bytes.begin(),
+  return bytes.size() >= kPngSignature.size() &&
+         std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin(),
                     [](unsigned char a, std::byte b) { return a == std::to_integer<unsigned char>(b); });
 }
 
 bool IsPngFile(const std::filesystem::path& path) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return false;
-  char start[kSignature.size()] = {};
+  char start[kPngSignature.size()] = {};
   std::ifstream(path, std::ios::binary).read(start, sizeof start);
   return IsPng(std::as_bytes(std::span(start)));
 }
@@ -66,7 +64,7 @@ Status CheckPngIntegrity(std::span<const std::byte> bytes, const std::string& na
   constexpr std::size_t kAround = 12;  // length, type and sum
   const std::optional<PngHeader> header = ReadPngHeader(bytes);
   std::uint64_t packed = 0;
-  bytes = bytes.subspan(kSignature.size());
+  bytes = bytes.subspan(kPngSignature.size());
   while (bytes.size() >= kAround) {
     const std::size_t length = Number(bytes);
     if (length > bytes.size() - kAround) break;

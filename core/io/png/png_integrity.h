@@ -1,6 +1,7 @@
 // Whether a PNG file is all there: libpng would say so on standard error, whoever listens.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +12,9 @@
 #include "core/image/status.h"
 
 namespace scumble::internal {
+
+// What every PNG file begins with.
+inline constexpr std::array<unsigned char, 8> kPngSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
 // Whether the bytes begin as every PNG file does.
 bool IsPng(std::span<const std::byte> bytes);

@@ -13,6 +13,7 @@
 #include "core/image/check.h"
 #include "core/io/parallel.h"
 #include "core/io/png/png_filter.h"
+#include "core/io/png/png_integrity.h"
 
 namespace scumble::internal {
 namespace {
@@ -48,8 +49,7 @@ std::size_t BeginChunk(std::vector<std::byte>& out, std::string_view type) {
 // knows sRGB.
 std::vector<std::byte> Head(const Picture& picture, const PngOptions& options) {
   std::vector<std::byte> out;
-  constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  for (const unsigned char c : kSignature) out.push_back(static_cast<std::byte>(c));
+  for (const unsigned char c : kPngSignature) out.push_back(static_cast<std::byte>(c));
   const auto byte = [&](int value) { out.push_back(static_cast<std::byte>(value)); };
 
   std::size_t chunk = BeginChunk(out, "IHDR");

@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kMmPerInch = 25.4;
 
-struct Paper {
+struct Sheet {
   PaperSize size;
   const char* option;
   const char* name;
   double width_mm, height_mm;
 };
-constexpr std::array<Paper, 3> kPapers{{{PaperSize::kA4, "a4", "A4", 210, 297},
+constexpr std::array<Sheet, 3> kPapers{{{PaperSize::kA4, "a4", "A4", 210, 297},
                                         {PaperSize::kLetter, "letter", "Letter", 8.5 * kMmPerInch, 11 * kMmPerInch},
                                         {PaperSize::kA3, "a3", "A3", 297, 420}}};
 
@@ -43,7 +43,7 @@ PrintPage Place(const std::string& name, double width_mm, double height_mm, int 
 }
 
 // Width and height that the paper leaves for the template.
-double Room(const Paper& paper) {
+double Room(const Sheet& paper) {
   return std::min(paper.width_mm - 2 * kPageEdgeMm, paper.height_mm - 2 * kPageEdgeMm - kWordsMm);
 }
 
@@ -81,7 +81,7 @@ int ScanDpi(int size, int dpi) {
 
 Expected<PrintPage> PlacePage(PaperSize wanted, int size, int dpi) {
   const double side = MillimetresOf(TemplateSide(size), dpi);
-  for (const Paper& paper : kPapers) {
+  for (const Sheet& paper : kPapers) {
     const bool candidate = wanted == PaperSize::kAuto ? paper.size != PaperSize::kLetter : wanted == paper.size;
     if (!candidate) continue;
     if (side <= Room(paper)) return Place(paper.name, paper.width_mm, paper.height_mm, TemplateSide(size), dpi);
@@ -98,7 +98,7 @@ Expected<PrintPage> PlacePage(PaperSize wanted, int size, int dpi) {
 }
 
 Expected<PaperSize> ParsePaperSize(const std::string& text) {
-  for (const Paper& paper : kPapers) {
+  for (const Sheet& paper : kPapers) {
     if (text == paper.option) return paper.size;
   }
   if (text == "fit") return PaperSize::kFit;

@@ -10,17 +10,21 @@
 #include "core/image/check.h"
 #include "core/image/style.h"
 #include "core/io/file/atomic_file.h"
+#include "core/io/file/readable_file.h"
 #include "core/io/guide_file.h"
 #include "core/io/picture/open_raster.h"
 #include "core/io/picture_file.h"
 #include "core/style/kit/fiducials.h"
 #include "core/style/kit/guide_layers.h"
 #include "core/style/kit/template_pdf.h"
+#include "core/style/style_file.h"
 
 namespace scumble {
 namespace {
 
 namespace fs = std::filesystem;
+
+using internal::Exists;
 
 std::string Numbered(const std::string& stem, const std::string& ending, std::size_t index) {
   return index == 0 ? stem + ending : stem + "-" + std::to_string(index + 1) + ending;
@@ -162,11 +166,6 @@ Error MayBePainting(const fs::path& path) {
                      "a painting. Move it away, give this light a --name of its own, or write to another folder");
 }
 
-bool Exists(const fs::path& path) {
-  std::error_code failed;
-  return fs::exists(path, failed);
-}
-
 // A template that somebody painted over must not be lost; one that is as we would draw it, or once drew it, may go.
 Status RefusePaintedTemplate(const fs::path& path, const KitLight& light, const Picture& drawn) {
   if (!Exists(path)) return Ok();
@@ -246,7 +245,6 @@ Expected<std::vector<RasterLayer>> TemplateLayers(const KitLight& light) {
 Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::vector<KitLight>& lights) {
   std::error_code failed;
   if (!fs::exists(path, failed)) return std::optional(StarterStyle(lights));
-  constexpr std::size_t kMaxStyleBytes = 1 << 20;
   SCUMBLE_ASSIGN(const auto bytes, ReadWholeFile(path, kMaxStyleBytes));
   const std::string old(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::string text = old;

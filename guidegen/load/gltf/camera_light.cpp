@@ -12,7 +12,6 @@ namespace scumble {
 namespace {
 
 constexpr double kLumensPerWatt = 683.0;
-constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
 // By KHR_lights_punctual, without its place.
 Expected<Light> ReadPunctualLight(const tinygltf::Model& model, const std::string& file, const RigNode& visit,

@@ -3,14 +3,15 @@
 #include <tiny_gltf.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "guidegen/load/loader_util.h"
 
 namespace scumble {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegreesPerRadian = 180.0 / kPi;
+using std::numbers::pi;
+
 constexpr std::size_t kMaxWarnings = 100;
 constexpr std::size_t kLongestWarning = 400;   // bytes; export_scene.py writes less
 constexpr double kLargestPassIndex = 32767.0;  // Blender's limit
@@ -81,7 +82,7 @@ constexpr double kLargest = 1e30;  // finite as a float after every formula here
 void ReadSpot(Fields& fields, Light& light) {
   light.cycles_spot = true;
   light.spot_blend = fields.Number("spot_blend", 0.0, 1.0);
-  light.outer_cone_degrees = fields.Number("spot_size", 0.0, kPi + 1e-6) / 2.0 * kDegreesPerRadian;
+  light.outer_cone_degrees = fields.Number("spot_size", 0.0, pi + 1e-6) / 2.0 * kDegreesPerRadian;
   light.inner_cone_degrees = light.outer_cone_degrees * (1.0 - light.spot_blend);
 }
 
@@ -92,7 +93,7 @@ bool ReadArea(Fields& fields, Light& light, double energy) {
   if (!light.ellipse && shape != "SQUARE" && shape != "RECTANGLE") fields.Complain("shape", "is unknown");
   light.size_x = fields.Number("size", 0.0, kLargest);
   light.size_y = fields.Number("size_y", 0.0, kLargest);
-  const double area = light.size_x * light.size_y * (light.ellipse ? kPi / 4.0 : 1.0);
+  const double area = light.size_x * light.size_y * (light.ellipse ? pi / 4.0 : 1.0);
   light.intensity = energy / (4.0 * area);
   return area > 0.0 && std::isfinite(light.intensity);
 }
@@ -191,7 +192,7 @@ Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const
   const std::string type = fields.Text("type");
   const double energy = fields.Number("energy", 0.0, kLargest);
   light.color = fields.Color("color");
-  light.intensity = energy / (4.0 * kPi);
+  light.intensity = energy / (4.0 * pi);
   bool shines = true;
   if (type == "POINT" || type == "SPOT") {
     light.radius = fields.Number("radius", 0.0, kLargest);
@@ -199,7 +200,7 @@ Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const
   } else if (type == "SUN") {
     light.type = LightType::kSun;
     light.intensity = energy;
-    light.angle_degrees = fields.Number("angle", 0.0, kPi + 1e-6) * kDegreesPerRadian;
+    light.angle_degrees = fields.Number("angle", 0.0, pi + 1e-6) * kDegreesPerRadian;
   } else if (type == "AREA") {
     light.type = LightType::kArea;
     shines = ReadArea(fields, light, energy);
@@ -233,7 +234,7 @@ Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Ca
   if (camera.orthographic) {
     camera.ymag = fields.Number("ortho_scale", 1e-12, kLargest) / 2.0;
   } else {
-    camera.yfov_degrees = fields.Number("angle", 1e-9, kPi - 1e-9) * kDegreesPerRadian;
+    camera.yfov_degrees = fields.Number("angle", 1e-9, pi - 1e-9) * kDegreesPerRadian;
   }
   return fields.Verdict();
 }

@@ -4,6 +4,7 @@
 // kInput error that names the place.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,8 @@ class Node;
 }  // namespace tinygltf
 
 namespace scumble {
+
+inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 // Styles are also read from the custom property `scumble_style` itself, as other exporters write it.
 
