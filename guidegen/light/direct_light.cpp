@@ -12,7 +12,7 @@
 namespace scumble {
 namespace {
 
-// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is so small; and a radiance, over
+// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is smaller; and a radiance, over
 // the square of it, stays within a double's range.
 constexpr double kLeastRadius = 0x1p-149;
 

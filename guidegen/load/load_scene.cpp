@@ -37,7 +37,7 @@ Expected<Scene> LoadByEnding(const std::filesystem::path& path) {
                     "'; expected a scene in .glb, .gltf, .obj or .ply");
 }
 
-// What every loader promises about its scene (guidegen/scene/scene.h).
+// Checks the contract of every loader about its scene (guidegen/scene/scene.h).
 void CheckPromises(const Scene& scene) {
   SCUMBLE_CHECK(!scene.materials.empty());
   for (const Mesh& mesh : scene.meshes) {

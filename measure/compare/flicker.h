@@ -1,4 +1,4 @@
-// How much a sequence flickers: the mean change of colour of what stays in sight, followed along its motion.
+// Measures the flicker of a sequence: the mean change of colour of visible surfaces, followed along their motion.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ struct FlickerReport {
   std::size_t hidden =
       0;              // fully covered ones of the first frame that the second does not show, or that lie at an edge
   double mean = 0.0;  // of |a - b| over R, G and B, sRGB units 0 … 255; 0 without pixels
-  // What the same motion would score if the first picture's colours all moved along: pixels that move by fractions are
-  // resampled, and fine paint pays for that. It is 0 for whole pixels. A mean below it is no rest, but a blurred
-  // picture.
+  // The score of the same motion if the first picture's colours all moved along. Pixels that move by fractions are
+  // resampled, which blurs fine paint. It is 0 for whole pixels. A mean below it shows a blurred picture, not a steady
+  // one.
   double floor = 0.0;
-  std::vector<float> changes;  // by pixel of the first frame, row by row: what `mean` is the mean of; NaN: not compared
+  std::vector<float> changes;  // by pixel of the first frame, row by row: the changes behind `mean`; NaN: not compared
 };
 
 // `a` and `b` are a frame and the next one; `guides` are the first one's, with layer `motion`: pixels to the next

@@ -35,7 +35,7 @@ svg { max-width: 44rem; width: 100%; font: 12px system-ui, sans-serif; } svg tex
 svg .grid { stroke: var(--line); } svg .guide { stroke: var(--soft); stroke-dasharray: 5 5; stroke-width: 1.4; }
 )";
 
-// A mark too: colours alone are not for every eye.
+// With a mark, because not every viewer separates the colours.
 std::string Badge(CrosscheckOutcome outcome) {
   const char* kind = outcome == CrosscheckOutcome::kAgrees      ? "agrees\">✓"
                      : outcome == CrosscheckOutcome::kNotProved ? "unproved\">?"
@@ -52,7 +52,7 @@ CrosscheckOutcome OutcomeOf(const std::vector<CrosscheckReport>& reports) {
 
 std::string Anchor(std::size_t index) { return fmt::format("scene{}", index + 1); }
 
-// The figure nearest to its limit, or farthest beyond it: what a reader of the summary wants to know first.
+// The figure nearest to its limit, or farthest beyond it: the most important one of the summary.
 const CrosscheckFigure* Tightest(const CrosscheckReport& report) {
   const CrosscheckFigure* tightest = nullptr;
   double most = -1.0;

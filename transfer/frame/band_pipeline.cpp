@@ -13,12 +13,12 @@ namespace scumble::internal {
 namespace {
 
 constexpr int kStep =
-    24;  // rows that are started, matched and voted on together; what they need stays in the second cache
-constexpr int kLeastShare = 16;  // rows of a stretch that another thread may take over
+    24;  // 24; // rows of a step, which are started, matched and voted on together; their data stay in the second cache
+constexpr int kLeastShare = 16;  // rows of a range that another thread may take over
 
-// The rows that are left, shared out over workers. Each goes down its own stretch; who is done takes the lower half of
-// the longest that is left, so stretches are as long as can be: each begins with seeds that must be made, and ends with
-// rows that are matched twice.
+// The remaining rows, distributed over workers. Each worker goes down its own range of rows; a worker that is done
+// takes the lower half of the longest remaining range. So ranges are as long as possible: each begins with seeds that
+// must be made, and ends with rows that are matched twice.
 class RowShares {
  public:
   RowShares(int y0, int y1, int workers) {
@@ -30,11 +30,11 @@ class RowShares {
 
   struct Rows {
     int begin, end;
-    int sure;  // rows from `end` to here are not taken yet, but will be by nobody else
+    int sure;  // rows from `end` to here are not taken yet, and only this worker will take them
     int size() const { return end - begin; }
   };
-  // The next rows for a worker, at most `most`, straight below its last ones unless these were the end of its stretch.
-  // None: empty.
+  // The next rows for a worker, at most `most`, directly below its last ones unless its range has ended. Empty if there
+  // are none.
   Rows Take(int worker, int most) {
     const std::lock_guard lock(mutex_);
     Stretch& own = left_[static_cast<std::size_t>(worker)];
@@ -59,7 +59,7 @@ class RowShares {
   std::vector<Stretch> left_;  // by worker
 };
 
-// What is made once for all threads.
+// Data that is made once for all threads.
 struct SharedStyle {
   const BandStyle& style;
   ExemplarRows exemplar;
@@ -67,7 +67,7 @@ struct SharedStyle {
   std::optional<WideVotes> wide_votes;  // for radii above kSmallRadius
 };
 
-// One thread's share.
+// One thread's part of the frame.
 class Band {
  public:
   Band(const FrameInput& frame, std::span<const SharedStyle> styles, BandMemory& memory, Picture& out)
@@ -88,7 +88,7 @@ class Band {
     if (memory.seeds.size() < styles_.size() * columns_) memory.seeds.resize(styles_.size() * columns_);
   }
 
-  // Rows of the region, as long as there are any for this worker.
+  // Paints rows of the region, as long as this worker gets any.
   void Paint(RowShares& shares, int worker, RowProgress& progress) {
     watch_.Lap();
     int last = -1;
@@ -105,7 +105,7 @@ class Band {
   const BandShares& shares() const { return shares_; }
 
  private:
-  // A stretch of rows.
+  // Begins a range of rows.
   void Begin(int y) {
     for (std::vector<Region>& pieces : memory_.pieces) pieces.clear();
     for (TileScratch& seeds : memory_.seeds) seeds.begun = false;
@@ -141,11 +141,11 @@ class Band {
     }
   }
 
-  // Rows from `begin` on.
+  // Sets up rows from `begin` on.
   void Start(int begin) {
     StartedRows& rows = memory_.rows;
     rows.tiles.clear(), rows.soft = false;
-    const FrameInput cleared{frame_.guides, frame_.map, frame_.styles, own_};  // other rows are other threads'
+    const FrameInput cleared{frame_.guides, frame_.map, frame_.styles, own_};  // other threads clear the other rows
     StartRows(cleared, begin, end_, Covered(), out_, rows);
     soft_ = soft_ || rows.soft;
     for (const auto& [style, tile] : rows.tiles) memory_.pieces[style].push_back(tile);
@@ -169,7 +169,7 @@ class Band {
 
   void Match(int s, int begin, std::span<const std::uint8_t> active) {
     const std::vector<Region>& pieces = PiecesOf(s);
-    // New ones come last, from the left to the right.
+    // New ones come last, from left to right.
     auto piece = std::ranges::find_if(pieces, [&](const Region& one) { return one.y1 > begin; });
     while (piece != pieces.end()) {
       const int x0 = piece->x0, end = (x0 / kTileWidth + 1) * kTileWidth;
@@ -199,7 +199,7 @@ class Band {
     if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { ColorizeRow(tint, y, x0, x1, out_); };
     std::vector<std::uint8_t>& words = memory_.words;  // that have pixels of the style
     for (const Region& piece : PiecesOf(s)) words[static_cast<std::size_t>(piece.x0 / 64)] = 1;
-    constexpr std::ptrdiff_t kGap = 2;  // so few words between two others are looked at too
+    constexpr std::ptrdiff_t kGap = 2;  // gaps of so few words between two others are processed too
     for (auto from = std::ranges::find(words, 1); from != words.end();) {
       auto to = from + 1, next = std::find(to, words.end(), 1);
       while (next != words.end() && next - to <= kGap) to = next + 1, next = std::find(to, words.end(), 1);

@@ -14,12 +14,12 @@ namespace {
 constexpr int kCoarsest = 6, kFinest = 3;  // levels at the reference height
 constexpr float kLeastAlike = 0.955336f;   // cos of 0.3 rad
 constexpr float kFreedom = 0.5f;           // radians
-// Of the turn that the rim itself makes over half a cell: from there on a seed's direction is the outline's.
+// As a share of the rim's own turn over half a cell: from there on a seed's direction is the outline's.
 constexpr float kTurnOfNoFreedom = 0.75f;
 
 int Level(int level, int level_offset) { return std::clamp(level - level_offset, 0, 14); }
 
-// Rotates by 2 atan(half_tangent), with nothing but what is the same on every machine.
+// Rotates by 2 atan(half_tangent), with operations that are exact on every machine.
 glm::vec2 Turned(glm::vec2 v, float half_tangent) {
   const float square = half_tangent * half_tangent;
   const float cosine = (1.0f - square) / (1.0f + square), sine = 2.0f * half_tangent / (1.0f + square);
@@ -49,7 +49,8 @@ class OutlineSeeds {
                       [&](std::size_t s) { seeds_[s].piece = PieceOf(seeds_[s].outline); });
   }
 
-  // The piece of the seed nearest to outline pixel k, among those of its object in the 3 × 3 cells around; null: none.
+  // The segment of the seed nearest to outline pixel k, among those of its object in the 3 × 3 cells around; null:
+  // none.
   const RimSegment* Nearest(std::size_t k) const {
     const OutlinePixel& own = input_.silhouettes.outline()[k];
     const int h = LevelAt(k), row = own.y >> h, column = own.x >> h;
@@ -106,7 +107,7 @@ class OutlineSeeds {
     return &found->piece;
   }
 
-  // 1 where the outline is straight over half a cell to either side, 0 where it turns as the rim does.
+  // 1 where the outline is straight over half a cell to either side, 0 where it turns as strongly as the rim.
   float FreedomAt(std::size_t k, int h) const {
     const auto outline = input_.silhouettes.outline();
     const OutlinePixel& own = outline[k];
@@ -148,7 +149,7 @@ std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
     return pixel.x >= region.x0 - grown && pixel.y >= region.y0 - grown && pixel.x < region.x1 + grown &&
            pixel.y < region.y1 + grown;
   };
-  // Each outline pixel's own piece …
+  // Each outline pixel's own segment …
   std::vector<RimSegment> own(outline.size());
   tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
     const OutlinePixel& pixel = outline[k];
@@ -164,7 +165,7 @@ std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
       return;
     }
   });
-  // … and those of the pixels beside it, by how many have them.
+  // … and those of the pixels beside it, weighted by their number.
   std::vector<RimSegments> chosen(outline.size());
   tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
     const OutlinePixel& pixel = outline[k];

@@ -22,7 +22,7 @@ struct ChunkRow {
   int width;
   bool last;              // no row below
   std::int64_t readable;  // values from column 0 to the end of the plane
-  int size;               // of the exemplar; 0: nothing is deep
+  int size;               // of the exemplar; 0: no pixel is interior
   int radius;
   std::int64_t limit;  // (|2x + 1 - size| + 2·radius)² + the same of y must not be beyond it
 };
@@ -55,7 +55,7 @@ HWY_INLINE std::uint64_t Bits(D d, const Mask& mask) {
   return hn::Lanes(d) < 64 ? bits & ((std::uint64_t{1} << (hn::Lanes(d) & 63)) - 1) : bits;
 }
 
-// A vector's worth of columns is only looked at where this many lanes make whole vectors of a word.
+// A vector of columns is only loaded where this many lanes make whole vectors of a word.
 HWY_INLINE bool Fits(const ChunkRow& row, int begin) {
   return hn::Lanes(kByte) <= 64 && hn::Lanes(kByte) > 1 && row.width - begin >= 64 && row.readable - begin >= 65;
 }
@@ -156,7 +156,7 @@ HWY_EXPORT(LinkRow);
 
 namespace {
 
-// Without an exemplar what LinkRow reads of it is not there.
+// Without an exemplar, LinkRow's values of it are unset.
 ChunkRow RowAt(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar* exemplar,
                int radius, int y) {
   const std::size_t begin = field.Index(0, y);
@@ -208,7 +208,7 @@ bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
     if (y < last) {
       below = marks.active.Row(y + 1);
     } else if (!row.last) {
-      row.last = true;  // links to what is below the tile are not asked for
+      row.last = true;  // links to rows below the tile are not needed
     }
     HWY_DYNAMIC_DISPATCH(LinkRow)
     (row, tile.first_word, tile.words, marks.active.Row(y), below, marks.right.Row(y), marks.below.Row(y),

@@ -11,11 +11,12 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kTileRows = 32;    // so that what a tile's neighbours make once more is little
-constexpr int kStripWords = 16;  // of a tile are voted on together, so that their texels stay in the nearer caches
-constexpr int kTileWords = 32;   // so that all marks of a tile stay in the caches
+constexpr int kTileRows = 32;  // so that neighbouring tiles repeat little work
+constexpr int kStripWords =
+    16;  // words of a tile that are voted on together, so that their texels stay in the nearer caches
+constexpr int kTileWords = 32;  // so that all masks of a tile stay in the caches
 
-// One part of the picture: masks of its chunks, then of its open steps, then its votes row by row.
+// One part of the picture: its chunk masks, then its open steps, then its votes row by row.
 class VoteTile {
  public:
   VoteTile(const VoteInput& input, const TexelPlanes& texels, const Region& region)
@@ -67,7 +68,7 @@ class VoteTile {
       CopyMarked(row, copied, linked);
       if (any_mixed) {
         for (int w = 0; w < words; ++w) {
-          copied[w] = mixed_.At(y, first_word + w) & ~whole[w] & ~parts[w];  // one by one
+          copied[w] = mixed_.At(y, first_word + w) & ~whole[w] & ~parts[w];  // pixel by pixel
         }
         if (any_whole) MeanOfMarked(row, sources, whole);
         if (any_parts) MeanOfParts(row, sources, votes_, parts);
@@ -86,7 +87,7 @@ class VoteTile {
     return {joined_.data() + std::size_t(w) * kNeighbourCount, std::size_t(kNeighbourCount)};
   }
 
-  // Marks the pixels of the region whose windows are not of one chunk. False: nothing is active.
+  // Marks the pixels of the region whose windows have several chunks. False: no pixel is active.
   bool Split() {
     mixed_.Reset(tile_.first_row, tile_.rows, tile_.first_word, tile_.words, 0);
     bool any = false;
@@ -113,7 +114,7 @@ class VoteTile {
     return one;
   }
 
-  // Whether all of the window is active, and all texels that it votes for are usable.
+  // Whether all of the window is active, and all texels of its votes are usable.
   std::uint64_t WholeWindows(int y, int word) const {
     const int r = input_.radius;
     std::uint64_t whole = BitMaskRows::kAll;
@@ -123,7 +124,7 @@ class VoteTile {
     return whole;
   }
 
-  // The steps that the support regions of the mixed pixels depend on: of three rows, from the pixel on the left.
+  // The steps that the support regions of multi-chunk pixels depend on: of three rows, from the pixel on the left.
   void MarkSteps() {
     BitMaskRows wanted;
     wanted.Reset(tile_, 0);
@@ -150,8 +151,8 @@ class VoteTile {
     }
   }
 
-  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the
-  // votes.
+  // The pixels whose votes are all known to be usable: every joined active neighbour has usable texels only. Records
+  // the votes.
   std::uint64_t SureParts(int y, int word, std::uint64_t pixels, int w) {
     const std::span<const std::uint64_t> joined = JoinedAt(w);
     std::uint64_t* votes = votes_.data() + std::size_t(w) * joined.size();

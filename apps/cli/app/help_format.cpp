@@ -88,7 +88,7 @@ std::string HelpFormat::make_option_name(const CLI::Option* option, bool is_posi
 std::string HelpFormat::make_option_opts(const CLI::Option* option) const {
   std::string text;
   if (option->get_type_size() != 0) {
-    const std::string type = option->get_type_name();  // what checks its values stands behind a colon
+    const std::string type = option->get_type_name();  // the check of its values follows a colon
     text = " " + type.substr(0, type.find(':', type.starts_with('[') ? type.find(']') : 0));
     if (!option->get_default_str().empty()) text += " = " + option->get_default_str();
   }

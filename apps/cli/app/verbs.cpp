@@ -9,7 +9,7 @@
 namespace scumble {
 namespace {
 
-// Prints the help of the verb of that name, or of the whole program.
+// Prints the help of the command of that name, or of the whole program.
 Expected<ExitCode> RunHelpVerb(const CLI::App& app, const std::string& name) {
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (verb->get_name() == name) return Print(verb->help(app.get_name())), ExitCode::kOk;

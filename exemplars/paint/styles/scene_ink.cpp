@@ -1,5 +1,5 @@
-// Pen and brown wash from a set-up: bistre washes for what the lamp leaves dark, pen lines over them that follow the
-// form: round the ball, across the floor, down the wall, and the cast shadow hatched the way it falls.
+// Pen and brown wash from a set-up: bistre washes for the unlit parts, pen lines over them that follow the form: around
+// the sphere, across the floor, down the wall, and the cast shadow hatched in its direction.
 #include <cmath>
 
 #include "exemplars/paint/engine/glaze.h"
@@ -18,7 +18,7 @@ constexpr glm::vec3 kInk{0.16f, 0.10f, 0.07f};
 
 enum Pass : std::uint64_t { kFirstWash = kFirstStream, kFirstLines = 40 };
 
-// Lightness wanted, of ball, floor and wall alike.
+// Target lightness of sphere, floor and wall alike.
 float Value(const Scene& scene, glm::vec2 at) {
   if (scene.BallDistance(at) < 1.0f) {
     const Seen seen = scene.OnBall(at);

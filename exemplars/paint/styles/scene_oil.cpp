@@ -1,6 +1,6 @@
-// Oil from a set-up: wall, floor and cast shadow first, with a wide brush, then the ball over them, its edge cut in
-// with touches that go round it. Orange on ochre; what the lamp does not reach turns to violet, and the floor's light
-// comes back into the ball's shade.
+// Oil from a set-up: wall, floor and cast shadow first, with a wide brush, then the sphere over them, its edge cut in
+// with touches around it. Orange on ochre; unlit parts turn to violet, and the floor reflects light into the sphere's
+// shade.
 #include <cmath>
 
 #include "exemplars/paint/engine/impasto.h"
@@ -12,7 +12,7 @@
 namespace scumble::paint {
 namespace {
 
-// Impasto has the streams below for its own passes.
+// Impasto uses the lower streams for its own passes.
 enum Pass : std::uint64_t { kWallPass = 200, kFloorPass, kShadowPass, kBallPass, kEdgePass, kLightPass };
 
 glm::vec3 OfWall(const Seen& seen) {
@@ -96,7 +96,7 @@ void PaintFloor(Impasto& painting, const Scene& scene, std::uint64_t seed) {
       hand.Touch(path, {18.0f * size * near, 2.4f, load, 0.9f}, OfFloor(seen, scene.Contact(patch)));
     });
   }
-  // The shadow once more, thin, the way it falls, so that its edge is drawn by strokes and not by the set-up's pixels.
+  // The shadow again, thin, in its direction, so that strokes draw its edge and not the pixels of the guides.
   Hand shadow{painting, Chance(seed, Hash(kShadowPass, 1)), 0.035f};
   Chance plan(seed, Hash(kShadowPass, 2));
   const PatchOptions patches{.spacing = 30.0f,
@@ -134,7 +134,7 @@ void PaintBall(Impasto& painting, const Scene& scene, std::uint64_t seed) {
   for (const float size : {1.6f, 1.0f, 0.75f}) {
     Chance plan(seed, Hash(kBallPass, 2, layer));
     const Flow flow = scene.OverBall(AroundAxis(kKeyLight + glm::vec3(-0.25f, 0.10f, -0.45f)));
-    // The first cover leaves nothing of the wall.
+    // The first cover hides the wall completely.
     const PatchOptions patches{.spacing = (layer == 0 ? 20.0f : 27.0f) * size,
                                .touches_min = 1,
                                .touches_max = 3,
@@ -153,7 +153,7 @@ void PaintBall(Impasto& painting, const Scene& scene, std::uint64_t seed) {
     ++layer;
   }
   CutInEdge(painting, scene, seed, 1, 7.0f, 11.0f);
-  // Where the lamp mirrors, thick and last.
+  // The mirror image of the light, thick and last.
   Hand light{painting, Chance(seed, Hash(kLightPass, 1)), 0.012f};
   Chance dabs(seed, Hash(kLightPass, 2));
   const Flow flow = scene.OverBall(AroundAxis(kKeyLight + glm::vec3(0.1f, -0.1f, -0.4f)));

@@ -1,6 +1,6 @@
-// Soft pastel on sand-coloured paper, from a set-up: a turquoise ball, rose floor, lilac wall. Sticks are laid broad
-// and side by side, first the local colours, then light and shade over them, then the sharp ends: the paper stays
-// between.
+// Soft pastel on sand-coloured paper, from a set-up: a turquoise sphere, rose floor, lilac wall. Sticks are laid broad
+// and side by side, first the local colours, then light and shade over them, then the sharp ends: paper shows between
+// them.
 #include <cmath>
 
 #include "exemplars/paint/engine/drawing.h"
@@ -16,7 +16,7 @@ constexpr Stock kPaper{Tooth::kLaid, 5.5f, {0.76f, 0.69f, 0.58f}, 0.05f};
 constexpr const char* kStick = "tanda/charcoal-04";
 constexpr const char* kTip = "classic/charcoal";
 
-// One stick's turn at the picture.
+// The use of one stick in the picture.
 struct Turn {
   const char* preset;
   float radius;
@@ -38,7 +38,7 @@ class Sticks {
     Chance plan(studio_.seed, stream_++);
     Chance hand(studio_.seed, Hash(stream_, 77));
     LayPatches(plan, turn.flow, turn.patches, [&](const Stroke& path, glm::vec2 patch) {
-      // Sown by tone, not only pressed by it: where little is wanted, few strokes go.
+      // Density follows the tone, not only pressure: where little is needed there are few strokes.
       if (!hand.Happens(1.3f * turn.where(patch))) return;
       const float shift = hand.Bell(0.035f);
       stick.Color(glm::clamp(turn.color * glm::vec3(1.0f + shift, 1.0f + hand.Bell(0.02f), 1.0f - shift), 0.0f, 1.0f));
@@ -78,7 +78,7 @@ struct Places {
   float Ball(glm::vec2 at) const { return Ramp(1.005f, 0.985f, scene.BallDistance(at)); }
   float Wall(glm::vec2 at) const { return scene.BallDistance(at) > 0.98f && !scene.IsFloor(at) ? 1.0f : 0.0f; }
   float Floor(glm::vec2 at) const { return scene.BallDistance(at) > 0.98f && scene.IsFloor(at) ? 1.0f : 0.0f; }
-  // A touch of what is seen there.
+  // A touch that depends on the values there.
   template <class Where>
   Touch OnBall(Where where) const {
     return [this, where](glm::vec2 at) { return Ball(at) > 0.0f ? Ball(at) * where(scene.OnBall(at)) : 0.0f; };
