@@ -19,7 +19,8 @@ import runs
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 COUNTED = ("build", "rays", "upsample", "match", "vote", "compose")
-TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, nine times of ten, with (.+?)(, which repeats it)?$", re.MULTILINE)
+TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, nine times of ten, with (.+?)(, which repeats it)?$",
+                  re.MULTILINE)
 
 
 def paint(arguments, job, more, folder):
@@ -33,7 +34,8 @@ def paint(arguments, job, more, folder):
         if not os.path.exists(guides):
             runs.run([arguments.scumble, "guidegen", *source, "--style", style_folder, "--quiet", "-o", guides])
         source = [guides]
-    command = [arguments.scumble, verb, *source, "--style", style_folder, "-o", os.path.join(folder, "picture.png"), *more]
+    command = [arguments.scumble, verb, *source, "--style", style_folder, "-o", os.path.join(folder, "picture.png"),
+               *more]
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=True)
     report = done.stdout + done.stderr
     return report, sum(float(took) for stage, took in re.findall(r"(\w+) ([\d.]+)[,\n]", report) if stage in COUNTED)
@@ -93,7 +95,8 @@ def tell(arguments, rows):
             "%.2f" % statistics.median(shares) if fitting else "–",
             "%.2f ×" % statistics.median(over) if over else "–", "%.2f ×" % over[-1] if over else "–"))
 
-    print("| | runs | something fits | of these within the budget | time of budget, median | over-run, median | largest |")
+    print("| | runs | something fits | of these within the budget | time of budget, median | over-run, median | "
+          "largest |")
     print("|---|---|---|---|---|---|---|")
     for place in range(4):  # verb, scene, style, share of the style's own time
         for value in dict.fromkeys(row[place] for row in rows):

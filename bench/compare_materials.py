@@ -276,7 +276,8 @@ def pure_table(pairs):
 
 
 def principled_table(pairs, color):
-    print(f"\n{color}\n\n| metallic | roughness | " + " | ".join(f"{w}: full | diffuse | specular" for w in LIGHTS.values())
+    print(f"\n{color}\n\n| metallic | roughness | " + " | ".join(f"{w}: full | diffuse | specular"
+                                                                 for w in LIGHTS.values())
           + " |\n|---|---|" + "---|" * (3 * len(LIGHTS)))
     for metallic in METALLIC:
         for roughness in ROUGHNESS:
@@ -288,7 +289,8 @@ def principled_table(pairs, color):
 
 
 def largest_table(pairs):
-    print("\n| colour | metallic | roughness | sun: largest | of | eye at | light at | white world: largest ring | of | "
+    print("\n| colour | metallic | roughness | sun: largest | of | eye at | light at | white world: largest ring | of "
+          "| "
           "eye at |\n|---|---|---|---|---|---|---|---|---|---|")
     for color in COLORS:
         for metallic in METALLIC:

@@ -43,7 +43,8 @@ class Scumble:
         """Seconds of the renderer itself, as it reports them (hierarchy and rays), of the whole process, and of
         processor time."""
         layers = DATA_LAYERS if mode == "data" else "lpe." + mode
-        command = [self.program, "guidegen", scene, "--size", size, "--layers", layers, "--json", "--quiet", "-o", output]
+        command = [self.program, "guidegen", scene, "--size", size, "--layers", layers, "--json", "--quiet", "-o",
+                   output]
         if mode != "data":
             command += ["--samples", samples, "--max-bounces", BOUNCES]
         process, processor_time, text = run(command)
@@ -180,9 +181,11 @@ def verdict(kind, ratio):
 def markdown(report, data, light, equal):
     ours, cycles = data["scumble"], data["Cycles"]
     rows = ["| what | scumble | Cycles | ratio | goal | |", "|---|---|---|---|---|---|"]
-    for kind, part, what in (("data", "own", "data layers, renderer alone"), ("process", "process", "data layers, whole process")):
+    for kind, part, what in (("data", "own", "data layers, renderer alone"),
+                             ("process", "process", "data layers, whole process")):
         ratio = report["ratios"][kind]
-        rows.append("| %s | %s | %s | %.1f | ≥ %g | %s |" % (what, ours[part].text(), cycles[part].text(), ratio, GOALS[kind],
+        rows.append("| %s | %s | %s | %.1f | ≥ %g | %s |" % (what, ours[part].text(), cycles[part].text(), ratio,
+                                                             GOALS[kind],
                                                              verdict(kind, ratio)))
     for kind in ("LDE", "full"):
         e = equal[kind]
@@ -196,9 +199,12 @@ def markdown(report, data, light, equal):
             rows.append("| `%s` | %d | %s | %.4f | %s | %.4f |" % (kind, n, a["times"][n].text(), a["errors"][n],
                                                                     b["times"][n].text(), b["errors"][n]))
     where = report["machine"]
-    rows += ["", "Processor time of the paths alone, which other programs on the machine stretch less: `LDE` %.1f, `full` %.1f times "
+    rows += ["", "Processor time of the paths alone, which other programs on the machine stretch less: `LDE` %.1f, "
+                 "`full` %.1f times "
              "Cycles' speed." % tuple(equal[kind]["processor_ratio"] for kind in ("LDE", "full")),
-             "", "%s, %d threads, load before the run %.1f; %s; %s at %s, %d bounces, medians of %d runs with their quartiles."
+             "",
+             "%s, %d threads, load before the run %.1f; %s; %s at %s, %d bounces, medians of %d runs with their "
+             "quartiles."
              % (where["processor"], where["threads"], where["load"], report["date"], report["scene"], report["size"],
                 BOUNCES, report["repeats"])]
     return "\n".join(rows) + "\n"
@@ -267,7 +273,8 @@ def main():
     parser.add_argument("--scumble", type=Path, default=ROOT / "build/scumble")
     parser.add_argument("--blender", default="blender")
     parser.add_argument("--scene", type=Path, default=ROOT / "scenes/stilllife.glb")
-    parser.add_argument("--output", type=Path, default=ROOT / "out/bench-cycles", help="folder for pictures and results")
+    parser.add_argument("--output", type=Path, default=ROOT / "out/bench-cycles",
+                        help="folder for pictures and results")
     parser.add_argument("--size", default="960x540")
     parser.add_argument("--error-size", default="240x135", help="of the pictures whose error is measured")
     parser.add_argument("--repeats", type=int, default=5)

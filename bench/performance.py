@@ -89,7 +89,8 @@ def machine_text(report):
 
 def counts_text(figures):
     verdicts = [verdict(figure) for figure in figures]
-    return "%d of %d targets reached." % (verdicts.count("reached"), verdicts.count("reached") + verdicts.count("missed"))
+    return "%d of %d targets reached." % (verdicts.count("reached"),
+                                          verdicts.count("reached") + verdicts.count("missed"))
 
 
 def plain_table(report):
@@ -127,7 +128,8 @@ def transfer_stages(report):
     names = list(figures[0]["more"])
     lines = ["The engine on one thread, nanoseconds a covered pixel by the clock on the wall:", ""]
     lines += ["| frame | %s |" % " | ".join(names), "|---" * (len(names) + 1) + "|"]
-    return lines + ["| %s | %s |" % (f["frame"], " | ".join("%.1f" % f["more"][name] for name in names)) for f in figures] + [""]
+    return lines + ["| %s | %s |" % (f["frame"], " | ".join("%.1f" % f["more"][name] for name in names))
+                    for f in figures] + [""]
 
 
 def process_stages(report):
@@ -136,7 +138,8 @@ def process_stages(report):
     if not stages:
         return []
     whole = sum(stages.values())
-    lines = ["One run of `scumble stylize` on the Suzanne scene, as above:", "", "| stage | ms | share |", "|---|---|---|"]
+    lines = ["One run of `scumble stylize` on the Suzanne scene, as above:", "", "| stage | ms | share |",
+             "|---|---|---|"]
     return lines + ["| %s | %.1f | %.0f%% |" % (name, ms, 100.0 * ms / whole) for name, ms in stages.items()] + [""]
 
 
@@ -168,11 +171,13 @@ def parse():
     parser.add_argument("--output", type=Path, default=ROOT / "out/bench", help="folder for the results")
     parser.add_argument("--only", help="parts with commas between; left out: all of " + ", ".join(everything))
     parser.add_argument("--update", action="store_true", help="keep the other parts of the results that are there")
-    parser.add_argument("--show", action="store_true", help="measure nothing: the table and chart of the results that are there")
+    parser.add_argument("--show", action="store_true",
+                        help="measure nothing: the table and chart of the results that are there")
     parser.add_argument("--seconds", type=float, default=4.0, help="about how long each group of rounds may take")
     parser.add_argument("--rounds", type=int, default=15, help="the most rounds of a group")
     parser.add_argument("--repeats", type=int, default=5, help="runs of whole processes")
-    parser.add_argument("--hd", action="store_true", help="the yardstick at 1920x1080 alone, which takes a third of the time")
+    parser.add_argument("--hd", action="store_true",
+                        help="the yardstick at 1920x1080 alone, which takes a third of the time")
     parser.add_argument("--smoke", action="store_true", help="everything once, small: whether it runs, not how fast")
     parser.add_argument("--write-docs", action="store_true", help="put table and chart into docs/performance.md")
     options = parser.parse_args()

@@ -48,7 +48,8 @@ def size_of(options):
 def stylize(options, scene, arguments, output, most_repeats=100):
     """Runs of the command line; the first one warms the disk's cache and does not count. Not with --json, which counts what a
     plain run need not know."""
-    command = [options.build / "scumble", "stylize", "scenes/%s.glb" % scene, "--style", STYLE, "--size", size_of(options),
+    command = [options.build / "scumble", "stylize", "scenes/%s.glb" % scene, "--style", STYLE, "--size",
+               size_of(options),
                "--png-level", 1, "--threads", 2, "--quiet", "-o", options.scratch / output] + arguments
     repeats = 1 if options.smoke else min(options.repeats, most_repeats)
     runs = [timed(command) for _ in range(repeats + 1)][1:]
@@ -80,7 +81,8 @@ def measure_sequence(options):
     count = 2 if options.smoke else 24
     seconds, _, _ = stylize(options, "toys", ["--frames", "1-%d" % count], "frame.####.png", 3)
     frame = "toys %s, style oil, %d frames" % (size_of(options).replace("x", "×"), count)
-    return {"figures": [figure("8", "scumble stylize --frames, a frame", frame, "s", [s / count for s in seconds], 0.2)]}
+    return {"figures": [figure("8", "scumble stylize --frames, a frame", frame, "s", [s / count for s in seconds],
+                               0.2)]}
 
 
 def benchmark(options, program, arguments):
@@ -108,7 +110,8 @@ def values_of(records, key):
 def measure_guides(options):
     """guidegen beside a bare Embree loop over the same triangles and rays, in turns."""
     name = "BM_GuidesAlwaysWritten/%d/1"
-    arguments = ["--benchmark_filter=" + name % 1 + "|" + name % 2] + (["--benchmark_min_time=0.01"] if options.smoke else [])
+    arguments = ["--benchmark_filter=" + name % 1 + "|" + name % 2] + (
+        ["--benchmark_min_time=0.01"] if options.smoke else [])
     runs = benchmark(options, "guidegen_bench", arguments)
     if any("ratio_cpu" not in record for threads in (1, 2) for record in runs.get(name % threads, [{}])):
         return {"figures": [], "notes": ["guidegen_bench does not print what this table needs: " + name % 1]}
@@ -119,9 +122,11 @@ def measure_guides(options):
         records = runs[name % threads]
         figures.append(figure("6", "normals, depth and ids against bare Embree, threads: %d" % threads, frame, "×",
                               values_of(records, ratio), 1.3,
-                              more={key: statistics.median(values_of(records, key + "_" + kind)) for key in ("bare", "guides")}))
+                              more={key: statistics.median(values_of(records, key + "_" + kind))
+                                    for key in ("bare", "guides")}))
     pair = runs[name % 2]
     figures.append(figure("6", "guides a second, two threads, hierarchy built for each", frame, "frames/s",
                           values_of(pair, "fps_with_build"), 15.0, True))
-    figures.append(figure("6", "guides a second, two threads, hierarchy kept", frame, "frames/s", values_of(pair, "fps")))
+    figures.append(figure("6", "guides a second, two threads, hierarchy kept", frame, "frames/s",
+                          values_of(pair, "fps")))
     return {"figures": figures}

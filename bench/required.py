@@ -91,14 +91,16 @@ def measure(program, counter):
             output = Path(scratch) / ("out.png" if verb == "stylize" else "out.exr")
             allocated = Path(scratch) / ("allocated-" + title)
             # One thread: each one more has memory of its own. A cache of its own, empty: what is kept there is not made again.
-            told = json.loads(run([program, verb, scenes[scene], *arguments, "--size", "%dx%d" % SIZE, "--json", "--quiet",
+            told = json.loads(run([program, verb, scenes[scene], *arguments, "--size", "%dx%d" % SIZE, "--json",
+                                   "--quiet",
                                    "--threads", 1, "--isa", ISA, "--explain", "-o", output], LD_PRELOAD=str(preloaded),
                                   SCUMBLE_ALLOCATED_TO=str(allocated), XDG_CACHE_HOME=scratch + "/cache-" + title)[2])
             if not allocated.exists():
                 sys.exit("%s was not loaded into %s: it must be built for the same machine, and %s allow programs, "
                          "without a space or colon in its path" % (counter, program, scratch))
             rays, work = told["rays"], told["work"]
-            rows.append((title, [rays["primary"], rays["shadow"], rays["bounce"], work["light_samples"], work["materials"],
+            rows.append((title, [rays["primary"], rays["shadow"], rays["bounce"], work["light_samples"],
+                                 work["materials"],
                                  work["texture_lookups"], work["textures_decoded"],
                                  layers_of(title, told), work["plane_bytes"] // PLANE_BYTES, work["plane_bytes"] * 1e-6,
                                  int(allocated.read_text()) * 1e-6, work["bytes_written"] * 1e-6]))
@@ -113,13 +115,15 @@ def text_of(value):
 
 def table(rows):
     lines = ["| | " + " | ".join(COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
-    return "\n".join(lines + ["| %s | %s |" % (title, " | ".join(map(text_of, values))) for title, values in rows]) + "\n"
+    return "\n".join(lines + ["| %s | %s |" % (title, " | ".join(map(text_of, values)))
+                              for title, values in rows]) + "\n"
 
 
 def parts_of_page():
     text = PAGE.read_text(encoding="utf-8")
     if BEGIN not in text or END not in text:
-        sys.exit("%s: the lines «%s» and «%s» are not there: put them back around the table" % (PAGE, BEGIN.strip(), END))
+        sys.exit("%s: the lines «%s» and «%s» are not there: put them back around the table"
+                 % (PAGE, BEGIN.strip(), END))
     head, rest = text.split(BEGIN, 1)
     return head, *rest.split(END, 1)
 
@@ -136,7 +140,8 @@ def is_near(name, cell, value):
 
 
 def check(rows):
-    stands = [[cell.strip() for cell in line.strip("|").split("|")] for line in parts_of_page()[1].strip().split("\n")[2:]]
+    stands = [[cell.strip() for cell in line.strip("|").split("|")]
+              for line in parts_of_page()[1].strip().split("\n")[2:]]
     wrong = [] if [row[0] for row in stands] == [title for title, _ in rows] else ["the page has other rows"]
     for row, (title, values) in zip(stands, rows):
         if len(row) != len(values) + 1:

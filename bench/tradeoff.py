@@ -27,7 +27,8 @@ SAMPLES = {
     "toys-graphite": ("toys", "graphite", "hatching, normals alone", "960x540", []),
     "snail-scene-oil": ("snail", "scene-oil", "a painted scene whose light is matched, four guides", "960x540", []),
     # Small, as 1024 samples take their time.
-    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights", "320x180",
+    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights",
+                            "320x180",
                             ["--set", "transfer.guide_weights.lpe.LDDE=1", "--set", "transfer.guide_weights.lpe.LSE=0",
                              "--only", "samples,exact"]),
 }
@@ -79,7 +80,8 @@ def remarks(way):
 
 
 def row(way):
-    name = way["way"] + remarks(way) + (", **the style as it is**" if way["chosen"] and way["way"] != "the style" else "")
+    name = way["way"] + remarks(way) + (", **the style as it is**" if way["chosen"] and way["way"] != "the style"
+                                        else "")
     megabytes = None if way["memory_bytes"] is None else way["memory_bytes"] * 1e-6
     coherence = None if way["coherence"] is None else 100.0 * way["coherence"]
     cells = ["★" if way["front"] else "", name, time(way["total_ms"]), figure(megabytes), estimate(way["both"]),
@@ -121,7 +123,8 @@ def section(name, report):
     own = [way for way in report["ways"] if way["chosen"] and not way["front"]]
     left_out = ["Left out: %s." % "; ".join(report["left_out"]), ""] if report["left_out"] else []
     lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
-        what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "", report["width"],
+        what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "",
+        report["width"],
         report["height"], report["machine"], report["repeats"]), ""]
     lines += left_out
     lines += ["![time against error of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]

@@ -64,7 +64,8 @@ def choose(reports):
     pairs = []
     for name in SAMPLES:
         ways, front = ways_of(reports, name)
-        for rule, pair in (("neighbours on the front", neighbours(ways, front)), ("`both` and `energy` disagree", disputed(ways))):
+        for rule, pair in (("neighbours on the front", neighbours(ways, front)),
+                           ("`both` and `energy` disagree", disputed(ways))):
             if hashlib.sha256((name + rule + "".join(pair)).encode()).digest()[0] % 2:
                 pair = pair[::-1]
             pairs.append({"sample": name, "rule": rule, "A": pair[0], "B": pair[1], "eye": "", "why": ""})
@@ -78,8 +79,10 @@ def draw(arguments):
 def panel(file, piece, output):
     """A piece of a picture; what is transparent becomes light grey."""
     size = piece.split("+")[0]
-    channels = subprocess.run(["oiiotool", str(file), "--echo", "{TOP.nchannels}"], capture_output=True, text=True, check=True)
-    grey = ["--premult", "--create", size, "4", "--addc", "0.93,0.93,0.93,1", "--over"] if int(channels.stdout) == 4 else []
+    channels = subprocess.run(["oiiotool", str(file), "--echo", "{TOP.nchannels}"], capture_output=True, text=True,
+                              check=True)
+    grey = ["--premult", "--create", size, "4", "--addc", "0.93,0.93,0.93,1",
+            "--over"] if int(channels.stdout) == 4 else []
     draw([file, "--cut", piece] + grey + ["--ch", "R,G,B", "-o", output])
     return output
 
@@ -126,7 +129,8 @@ def table(reports, pairs):
             cells.append(ranked(ways, pair, figure))
             agreed[figure] += ranked(ways, pair, figure) == pair["eye"]
         lines.append("| %s |" % " | ".join(cells + ["**%s**" % pair["eye"], pair["why"]]))
-    counts = "`both` agrees with the eye in %d of %d pairs, `energy` in %d." % (agreed["both"], len(pairs), agreed["energy"])
+    counts = "`both` agrees with the eye in %d of %d pairs, `energy` in %d." % (agreed["both"], len(pairs),
+                                                                                agreed["energy"])
     return "\n".join(lines + ["", counts, ""])
 
 
@@ -143,7 +147,8 @@ def sheet(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--choose", action="store_true", help="pick the pairs anew and forget the verdicts")
-    parser.add_argument("--reports", type=Path, default=ROOT / "out/tradeoff", help="folder that make tradeoff wrote to")
+    parser.add_argument("--reports", type=Path, default=ROOT / "out/tradeoff",
+                        help="folder that make tradeoff wrote to")
     parser.add_argument("--write-docs", action="store_true", help="put sheet and table into docs/tradeoff.md")
     options = parser.parse_args()
     if options.choose:
@@ -154,7 +159,8 @@ def main():
     rows = [draw_pair(options.reports, number, pair, folder) for number, pair in enumerate(pairs, 1)]
     if options.write_docs:
         page = ROOT / "docs/tradeoff.md"
-        page.write_text(replaced(page, page.read_text(encoding="utf-8"), "pairs", "bench/tradeoff_pairs.py", table(options.reports, pairs)),
+        page.write_text(replaced(page, page.read_text(encoding="utf-8"), "pairs", "bench/tradeoff_pairs.py",
+                                 table(options.reports, pairs)),
                         encoding="utf-8")
         sheet(rows)
 

@@ -426,7 +426,8 @@ def toys():
                                                                         (0.92, 0.88, 0.75))))
     dancer(kit.material("Dancer", (0.16, 0.34, 0.55), 0.4))
     jelly(kit.material("Jelly", (0.20, 0.45, 0.15), 0.3))
-    Shape().ball((0, 0, 0.17), (0.3, 0.24, 0.17), 12, 18).place("Pebble", kit.material("Pebble", (0.4, 0.38, 0.36), 0.8),
+    Shape().ball((0, 0, 0.17), (0.3, 0.24, 0.17), 12, 18).place("Pebble",
+                                                                kit.material("Pebble", (0.4, 0.38, 0.36), 0.8),
                                                                (0.35, 1.25, 0), (0, 0, 30))
     three_lamps((0, 0, 0.7), 1.8)
     eye = kit.camera("Camera", (0.0, -7.4, 3.2), (0.0, 0.0, 0.5), 52)

@@ -443,7 +443,8 @@ def broken(folder):
     return {}
 
 
-CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras, "rendered": rendered}
+CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras,
+         "rendered": rendered}
 FILES = {"broken": broken}  # these write their files themselves
 
 

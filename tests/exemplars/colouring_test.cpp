@@ -1,4 +1,4 @@
-// The hand that colours, against the formulas in its header.
+// The colouring hand against the formulas in its header.
 #include "exemplars/paint/engine/colouring.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(Colouring, ChalkIsPressedByTheShareThatBringsTheColourNearest) {
 
 TEST(Colouring, WaxShinesThrough) {
   const Stick blue{{0.4f, 0.5f, 0.9f}, true};
-  // Half of what the glaze takes away is half of the way.
+  // Half of the glaze's absorption is half of the way.
   const glm::vec3 wanted = 0.5f * kGrey + 0.5f * kGrey * blue.color;
   EXPECT_NEAR(PressureOn(kGrey, wanted, blue), 0.5f, 1e-3f);
   EXPECT_EQ(PressureOn(kGrey, glm::vec3(0.9f), blue), 0.0f) << "a glaze never lightens";

@@ -122,11 +122,13 @@ def guides_cut_short(program, failures, chance):
 
     guides.write_bytes(good)
     with Meanwhile(cut_and_mend):
-        whole_or_refused(program, failures, run, 40, output, whole, "guides.exr", "guides cut and mended while they are read")
+        whole_or_refused(program, failures, run, 40, output, whole, "guides.exr",
+                         "guides cut and mended while they are read")
 
 
 def pipes_nobody_reads(program, failures):
-    for arguments in (["help"], ["info", "guides.exr", "--json"], ["transfer", "guides.exr", "--style", "style", "--frames",
+    for arguments in (["help"], ["info", "guides.exr", "--json"], ["transfer", "guides.exr", "--style", "style",
+                                                                   "--frames",
                                                                   "1-40", "-o", "f.##.png"]):
         for is_ignored in (False, True):
             reader, writer = os.pipe()

@@ -94,7 +94,8 @@ def standard_output(program, failures):
     for arguments in (["--help"], ["info", "g.exr", "--json"], ["compare", "g.exr", "g.exr"], ["styles"]):
         with open("/dev/full", "w") as full:
             code, said = program.run(*arguments, stdout=full)
-        failures.check(code == 4 and "standard output" in common.error_in(said), f"{arguments} > /dev/full: {code}: {said}")
+        failures.check(code == 4 and "standard output" in common.error_in(said),
+                       f"{arguments} > /dev/full: {code}: {said}")
 
 
 def report_without_room(program, failures, disk, scene):
@@ -134,13 +135,15 @@ def one_cache(program, failures, disk, read_only, run, folder, is_same):
     for damaged in (b"", table[:8], table[:-1], table + b"x", bytes(len(table)), bytes(flipped)):
         kept[0].write_bytes(damaged)
         code, said = program.run(*run)
-        failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"damaged {kept[0]}: {code}: {said}")
+        failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole,
+                       f"damaged {kept[0]}: {code}: {said}")
         made = kept[0].read_bytes()
         failures.check(made == table if is_same else made != damaged, f"damaged, {kept[0]} is made again")
     kept[0].unlink()
     kept[0].mkdir()
     code, said = program.run(*run)
-    failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"a folder for {kept[0]}: {code}: {said}")
+    failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole,
+                   f"a folder for {kept[0]}: {code}: {said}")
 
 
 def permissions(program, failures, scene):
@@ -190,7 +193,8 @@ def main():
             failures.check(code == 0, said)
         code, said = program.run("sphere", "--size", 512, "--only", "png", "-o", "kit")
         failures.check(code == 0, said)
-        for kind in (["sphere", "--rectify", "kit/template.png", "--size", 64, "-o", "lit.png"], tradeoff(scene, "trade")):
+        for kind in (["sphere", "--rectify", "kit/template.png", "--size", 64, "-o", "lit.png"],
+                     tradeoff(scene, "trade")):
             code, said = program.run(*kind)  # where there is room
             failures.check(code == 0, said)
         failures.check(set(common.REPORT) <= set(common.contents(program.folder / "trade")), "a report's files")

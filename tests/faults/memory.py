@@ -28,7 +28,8 @@ def limits_for(kilobytes):
 
 def told_by_no_clock(contents):
     """Without what tells of times: the pages of a trade."""
-    return {name: content for name, content in contents.items() if pathlib.PurePath(name).parts[0] != "t" or name.endswith(".png")}
+    return {name: content for name, content in contents.items()
+            if pathlib.PurePath(name).parts[0] != "t" or name.endswith(".png")}
 
 
 def first_loaded(program):
@@ -56,7 +57,8 @@ def few_addresses(program, failures):
                     ["transfer", "missing.exr", "--style", "style", "-o", "x.png"]):
         code, said = program.run(*missing, preexec_fn=limit)
         error = common.error_in(said)
-        failures.check(code == 3 and "missing." in error and "no such file" in error, f"few addresses, {missing}: {code}: {said}")
+        failures.check(code == 3 and "missing." in error and "no such file" in error,
+                       f"few addresses, {missing}: {code}: {said}")
     code, said = program.run("compare", "p.png", "p.png", "--flip", preexec_fn=limit)
     failures.check(code == 0, f"few addresses, plain PNGs: {code}: {said}")
 
@@ -83,13 +85,15 @@ def main():
             "transfer to EXR": ["transfer", "g.exr", "--style", "style", "--threads", 1, "-o", "out/p.exr"],
             "transfer to JPEG": ["transfer", "g.exr", "--style", "style", "-o", "out/p.jpg"],
             "a sequence": ["guidegen", scene, "--size", 48, "--frames", "1-3", "-o", "out/g.#.exr"],
-            "stylize": ["stylize", scene, "--style", source / "exemplars" / "charcoal", "--size", 96, "-o", "out/p.png"],
+            "stylize": ["stylize", scene, "--style", source / "exemplars" / "charcoal", "--size", 96, "-o",
+                        "out/p.png"],
             "sphere": ["sphere", "--size", 96, "-o", "out"],
             "info": ["info", "g.exr"],
             "styles": ["styles", "check", source / "exemplars" / "charcoal", "--quiet"],
             "compare": ["compare", "g.exr", "g.exr", "-o", "out/map.png"],
             "compare, by FLIP": ["compare", "p.png", "p.png", "--flip", "-o", "out/map.png"],
-            "tradeoff": ["tradeoff", scene, "--style", "style", "--size", 48, "--only", "levels 1,seed +1", "--repeat", 1,
+            "tradeoff": ["tradeoff", scene, "--style", "style", "--size", 48, "--only", "levels 1,seed +1", "--repeat",
+                         1,
                          "--no-memory", "-o", "out/t"],
         }
         few_addresses(program, failures)
@@ -126,7 +130,8 @@ def main():
                 kilobytes += step if well < 4 else 4 * step
             failures.check(well >= 16, f"{verb}: never went well within {kilobytes} kB")
             print(f"{verb}: well from about {kilobytes // MB} MB", flush=True)
-        print(f"{runs} runs, {foreseen} refused beforehand, in {ended} memory or threads ended; the program loads within {least} kB")
+        print(f"{runs} runs, {foreseen} refused beforehand, in {ended} memory or threads ended; the program loads "
+              f"within {least} kB")
         failures.check(ended >= runs // 8, "memory hardly ever ended")
     failures.end()
 

@@ -1,4 +1,4 @@
-// What pictures are measured against, where the figures are known.
+// The reference of pictures, where the figures are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -143,8 +143,8 @@ TEST(TradeReference, LargerGuidesAreComparedByTheirMeans) {
   EXPECT_EQ(small.Plane(Layer::kLuminance)[2], 0.0f);
 }
 
-// A ball of twice the size says the same: its mean normals are those at the pixels' centres but for the second order of
-// a quarter of a pixel, and for the rim, where pixels are partly beside the ball.
+// A sphere of twice the size gives equal figures: its mean normals are those at the pixels' centres but for the second
+// order of a quarter of a pixel, and for the rim, where pixels are partly beside the sphere.
 TEST(TradeReference, TwiceTheResolutionIsCloseToTheExactGuides) {
   const auto guides = SphereOf(kSize), large = SphereOf(2 * kSize);
   const Painted painted = Paint(LitSphereStyle(kSize), *guides);

@@ -1,4 +1,4 @@
-// Runs the program as its users do: with arguments, in a folder of its own, and looks at what comes out.
+// Runs the program as its users do: with arguments, in a folder of its own, and checks its results.
 #pragma once
 
 #include <fcntl.h>
@@ -141,7 +141,7 @@ class CliTest : public testing::Test {
   }
 
   std::string Bytes(const std::string& name) const { return ReadAll(At(name).string()); }
-  // What a picture or a guide file shows, without what its header tells of how it was made.
+  // The pixels of a picture or a guide file, without the header's record of how it was made.
   std::string Pixels(const std::string& name) const {
     const Expected<Picture> picture = ReadPicture(At(name));
     EXPECT_TRUE(picture.ok()) << name << (picture.ok() ? "" : ": " + picture.error().message);
@@ -192,7 +192,7 @@ class CliTest : public testing::Test {
               "name = \"test\"\n[transfer]\nreference_height = 0\nlevels = 4\n[[exemplar]]\nimage = \"lit.png\"\n");
   }
 
-  // The guides of a ball that touches the picture's sides, made without any renderer.
+  // The guides of a sphere that touches the picture's sides, made without any renderer.
   static GuideSet Ball(int size) {
     GuideSet guides(size, size);
     for (const LayerInfo& info : AllLayers()) {

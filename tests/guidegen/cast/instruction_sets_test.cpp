@@ -1,6 +1,6 @@
-// Embree traces in float, in another order for each instruction set. What of that shows in the guides: which triangle a
-// ray meets where two are within float's sight of it, and whether light reaches a place on a shadow's edge. All else is
-// worked out in double from the triangle's number, by code that has the same bits everywhere.
+// Embree traces in float, in another order for each instruction set. Two effects show in the guides: the triangle that
+// a ray hits where two are within float's resolution of it, and whether light reaches a place on a shadow's edge. All
+// other values are computed in double from the triangle's number, with equal bits everywhere.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -48,7 +48,7 @@ GuidegenOptions Wanted(const Sample& sample, const std::string& isa) {
   return options;
 }
 
-// Of the sets that this machine has. Whatever they differ in, each is what a transfer accepts: no NaN, no length of 0.
+// Of the sets that this machine has. Each gives valid guides, whatever their differences: no NaN, no length of 0.
 std::map<std::string, GuidegenResult> OnEachSet(const Sample& sample, GuidegenOptions options,
                                                 std::span<const char* const> sets) {
   std::map<std::string, GuidegenResult> results;
@@ -91,7 +91,7 @@ Difference Compare(const GuideSet& a, const GuideSet& b, Layer layer, std::vecto
   return difference;
 }
 
-// The same bytes for one set, whatever the threads, and so whatever the order of tiles.
+// The same bytes for one set, for any threads, and so for any order of tiles.
 TEST(InstructionSets, OneSetGivesTheSameBytesForAnyThreads) {
   const Sample sample = Load("stilllife", 203, 151);
   int sets = 0;
@@ -165,7 +165,7 @@ TEST(InstructionSets, SampleScenesDifferOnlyWhereFloatMayChoose) {
   }
 }
 
-// Large enough for some pixels to be in doubt: those of AVX2 multiply and add in one rounding.
+// Large enough that some pixels are ambiguous: those of AVX2 multiply and add in one rounding.
 TEST(InstructionSets, LargePicturesDifferOnlyWhereFloatMayChoose) {
   constexpr std::array<const char*, 2> kMostUnlike = {"sse2", "avx2"};
   for (const char* name : {"snail", "stilllife"}) {
@@ -208,7 +208,7 @@ TEST(InstructionSets, RaysAlongEdgesAreWhereTheyDisagree) {
   EXPECT_GT(disagreed, 0);
 }
 
-// An open room of 2 m, with a cube in it and a lamp that has extent, seen through the missing wall, with sky around.
+// An open room of 2 m, with a cube and a light with extent in it, seen through the missing wall, with sky around.
 Sample OpenRoom() {
   Mesh walls = CubeMesh();
   walls.triangles.resize(walls.triangles.size() - 2);  // the wall at +Z is the last

@@ -1,5 +1,5 @@
-// The ray caster through lenses and from places at the ends of what a camera can be, against spheres and planes in
-// closed form and against exact_rays.h's plain caster.
+// The ray caster with lenses and cameras at the ends of their ranges, against spheres and planes in closed form and
+// against exact_rays.h's plain caster.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -302,7 +302,7 @@ TEST(Inside, AMicrometreFromAWallAndOnIt) {
       // With the wall right before the eye.
       const GuideSet close = Render(scene, FrontCamera(-1.0 + gap, degrees), Sized(9, 9)).guides;
       for (std::size_t i = 0; i < 81; ++i) {
-        // Embree's wall may be a float's step of 1 m away from where it is, which says nothing of the depth.
+        // Embree's wall may be a float's step of 1 m off, which does not affect the depth.
         EXPECT_NEAR(close.Plane(Layer::kDepth)[i], gap, std::ldexp(gap, -24) + 0x1p-52);
         EXPECT_EQ(close.Vec3(Layer::kNormal, i), glm::vec3(0, 0, 1));
       }
@@ -347,8 +347,9 @@ TEST(Inside, AMicrometreFromAWallAndOnIt) {
 
 // --- Up -----------------------------------------------------------------------------------------------------------
 
-// A matrix whose up lies along the view says nothing of how the picture stands, and is refused by name. One whose up is
-// barely beside it does: the view is kept exactly, and up is what the smallest part of it says.
+// A matrix whose up is parallel to the view does not determine the picture's rotation, and is refused by name. One
+// whose up is barely off the view does: the view is kept exactly, and the small remaining part of up determines the
+// rotation.
 TEST(UpVector, ParallelToTheViewIsRefusedAndBarelyBesideItIsEnough) {
   const Scene scene = SceneOf(QuadMesh());
   const auto with_up = [](const glm::dvec3& up) {
@@ -377,8 +378,8 @@ TEST(UpVector, ParallelToTheViewIsRefusedAndBarelyBesideItIsEnough) {
   }
 }
 
-// Straight up and straight down: the framing camera turns about the scene by its angles, not by a world's up, so these
-// are views like any other; the azimuth then says which way the picture stands.
+// Straight up and straight down: the framing camera uses its angles, not a world's up, so these need no special case;
+// the azimuth then determines the picture's rotation.
 TEST(UpVector, ViewsFromStraightAboveAndBelowStandAsTheAzimuthSays) {
   const Scene scene = SceneOf(BallMesh(16));
   for (const double elevation : {90.0, -90.0}) {

@@ -1,5 +1,6 @@
-// Light at its extremes: the ray caster's light layers against closed formulas. Every case says what must come out and
-// why; tolerances are roundings (2^-24 for a float) or five standard deviations of a sum whose variance is known.
+// Light at its extremes: the ray caster's light layers against closed formulas. Every case states the expected value
+// and its reason; tolerances are roundings (2^-24 for a float) or five standard deviations of a sum whose variance is
+// known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -302,7 +303,7 @@ TEST(AreaLight, EdgeOnItFadesByTheFormulaToNothing) {
   }
 }
 
-// A sun of no width is one ray: E cosθ / π, rounded once. One of 1e-8 degrees is told from it by nothing.
+// A sun of no width is one ray: E cosθ / π, rounded once. One of 1e-8 degrees is equal to it.
 TEST(SunAngle, NoneIsOneRay) {
   for (const double degrees : {0.0, 1e-8}) {
     for (const double elevation : {90.0, 30.0, 1.0, 0.001}) {

@@ -1,5 +1,5 @@
-// Scenes far from the origin, as files hold them: what a loader keeps in double and what the file itself has lost. And
-// normals without a length, as files hold those.
+// Scenes far from the origin in files: the precision that a loader keeps in double, and the precision that the file
+// itself has lost. And normals without a length in files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -195,8 +195,8 @@ TEST_F(LoadAnimation, SkinsAndAnimationsTenThousandKilometresAwayLoseNothing) {
   }
 }
 
-// A loader's own choice: any direction that can be told is kept, down to the smallest float; the others are computed
-// from the triangles, with a warning.
+// A loader's own choice: any direction that can be determined is kept, down to the smallest float; the others are
+// computed from the triangles, with a warning.
 TEST_F(ExtremePlace, LoadersKeepTheDirectionOfTinyNormalsAndReplaceThoseWithoutOne) {
   GltfBuilder gltf;
   const int position = gltf.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 0, 6, 5, 0, 5, 6, 0}, 3);

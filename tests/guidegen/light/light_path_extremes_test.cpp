@@ -200,7 +200,7 @@ TEST(Extremes, ALampThatSwallowsTheObjectIsNoBrighterThanItsOwnRadiance) {
   constexpr int kSamples = 64;
   Scene scene = SceneOf(BallMesh(24));
   scene.materials[0] = Painted(Bsdf::kDiffuse, 0.8f);
-  for (const double radius : {0.5, 1.0, 5.0}) {  // inside the ball, as large, around it and the camera
+  for (const double radius : {0.5, 1.0, 5.0}) {  // inside the sphere, as large, around it and the camera
     for (const double offset : {0.0, 0.7}) {
       Light lamp = PointLight({offset, 0, 0}, 4.0);
       lamp.radius = radius;

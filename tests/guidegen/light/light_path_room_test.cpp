@@ -1,4 +1,4 @@
-// Light-path layers of a room with everything in it: what they cost, that they repeat, converge and stay finite.
+// Light-path layers of a room with every feature: their cost, and that they repeat, converge and stay finite.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -210,7 +210,7 @@ TEST(LightPaths, ExtremesStayFiniteAndNotNegative) {
   }
 }
 
-// That they bring what all of them bring is told by Extremes.OneOfFiveHundred… and …ManySoftLamps….
+// Extremes.OneOfFiveHundred… and …ManySoftLamps… test that they give the sum of all.
 TEST(LightPaths, FiveHundredLights) {
   Scene scene = Room();
   for (int i = 0; i < 500; ++i) {
@@ -274,7 +274,7 @@ TEST(LightPaths, EmissiveMeshesThatTouchASurfaceMakeNoFireflies) {
   }
 }
 
-// The back of a ball of light is hidden by its own front, and that is no shadow; a lid over the floor is.
+// The back of an emissive sphere is hidden by its own front, and that is no shadow; a lid over the floor is.
 TEST(LightPaths, OnlyWhatDoesNotShineCastsShadowsInTheLightOfMeshes) {
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f), 2.0);
   Material glow = Painted(Bsdf::kEmission, 1.0f);

@@ -1,4 +1,4 @@
-// Many lights: choosing one by the tree, against weighing every light.
+// Many lights: the tree's choice of one, against the weights of all lights.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Trees over points against brute force, and which pixels of a painted scene may be used.
+// Trees over points against brute force, and the usable pixels of a painted scene.
 #include <cstring>
 #include <limits>
 #include <span>
