@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Whether --budget-ms keeps what it promises: runs the sample scenes with bundled styles and budgets, each picture in a
+"""Whether --budget-ms keeps its budgets: runs the sample scenes with bundled styles and budgets, each picture in a
 process of its own, and counts how many were within their budget. Prints the tables of docs/budget.md; gates nothing.
 
   bench/budget.py --scumble build/scumble
@@ -24,8 +24,8 @@ TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, nine times of ten, with 
 
 
 def paint(arguments, job, more, folder):
-    """What one run says, and what it took of what a budget counts, in milliseconds. Without --json, which would keep more
-    than a picture needs."""
+    """The outcome of one run, and its part of the budget, in milliseconds. Without --json, which would keep more than a
+    picture needs."""
     verb, scene, style = job
     scene_file, style_folder = SOURCE / "scenes" / (scene + ".glb"), SOURCE / "exemplars" / style
     source = [scene_file, "--size", arguments.size]

@@ -3,7 +3,7 @@
 
     /usr/bin/python3 bench/cycles_bench.py --scumble build/scumble [--repeats 5] [--fresh]
 
-Both programs run alternately, so that whatever else the machine does slows both. Error is measured on a smaller picture
+Both programs run alternately, so that other load of the machine slows both. Error is measured on a smaller picture
 against each program's own converged one, which is kept in the output folder until --fresh: a pixel's error does not
 depend on how many other pixels there are. Times are those of the large picture. Gates nothing.
 
@@ -28,7 +28,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 BOUNCES = 8  # as in cycles_side.py
 DATA_LAYERS = "position,albedo"  # on top of those that are always written
-# Cycles' error at this many samples is what both are asked for.
+# Cycles' error at this many samples is the target of both.
 TARGET_SAMPLES = 16
 GOALS = {"data": 20.0, "process": 3.0, "LDE": 5.0, "full": 1.0}
 
@@ -151,8 +151,9 @@ def measure_light(options, renderers, mode, scenes):
 
 
 def time_at(error, measured):
-    """Seconds, and samples, at which a renderer reaches an error: log error is fitted over log samples, time over samples
-    by a straight line. Less than one sample there is not: whoever is better than asked with one is given its time."""
+    """Seconds, and samples, at which a renderer reaches an error: log error is fitted over log samples, time over
+    samples by a straight line. One sample is the minimum: a renderer that beats the target with one gets the time of
+    one."""
     samples = np.array(sorted(measured["errors"]), float)
     slope, start = np.polyfit(np.log(samples), np.log([measured["errors"][n] for n in samples]), 1)
     needed = max(1.0, math.exp((math.log(error) - start) / slope))
@@ -171,7 +172,7 @@ def at_equal_error(measured):
     return result
 
 
-# ---- what is written ------------------------------------------------------------------------------------------------
+# ---- output --------------------------------------------------------------------------------------------------------
 
 
 def verdict(kind, ratio):
@@ -255,7 +256,7 @@ def jsonable(value):
 
 
 def prepare(options, program):
-    """The scene with pure materials, for both programs: with lamps as they are, and with soft ones."""
+    """The scene with pure materials, for both programs: with its own lights, and with soft ones."""
     blends = [options.output / "delta.blend", options.output / "soft.blend"]
     glbs = [path.with_suffix(".glb") for path in blends]
     if options.fresh or not all(path.exists() for path in blends + glbs):

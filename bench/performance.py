@@ -4,7 +4,7 @@
     /usr/bin/python3 bench/performance.py --build build [--only yardstick,process] [--seconds 12] [--write-docs]
 
 Runs the bench programs and the command line, one after the other, and writes results.json, results.md and
-performance.svg into the output folder. Gates nothing: a target that is missed is said to be missed.
+performance.svg into the output folder. Gates nothing: a missed target is only reported.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def verdict(figure):
     if "target" not in figure:
         return ""
     value, target = figure["median"], figure["target"]
-    # What rounding of the last digit shown would change is not a miss.
+    # A difference within the rounding of the last shown digit is no miss.
     reached = value >= target * 0.9995 if figure["at_least"] else value <= target * 1.0005
     return "reached" if reached else "missed"
 
@@ -66,7 +66,7 @@ def target_text(figure):
 
 
 def rows_of(report):
-    """Lines of the table: item, what, frame, measured, target, verdict."""
+    """Lines of the table: item, quantity, frame, measured, target, verdict."""
     figures = [figure for part in report["parts"].values() for figure in part["figures"]]
     figures.sort(key=lambda figure: figure["item"])  # a stable sort keeps the order within an item
     return [(f["item"], f["what"], f["frame"], measured_text(f), target_text(f), verdict(f)) for f in figures], figures

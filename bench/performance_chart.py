@@ -63,7 +63,7 @@ def draw_nanoseconds(drawing, report, top):
 
 
 def draw_costs(drawing, report, top):
-    """What may cost at most so much: bars, with a mark where the target is. Returns where it ends."""
+    """Figures with an upper limit: bars, with a mark at the target. Returns the end of the drawing."""
     figures = [figure for part in ("radius", "extensions", "sizes", "guides")
                for figure in report["parts"].get(part, {"figures": []})["figures"]
                if figure["unit"] == "×" and "target" in figure and not figure["at_least"]]

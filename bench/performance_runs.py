@@ -1,4 +1,4 @@
-"""The parts of `make bench` that are programs of their own: guides beside bare Embree, and the command line as a whole."""
+"""The parts of `make bench` that are separate programs: guides beside bare Embree, and the command line as a whole."""
 
 import json
 import os
@@ -29,7 +29,7 @@ def figure(item, what, frame, unit, values, target=None, at_least=False, note=""
 
 
 def timed(command):
-    """Seconds on the wall, bytes of memory at the peak, and what the program printed."""
+    """Wall-clock seconds, bytes of memory at the peak, and the program's output."""
     begin = time.perf_counter()
     process = subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, cwd=ROOT)
     text = process.stdout.read()
@@ -46,8 +46,8 @@ def size_of(options):
 
 
 def stylize(options, scene, arguments, output, most_repeats=100):
-    """Runs of the command line; the first one warms the disk's cache and does not count. Not with --json, which counts what a
-    plain run need not know."""
+    """Runs of the command line; the first one warms the disk's cache and does not count. Without --json, whose counters
+    a plain run does not need."""
     command = [options.build / "scumble", "stylize", "scenes/%s.glb" % scene, "--style", STYLE, "--size",
                size_of(options),
                "--png-level", 1, "--threads", 2, "--quiet", "-o", options.scratch / output] + arguments
@@ -86,7 +86,7 @@ def measure_sequence(options):
 
 
 def benchmark(options, program, arguments):
-    """Google Benchmark's records by the name of what ran: of single runs, or of the aggregates where it writes no others."""
+    """Google Benchmark's records by name: of single runs, or of the aggregates if it writes no others."""
     done = subprocess.run([options.build / "bench" / program, "--benchmark_format=json",
                            "--benchmark_enable_random_interleaving=true"] + arguments, capture_output=True, text=True)
     if done.returncode != 0:
@@ -99,7 +99,7 @@ def benchmark(options, program, arguments):
 
 
 def values_of(records, key):
-    """A counter's values; of aggregates the median, and as far around it as the standard deviation says."""
+    """A counter's values; of aggregates the median, and one standard deviation on either side."""
     single = [record[key] for record in records if record.get("run_type") == "iteration"]
     if single:
         return single

@@ -3,8 +3,8 @@
 
     /usr/bin/python3 bench/tradeoff.py [--only suzanne-oil,toys-graphite] [--show] [--write-docs] [-- OPTION …]
 
-Runs `scumble tradeoff` on each sample, one after the other, into out/tradeoff/NAME/; open report.html there. What stands
-after -- goes to the verb, such as --quick or --repeat 9.
+Runs `scumble tradeoff` on each sample, one after the other, into out/tradeoff/NAME/; open report.html there. Arguments
+after -- go to the command, such as --quick or --repeat 9.
 """
 
 import argparse
@@ -33,23 +33,23 @@ SAMPLES = {
                              "--only", "samples,exact"]),
 }
 NONE = "–"
-SAME = "the same picture as "  # as the verb has it in a note
+SAME = "the same picture as "  # as in the command's note
 
 
 def measure(options, name):
     scene, style, _, size, own_options = SAMPLES[name]
     # An axis that only the whole grid has is measured with --quick, too.
     verb_options = [one for one in options.verb_options if one != "--quick" or "--only" not in own_options]
-    # The scene's path as it is anywhere: the report says how to repeat it, on any machine.
+    # The scene's relative path: the report's command works on any machine.
     command = [options.build / "scumble", "tradeoff", "scenes/%s.glb" % scene, "--style", style,
                "--size", options.size or size, "-o", options.output / name] + own_options + verb_options
-    # The verb's own table and progress go where ours would.
+    # The command's own table and progress go to the place of ours.
     if subprocess.run([str(part) for part in command], cwd=ROOT).returncode != 0:
         sys.exit("%s: scumble tradeoff failed, see above" % name)
 
 
 def figure(value):
-    """Three digits that count, as the verb's own table has them."""
+    """Three significant digits, as in the command's own table."""
     if value is None or isinstance(value, str):
         return value or NONE
     return "%.0f" % value if abs(value) >= 100 else "%.3g" % value
@@ -69,7 +69,7 @@ def time(value):
 
 
 def remarks(way):
-    """What of the note belongs into a table: " (= the style)", " (once)"."""
+    """The part of the note for a table: " (= the style)", " (once)"."""
     said = []
     for part in way["note"].split("; "):
         if part.startswith(SAME):
@@ -98,7 +98,7 @@ def table(ways):
 
 
 def guide_table(ways):
-    """Of the ways whose guides differ from the exact ones: by how much. Those with the same guides share a line."""
+    """The error of the guides of variants whose guides are not exact. Variants with equal guides share a line."""
     measured = {}
     for way in ways:
         if way["guide_rms"] or way["guide_flip"]:

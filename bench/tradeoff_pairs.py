@@ -2,12 +2,12 @@
 """Does the ranking by figures agree with the eye? Six pairs of pictures for docs/tradeoff.md.
 
     /usr/bin/python3 bench/tradeoff_pairs.py --choose       # after `make tradeoff`: picks the pairs, sides by lot
-    /usr/bin/python3 bench/tradeoff_pairs.py                # draws out/tradeoff/pairs/*.png, which tell no names
-    /usr/bin/python3 bench/tradeoff_pairs.py --write-docs   # sheet and table, with what the eye said
+    /usr/bin/python3 bench/tradeoff_pairs.py                # draws out/tradeoff/pairs/*.png, without names
+    /usr/bin/python3 bench/tradeoff_pairs.py --write-docs   # sheet and table, with the eye's choices
 
 Of each of three samples two pairs are taken: the neighbours on the front that lie farthest apart in `both`; and, of all
 pairs that `both` and `energy` rank the other way round, the one that they disagree about most: the smaller of the two
-relative differences is the largest. Which picture is A is decided by a hash, so that whoever looks cannot know. Look,
+relative differences is the largest. Which picture is A is decided by a hash, so that the viewer cannot know it. Look,
 write "A" or "B" at "eye" and a reason into tradeoff_pairs.json, and only then ask for the table.
 """
 
@@ -25,7 +25,7 @@ from marked_pages import replaced
 
 ROOT = Path(__file__).resolve().parent.parent
 PAIRS = ROOT / "bench/tradeoff_pairs.json"
-# The piece that is shown, and the paint it is compared with, at the size at which it was used.
+# The part that is shown, and the paint it is compared with, at the size at which it was used.
 SAMPLES = {
     "suzanne-oil": ("560x360+200+80", ["oil/lit.png"]),
     "stilllife-plein-air": ("560x360+250+160", ["plein-air/lit.png", "plein-air/shade.png"]),
@@ -77,7 +77,7 @@ def draw(arguments):
 
 
 def panel(file, piece, output):
-    """A piece of a picture; what is transparent becomes light grey."""
+    """A part of a picture; transparent pixels become light grey."""
     size = piece.split("+")[0]
     channels = subprocess.run(["oiiotool", str(file), "--echo", "{TOP.nchannels}"], capture_output=True, text=True,
                               check=True)

@@ -225,8 +225,8 @@ constexpr const char* kFlip = R"(<dialog id="flip" aria-labelledby="flip-name">
 <button type="button" id="flip-next" aria-label="the next way">↓</button>
 <button type="button" id="flip-close">close</button></span></div>
 <div class="stage" id="flip-stage"></div>
-<p class="soft">← → or a click flip between this way and the style as it is; ↑ ↓ go to other ways; s shows both side by side;
-Esc closes.</p>
+<p class="soft">← → or a click flip between this way and the style as it is; ↑ ↓ go to other ways;
+s shows both side by side; Esc closes.</p>
 </dialog>
 )";
 

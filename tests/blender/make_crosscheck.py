@@ -43,7 +43,7 @@ def mesh(name, build, location, made, smooth=False):
 
 
 def room():
-    """A box that moves, a ball of metal, a point lamp."""
+    """A box that moves, a sphere of metal, a point light."""
     scene = bpy.context.scene
     floor = material("Floor", "ShaderNodeBsdfDiffuse", (0.7, 0.6, 0.5))
     red = material("Red", "ShaderNodeBsdfDiffuse", (0.8, 0.2, 0.1))

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Runs verbs under `ulimit -v`, from the least that lets the system load the program up to where all goes well, and
-finely spaced between, so that memory ends in every stage. Verbs that refuse beforehand what will not fit are told every other
-time to try all the same. Each run must end by itself: well and with the very bytes of a run without a limit, or with exit code
-6, a sentence, and no file. Never by a signal, never with a wrong reason.
+"""Runs commands under `ulimit -v`, from the least with which the system loads the program up to a limit without errors,
+finely spaced, so that memory ends in every stage. Commands that refuse too large runs beforehand get a larger
+--max-memory every other time. Each run must end by itself: with success and the bytes of a run without a limit, or with
+exit code 6, a sentence, and no file. Never by a signal, never with a wrong reason.
 
 Usage: faults_memory.py PROGRAM SOURCE [STEP_KB [VERB…]], of those listed below; left out: all
 """
@@ -27,7 +27,7 @@ def limits_for(kilobytes):
 
 
 def told_by_no_clock(contents):
-    """Without what tells of times: the pages of a trade."""
+    """Without files that contain times: the pages of a trade-off."""
     return {name: content for name, content in contents.items()
             if pathlib.PurePath(name).parts[0] != "t" or name.endswith(".png")}
 
@@ -46,7 +46,8 @@ def first_loaded(program):
 
 
 def few_addresses(program, failures):
-    """Enough for all but OpenImageIO: what it is for, what is missing and the way out are said, and no other reason."""
+    """Enough for all but OpenImageIO: the message has its purpose, the missing memory and the remedy, and no other
+    reason."""
     limit = limits_for(800000)
     code, said = program.run("compare", "g.exr", "p.png", preexec_fn=limit)
     error = common.error_in(said)

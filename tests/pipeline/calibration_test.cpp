@@ -130,7 +130,7 @@ TEST(Calibration, TheMostAccurateThatFitsIsTakenAndNothingBelowItIsMeasured) {
   EXPECT_EQ(clock.runs, (std::vector<int>{1, kCalibrationRuns, 0, 3})) << "the last one tells what a cold start costs";
 }
 
-// Times need not fall along the ladder: a variant further down that is slower is passed over like any other.
+// Times need not fall along the ladder: a variant farther down that is slower is passed over like any other.
 TEST(Calibration, ASlowerWayFurtherDownIsPassedOver) {
   FakeClock clock{{{50.0}, {70.0}, {20.0}}};
   EXPECT_EQ(MustPick(Ladder(3), 40.0, clock).variant, 2u);

@@ -209,8 +209,8 @@ TEST(TradeReference, PaintForOtherLightCosts) {
       << "noise of random colours has no nearer patch";
 }
 
-// A wall in paint that was copied from one place of a ball: noise has no nearer patch, so each pixel costs λ times the
-// square of what its source's normal is farther off than the chord of the variety.
+// A wall in paint that was copied from one place of a sphere: noise has no nearer patch, so each pixel costs λ times
+// the square of what its source's normal is farther off than the chord of the variety.
 TEST(TradeReference, WhatVarietyGrantsOnAWallIsFree) {
   constexpr int kWall = 20, kLeft = 14, kTop = 24;
   auto wall = std::make_shared<GuideSet>(kWall, kWall);
@@ -244,7 +244,7 @@ TEST(TradeReference, WhatVarietyGrantsOnAWallIsFree) {
   }
 }
 
-// Nothing on a ball is flat.
+// Nothing on a sphere is flat.
 TEST(TradeReference, VarietyGrantsNothingWhereSurfacesBend) {
   const auto guides = SphereOf(kSize);
   double energies[2];

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Reads what `scumble sphere` writes with other programs than its own: the layers with Python's zipfile and
-OpenImageIO, the page with poppler. All three files must show the same template, to the pixel.
+"""Reads the output of `scumble sphere` with other programs: the layers with Python's zipfile and OpenImageIO, the page
+with poppler. All three files must show the same template, to the pixel.
 
 Usage: kit_files.py PROGRAM
 """

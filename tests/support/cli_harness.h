@@ -226,12 +226,14 @@ class CliTest : public testing::Test {
     const std::string turn = looks_away ? R"("rotation":[0,1,0,0],)" : "";
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
 "nodes":[{"name":"Sheet","mesh":0},{"name":"Front","camera":0,)" +
-           turn + R"("translation":[0,0,4]}],
+           turn +
+           R"("translation":[0,0,4]}],
 "cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,-1,0],"max":[1,1,0]}],
 "bufferViews":[{"buffer":0,"byteLength":36}],
-"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+           R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
   }
   static std::string TriangleObj() { return "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n"; }
   static std::string TrianglePly() {

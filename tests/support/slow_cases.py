@@ -15,7 +15,7 @@ LIST = pathlib.Path(__file__).resolve().parent.parent / "slow_cases.txt"
 
 
 def tiers(build):
-    """The tier of each program whose cases share processes, by what CMake registered."""
+    """The tier of each program whose cases share processes, from CMake's labels."""
     shown = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], check=True, capture_output=True,
                            text=True)
     found = {}

@@ -50,7 +50,7 @@ class LookUpTable {
 
   int resolution() const { return resolution_; }
 
-  // The source for a FacingDirection: at most Quantisation() further from it, in Euclidean distance, than the nearest.
+  // The source for a FacingDirection: at most Quantisation() farther from it, in Euclidean distance, than the nearest.
   Source Find(glm::vec3 direction) const { return cells_[CellOf(direction)]; }
 
   // 4√2 / R. Two directions whose projections are d apart are at most 2d apart, and a cell's corner is √2 / R from its

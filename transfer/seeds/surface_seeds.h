@@ -52,7 +52,7 @@ class SurfaceGrid {
 
   bool Is(std::uint32_t object, int exponent) const { return object_ == object && exponent_ == exponent; }
 
-  // Ties to the first cube, x before y before z. Places further than 2^50 edges from the origin have none: key 0.
+  // Ties to the first cube, x before y before z. Places farther than 2^50 edges from the origin have none: key 0.
   SurfacePiece Nearest(const glm::vec3& place);
 
  private:

@@ -130,7 +130,7 @@ static int CountFiducials(const Picture& picture, double size, double margin) {
   int found = 0;
   for (const Fiducial& mark : kFiducials) {
     bool right = true;
-    // One module further than the marker: the quiet zone is part of it.
+    // One module farther than the marker: the quiet zone is part of it.
     for (int row = -1; row <= kFiducialModules && right; ++row) {
       for (int column = -1; column <= kFiducialModules && right; ++column) {
         const bool inside = std::min(row, column) >= 0 && std::max(row, column) < kFiducialModules;

@@ -1,5 +1,5 @@
-// Soft pastel on dark blue-violet sanded paper, three times the same ball. Broad strokes with the side of the stick, a
-// finger here and there, then crisp strokes of other colours laid over them; the dark paper flickers between all of
+// Soft pastel on dark blue-violet sanded paper, three times the same sphere. Broad strokes with the side of the stick,
+// a finger here and there, then crisp strokes of other colours laid over them; the dark paper flickers between all of
 // them.
 #include <array>
 #include <cmath>
@@ -31,7 +31,7 @@ struct Plan {
   std::span<const glm::vec3> sparks;  // the purest of them, for the last strokes
   std::array<glm::vec3, 4> axes;
   float side_width;
-  float closed;  // share of the middle of the ball that the first strokes cover
+  float closed;  // share of the middle of the sphere that the first strokes cover
   float body_width;
   int body_rounds;
   glm::vec3 depth;  // of the first layer, against what is wanted
@@ -126,7 +126,7 @@ Wish WishFor(const Plan& plan, const Studio& studio) {
   });
 }
 
-// Puts the ball in with the side of the stick: everywhere, and well past the rim, the stick that is nearest to the
+// Puts the sphere in with the side of the stick: everywhere, and well past the rim, the stick that is nearest to the
 // colour wanted, or nearly so.
 void BlockIn(Colouring& drawing, Brush& brush, const Plan& plan, const Studio& studio, const Wish& wish) {
   Chance chance(studio.seed, kSide);

@@ -117,7 +117,7 @@ TEST(InstructionSets, OneSetGivesTheSameBytesForAnyThreads) {
 // of another surface (exact_rays.h derives how near that is). Where they meet the same triangle there is not one ulp
 // between them: a pixel that float could not doubt has the same bits in every layer of the surface. Where it could,
 // each of the two shows a place on the pixel's ray, to float's sight, with a unit normal. Its light may differ where
-// its way to a lamp passes an edge within float's sight: of a pixel's width that is 2^-19 of the distance to both
+// its way to a light passes an edge within float's sight: of a pixel's width that is 2^-19 of the distance to both
 // sides, so of all pixels no more than that share, though a shadow's edge ran through each of them. Returns how many
 // pixels differ.
 int ExpectNoOthersToDiffer(const Sample& sample, std::span<const char* const> sets) {
@@ -226,8 +226,8 @@ Sample OpenRoom() {
 // light in a room are, meet a convex body in it as often as its surface is of the room's (Crofton): within float's
 // sight of an edge they pass as often as the edge's tube is of the 24 m². What is missing of a wall, and rays that end
 // before, make it fewer. The sum takes the edges that two triangles share twice. Rays do not begin evenly: where the
-// eye looks there are more of them, and towards the lamp. Half a metre from an edge they are 2.4 times as dense as in
-// the mean, and nothing is nearer to the lamp; with the edges that are taken twice, twice the sum allows for four
+// eye looks there are more of them, and towards the light. Half a metre from an edge they are 2.4 times as dense as in
+// the mean, and nothing is nearer to the light; with the edges that are taken twice, twice the sum allows for four
 // times. No bound is as strict as that of the surfaces, where the plain caster tells pixel by pixel: of a path's
 // decisions only the engine knows.
 double DoubtfulShare(const Sample& room) {

@@ -120,7 +120,7 @@ double LargestTurn(double to, double step) {
 
 // The source of the analytic search is R · (n.x, n.y), cut to the usable disc. Rounding moves it by √2 · R · e at the
 // most, everywhere alike, for cutting to a disc brings no two places further apart; float's sums add 2^-22 R to either
-// of the two places that are compared. The paint found there was made for a normal that is further off the closer to
+// of the two places that are compared. The paint found there was made for a normal that is farther off the closer to
 // the silhouette it is: the turn of above.
 struct SourceError {
   double moved = 0.0;   // of the radius

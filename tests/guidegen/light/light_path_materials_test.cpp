@@ -124,7 +124,7 @@ void ExpectReturned(const Paint& paint, double height, int samples, double expec
   EXPECT_LT(5.0 * error, 0.03);
 }
 
-// A ball has all angles, and normals that are not its facets'. Of two renders that differ in nothing but their seed
+// A sphere has all angles, and normals that are not its facets'. Of two renders that differ in nothing but their seed
 // each pixel's mean is off by half of their difference, root mean square; the squares add up, as pixels draw
 // independently.
 TEST(MaterialFurnace, AWhiteSurfaceNeverReturnsMoreThanTheWorld) {

@@ -197,7 +197,7 @@ TEST(LightPaths, ExtremesStayFiniteAndNotNegative) {
       Scene scene = Room();
       for (Material& material : scene.materials) material.roughness = roughness;
       for (Light& light : scene.lights) light.intensity *= intensity;
-      // Lamps that touch: on the floor's surface, in it, and inside the ball.
+      // Lights that touch: on the floor's surface, in it, and inside the sphere.
       Light panel = Above(LightType::kArea, 0.0, intensity);
       Light ball = PointLight({0, 0, 0}, intensity);
       ball.radius = 0.5;
@@ -285,9 +285,9 @@ TEST(LightPaths, OnlyWhatDoesNotShineCastsShadowsInTheLightOfMeshes) {
   const LayerSet layers = {Layer::kLuminance, Layer::kShadow};
   const auto free = Render(scene, SlantedSpot(), Paths(1, layers, 1024));
   EXPECT_EQ(free.guides.Plane(Layer::kShadow)[0], 0.0f);
-  // A ball of radius r and radiance 1, d above: (r/d)².
+  // A sphere of radius r and radiance 1, d above: (r/d)².
   EXPECT_NEAR(free.guides.Plane(Layer::kLuminance)[0], 1.0 / 9.0, 2e-3);
-  // Half of the ball is behind a lid whose edge is right above the point; the camera looks in from the other side.
+  // Half of the sphere is behind a lid whose edge is right above the point; the camera looks in from the other side.
   AddObject(scene, "lid", QuadMesh(), glm::scale(Moved(0, 1, 0.3), glm::dvec3(2.0, 1.0, 1.0)));
   const auto half = Render(scene, SlantedSpot(), Paths(1, layers, 4096));
   EXPECT_NEAR(half.guides.Plane(Layer::kShadow)[0], 0.5, 5e-3);
@@ -339,7 +339,7 @@ TEST(LightPaths, LuminanceTakesNoLimitOfTheNoise) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
   EXPECT_NE(refused.error().message.find("--samples"), std::string::npos) << refused.error().message;
-  // Under lamps without extent there is no noise, and nothing to refuse.
+  // Under lights without extent there is no noise, and nothing to refuse.
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.5f));
   scene.lights = {PointLight({0, 0, 2}, 1.0)};
   EXPECT_GT(Render(scene, FrontCamera(3.0), options).guides.Plane(Layer::kLuminance)[0], 0.0f);

@@ -1,4 +1,4 @@
-// Light-path layers against light that is known: furnaces, form factors, exact lamps, integrals.
+// Light-path layers against light that is known: furnaces, form factors, exact lights, integrals.
 #include <gtest/gtest.h>
 
 #include <algorithm>

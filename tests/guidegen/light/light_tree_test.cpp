@@ -15,7 +15,7 @@ namespace {
 
 double Chance(int light, int what) { return UnitFloat(Hash(light, what)); }
 
-// Lamps of every kind about the origin.
+// Lights of every kind about the origin.
 std::vector<PlacedLight> Swarm(int count) {
   std::vector<PlacedLight> lamps;
   for (int i = 0; i < count; ++i) {

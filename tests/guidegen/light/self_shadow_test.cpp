@@ -218,7 +218,7 @@ struct Stage {
   Camera camera;
 };
 
-// A thing, suns all about and grazing its XY plane, two lamps; a camera `distance` scales away.
+// A thing, suns all about and grazing its XY plane, two lights; a camera `distance` scales away.
 Stage LitFromOutside(const Named& thing, double scale, double place, double distance, int turn) {
   const glm::dvec3 middle = AnyDirection(77) * place;
   const glm::dmat4 matrix = Placed(scale, middle, turn);
@@ -321,7 +321,7 @@ TEST(SelfShadow, FromAfarOnlySilhouettesAreUndecided) {
 constexpr int kTurns = 12;
 constexpr double kEyeToSquare = 4.0;  // m
 
-// A square of 2 m in the middle of a ground `width` times as wide, or `gap` metres above it; suns and lamps overhead
+// A square of 2 m in the middle of a ground `width` times as wide, or `gap` metres above it; suns and lights overhead
 // and slanted. The eye looks down on it at an angle, and all is turned, so that corners have every digit.
 Stage SquareOnAGround(double width, double gap, int turn) {
   const glm::dmat4 matrix = Placed(1.0, glm::dvec3(0.0), turn);
@@ -524,7 +524,7 @@ TEST(LightLeaks, PathsFindTheWayOutOfAnOpenBox) {
 }
 
 // A box whose near walls are cut away for the viewer still keeps the light out. Here the way back to the eye is clear
-// as far as half way to the last wall that it passes, and the rest of the height h = 2^-20 C goes straight up.
+// as far as halfway to the last wall that it passes, and the rest of the height h = 2^-20 C goes straight up.
 // Expected: no lit pixel but beside a second wall. The origin is past that wall only where half of the distance to it
 // is less than what goes straight up and the wall's own rounding, h each: where the pixel is within 4 h of it. From a
 // million sizes away that is more than the box, and nothing is promised.

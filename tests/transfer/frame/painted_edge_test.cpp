@@ -22,7 +22,7 @@ Picture PaintOnPaper(int size, double reach, double ragged) {
   return picture;
 }
 
-// A ball of 60 pixels' radius in the middle of background.
+// A sphere of 60 pixels' radius in the middle of background.
 GuideSet Ball() {
   return MakeGuides(200, 180, [](int x, int y) {
     const float nx = (x + 0.5f - 100) / 60, ny = -(y + 0.5f - 90) / 60, z2 = 1.0f - nx * nx - ny * ny;

@@ -281,7 +281,7 @@ TEST(Coherent, AsksForPrefAndNothingElsePaysForIt) {
   }
 }
 
-// A ball in the picture, whose middle is at (cx, cy).
+// A sphere in the picture, whose middle is at (cx, cy).
 GuideSet BallAt(int width, int height, float cx, float cy, float radius, float object = 1.0f) {
   const auto normal = [=](int x, int y) {
     const float nx = (static_cast<float>(x) + 0.5f - cx) / radius, ny = (cy - static_cast<float>(y) - 0.5f) / radius;

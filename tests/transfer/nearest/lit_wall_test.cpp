@@ -47,7 +47,7 @@ Style WallStyle(Layer layer, float weight) {
 }
 
 struct Lit {
-  double mean_stops = 0.0;  // between a pixel's light and its paint's
+  double mean_stops = 0.0;      // between a pixel's light and its paint's
   double largest_distance = 0;  // of L / (1 + L)
 };
 
@@ -80,7 +80,7 @@ TEST(LitWall, TakesPaintThatIsLitAsItIs) {
         EXPECT_LT(lit.mean_stops, 0.05);
       } else {
         EXPECT_LT(lit.mean_stops, 0.3);
-        // No pixel of a chunk is further off than the threshold; three equal channels count √3 of one. What no chunk
+        // No pixel of a chunk is farther off than the threshold; three equal channels count √3 of one. What no chunk
         // suits is nearer still. The scene's brightest places are brighter than any of the exemplar's.
         EXPECT_LT(lit.largest_distance, 0.03 + 1e-6);
       }

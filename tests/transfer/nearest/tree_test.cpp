@@ -75,7 +75,7 @@ TEST(PointTree, TiesGoToTheFirstPoint) {
     for (const int steps : {1, 2, 3, 5}) {
       const auto points = Scatter(std::size_t(900) * dimensions, steps, 3 + steps);
       auto queries = Scatter(std::size_t(300) * dimensions, 2 * steps, 8);
-      for (float& value : queries) value *= 0.5f;  // half way between the lattice's points: up to 2^dimensions ties
+      for (float& value : queries) value *= 0.5f;  // halfway between the lattice's points: up to 2^dimensions ties
       ExpectExact(points, dimensions, queries);
     }
   }

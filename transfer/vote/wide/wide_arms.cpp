@@ -231,7 +231,7 @@ void WideArms::MarkTurns(const VoteInput& input) {
 // their own normals are less than the crease apart.
 void WideArms::ReadRow(const VoteInput& input, const Region& area, int y) {
   const int words = marked_.words, cells = (y - seen_.y0) / kCellRows;
-  std::uint64_t* const arm = steps_.right.Row(y);  // bit x: it is on one arm with the pixel k further right
+  std::uint64_t* const arm = steps_.right.Row(y);  // bit x: it is on one arm with the pixel k farther right
   std::uint64_t open = BitMaskRows::kAll, turns = 0;
   for (int w = 0; w < words; ++w) open &= arm[w], turns |= turns_right_.Row(cells)[w] & wanted_.Row(y)[w];
   if (open == BitMaskRows::kAll && !turns) return;
