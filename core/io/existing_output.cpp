@@ -44,7 +44,7 @@ std::map<std::string, std::string> Parts(const std::string& settings) {
 }
 
 // Values of settings that older versions did not record; kAnySetting where the value is unknown.
-const std::map<std::string, std::string>& Untold() {
+const std::map<std::string, std::string>& UnrecordedSettings() {
   static const std::map<std::string, std::string> kValues = {
       {"upsample", "1"}, {"fps", kAnySetting}, {"measured", kAnySetting}, {"samples", kAnySetting}};
   return kValues;
@@ -56,8 +56,8 @@ Status CheckSettings(const std::filesystem::path& path, const std::string& found
   const auto there = Parts(found), here = Parts(wanted);
   const auto value_of = [](const std::map<std::string, std::string>& parts, const std::string& name) {
     if (const auto part = parts.find(name); part != parts.end()) return part->second;
-    const auto usual = Untold().find(name);
-    return usual == Untold().end() ? std::string("untold") : usual->second;
+    const auto usual = UnrecordedSettings().find(name);
+    return usual == UnrecordedSettings().end() ? std::string("untold") : usual->second;
   };
   auto all = here;
   all.insert(there.begin(), there.end());

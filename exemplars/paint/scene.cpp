@@ -105,11 +105,11 @@ void Scene::CoverBall(const std::vector<bool>& ball) {
   radius_ = 0.25f * unit * static_cast<float>(right - left + bottom - top);
 }
 
-float Scene::BallDistance(glm::vec2 at) const { return glm::distance(at, middle_) / radius_; }
+float Scene::SphereDistance(glm::vec2 at) const { return glm::distance(at, middle_) / radius_; }
 
 float Scene::Nearness(glm::vec2 at) const { return glm::clamp((at.y - horizon_) / (kSide - horizon_), 0.0f, 1.0f); }
 
-Seen Scene::OnBall(glm::vec2 at) const {
+Seen Scene::OnSphere(glm::vec2 at) const {
   const glm::vec2 off = at - middle_;
   const float distance = glm::length(off);
   const float most = kInside * radius_;
@@ -128,7 +128,7 @@ float Scene::Contact(glm::vec2 at) const {
   return Ramp(0.85f, 0.25f, glm::length(off));
 }
 
-Flow Scene::OverBall(const Flow& of_sphere) const {
+Flow Scene::OverSphere(const Flow& of_sphere) const {
   return [of_sphere, middle = middle_, scale = kRadius / radius_](glm::vec2 at) {
     return of_sphere((at - middle) * scale + kRadius);
   };

@@ -29,7 +29,7 @@ class Scene {
   int guide_size() const { return light_.size; }  // pixels
 
   // Distance from the sphere's middle in radii: 1 on its outline.
-  float BallDistance(glm::vec2 at) const;
+  float SphereDistance(glm::vec2 at) const;
   // Where floor and wall meet, downward from the top.
   float horizon() const { return horizon_; }
   bool IsFloor(glm::vec2 at) const { return at.y > horizon_; }
@@ -37,14 +37,14 @@ class Scene {
   float Nearness(glm::vec2 at) const;
 
   // On the sphere; places outside it are taken on its outline.
-  Seen OnBall(glm::vec2 at) const;
+  Seen OnSphere(glm::vec2 at) const;
   // On the floor and the wall; behind the sphere they are continued from beside it.
   Seen Behind(glm::vec2 at) const;
   // Nearness of the floor to its contact with the sphere: 1 at the contact.
   float Contact(glm::vec2 at) const;
 
   // A flow of the sphere that fills the picture, on this sphere: AroundAxis for instance.
-  Flow OverBall(const Flow& of_sphere) const;
+  Flow OverSphere(const Flow& of_sphere) const;
   // Lines of the floor that run across the view, slightly bent like a hand's.
   Flow AcrossFloor() const;
   // Lines of the floor that run away from the light's foot, like cast shadows.

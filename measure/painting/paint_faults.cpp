@@ -38,17 +38,17 @@ class Faults {
  public:
   Faults(const PaintTraits& traits, const PaintFaultContext& context) : traits_(traits), context_(context) {}
 
-  void Add(const char* code, std::string what, std::string mend) {
-    found_.push_back({code, Weight::kMistake, std::move(what), std::move(mend), std::nullopt});
+  void Add(const char* code, std::string what, std::string remedy) {
+    found_.push_back({code, Weight::kMistake, std::move(what), std::move(remedy), std::nullopt});
   }
   // `place` in the picture without its margin.
-  void AddAt(const char* code, int x, int y, std::string what, std::string mend) {
+  void AddAt(const char* code, int x, int y, std::string what, std::string remedy) {
     const std::pair<int, int> place(x + context_.margin, y + context_.margin);
     found_.push_back({code, Weight::kMistake, fmt::format("{}, around x={}, y={}", what, place.first, place.second),
-                      std::move(mend), place});
+                      std::move(remedy), place});
   }
-  void Remark(const char* code, std::string what, std::string mend) {
-    Add(code, std::move(what), std::move(mend));
+  void Remark(const char* code, std::string what, std::string remedy) {
+    Add(code, std::move(what), std::move(remedy));
     found_.back().weight = Weight::kRemark;
   }
   bool Has(const std::string& code) const {

@@ -18,7 +18,7 @@ struct PaintFault {
   std::string code;  // stable: "off-centre"; see docs/checking.md
   Weight weight = Weight::kMistake;
   std::string what;                          // the mistake and its place, a clause without the file's name
-  std::string mend;                          // the remedy, a clause
+  std::string remedy;                        // the remedy, a clause
   std::optional<std::pair<int, int>> place;  // pixel of the file, from its upper left corner
 };
 

@@ -123,7 +123,7 @@ def guides_cut_short(program, failures, chance):
     guides.write_bytes(good)
     with Meanwhile(cut_and_mend):
         whole_or_refused(program, failures, run, 40, output, whole, "guides.exr",
-                         "guides cut and mended while they are read")
+                         "guides cut and restored while they are read")
 
 
 def pipes_nobody_reads(program, failures):

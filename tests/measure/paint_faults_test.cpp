@@ -27,7 +27,7 @@ std::string Codes(const std::vector<PaintFault>& faults) {
 
 std::string Said(const std::vector<PaintFault>& faults) {
   std::string text;
-  for (const PaintFault& fault : faults) text += fault.what + "; " + fault.mend + "\n";
+  for (const PaintFault& fault : faults) text += fault.what + "; " + fault.remedy + "\n";
   return text;
 }
 

@@ -58,9 +58,9 @@ struct BandMemory {
   std::vector<std::uint8_t> covered;  // by the field's index: coverage is above 0
   std::vector<std::uint8_t> active;   // with a map: 1 where the current style paints, else 0
   StartedRows rows;
-  std::vector<std::vector<Region>> pieces;  // by style, the regions of the current rows with pixels of it
-  std::vector<std::uint8_t> words;          // 64 columns each: whether the current style occurs there
-  std::vector<TileScratch> seeds;           // by style and column of tiles
+  std::vector<std::vector<Region>> regions;  // by style, the regions of the current rows with pixels of it
+  std::vector<std::uint8_t> words;           // 64 columns each: whether the current style occurs there
+  std::vector<TileScratch> seeds;            // by style and column of tiles
   WideScratch votes;
 };
 

@@ -38,7 +38,7 @@ glm::vec3 Steady(const glm::vec3& normal, float cell, std::uint64_t key) {
   }
   const float to_map = std::sqrt(2.0f / (1.0f + facing.z));
   const auto round = [&](float value, int purpose) {
-    const float shift = PieceChance(key, purpose);
+    const float shift = CellChance(key, purpose);
     return (std::floor(value / cell + shift) - shift + 0.5f) * cell;
   };
   float x = round(facing.x * to_map, 1), y = round(facing.y * to_map, 2);
@@ -55,9 +55,9 @@ glm::vec3 Steady(const glm::vec3& normal, float cell, std::uint64_t key) {
 // add; the result does not depend on the order.
 class SeedTable {
  public:
-  // For at most `pieces` different keys.
-  explicit SeedTable(std::size_t pieces)
-      : mask_(std::bit_ceil(2 * pieces + 2) - 1), slots_(std::make_unique<Slot[]>(mask_ + 1)) {}
+  // For at most `cells` different keys.
+  explicit SeedTable(std::size_t cells)
+      : mask_(std::bit_ceil(2 * cells + 2) - 1), slots_(std::make_unique<Slot[]>(mask_ + 1)) {}
 
   void Add(std::uint64_t key, float squared, std::uint32_t pixel) {
     std::atomic<std::uint64_t>& nearest = slots_[SlotOf(key)].nearest;
@@ -160,7 +160,7 @@ class CoherentMatch {
     const Region whole{0, 0, width, input_.guides.height()};
     key_.resize(input_.guides.pixel_count()), squared_.resize(key_.size());
     std::atomic<std::size_t> runs = 0;
-    Rows(whole, [&](int y) { runs.fetch_add(FindPieces(exponent, y), std::memory_order_relaxed); });
+    Rows(whole, [&](int y) { runs.fetch_add(FindCells(exponent, y), std::memory_order_relaxed); });
     SeedTable seeds(runs);
     Rows(whole, [&](int y) { AddSeeds(y, seeds); });
     Rows(input_.region, [&](int y) { CandidateRow(exponent, y, seeds); });
@@ -178,7 +178,7 @@ class CoherentMatch {
   }
 
   // Key 0 where there is none. Returns the number of changes in the row.
-  std::size_t FindPieces(int exponent, int y) {
+  std::size_t FindCells(int exponent, int y) {
     SurfaceGrid grid;
     std::size_t runs = 0;
     std::uint64_t last = 0;
@@ -188,9 +188,9 @@ class CoherentMatch {
       if (!Takes(i, exponent)) continue;
       const auto object = std::bit_cast<std::uint32_t>(object_[i]);  // any float will do
       if (!grid.Is(object, exponent)) grid = SurfaceGrid(input_.seeds, object, exponent);
-      const SurfacePiece piece = grid.Nearest(input_.guides.Vec3(Layer::kPref, i));
-      key_[i] = piece.key, squared_[i] = piece.squared;
-      if (piece.key != last) ++runs, last = piece.key;
+      const SurfaceCell cell = grid.Nearest(input_.guides.Vec3(Layer::kPref, i));
+      key_[i] = cell.key, squared_[i] = cell.squared;
+      if (cell.key != last) ++runs, last = cell.key;
     }
     return runs;
   }
@@ -233,7 +233,7 @@ class CoherentMatch {
 
   // Empty where the cell is too small or too large to take part.
   std::optional<Seed> MakeSeed(int exponent, std::uint64_t key, std::size_t pixel) const {
-    const int level = exponent - static_cast<int>(std::floor(octaves_[pixel] + PieceChance(key, 0)));
+    const int level = exponent - static_cast<int>(std::floor(octaves_[pixel] + CellChance(key, 0)));
     if (level < input_.least_level || level >= input_.levels) return std::nullopt;
     const int width = input_.guides.width();
     PixelGuide guide;

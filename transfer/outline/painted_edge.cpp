@@ -31,7 +31,7 @@ class EdgePainter {
         coverage_(input.guides.Plane(Layer::kCoverage)),
         bands_(Bands(input)),
         silhouettes_({input.guides, input.style, bands_, input.region, Margin(input)}),
-        pieces_(Pieces()) {}
+        segments_(Segments()) {}
 
   void Paint(int x, int y, float& coverage, std::uint16_t* pixel) const {
     const std::int32_t nearest = silhouettes_.Nearest(x, y);
@@ -48,7 +48,7 @@ class EdgePainter {
     const float depth = distance / static_cast<float>(rim.band()), share = depth > 0.0f ? depth / kInkDepth : -depth;
     if (share >= 1.0f) return;
     const float firm = SmoothStep(Silhouettes::kNarrowest, kFirm, outline.width);
-    Texel texel = RimAt(rim, pieces_[std::size_t(nearest)], {x + 0.5f, y + 0.5f}, distance, outline.width);
+    Texel texel = RimAt(rim, segments_[std::size_t(nearest)], {x + 0.5f, y + 0.5f}, distance, outline.width);
     if (paint.tint.active() && texel[3] > 0) {
       paint.tint.Apply(input_.guides.Vec3(Layer::kAlbedo, owner), texel.data());
     }
@@ -82,7 +82,7 @@ class EdgePainter {
     return margin;
   }
 
-  std::vector<RimSegments> Pieces() const {
+  std::vector<RimSegments> Segments() const {
     std::vector<float> radii;
     std::vector<SeedRules> seeds;
     int widest = 0;
@@ -108,16 +108,16 @@ class EdgePainter {
 
   // The rim segments' paint at a point of the picture, this far inside its edge. A narrower line is the mean of the
   // texels that it is shrunk from. Sums are of integers, like a vote's.
-  static Texel RimAt(const RimPaint& rim, const RimSegments& pieces, glm::vec2 at, float distance, float width) {
+  static Texel RimAt(const RimPaint& rim, const RimSegments& segments, glm::vec2 at, float distance, float width) {
     const int samples = std::clamp(static_cast<int>(std::ceil(1.0f / width - 0.01f)), 1, 8);
     std::uint64_t sum[4] = {0, 0, 0, 0}, total = 0;
-    for (std::size_t n = 0; n < pieces.piece.size() && pieces.weight[n] > 0.0f; ++n) {
-      const glm::vec2 way = pieces.piece[n].DirectionAt(at, rim.radius());
-      const auto weight = static_cast<std::uint64_t>(pieces.weight[n] * 256.0f + 0.5f);
+    for (std::size_t n = 0; n < segments.segment.size() && segments.weight[n] > 0.0f; ++n) {
+      const glm::vec2 direction = segments.segment[n].DirectionAt(at, rim.radius());
+      const auto weight = static_cast<std::uint64_t>(segments.weight[n] * 256.0f + 0.5f);
       for (int s = 0; s < samples; ++s) {
         const float off = (static_cast<float>(2 * s + 1 - samples) / static_cast<float>(2 * samples)) / width;
         const float radius = rim.radius() - distance + (samples > 1 ? off : 0.0f);
-        const std::uint16_t* texel = rim.At(way.x * radius, way.y * radius);
+        const std::uint16_t* texel = rim.At(direction.x * radius, direction.y * radius);
         for (int c = 0; c < 3; ++c) sum[c] += weight * texel[3] * texel[c];
         sum[3] += weight * texel[3], total += weight;
       }
@@ -133,7 +133,7 @@ class EdgePainter {
   std::span<const float> coverage_;
   std::vector<int> bands_;
   Silhouettes silhouettes_;
-  std::vector<RimSegments> pieces_;  // by outline pixel
+  std::vector<RimSegments> segments_;  // by outline pixel
 };
 
 }  // namespace

@@ -31,7 +31,7 @@ struct RimSegment {
 
 // Up to three segments that are blended where they meet.
 struct RimSegments {
-  std::array<RimSegment, 3> piece;
+  std::array<RimSegment, 3> segment;
   std::array<float, 3> weight{};  // sum 1; from the heaviest down, 0: none
 };
 

@@ -132,7 +132,7 @@ void SurfaceGrid::Fill(int neighbour) {
   filled_ |= 1u << neighbour;
 }
 
-SurfacePiece SurfaceGrid::Nearest(const glm::vec3& place) {
+SurfaceCell SurfaceGrid::Nearest(const glm::vec3& place) {
   std::int64_t cube[3];
   float local[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -174,6 +174,6 @@ SurfacePiece SurfaceGrid::Nearest(const glm::vec3& place) {
   return {key_[best], squared};
 }
 
-float PieceChance(std::uint64_t key, int purpose) { return UnitFloat(Hash(key, purpose)); }
+float CellChance(std::uint64_t key, int purpose) { return UnitFloat(Hash(key, purpose)); }
 
 }  // namespace scumble::internal

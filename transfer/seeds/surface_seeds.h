@@ -38,7 +38,7 @@ inline constexpr float kNoOctave = -1e9f;
 std::vector<float> SurfaceOctaves(const GuideSet& guides, std::span<const std::uint8_t> active);
 
 // The surface cell of a place.
-struct SurfacePiece {
+struct SurfaceCell {
   std::uint64_t key = 0;  // of (seed, time step, object, e, cube), as good as unique; never 0
   float squared = 0.0f;   // distance from its point, in edges
 };
@@ -53,7 +53,7 @@ class SurfaceGrid {
   bool Is(std::uint32_t object, int exponent) const { return object_ == object && exponent_ == exponent; }
 
   // Ties to the first cube, x before y before z. Places farther than 2^50 edges from the origin have none: key 0.
-  SurfacePiece Nearest(const glm::vec3& place);
+  SurfaceCell Nearest(const glm::vec3& place);
 
  private:
   void MoveTo(const std::int64_t (&cube)[3]);
@@ -73,6 +73,6 @@ class SurfaceGrid {
 };
 
 // [0, 1), for a decision that is made once a cell; `purpose` makes such numbers independent.
-float PieceChance(std::uint64_t key, int purpose);
+float CellChance(std::uint64_t key, int purpose);
 
 }  // namespace scumble::internal

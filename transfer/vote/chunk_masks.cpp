@@ -86,7 +86,7 @@ HWY_INLINE std::uint64_t OneExemplar(const ChunkRow& row, int begin, std::ptrdif
   return bits;
 }
 
-HWY_INLINE std::uint64_t Deep(const ChunkRow& row, int begin) {
+HWY_INLINE std::uint64_t Interior(const ChunkRow& row, int begin) {
   const hn::ScalableTag<std::int32_t> wide;
   const hn::Rebind<std::int16_t, decltype(wide)> narrow;
   const auto size = hn::Set(wide, row.size - 1), reach = hn::Set(wide, 2 * row.radius);
@@ -105,12 +105,12 @@ HWY_INLINE std::uint64_t Deep(const ChunkRow& row, int begin) {
 }
 
 void LinkRow(const ChunkRow& row, int first_word, int words, const std::uint64_t* active,
-             const std::uint64_t* active_below, std::uint64_t* right, std::uint64_t* below, std::uint64_t* deep) {
+             const std::uint64_t* active_below, std::uint64_t* right, std::uint64_t* below, std::uint64_t* interior) {
   for (int w = 0; w < words; ++w) {
     const int begin = 64 * (first_word + w);
     if (begin < 0 || begin >= row.width) continue;
     const std::uint64_t beyond = ~BitRange(0, row.width - begin), at_end = ~BitRange(0, row.width - 1 - begin);
-    right[w] = at_end, below[w] = row.last ? BitMaskRows::kAll : beyond, deep[w] = 0;
+    right[w] = at_end, below[w] = row.last ? BitMaskRows::kAll : beyond, interior[w] = 0;
     if (!active[w]) continue;
     if (!Fits(row, begin)) {
       const auto one = [&](int x, std::ptrdiff_t step, int dx, int dy) {
@@ -120,11 +120,11 @@ void LinkRow(const ChunkRow& row, int first_word, int words, const std::uint64_t
       right[w] |= MarksOneByOne(row, begin, [&](int x) { return x + 1 < row.width && one(x, 1, 1, 0); });
       if (!row.last) below[w] |= MarksOneByOne(row, begin, [&](int x) { return one(x, row.width, 0, 1); });
       if (row.size == 0) continue;
-      deep[w] = active[w] & MarksOneByOne(row, begin, [&](int x) {
-                  const std::int64_t dx = std::abs(2 * row.x[x] + 1 - row.size) + 2 * row.radius;
-                  const std::int64_t dy = std::abs(2 * row.y[x] + 1 - row.size) + 2 * row.radius;
-                  return dx * dx + dy * dy <= row.limit;
-                });
+      interior[w] = active[w] & MarksOneByOne(row, begin, [&](int x) {
+                      const std::int64_t dx = std::abs(2 * row.x[x] + 1 - row.size) + 2 * row.radius;
+                      const std::int64_t dy = std::abs(2 * row.y[x] + 1 - row.size) + 2 * row.radius;
+                      return dx * dx + dy * dy <= row.limit;
+                    });
       continue;
     }
     const auto one = hn::Set(kShort, 1);
@@ -141,7 +141,7 @@ void LinkRow(const ChunkRow& row, int first_word, int words, const std::uint64_t
     const std::uint64_t active_right = active[w] >> 1 | active[w + 1] << 63;
     right[w] |= same_right & active[w] & active_right & OneExemplar(row, begin, 1);
     if (!row.last) below[w] |= same_below & active[w] & active_below[w] & OneExemplar(row, begin, row.width);
-    if (row.size > 0) deep[w] = active[w] & Deep(row, begin);
+    if (row.size > 0) interior[w] = active[w] & Interior(row, begin);
   }
 }
 
@@ -201,7 +201,7 @@ bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
   if (!some) return false;
   marks.right.Reset(tile, BitMaskRows::kAll);
   marks.below.Reset(tile, BitMaskRows::kAll);
-  marks.deep.Reset(tile, 0);
+  marks.interior.Reset(tile, 0);
   for (int y = first; y <= last; ++y) {
     ChunkRow row = RowAt(field, active, &exemplar, radius, y);
     const std::uint64_t* below = nullptr;
@@ -212,7 +212,7 @@ bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
     }
     HWY_DYNAMIC_DISPATCH(LinkRow)
     (row, tile.first_word, tile.words, marks.active.Row(y), below, marks.right.Row(y), marks.below.Row(y),
-     marks.deep.Row(y));
+     marks.interior.Row(y));
   }
   return true;
 }

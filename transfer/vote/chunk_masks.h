@@ -14,10 +14,10 @@ namespace scumble::internal {
 // no pixel is active, and all links are set, so that only pixels inside decide about a window that reaches out.
 struct ChunkMasks {
   BitMaskRows active;
-  BitMaskRows right;  // with the pixel to the right, both active
-  BitMaskRows below;  // with the pixel below, both active
-  BitMaskRows deep;   // interior: active, and every texel within `radius` (in x and y) of its source is usable; never
-                      // set in scenes
+  BitMaskRows right;     // with the pixel to the right, both active
+  BitMaskRows below;     // with the pixel below, both active
+  BitMaskRows interior;  // active, and every texel within `radius` (in x and y) of its source is usable; never
+                         // set in scenes
 };
 
 // Resets `marks` to the tile and fills it with the active pixels. O(pixels of the tile).

@@ -145,8 +145,8 @@ Status CheckPaper(const SphereVerb& verb, const KitOptions& options, const Globa
 }
 
 // Prints the file to paint on, and the next step.
-void SayWhatNext(const SphereVerb& verb, const KitOptions& options, const std::optional<PrintPage>& page,
-                 const Globals& globals) {
+void PrintNextStep(const SphereVerb& verb, const KitOptions& options, const std::optional<PrintPage>& page,
+                   const Globals& globals) {
   const std::string stem = verb.names.empty() ? "template" : verb.names[0] + "-template";
   const std::string painting = verb.names.empty() ? "lit.png" : verb.names[0] + ".png";
   std::string files;
@@ -199,7 +199,7 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
     Print(JsonText(json));
   } else {
     for (const auto& file : files) Print(file.string() + "\n");
-    SayWhatNext(verb, options, page, globals);
+    PrintNextStep(verb, options, page, globals);
   }
   return ExitCode::kOk;
 }

@@ -125,9 +125,9 @@ Status CheckRoom(const fs::path& page, std::size_t bytes, std::size_t largest) {
     if (::close(file) != 0 && failure == 0) failure = errno;
     if (failure != ENOSPC && failure != EDQUOT && failure != EFBIG) return Ok();
   }
-  const std::string mend = file < 0 ? "name another folder" : "make room, or name another folder";
+  const std::string remedy = file < 0 ? "name another folder" : "make room, or name another folder";
   return OutputError(fmt::format("cannot write {}: {}; the report takes {:.1f} MB: {}", page.string(),
-                                 std::strerror(failure), 1e-6 * static_cast<double>(bytes), mend));
+                                 std::strerror(failure), 1e-6 * static_cast<double>(bytes), remedy));
 }
 
 // Removes a file, following links as the writing does. A missing file, a device or a pipe is skipped.

@@ -265,7 +265,7 @@ void ReadMattesToo(const FileContents& contents, const std::string& prefix, Blen
 }
 
 // Layers that guidegen always writes need no option.
-std::string MendFor(const LayerSet& missing) {
+std::string RemedyFor(const LayerSet& missing) {
   std::string asked;
   for (const LayerInfo& info : AllLayers()) {
     if (missing.Has(info.layer) && !AlwaysWritten().Has(info.layer))
@@ -314,7 +314,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     }
   }
   if (!missing.empty()) {
-    std::string remedy = MendFor(missing);
+    std::string remedy = RemedyFor(missing);
     if (contents.from_blender) remedy = BlenderPassesFor(missing);
     if (solves_camera && missing.Has(Layer::kPosition)) {
       remedy += ", or give the camera with --camera FILE, which does without Position";

@@ -278,14 +278,14 @@ Status CheckSphereIsWhole(const TemplateMap& map, const Picture& scan, const std
 Status CheckScanSize(int width, int height, double dpi, const std::string& name) {
   const double pixels = double(width) * height;
   if (pixels <= kMaxScanPixels) return Ok();
-  std::string mend = "scale it down, or scan it at 300 to 600 dpi";
+  std::string remedy = "scale it down, or scan it at 300 to 600 dpi";
   if (dpi > 0) {
     const double most = std::floor(dpi * std::sqrt(kMaxScanPixels / pixels) / 50) * 50;
-    mend = "the file says " + Number("%.0f", dpi) + " dpi: scan it at " +
-           Number("%.0f", std::max(50.0, std::min(most, 600.0))) + " dpi, or cut it to the sheet";
+    remedy = "the file says " + Number("%.0f", dpi) + " dpi: scan it at " +
+             Number("%.0f", std::max(50.0, std::min(most, 600.0))) + " dpi, or cut it to the sheet";
   }
   return InputError(name + " is " + Pixels(width, height) + ", more than the " + Number("%.0f", kMaxScanPixels / 1e6) +
-                    " million that are read at most: " + mend);
+                    " million that are read at most: " + remedy);
 }
 
 Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options) {

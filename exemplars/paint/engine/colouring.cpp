@@ -41,12 +41,12 @@ Colors Squint(const Colors& picture, const Sheet& places) {
 
 }  // namespace
 
-Wish MakeWish(const std::function<glm::vec3(glm::vec2 at)>& color_at) {
-  Wish wish(Sheet{static_cast<int>(kSide / kPlan)});
-  for (int y = 0; y < wish.size; ++y) {
-    for (int x = 0; x < wish.size; ++x) wish.At(x, y) = color_at(wish.Place(x, y));
+TargetColors MakeTargetColors(const std::function<glm::vec3(glm::vec2 at)>& color_at) {
+  TargetColors target_colors(Sheet{static_cast<int>(kSide / kPlan)});
+  for (int y = 0; y < target_colors.size; ++y) {
+    for (int x = 0; x < target_colors.size; ++x) target_colors.At(x, y) = color_at(target_colors.Place(x, y));
   }
-  return wish;
+  return target_colors;
 }
 
 Touch AwayFromPoles(const Touch& touch, glm::vec3 axis) {
@@ -55,8 +55,8 @@ Touch AwayFromPoles(const Touch& touch, glm::vec3 axis) {
       [=](glm::vec2 at) { return touch(at) * Ramp(kCurl, kCurl + 0.15f, glm::length(glm::cross(NormalAt(at), unit))); };
 }
 
-glm::vec3 ColorIn(const Wish& wish, glm::vec2 at) {
-  return wish.Near(static_cast<int>(at.x / kPlan), static_cast<int>(at.y / kPlan));
+glm::vec3 ColorIn(const TargetColors& target_colors, glm::vec2 at) {
+  return target_colors.Near(static_cast<int>(at.x / kPlan), static_cast<int>(at.y / kPlan));
 }
 
 std::vector<Stroke> Facets(Chance& chance, const std::vector<Stroke>& strokes, float width, int facets,
@@ -81,9 +81,9 @@ std::vector<Stroke> Facets(Chance& chance, const std::vector<Stroke>& strokes, f
   return lines;
 }
 
-Touch Colouring::Nearer(const Wish& wish, const Stick& stick, const Hand& hand) const {
-  const Colors seen = Squint(picture_, wish.sheet);
-  const auto plan = std::make_shared<Field>(wish.sheet);
+Touch Colouring::Nearer(const TargetColors& target_colors, const Stick& stick, const Hand& hand) const {
+  const Colors seen = Squint(picture_, target_colors.sheet);
+  const auto plan = std::make_shared<Field>(target_colors.sheet);
   for (int y = 0; y < plan->size; ++y) {
     for (int x = 0; x < plan->size; ++x) {
       const glm::vec2 at = plan->Place(x, y);
@@ -91,9 +91,9 @@ Touch Colouring::Nearer(const Wish& wish, const Stick& stick, const Hand& hand) 
       const glm::vec3 now = seen.At(x, y);
       const glm::vec3 effect = (stick.clear ? now * stick.color : stick.color) - now;
       const float strength = glm::length(effect);
-      if (strength < 1e-3f || glm::distance(stick.color, wish.At(x, y)) > hand.reach) continue;
+      if (strength < 1e-3f || glm::distance(stick.color, target_colors.At(x, y)) > hand.reach) continue;
       // The share of the stick at which the colour is nearest to the target.
-      const float nearer = glm::dot(wish.At(x, y) - now, effect) / strength;
+      const float nearer = glm::dot(target_colors.At(x, y) - now, effect) / strength;
       if (nearer < hand.least) continue;
       plan->At(x, y) = glm::mix(hand.lightest, hand.heaviest, std::min(nearer / strength, 1.0f));
     }

@@ -18,9 +18,9 @@ struct Stick {
 };
 
 // The target colours, sRGB-encoded, at the places of decisions.
-using Wish = Colors;
-Wish MakeWish(const std::function<glm::vec3(glm::vec2 at)>& color_at);
-glm::vec3 ColorIn(const Wish& wish, glm::vec2 at);
+using TargetColors = Colors;
+TargetColors MakeTargetColors(const std::function<glm::vec3(glm::vec2 at)>& color_at);
+glm::vec3 ColorIn(const TargetColors& target_colors, glm::vec2 at);
 
 // The pressure of a hand: from `lightest` where a stick helps little to `heaviest` where the full stick is needed. No
 // stroke where the stick would bring the colour nearer by less than `least`, a distance in encoded colour.
@@ -55,7 +55,7 @@ class Colouring {
   const Field& tooth() const { return tooth_; }
 
   // The touch of the stick, for the current drawing.
-  Touch Nearer(const Wish& wish, const Stick& stick, const Hand& hand) const;
+  Touch Nearer(const TargetColors& target_colors, const Stick& stick, const Hand& hand) const;
 
   void Draw(Brush& brush, const Stick& stick, const std::vector<Stroke>& strokes, const Settling& settling);
   // The last step of Draw: the painted strokes settle. `layer` is of the ground's sheet.

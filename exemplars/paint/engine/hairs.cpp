@@ -11,8 +11,8 @@ constexpr float kStreakLength = 130.0f;  // and along
 constexpr float kLift = 0.03f;           // pressures below it leave no mark
 
 // A path with the values that a hair needs at each of its points.
-struct Way {
-  explicit Way(const Stroke& path) : aside(path.size()), walked(path.size(), 0.0f) {
+struct TuftPath {
+  explicit TuftPath(const Stroke& path) : aside(path.size()), walked(path.size(), 0.0f) {
     for (std::size_t i = 0; i < path.size(); ++i) {
       const glm::vec2 along = path[std::min(i + 1, path.size() - 1)].at - path[i > 0 ? i - 1 : 0].at;
       aside[i] = glm::vec2(-along.y, along.x) / std::max(glm::length(along), 1e-5f);
@@ -29,8 +29,8 @@ struct Way {
 std::vector<Stroke> PartIntoHairs(Chance& chance, const Stroke& path, const Tuft& tuft) {
   std::vector<Stroke> hairs;
   if (path.size() < 4) return hairs;
-  const Way way(path);
-  const float length = std::max(way.walked.back(), 1e-3f);
+  const TuftPath tuft_path(path);
+  const float length = std::max(tuft_path.walked.back(), 1e-3f);
   const int count = std::max(3, static_cast<int>(tuft.width / (tuft.gap * tuft.hair)));
   const std::uint64_t streaks = chance.Draw();
   for (int k = 0; k < count; ++k) {
@@ -48,16 +48,16 @@ std::vector<Stroke> PartIntoHairs(Chance& chance, const Stroke& path, const Tuft
       hair.clear();
     };
     for (std::size_t i = 0; i < path.size(); ++i) {
-      const float u = way.walked[i] / length;
+      const float u = tuft_path.walked[i] / length;
       const float fan = glm::mix(tuft.narrowest, 1.0f, path[i].pressure);
       // Hairs stick together, so the white between them continues as streaks.
-      const float touch = SmoothNoise(glm::vec2(place / kStreakWidth, way.walked[i] / kStreakLength), streaks);
+      const float touch = SmoothNoise(glm::vec2(place / kStreakWidth, tuft_path.walked[i] / kStreakLength), streaks);
       const float parted = tuft.dryness * (0.48f + 0.60f * u);
       const float pressure = ink * (1.0f - tuft.spent * u) * Ramp(parted - 0.06f, parted + 0.06f, touch);
       if (u < begin || u > end || pressure < kLift) {
         lift();
       } else {
-        hair.push_back({path[i].at + way.aside[i] * place * fan, std::min(pressure, 1.0f)});
+        hair.push_back({path[i].at + tuft_path.aside[i] * place * fan, std::min(pressure, 1.0f)});
       }
     }
     lift();

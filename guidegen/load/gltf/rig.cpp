@@ -46,7 +46,7 @@ class Poser {
  private:
   Error Bad(const std::string& what) const {
     const std::string when = seconds_ ? ", at " + std::to_string(*seconds_) + " s" : "";
-    return InputError(rig_.file + when + ": " + what + ": mend the animation and export it again");
+    return InputError(rig_.file + when + ": " + what + ": fix the animation and export it again");
   }
 
   Status PlaceNodes() {

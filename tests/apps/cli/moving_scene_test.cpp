@@ -239,7 +239,7 @@ TEST_F(CliMoving, BrokenAnimationsAreNamed) {
       Run({"guidegen", "flat.glb", "--size", "16", "--fps", "1", "--frames", "1-3", "-o", "f#.exr"});
   EXPECT_EQ(some.code, 3);
   EXPECT_NE(some.Error().find("2 of 3 frames were not made: 2-3"), std::string::npos) << some.err;
-  EXPECT_NE(some.Error().find("mend the animation"), std::string::npos) << some.err;
+  EXPECT_NE(some.Error().find("fix the animation"), std::string::npos) << some.err;
   EXPECT_TRUE(Exists("f1.exr"));
 }
 

@@ -421,7 +421,7 @@ TEST_F(CliAssign, TheTwoStepsTakeWhatTheOneTakes) {
   EXPECT_EQ(Count(lacks.err, "normal.X"), 0) << lacks.err;
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--layers", "albedo,luminance", "-o", "few.exr"});
   RunOk(With({"transfer", "few.exr", "-o", "two.png"}, styles));
-  EXPECT_TRUE(Bytes("one.png") == Bytes("two.png")) << "the option that the error names mends it";
+  EXPECT_TRUE(Bytes("one.png") == Bytes("two.png")) << "the option that the error names fixes it";
   ExpectError({"guidegen", "s.glb", "--assign", "Tile1=red", "-o", "g.exr"}, 2, {"--assign", "--style"});
 }
 

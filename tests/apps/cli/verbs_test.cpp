@@ -50,18 +50,18 @@ TEST_F(CliUsage, EveryVerbHasHelp) {
     }
   }
   EXPECT_EQ(RunOk({"help", "sphere"}).out, RunOk({"sphere", "-h"}).out);
-  ExpectError({"help", "bogus"}, 2, {"there is no verb 'bogus'", "scumble help"});
+  ExpectError({"help", "bogus"}, 2, {"there is no command 'bogus'", "scumble help"});
 }
 
 TEST_F(CliUsage, VerbsThatAreNone) {
   ExpectError(
       {}, 2,
-      {"no verb given: expected one of sphere, guidegen, transfer, stylize, compare, crosscheck, tradeoff, info, "
+      {"no command given: expected one of sphere, guidegen, transfer, stylize, compare, crosscheck, tradeoff, info, "
        "styles"});
-  ExpectError({"bogus"}, 2, {"unknown verb 'bogus': expected one of sphere, guidegen"});
+  ExpectError({"bogus"}, 2, {"unknown command 'bogus': expected one of sphere, guidegen"});
   ExpectError({""}, 2, {"expected one of sphere"});
-  ExpectError({"--bogus"}, 2, {"unknown option --bogus: options follow the verb"});
-  ExpectError({"--quiet", "styles"}, 2, {"unknown option --quiet before the verb", "as in scumble styles --quiet"});
+  ExpectError({"--bogus"}, 2, {"unknown option --bogus: options follow the command"});
+  ExpectError({"--quiet", "styles"}, 2, {"unknown option --quiet before the command", "as in scumble styles --quiet"});
 }
 
 // The unknown option is named even where required ones are missing too: it is what was mistyped.
