@@ -39,8 +39,8 @@ test-asan: ## all tests but the longest of the painter's under AddressSanitizer 
 	@cmake --build build-asan -j $(JOBS)
 	@ASAN_OPTIONS=$(NO_GUESSED_TLS) LSAN_OPTIONS=suppressions=$(CURDIR)/tests/support/leaks.supp ctest --test-dir build-asan --output-on-failure -j $(JOBS) -E painting_repeats
 
-# GCC 12's sanitizer guesses where the C library keeps what libraries have for each thread, wrongly once one is loaded late, and
-# then dies of looking for leaks there.
+# GCC 12's sanitizer guesses the place of the C library's thread-local memory, wrongly once a library is loaded late,
+# and then crashes in its search for leaks there.
 NO_GUESSED_TLS := intercept_tls_get_addr=0
 
 test-tsan: ## all tests but the longest of Blender's and of the painter's under ThreadSanitizer, in build-tsan/; takes hours

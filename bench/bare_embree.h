@@ -1,5 +1,5 @@
-// The least that a picture's rays could cost: Embree alone over the same triangles and the same rays, in every kind of
-// packet that it has. Only the hits' distances are kept.
+// The minimum cost of a picture's rays: Embree alone over the same triangles and the same rays, in every kind of packet
+// that it has. Only the hits' distances are kept.
 #pragma once
 
 #include <embree3/rtcore.h>

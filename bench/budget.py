@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Whether --budget-ms keeps what it promises: runs the sample scenes with bundled styles and budgets, each picture in a
+"""Whether --budget-ms keeps its budgets: runs the sample scenes with bundled styles and budgets, each picture in a
 process of its own, and counts how many were within their budget. Prints the tables of docs/budget.md; gates nothing.
 
   bench/budget.py --scumble build/scumble
@@ -19,12 +19,13 @@ import runs
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 COUNTED = ("build", "rays", "upsample", "match", "vote", "compose")
-TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, nine times of ten, with (.+?)(, which repeats it)?$", re.MULTILINE)
+TOLD = re.compile(r"budget [\d.]+ ms: at most (\d+) ms, nine times of ten, with (.+?)(, which repeats it)?$",
+                  re.MULTILINE)
 
 
 def paint(arguments, job, more, folder):
-    """What one run says, and what it took of what a budget counts, in milliseconds. Without --json, which would keep more
-    than a picture needs."""
+    """The outcome of one run, and its part of the budget, in milliseconds. Without --json, which would keep more than a
+    picture needs."""
     verb, scene, style = job
     scene_file, style_folder = SOURCE / "scenes" / (scene + ".glb"), SOURCE / "exemplars" / style
     source = [scene_file, "--size", arguments.size]
@@ -33,7 +34,8 @@ def paint(arguments, job, more, folder):
         if not os.path.exists(guides):
             runs.run([arguments.scumble, "guidegen", *source, "--style", style_folder, "--quiet", "-o", guides])
         source = [guides]
-    command = [arguments.scumble, verb, *source, "--style", style_folder, "-o", os.path.join(folder, "picture.png"), *more]
+    command = [arguments.scumble, verb, *source, "--style", style_folder, "-o", os.path.join(folder, "picture.png"),
+               *more]
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=True)
     report = done.stdout + done.stderr
     return report, sum(float(took) for stage, took in re.findall(r"(\w+) ([\d.]+)[,\n]", report) if stage in COUNTED)
@@ -93,7 +95,8 @@ def tell(arguments, rows):
             "%.2f" % statistics.median(shares) if fitting else "–",
             "%.2f ×" % statistics.median(over) if over else "–", "%.2f ×" % over[-1] if over else "–"))
 
-    print("| | runs | something fits | of these within the budget | time of budget, median | over-run, median | largest |")
+    print("| | runs | something fits | of these within the budget | time of budget, median | over-run, median | "
+          "largest |")
     print("|---|---|---|---|---|---|---|")
     for place in range(4):  # verb, scene, style, share of the style's own time
         for value in dict.fromkeys(row[place] for row in rows):

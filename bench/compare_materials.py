@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Where glTF's material model, as Scumble traces it, and Blender's Principled differ: the figures and the picture of
-docs/materials.md.
+"""The differences between glTF's material model, as Scumble traces it, and Blender's Principled: the figures and the
+picture of docs/materials.md.
 
     bench/compare_materials.py --scumble build/scumble --output FOLDER [--sheet docs/gallery/materials.jpg]
 
 A smooth sphere of radius 1 m under an orthographic camera, one material at a time, under a sun of strength π from the
-key light's direction, under a white world of radiance 1, and under a 2 m area lamp. Cycles renders Blender's node;
-Scumble traces the same scene's export. Both are also held against the models' formulas, integrated here.
+key light's direction, under a white world of radiance 1, and under a 2 m area light. Cycles renders Blender's node;
+Scumble traces the same scene's export. Both are also compared with the models' formulas, integrated here.
 
-Prints the tables as Markdown. FOLDER keeps every render; what is already there is not rendered again. Needs Blender
-3.4, python3-numpy and python3-openimageio. Measures; nothing passes or fails.
+Prints the tables as Markdown. FOLDER keeps every render; existing ones are not rendered again. Needs Blender 3.4,
+python3-numpy and python3-openimageio. It only measures: nothing passes or fails.
 """
 
 import argparse
@@ -108,7 +108,7 @@ def sun_radiance(model, normal, case):
 
 
 def albedo(model, eye, roughness, f0, steps=96):
-    """What a white surface returns of a white world towards `eye`: of the diffuse lobe, of the specular lobe."""
+    """The reflection of a white world by a white surface towards `eye`: of the diffuse lobe, of the specular lobe."""
     diffuse, fresnel = MODELS[model]
     u, v = (a.ravel() for a in np.meshgrid((np.arange(steps) + 0.5) / steps, (np.arange(steps) + 0.5) / steps))
     around, radius = 2.0 * math.pi * u, np.sqrt(v)
@@ -276,7 +276,8 @@ def pure_table(pairs):
 
 
 def principled_table(pairs, color):
-    print(f"\n{color}\n\n| metallic | roughness | " + " | ".join(f"{w}: full | diffuse | specular" for w in LIGHTS.values())
+    print(f"\n{color}\n\n| metallic | roughness | " + " | ".join(f"{w}: full | diffuse | specular"
+                                                                 for w in LIGHTS.values())
           + " |\n|---|---|" + "---|" * (3 * len(LIGHTS)))
     for metallic in METALLIC:
         for roughness in ROUGHNESS:
@@ -288,7 +289,8 @@ def principled_table(pairs, color):
 
 
 def largest_table(pairs):
-    print("\n| colour | metallic | roughness | sun: largest | of | eye at | light at | white world: largest ring | of | "
+    print("\n| colour | metallic | roughness | sun: largest | of | eye at | light at | white world: largest ring | of "
+          "| "
           "eye at |\n|---|---|---|---|---|---|---|---|---|---|")
     for color in COLORS:
         for metallic in METALLIC:
@@ -331,7 +333,7 @@ def furnace_table(pairs):
 
 
 def angle_table():
-    """What a white dielectric returns of a white world by the angle of view, from the formulas."""
+    """The reflection of a white world by a white dielectric by the angle of view, from the formulas."""
     angles = (0, 45, 60, 75, 85)
     print("\n| roughness | model | " + " | ".join(f"{a}°" for a in angles) + " |\n|---|---|" + "---|" * len(angles))
     for roughness in (0.1, 0.5, 1.0):

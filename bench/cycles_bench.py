@@ -3,7 +3,7 @@
 
     /usr/bin/python3 bench/cycles_bench.py --scumble build/scumble [--repeats 5] [--fresh]
 
-Both programs run alternately, so that whatever else the machine does slows both. Error is measured on a smaller picture
+Both programs run alternately, so that other load of the machine slows both. Error is measured on a smaller picture
 against each program's own converged one, which is kept in the output folder until --fresh: a pixel's error does not
 depend on how many other pixels there are. Times are those of the large picture. Gates nothing.
 
@@ -28,7 +28,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 BOUNCES = 8  # as in cycles_side.py
 DATA_LAYERS = "position,albedo"  # on top of those that are always written
-# Cycles' error at this many samples is what both are asked for.
+# Cycles' error at this many samples is the target of both.
 TARGET_SAMPLES = 16
 GOALS = {"data": 20.0, "process": 3.0, "LDE": 5.0, "full": 1.0}
 
@@ -43,7 +43,8 @@ class Scumble:
         """Seconds of the renderer itself, as it reports them (hierarchy and rays), of the whole process, and of
         processor time."""
         layers = DATA_LAYERS if mode == "data" else "lpe." + mode
-        command = [self.program, "guidegen", scene, "--size", size, "--layers", layers, "--json", "--quiet", "-o", output]
+        command = [self.program, "guidegen", scene, "--size", size, "--layers", layers, "--json", "--quiet", "-o",
+                   output]
         if mode != "data":
             command += ["--samples", samples, "--max-bounces", BOUNCES]
         process, processor_time, text = run(command)
@@ -150,8 +151,9 @@ def measure_light(options, renderers, mode, scenes):
 
 
 def time_at(error, measured):
-    """Seconds, and samples, at which a renderer reaches an error: log error is fitted over log samples, time over samples
-    by a straight line. Less than one sample there is not: whoever is better than asked with one is given its time."""
+    """Seconds, and samples, at which a renderer reaches an error: log error is fitted over log samples, time over
+    samples by a straight line. One sample is the minimum: a renderer that beats the target with one gets the time of
+    one."""
     samples = np.array(sorted(measured["errors"]), float)
     slope, start = np.polyfit(np.log(samples), np.log([measured["errors"][n] for n in samples]), 1)
     needed = max(1.0, math.exp((math.log(error) - start) / slope))
@@ -170,7 +172,7 @@ def at_equal_error(measured):
     return result
 
 
-# ---- what is written ------------------------------------------------------------------------------------------------
+# ---- output --------------------------------------------------------------------------------------------------------
 
 
 def verdict(kind, ratio):
@@ -180,9 +182,11 @@ def verdict(kind, ratio):
 def markdown(report, data, light, equal):
     ours, cycles = data["scumble"], data["Cycles"]
     rows = ["| what | scumble | Cycles | ratio | goal | |", "|---|---|---|---|---|---|"]
-    for kind, part, what in (("data", "own", "data layers, renderer alone"), ("process", "process", "data layers, whole process")):
+    for kind, part, what in (("data", "own", "data layers, renderer alone"),
+                             ("process", "process", "data layers, whole process")):
         ratio = report["ratios"][kind]
-        rows.append("| %s | %s | %s | %.1f | ≥ %g | %s |" % (what, ours[part].text(), cycles[part].text(), ratio, GOALS[kind],
+        rows.append("| %s | %s | %s | %.1f | ≥ %g | %s |" % (what, ours[part].text(), cycles[part].text(), ratio,
+                                                             GOALS[kind],
                                                              verdict(kind, ratio)))
     for kind in ("LDE", "full"):
         e = equal[kind]
@@ -196,9 +200,12 @@ def markdown(report, data, light, equal):
             rows.append("| `%s` | %d | %s | %.4f | %s | %.4f |" % (kind, n, a["times"][n].text(), a["errors"][n],
                                                                     b["times"][n].text(), b["errors"][n]))
     where = report["machine"]
-    rows += ["", "Processor time of the paths alone, which other programs on the machine stretch less: `LDE` %.1f, `full` %.1f times "
+    rows += ["", "Processor time of the paths alone, which other programs on the machine stretch less: `LDE` %.1f, "
+                 "`full` %.1f times "
              "Cycles' speed." % tuple(equal[kind]["processor_ratio"] for kind in ("LDE", "full")),
-             "", "%s, %d threads, load before the run %.1f; %s; %s at %s, %d bounces, medians of %d runs with their quartiles."
+             "",
+             "%s, %d threads, load before the run %.1f; %s; %s at %s, %d bounces, medians of %d runs with their "
+             "quartiles."
              % (where["processor"], where["threads"], where["load"], report["date"], report["scene"], report["size"],
                 BOUNCES, report["repeats"])]
     return "\n".join(rows) + "\n"
@@ -249,7 +256,7 @@ def jsonable(value):
 
 
 def prepare(options, program):
-    """The scene with pure materials, for both programs: with lamps as they are, and with soft ones."""
+    """The scene with pure materials, for both programs: with its own lights, and with soft ones."""
     blends = [options.output / "delta.blend", options.output / "soft.blend"]
     glbs = [path.with_suffix(".glb") for path in blends]
     if options.fresh or not all(path.exists() for path in blends + glbs):
@@ -267,7 +274,8 @@ def main():
     parser.add_argument("--scumble", type=Path, default=ROOT / "build/scumble")
     parser.add_argument("--blender", default="blender")
     parser.add_argument("--scene", type=Path, default=ROOT / "scenes/stilllife.glb")
-    parser.add_argument("--output", type=Path, default=ROOT / "out/bench-cycles", help="folder for pictures and results")
+    parser.add_argument("--output", type=Path, default=ROOT / "out/bench-cycles",
+                        help="folder for pictures and results")
     parser.add_argument("--size", default="960x540")
     parser.add_argument("--error-size", default="240x135", help="of the pictures whose error is measured")
     parser.add_argument("--repeats", type=int, default=5)

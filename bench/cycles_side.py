@@ -3,8 +3,8 @@
     blender -b -noaudio --factory-startup -P cycles_side.py -- make SCENE.glb DELTA.blend SOFT.blend
     blender -b -noaudio --factory-startup -P cycles_side.py -- data|full|LDE SCENE OUTPUT.exr WIDTHxHEIGHT SAMPLES SEED
 
-`make` gives a scene materials that both renderers mean the same by, pure Diffuse and Glossy shaders, and writes it
-twice: with its lamps as they are, and with lamps that have an extent and an area lamp besides.
+`make` gives a scene materials that both renderers interpret alike, pure Diffuse and Glossy shaders, and writes it
+twice: with its own lights, and with lights that have an extent plus an area light.
 """
 
 import math

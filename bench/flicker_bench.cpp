@@ -1,6 +1,6 @@
-// How much sequences flicker whose seeds are new in every frame, frozen to the screen, or live on the surface, beside
-// the Lit Sphere: prints the table of docs/sequences.md. Arguments: names of bundled styles;
-// --save FOLDER writes the frames, too.
+// The flicker of sequences whose seeds are new in every frame, frozen to the screen, or on the surface, beside the Lit
+// Sphere: prints the table of docs/sequences.md. Arguments: names of bundled styles; --save FOLDER writes the frames,
+// too.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -35,7 +35,7 @@ struct Motion {
   std::function<void(double frame, View& view)> move;
 };
 
-// Around the vertical line through what the framing camera looks at, the scene's middle at about its height.
+// Around the vertical line through the framing camera's target, the scene's middle at about its height.
 void TurnObjects(Scene& scene, double degrees) {
   const glm::dmat4 turn = glm::rotate(glm::dmat4(1.0), degrees * kDegree, kUp);
   for (Instance& instance : scene.instances) instance.world_from_object = turn * instance.world_from_object;

@@ -1,5 +1,5 @@
-// Guides against the least that their rays could cost (bare_embree.h), in one run: 1920 × 1080 pixels, 100,002
-// triangles, every pixel covered. "Guides" is all of RenderGuides but the hierarchy, the planes' memory included.
+// Guides against the minimum cost of their rays (bare_embree.h), in one run: 1920 × 1080 pixels, 100,002 triangles,
+// every pixel covered. "Guides" is all of RenderGuides but the hierarchy, the planes' memory included.
 #include <benchmark/benchmark.h>
 #include <time.h>
 
@@ -22,7 +22,7 @@ constexpr int kHeight = 1080;
 constexpr double kDistance = 3.0;
 constexpr double kAngle = 40.0;
 
-// Ten balls of 10,000 triangles each, before a wall.
+// Ten spheres of 10,000 triangles each, before a wall.
 Scene BenchScene() {
   Scene scene = SceneOf(BallMesh(50));
   scene.instances.clear();
@@ -39,7 +39,7 @@ BareEmbree Bare(const Scene& scene) {
   return BareEmbree(scene, kWidth, kHeight, kDistance, std::tan(glm::radians(kAngle) / 2.0));
 }
 
-// Of all threads: other programs stretch it less than they stretch the clock.
+// Processor time of all threads: other programs affect it less than wall-clock time.
 double ProcessMilliseconds() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -76,8 +76,8 @@ Expected<GuidegenResult> Guides(const Scene& scene, GuidegenOptions options, int
   return RenderGuides(scene, FrontCamera(kDistance, kAngle), options);
 }
 
-// Arguments: threads, aa. Counters: *_cpu are thread times in ms, the others the clock's. guides_cpu is a frame's less
-// that of a frame of 16 × 16 pixels, whose rays cost nothing beside its hierarchy.
+// Arguments: threads, aa. Counters: *_cpu are thread times in ms, the others wall-clock times. guides_cpu is a frame's
+// less that of a frame of 16 × 16 pixels, whose rays cost nothing beside its hierarchy.
 void RunGuides(benchmark::State& state, const LayerSet& layers) {
   const int threads = int(state.range(0));
   const Scene scene = BenchScene();
@@ -126,7 +126,7 @@ void BM_GuidesPositionAlbedo(benchmark::State& state) { RunGuides(state, {Layer:
 void BM_GuidesLuminance(benchmark::State& state) { RunGuides(state, {Layer::kLuminance}); }
 void BM_GuidesWithShadowRays(benchmark::State& state) { RunGuides(state, {Layer::kLuminance, Layer::kShadow}); }
 
-// Arguments: threads, kind. The acceleration structure stands before the clock starts.
+// Arguments: threads, kind. The acceleration structure is built before the measurement.
 void BM_BareEmbree(benchmark::State& state) {
   const BareEmbree bare = Bare(BenchScene());
   std::vector<float> depth(std::size_t(kWidth) * kHeight);

@@ -1,5 +1,5 @@
-// What `hybrid` does to a picture of large chunks: seams, and how far its tone is from the Lit Sphere's, whose tone is
-// the surface's own. Prints the table of docs/hybrid.md.
+// The effect of `hybrid` on a picture of large chunks: seams, and the difference of its tone from the Lit Sphere's,
+// which is the surface's own. Prints the table of docs/hybrid.md.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -59,7 +59,7 @@ double ToneDifference(const Picture& a, const Picture& b, const std::vector<std:
   return std::sqrt(sum / count);
 }
 
-// Root mean square of what a picture differs from its own blur by: how much texture there is.
+// The amount of texture: root mean square of the difference between a picture and its own blur.
 double Texture(const Picture& picture, const std::vector<std::uint8_t>& covered) {
   const Picture smooth = internal::MaskedBlur(picture, covered, 4.0);
   double sum = 0.0, count = 0.0;

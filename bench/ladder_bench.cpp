@@ -1,6 +1,6 @@
-// What the ladder of --quality and --budget-ms was made from: for sample scenes and bundled styles, time and energy of
-// every variant to do it with less, and which of them nothing else beats in both. Prints one line a variant,
-// tab-separated: docs/budget.md has the table. --help lists the arguments.
+// The measurements behind the ladder of --quality and --budget-ms: for sample scenes and bundled styles, time and
+// energy of every cheaper variant, and the Pareto front of both. Prints one line a variant, tab-separated:
+// docs/budget.md has the table. --help lists the arguments.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -39,14 +39,14 @@ struct Arguments {
   std::vector<std::string> styles{"oil", "charcoal", "woodcut", "sumi-e", "chiaroscuro", "scene-oil"};
 };
 
-// What a variant takes instead of the style's own.
+// The settings of a variant that replace the style's own.
 struct Candidate {
   std::string name;
   int upsample = 1;
   std::vector<std::string> settings;
 };
 
-// What could be done with less and leaves the artist's choices of look alone, combined.
+// All combinations of cheaper settings that do not change the artist's choices of look.
 std::vector<Candidate> Candidates(const Style& style, const Arguments& arguments) {
   const std::string less = "transfer.method=litsphere", crisp = "transfer.blend_radius=0";
   std::vector<Candidate> all;
@@ -107,7 +107,8 @@ void Measure(const std::string& scene_name, const std::string& style_name, const
   const TradeReference judge(std::make_shared<const GuideSet>(guides[1].guides), prepared.front(), options.exposure, 0);
   std::vector<std::vector<double>> ms(candidates.size());
   std::vector<TradeMeasure> energy(candidates.size());
-  for (int run = 0; run <= arguments.runs; ++run) {  // in turns, so that what else the machine does meets all of them
+  for (int run = 0; run <= arguments.runs;
+       ++run) {  // in turns, so that other load of the machine affects all of them alike
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       TransferScratch scratch;
       Picture picture;

@@ -4,8 +4,8 @@ bench/compare_materials.py, which runs it.
     blender -b -noaudio --factory-startup -P bench/material_spheres.py -- --cases CASES.json --output FOLDER
 
 CASES.json is a list of {"name", "light", "bsdf", "color", "roughness", "metallic", "size", "samples"}. Each gives
-FOLDER/NAME.exr, Cycles' passes, and FOLDER/NAME.glb by blender_scripts/export_scene.py, exactly what `scumble guidegen`
-makes of a .blend.
+FOLDER/NAME.exr, Cycles' passes, and FOLDER/NAME.glb by blender_scripts/export_scene.py, exactly as `scumble guidegen`
+exports a .blend.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-// A bench cannot go on without what it measures.
+// A bench stops without its measured object.
 #pragma once
 
 #include <cstdio>

@@ -4,7 +4,7 @@
     /usr/bin/python3 bench/performance.py --build build [--only yardstick,process] [--seconds 12] [--write-docs]
 
 Runs the bench programs and the command line, one after the other, and writes results.json, results.md and
-performance.svg into the output folder. Gates nothing: a target that is missed is said to be missed.
+performance.svg into the output folder. Gates nothing: a missed target is only reported.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def verdict(figure):
     if "target" not in figure:
         return ""
     value, target = figure["median"], figure["target"]
-    # What rounding of the last digit shown would change is not a miss.
+    # A difference within the rounding of the last shown digit is no miss.
     reached = value >= target * 0.9995 if figure["at_least"] else value <= target * 1.0005
     return "reached" if reached else "missed"
 
@@ -66,7 +66,7 @@ def target_text(figure):
 
 
 def rows_of(report):
-    """Lines of the table: item, what, frame, measured, target, verdict."""
+    """Lines of the table: item, quantity, frame, measured, target, verdict."""
     figures = [figure for part in report["parts"].values() for figure in part["figures"]]
     figures.sort(key=lambda figure: figure["item"])  # a stable sort keeps the order within an item
     return [(f["item"], f["what"], f["frame"], measured_text(f), target_text(f), verdict(f)) for f in figures], figures
@@ -89,7 +89,8 @@ def machine_text(report):
 
 def counts_text(figures):
     verdicts = [verdict(figure) for figure in figures]
-    return "%d of %d targets reached." % (verdicts.count("reached"), verdicts.count("reached") + verdicts.count("missed"))
+    return "%d of %d targets reached." % (verdicts.count("reached"),
+                                          verdicts.count("reached") + verdicts.count("missed"))
 
 
 def plain_table(report):
@@ -127,7 +128,8 @@ def transfer_stages(report):
     names = list(figures[0]["more"])
     lines = ["The engine on one thread, nanoseconds a covered pixel by the clock on the wall:", ""]
     lines += ["| frame | %s |" % " | ".join(names), "|---" * (len(names) + 1) + "|"]
-    return lines + ["| %s | %s |" % (f["frame"], " | ".join("%.1f" % f["more"][name] for name in names)) for f in figures] + [""]
+    return lines + ["| %s | %s |" % (f["frame"], " | ".join("%.1f" % f["more"][name] for name in names))
+                    for f in figures] + [""]
 
 
 def process_stages(report):
@@ -136,7 +138,8 @@ def process_stages(report):
     if not stages:
         return []
     whole = sum(stages.values())
-    lines = ["One run of `scumble stylize` on the Suzanne scene, as above:", "", "| stage | ms | share |", "|---|---|---|"]
+    lines = ["One run of `scumble stylize` on the Suzanne scene, as above:", "", "| stage | ms | share |",
+             "|---|---|---|"]
     return lines + ["| %s | %.1f | %.0f%% |" % (name, ms, 100.0 * ms / whole) for name, ms in stages.items()] + [""]
 
 
@@ -168,11 +171,13 @@ def parse():
     parser.add_argument("--output", type=Path, default=ROOT / "out/bench", help="folder for the results")
     parser.add_argument("--only", help="parts with commas between; left out: all of " + ", ".join(everything))
     parser.add_argument("--update", action="store_true", help="keep the other parts of the results that are there")
-    parser.add_argument("--show", action="store_true", help="measure nothing: the table and chart of the results that are there")
+    parser.add_argument("--show", action="store_true",
+                        help="measure nothing: the table and chart of the results that are there")
     parser.add_argument("--seconds", type=float, default=4.0, help="about how long each group of rounds may take")
     parser.add_argument("--rounds", type=int, default=15, help="the most rounds of a group")
     parser.add_argument("--repeats", type=int, default=5, help="runs of whole processes")
-    parser.add_argument("--hd", action="store_true", help="the yardstick at 1920x1080 alone, which takes a third of the time")
+    parser.add_argument("--hd", action="store_true",
+                        help="the yardstick at 1920x1080 alone, which takes a third of the time")
     parser.add_argument("--smoke", action="store_true", help="everything once, small: whether it runs, not how fast")
     parser.add_argument("--write-docs", action="store_true", help="put table and chart into docs/performance.md")
     options = parser.parse_args()

@@ -21,7 +21,8 @@ class Drawing:
                           % (x, y, anchor, color, size, escape(text)))
 
     def bar(self, x, y, width, height, color):
-        self.parts.append('<rect x="%.1f" y="%.1f" width="%.1f" height="%.1f" fill="%s"/>' % (x, y, width, height, color))
+        self.parts.append('<rect x="%.1f" y="%.1f" width="%.1f" height="%.1f" fill="%s"/>'
+                          % (x, y, width, height, color))
 
     def line(self, path, color="#ccc", width=1):
         self.parts.append('<path d="%s" stroke="%s" stroke-width="%g" fill="none"/>' % (path, color, width))
@@ -62,7 +63,7 @@ def draw_nanoseconds(drawing, report, top):
 
 
 def draw_costs(drawing, report, top):
-    """What may cost at most so much: bars, with a mark where the target is. Returns where it ends."""
+    """Figures with an upper limit: bars, with a mark at the target. Returns the end of the drawing."""
     figures = [figure for part in ("radius", "extensions", "sizes", "guides")
                for figure in report["parts"].get(part, {"figures": []})["figures"]
                if figure["unit"] == "×" and "target" in figure and not figure["at_least"]]
@@ -80,7 +81,8 @@ def draw_costs(drawing, report, top):
         drawing.text(left - 8, y + 12, "%s, %s" % (figure["what"], figure["frame"].split(" ")[0]), "end")
         drawing.bar(left, y, place(figure["median"]) - left, ROW - 2, OURS if kept else OTHER)
         drawing.line("M%.1f %.1fv%d" % (place(figure["target"]), y - 2, ROW + 2), "#222", 2)
-        drawing.text(max(place(figure["median"]), place(figure["target"])) + 6, y + 12, "%.3g" % figure["median"], color="#444")
+        drawing.text(max(place(figure["median"]), place(figure["target"])) + 6, y + 12, "%.3g" % figure["median"],
+                     color="#444")
     drawing.text(place(1.0), bottom + 14, "1", "middle", "#666")
     return bottom + 40
 
@@ -91,7 +93,8 @@ def draw_sizes(drawing, report, top):
     if not figures:
         return top
     first = figures[0]["more"]
-    points = [(first["first_megapixels"], first["first_ns"])] + [(f["more"]["megapixels"], f["more"]["ns"]) for f in figures]
+    points = [(first["first_megapixels"], first["first_ns"])] + [(f["more"]["megapixels"], f["more"]["ns"])
+                                                                 for f in figures]
     left, right, height = 170, 800, 120
     most = 1.25 * max(ns for _, ns in points)
     low, high = math.log2(points[0][0]), math.log2(points[-1][0])

@@ -1,4 +1,4 @@
-"""The parts of `make bench` that are programs of their own: guides beside bare Embree, and the command line as a whole."""
+"""The parts of `make bench` that are separate programs: guides beside bare Embree, and the command line as a whole."""
 
 import json
 import os
@@ -29,7 +29,7 @@ def figure(item, what, frame, unit, values, target=None, at_least=False, note=""
 
 
 def timed(command):
-    """Seconds on the wall, bytes of memory at the peak, and what the program printed."""
+    """Wall-clock seconds, bytes of memory at the peak, and the program's output."""
     begin = time.perf_counter()
     process = subprocess.Popen([str(part) for part in command], stdout=subprocess.PIPE, cwd=ROOT)
     text = process.stdout.read()
@@ -46,9 +46,10 @@ def size_of(options):
 
 
 def stylize(options, scene, arguments, output, most_repeats=100):
-    """Runs of the command line; the first one warms the disk's cache and does not count. Not with --json, which counts what a
-    plain run need not know."""
-    command = [options.build / "scumble", "stylize", "scenes/%s.glb" % scene, "--style", STYLE, "--size", size_of(options),
+    """Runs of the command line; the first one warms the disk's cache and does not count. Without --json, whose counters
+    a plain run does not need."""
+    command = [options.build / "scumble", "stylize", "scenes/%s.glb" % scene, "--style", STYLE, "--size",
+               size_of(options),
                "--png-level", 1, "--threads", 2, "--quiet", "-o", options.scratch / output] + arguments
     repeats = 1 if options.smoke else min(options.repeats, most_repeats)
     runs = [timed(command) for _ in range(repeats + 1)][1:]
@@ -80,11 +81,12 @@ def measure_sequence(options):
     count = 2 if options.smoke else 24
     seconds, _, _ = stylize(options, "toys", ["--frames", "1-%d" % count], "frame.####.png", 3)
     frame = "toys %s, style oil, %d frames" % (size_of(options).replace("x", "×"), count)
-    return {"figures": [figure("8", "scumble stylize --frames, a frame", frame, "s", [s / count for s in seconds], 0.2)]}
+    return {"figures": [figure("8", "scumble stylize --frames, a frame", frame, "s", [s / count for s in seconds],
+                               0.2)]}
 
 
 def benchmark(options, program, arguments):
-    """Google Benchmark's records by the name of what ran: of single runs, or of the aggregates where it writes no others."""
+    """Google Benchmark's records by name: of single runs, or of the aggregates if it writes no others."""
     done = subprocess.run([options.build / "bench" / program, "--benchmark_format=json",
                            "--benchmark_enable_random_interleaving=true"] + arguments, capture_output=True, text=True)
     if done.returncode != 0:
@@ -97,7 +99,7 @@ def benchmark(options, program, arguments):
 
 
 def values_of(records, key):
-    """A counter's values; of aggregates the median, and as far around it as the standard deviation says."""
+    """A counter's values; of aggregates the median, and one standard deviation on either side."""
     single = [record[key] for record in records if record.get("run_type") == "iteration"]
     if single:
         return single
@@ -108,7 +110,8 @@ def values_of(records, key):
 def measure_guides(options):
     """guidegen beside a bare Embree loop over the same triangles and rays, in turns."""
     name = "BM_GuidesAlwaysWritten/%d/1"
-    arguments = ["--benchmark_filter=" + name % 1 + "|" + name % 2] + (["--benchmark_min_time=0.01"] if options.smoke else [])
+    arguments = ["--benchmark_filter=" + name % 1 + "|" + name % 2] + (
+        ["--benchmark_min_time=0.01"] if options.smoke else [])
     runs = benchmark(options, "guidegen_bench", arguments)
     if any("ratio_cpu" not in record for threads in (1, 2) for record in runs.get(name % threads, [{}])):
         return {"figures": [], "notes": ["guidegen_bench does not print what this table needs: " + name % 1]}
@@ -119,9 +122,11 @@ def measure_guides(options):
         records = runs[name % threads]
         figures.append(figure("6", "normals, depth and ids against bare Embree, threads: %d" % threads, frame, "×",
                               values_of(records, ratio), 1.3,
-                              more={key: statistics.median(values_of(records, key + "_" + kind)) for key in ("bare", "guides")}))
+                              more={key: statistics.median(values_of(records, key + "_" + kind))
+                                    for key in ("bare", "guides")}))
     pair = runs[name % 2]
     figures.append(figure("6", "guides a second, two threads, hierarchy built for each", frame, "frames/s",
                           values_of(pair, "fps_with_build"), 15.0, True))
-    figures.append(figure("6", "guides a second, two threads, hierarchy kept", frame, "frames/s", values_of(pair, "fps")))
+    figures.append(figure("6", "guides a second, two threads, hierarchy kept", frame, "frames/s",
+                          values_of(pair, "fps")))
     return {"figures": figures}

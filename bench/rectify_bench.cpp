@@ -1,7 +1,7 @@
-// How well `scumble sphere --rectify` finds the template, against truth: scans with a known camera over tilt and noise,
+// The accuracy of `scumble sphere --rectify` against truth: scans with a known camera over tilt and noise,
 // blur and size, as the tables of docs/scanning.md.
 //
-//   rectify_bench [FOLDER]     FOLDER keeps the scans and what is true of them, for other programs to be tried on
+//   rectify_bench [FOLDER]     keeps the scans and their truth in FOLDER, to test other programs
 //
 // Each cell is the worst of three scans, turned differently: true error / reported error, in % of the sphere's
 // diameter; in brackets how many marks were found, where it is not all; a dash where a scan is refused.

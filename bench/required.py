@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What five kinds of styles make a run pay, by the program's own counters: the table of docs/required.md.
+"""The work that five kinds of styles cause, by the program's own counters: the table of docs/required.md.
 
     /usr/bin/python3 bench/required.py --program build/scumble [--write-docs | --check]
 
-Bytes allocated are counted by build/tests/liballocation_counter.so, which stands before the C library's own functions.
+Bytes allocated are counted by build/tests/liballocation_counter.so, which replaces the C library's own functions.
 
 Without an option the table goes to standard output. --write-docs puts it into the page. --check fails, exit code 1,
 where a row holds other layers, a figure of the page that is 0 is no longer, one that counts, or what is allocated, has
@@ -28,11 +28,12 @@ BEGIN, END = "<!-- table: begin, written by bench/required.py -->\n", "<!-- tabl
 SIZE = (480, 270)
 PATH_SAMPLES = 8
 PLANE_BYTES = 4 * SIZE[0] * SIZE[1]  # of one float a pixel
-# Embree's trees are wider on later instruction sets, and take 0.3 % more or less; one that every machine has makes them alike.
+# Embree's trees are wider on later instruction sets, and take 0.3 % more or less; an instruction set that every machine
+# has gives equal ones.
 ISA = "sse2"
-# What is left between machines: paths of light may turn elsewhere, in some of a million. What is allocated is the same to
-# 0.01 MB from run to run; of it never more than half of a plane is let through, so that one buffer of a float a pixel shows.
-# Files differ by the version of what packs them.
+# Remaining differences between machines: light paths may turn elsewhere, in some of a million. Allocations agree to
+# 0.01 MB from run to run. The tolerance is at most half of a plane, so that one buffer of a float a pixel shows. Files
+# differ by the version of the compressing library.
 MOST_MOVED, MOST_WRITTEN, MOST_ALLOCATED = 0.001, 0.02, 0.5e-6 * PLANE_BYTES
 
 # Title, scene, arguments.
@@ -49,7 +50,7 @@ COLUMNS = ["primary rays", "shadow rays", "bounced rays", "light samples", "mate
 
 
 def with_one_light(source, target, is_area):
-    """A copy of a .glb with its first lamp alone, or an area light in its place."""
+    """A copy of a .glb with its first light alone, or an area light in its place."""
     data = source.read_bytes()
     length = struct.unpack_from("<I", data, 12)[0]
     gltf, rest = json.loads(data[20:20 + length]), data[20 + length:]
@@ -66,8 +67,8 @@ def with_one_light(source, target, is_area):
 
 
 def layers_of(title, told):
-    """Names of the layers that the guides held, from the run's plan; what else it lists are steps. A plan is a promise: so
-    their channels must be the planes that were counted, and a file of guides must say that it has them."""
+    """Names of the layers that the guides held, from the run's plan; its other lines are steps. A plan is only an
+    announcement: so the layers' channels must be the planes that were counted, and a file of guides must list them."""
     names = [item["layer"] for item in told["plan"] if item["reason"].startswith(("always written", "asked for"))]
     channels = sum(3 if name in ("normal", "albedo") or name.startswith("lpe.") else 1 for name in names)
     planes = told["work"]["plane_bytes"] / PLANE_BYTES
@@ -86,19 +87,22 @@ def measure(program, counter):
         scenes = {name: Path(scratch) / (name + ".glb") for name in ("sun", "area")}
         for name, path in scenes.items():
             with_one_light(ROOT / "scenes/stilllife.glb", path, name == "area")
-        preloaded = Path(shutil.copy(counter, scratch))  # the loader takes no path with spaces or colons, as a source's may be
+        preloaded = Path(shutil.copy(counter, scratch))  # paths with spaces or colons do not work in the loader
         for title, scene, (verb, *arguments) in ROWS:
             output = Path(scratch) / ("out.png" if verb == "stylize" else "out.exr")
             allocated = Path(scratch) / ("allocated-" + title)
-            # One thread: each one more has memory of its own. A cache of its own, empty: what is kept there is not made again.
-            told = json.loads(run([program, verb, scenes[scene], *arguments, "--size", "%dx%d" % SIZE, "--json", "--quiet",
+            # One thread, because each further one has its own memory. An empty cache of its own, so that everything is
+            # made anew.
+            told = json.loads(run([program, verb, scenes[scene], *arguments, "--size", "%dx%d" % SIZE, "--json",
+                                   "--quiet",
                                    "--threads", 1, "--isa", ISA, "--explain", "-o", output], LD_PRELOAD=str(preloaded),
                                   SCUMBLE_ALLOCATED_TO=str(allocated), XDG_CACHE_HOME=scratch + "/cache-" + title)[2])
             if not allocated.exists():
                 sys.exit("%s was not loaded into %s: it must be built for the same machine, and %s allow programs, "
                          "without a space or colon in its path" % (counter, program, scratch))
             rays, work = told["rays"], told["work"]
-            rows.append((title, [rays["primary"], rays["shadow"], rays["bounce"], work["light_samples"], work["materials"],
+            rows.append((title, [rays["primary"], rays["shadow"], rays["bounce"], work["light_samples"],
+                                 work["materials"],
                                  work["texture_lookups"], work["textures_decoded"],
                                  layers_of(title, told), work["plane_bytes"] // PLANE_BYTES, work["plane_bytes"] * 1e-6,
                                  int(allocated.read_text()) * 1e-6, work["bytes_written"] * 1e-6]))
@@ -113,19 +117,21 @@ def text_of(value):
 
 def table(rows):
     lines = ["| | " + " | ".join(COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
-    return "\n".join(lines + ["| %s | %s |" % (title, " | ".join(map(text_of, values))) for title, values in rows]) + "\n"
+    return "\n".join(lines + ["| %s | %s |" % (title, " | ".join(map(text_of, values)))
+                              for title, values in rows]) + "\n"
 
 
 def parts_of_page():
     text = PAGE.read_text(encoding="utf-8")
     if BEGIN not in text or END not in text:
-        sys.exit("%s: the lines «%s» and «%s» are not there: put them back around the table" % (PAGE, BEGIN.strip(), END))
+        sys.exit("%s: the lines «%s» and «%s» are not there: put them back around the table"
+                 % (PAGE, BEGIN.strip(), END))
     head, rest = text.split(BEGIN, 1)
     return head, *rest.split(END, 1)
 
 
 def is_near(name, cell, value):
-    """Whether a measured value is what a cell of the page has."""
+    """Whether a measured value is that of the page's cell."""
     if isinstance(value, str):
         return value == cell
     expected = float(cell.replace(",", ""))
@@ -136,7 +142,8 @@ def is_near(name, cell, value):
 
 
 def check(rows):
-    stands = [[cell.strip() for cell in line.strip("|").split("|")] for line in parts_of_page()[1].strip().split("\n")[2:]]
+    stands = [[cell.strip() for cell in line.strip("|").split("|")]
+              for line in parts_of_page()[1].strip().split("\n")[2:]]
     wrong = [] if [row[0] for row in stands] == [title for title, _ in rows] else ["the page has other rows"]
     for row, (title, values) in zip(stands, rows):
         if len(row) != len(values) + 1:

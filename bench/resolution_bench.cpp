@@ -1,5 +1,6 @@
-// What coarse matching and upsampled guides cost and change, against matching every pixel of a picture of the same
-// size: time of the match, guide error, and how many pixels keep their source. Prints the tables of docs/resolution.md.
+// The cost and the effect of coarse matching and upsampled guides, against matching every pixel of a picture of equal
+// size: time of the match, guide error, and the number of pixels with an equal source. Prints the tables of
+// docs/resolution.md.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -42,7 +43,7 @@ Made Render(const std::string& name, int factor) {
   return {std::move(rendered.guides), rendered.render_ms};
 }
 
-// Angles between what a pixel faces and what its source does, by the guides of the full size.
+// Angles between a pixel's normal and its source's, by the guides of the full size.
 struct Error {
   double mean = 0.0, most = 0.0;  // degrees; the second: 99 of 100 pixels have less
 };
@@ -69,7 +70,7 @@ double SameSources(const SourceField& a, const SourceField& b) {
   return 100.0 * same / count;
 }
 
-// One way to paint the picture.
+// One variant of painting the picture.
 struct Variant {
   std::string name;
   const GuideSet* guides;
@@ -97,7 +98,7 @@ void Measure(const std::string& scene, const std::string& style_name) {
   ways.push_back({"--upsample 4, match_step 4", &upsampled[1].guides, 4, upsampled[1].ms});
   TransferScratch scratch;
   Picture picture;
-  for (int run = 0; run < kRuns; ++run) {  // in turns, so that what else the machine does meets all of them
+  for (int run = 0; run < kRuns; ++run) {  // in turns, so that other load of the machine affects all of them alike
     for (Variant& way : ways) {
       TransferOptions options;
       options.threads = 1;

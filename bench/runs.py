@@ -1,4 +1,4 @@
-"""What the benches in Python share: running programs, spread of what was measured, and what machine it was."""
+"""Shared code of the benches in Python: running programs, the spread of measurements, and the machine's description."""
 
 import os
 import platform
@@ -10,7 +10,7 @@ import time
 
 
 def run(command, **environment):
-    """Seconds from start to end, seconds of processor time, and what the program said."""
+    """Seconds from start to end, seconds of processor time, and the program's output."""
     begin, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True,
                           env={**os.environ, **environment})

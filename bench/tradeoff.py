@@ -3,8 +3,8 @@
 
     /usr/bin/python3 bench/tradeoff.py [--only suzanne-oil,toys-graphite] [--show] [--write-docs] [-- OPTION …]
 
-Runs `scumble tradeoff` on each sample, one after the other, into out/tradeoff/NAME/; open report.html there. What stands
-after -- goes to the verb, such as --quick or --repeat 9.
+Runs `scumble tradeoff` on each sample, one after the other, into out/tradeoff/NAME/; open report.html there. Arguments
+after -- go to the command, such as --quick or --repeat 9.
 """
 
 import argparse
@@ -27,28 +27,29 @@ SAMPLES = {
     "toys-graphite": ("toys", "graphite", "hatching, normals alone", "960x540", []),
     "snail-scene-oil": ("snail", "scene-oil", "a painted scene whose light is matched, four guides", "960x540", []),
     # Small, as 1024 samples take their time.
-    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights", "320x180",
+    "snail-bounced-light": ("snail", "scene-oil", "the same with bounced light, which needs chance, for highlights",
+                            "320x180",
                             ["--set", "transfer.guide_weights.lpe.LDDE=1", "--set", "transfer.guide_weights.lpe.LSE=0",
                              "--only", "samples,exact"]),
 }
 NONE = "–"
-SAME = "the same picture as "  # as the verb has it in a note
+SAME = "the same picture as "  # as in the command's note
 
 
 def measure(options, name):
     scene, style, _, size, own_options = SAMPLES[name]
     # An axis that only the whole grid has is measured with --quick, too.
     verb_options = [one for one in options.verb_options if one != "--quick" or "--only" not in own_options]
-    # The scene's path as it is anywhere: the report says how to repeat it, on any machine.
+    # The scene's relative path: the report's command works on any machine.
     command = [options.build / "scumble", "tradeoff", "scenes/%s.glb" % scene, "--style", style,
                "--size", options.size or size, "-o", options.output / name] + own_options + verb_options
-    # The verb's own table and progress go where ours would.
+    # The command's own table and progress go to the place of ours.
     if subprocess.run([str(part) for part in command], cwd=ROOT).returncode != 0:
         sys.exit("%s: scumble tradeoff failed, see above" % name)
 
 
 def figure(value):
-    """Three digits that count, as the verb's own table has them."""
+    """Three significant digits, as in the command's own table."""
     if value is None or isinstance(value, str):
         return value or NONE
     return "%.0f" % value if abs(value) >= 100 else "%.3g" % value
@@ -68,7 +69,7 @@ def time(value):
 
 
 def remarks(way):
-    """What of the note belongs into a table: " (= the style)", " (once)"."""
+    """The part of the note for a table: " (= the style)", " (once)"."""
     said = []
     for part in way["note"].split("; "):
         if part.startswith(SAME):
@@ -79,7 +80,8 @@ def remarks(way):
 
 
 def row(way):
-    name = way["way"] + remarks(way) + (", **the style as it is**" if way["chosen"] and way["way"] != "the style" else "")
+    name = way["way"] + remarks(way) + (", **the style as it is**" if way["chosen"] and way["way"] != "the style"
+                                        else "")
     megabytes = None if way["memory_bytes"] is None else way["memory_bytes"] * 1e-6
     coherence = None if way["coherence"] is None else 100.0 * way["coherence"]
     cells = ["★" if way["front"] else "", name, time(way["total_ms"]), figure(megabytes), estimate(way["both"]),
@@ -96,7 +98,7 @@ def table(ways):
 
 
 def guide_table(ways):
-    """Of the ways whose guides differ from the exact ones: by how much. Those with the same guides share a line."""
+    """The error of the guides of variants whose guides are not exact. Variants with equal guides share a line."""
     measured = {}
     for way in ways:
         if way["guide_rms"] or way["guide_flip"]:
@@ -121,7 +123,8 @@ def section(name, report):
     own = [way for way in report["ways"] if way["chosen"] and not way["front"]]
     left_out = ["Left out: %s." % "; ".join(report["left_out"]), ""] if report["left_out"] else []
     lines = ["### %s" % name, "", "*%s.* %d ways%s at %d×%d; %s; medians of %d runs." % (
-        what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "", report["width"],
+        what.capitalize(), len(report["ways"]), " (`--quick`)" if "--quick" in report["command"] else "",
+        report["width"],
         report["height"], report["machine"], report["repeats"]), ""]
     lines += left_out
     lines += ["![time against error of %s in %s](gallery/tradeoff-%s.svg)" % (scene, style, name), ""]

@@ -2,12 +2,12 @@
 """Does the ranking by figures agree with the eye? Six pairs of pictures for docs/tradeoff.md.
 
     /usr/bin/python3 bench/tradeoff_pairs.py --choose       # after `make tradeoff`: picks the pairs, sides by lot
-    /usr/bin/python3 bench/tradeoff_pairs.py                # draws out/tradeoff/pairs/*.png, which tell no names
-    /usr/bin/python3 bench/tradeoff_pairs.py --write-docs   # sheet and table, with what the eye said
+    /usr/bin/python3 bench/tradeoff_pairs.py                # draws out/tradeoff/pairs/*.png, without names
+    /usr/bin/python3 bench/tradeoff_pairs.py --write-docs   # sheet and table, with the eye's choices
 
 Of each of three samples two pairs are taken: the neighbours on the front that lie farthest apart in `both`; and, of all
 pairs that `both` and `energy` rank the other way round, the one that they disagree about most: the smaller of the two
-relative differences is the largest. Which picture is A is decided by a hash, so that whoever looks cannot know. Look,
+relative differences is the largest. Which picture is A is decided by a hash, so that the viewer cannot know it. Look,
 write "A" or "B" at "eye" and a reason into tradeoff_pairs.json, and only then ask for the table.
 """
 
@@ -25,7 +25,7 @@ from marked_pages import replaced
 
 ROOT = Path(__file__).resolve().parent.parent
 PAIRS = ROOT / "bench/tradeoff_pairs.json"
-# The piece that is shown, and the paint it is compared with, at the size at which it was used.
+# The part that is shown, and the paint it is compared with, at the size at which it was used.
 SAMPLES = {
     "suzanne-oil": ("560x360+200+80", ["oil/lit.png"]),
     "stilllife-plein-air": ("560x360+250+160", ["plein-air/lit.png", "plein-air/shade.png"]),
@@ -64,7 +64,8 @@ def choose(reports):
     pairs = []
     for name in SAMPLES:
         ways, front = ways_of(reports, name)
-        for rule, pair in (("neighbours on the front", neighbours(ways, front)), ("`both` and `energy` disagree", disputed(ways))):
+        for rule, pair in (("neighbours on the front", neighbours(ways, front)),
+                           ("`both` and `energy` disagree", disputed(ways))):
             if hashlib.sha256((name + rule + "".join(pair)).encode()).digest()[0] % 2:
                 pair = pair[::-1]
             pairs.append({"sample": name, "rule": rule, "A": pair[0], "B": pair[1], "eye": "", "why": ""})
@@ -76,10 +77,12 @@ def draw(arguments):
 
 
 def panel(file, piece, output):
-    """A piece of a picture; what is transparent becomes light grey."""
+    """A part of a picture; transparent pixels become light grey."""
     size = piece.split("+")[0]
-    channels = subprocess.run(["oiiotool", str(file), "--echo", "{TOP.nchannels}"], capture_output=True, text=True, check=True)
-    grey = ["--premult", "--create", size, "4", "--addc", "0.93,0.93,0.93,1", "--over"] if int(channels.stdout) == 4 else []
+    channels = subprocess.run(["oiiotool", str(file), "--echo", "{TOP.nchannels}"], capture_output=True, text=True,
+                              check=True)
+    grey = ["--premult", "--create", size, "4", "--addc", "0.93,0.93,0.93,1",
+            "--over"] if int(channels.stdout) == 4 else []
     draw([file, "--cut", piece] + grey + ["--ch", "R,G,B", "-o", output])
     return output
 
@@ -126,7 +129,8 @@ def table(reports, pairs):
             cells.append(ranked(ways, pair, figure))
             agreed[figure] += ranked(ways, pair, figure) == pair["eye"]
         lines.append("| %s |" % " | ".join(cells + ["**%s**" % pair["eye"], pair["why"]]))
-    counts = "`both` agrees with the eye in %d of %d pairs, `energy` in %d." % (agreed["both"], len(pairs), agreed["energy"])
+    counts = "`both` agrees with the eye in %d of %d pairs, `energy` in %d." % (agreed["both"], len(pairs),
+                                                                                agreed["energy"])
     return "\n".join(lines + ["", counts, ""])
 
 
@@ -143,7 +147,8 @@ def sheet(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--choose", action="store_true", help="pick the pairs anew and forget the verdicts")
-    parser.add_argument("--reports", type=Path, default=ROOT / "out/tradeoff", help="folder that make tradeoff wrote to")
+    parser.add_argument("--reports", type=Path, default=ROOT / "out/tradeoff",
+                        help="folder that make tradeoff wrote to")
     parser.add_argument("--write-docs", action="store_true", help="put sheet and table into docs/tradeoff.md")
     options = parser.parse_args()
     if options.choose:
@@ -154,7 +159,8 @@ def main():
     rows = [draw_pair(options.reports, number, pair, folder) for number, pair in enumerate(pairs, 1)]
     if options.write_docs:
         page = ROOT / "docs/tradeoff.md"
-        page.write_text(replaced(page, page.read_text(encoding="utf-8"), "pairs", "bench/tradeoff_pairs.py", table(options.reports, pairs)),
+        page.write_text(replaced(page, page.read_text(encoding="utf-8"), "pairs", "bench/tradeoff_pairs.py",
+                                 table(options.reports, pairs)),
                         encoding="utf-8")
         sheet(rows)
 

@@ -1,4 +1,5 @@
-// What `variety` does on a flat wall: repetition, autocorrelation, tone, seams and time, for the bundled styles. Prints
+// The effect of `variety` on a flat wall: repetition, autocorrelation, tone, seams and time, for the bundled styles.
+// Prints
 // the tables of docs/variety.md.
 //   variety_bench [FOLDER]             a table of walls; keeps the pictures in an existing folder
 //   variety_bench --cost GUIDES.exr…   match + vote with and without, on a wall and on guides of scenes
@@ -19,7 +20,7 @@
 namespace scumble {
 namespace {
 
-constexpr int kWindow = 160;  // four of them are looked at
+constexpr int kWindow = 160;  // four of them are measured
 
 // A wall that looks to the upper left, with one normal everywhere.
 GuideSet Wall(int size) {
@@ -66,7 +67,7 @@ Figures Measure(Style style, double variety, const GuideSet& guides, const std::
   figures.seam_excess = seams.excess;
   figures.border_share = double(seams.border_pairs) / double(seams.border_pairs + seams.inside_pairs);
   figures.tone_spread = ToneSpread(picture, {0, 0, field.width, field.height}, 16.0);
-  // The mean over windows: where single seeds lie decides a window's peak.
+  // The mean over windows: the places of single seeds decide a window's peak.
   const int side = std::min(kWindow, field.width / 2);
   AutocorrelationOptions high;
   high.subtract_sigma = 8.0;
@@ -120,7 +121,7 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Match and vote with `variety` against without, alternately in one run, and what changes where.
+// Match and vote with `variety` against without, alternately in one run, and the changed pixels.
 Status PrintCost(const std::string& name, const GuideSet& guides) {
   constexpr int kRuns = 15;
   SCUMBLE_ASSIGN(Style style, Bundled("charcoal"));
@@ -144,7 +145,7 @@ Status PrintCost(const std::string& name, const GuideSet& guides) {
   std::printf("| %s | %.0f | %.0f | %.2f | %.2f | %.2f |\n", name.c_str(), Median(plain_ms), Median(varied_ms),
               Median(ratios), Median(match_ratios), Median(vote_ratios));
   std::fflush(stdout);
-  std::map<float, std::pair<double, double>> changed;  // by object: of how many pixels
+  std::map<float, std::pair<double, double>> changed;  // by object: of that many pixels
   const auto object = guides.Plane(Layer::kObject);
   for (std::size_t i = 0; i < guides.pixel_count(); ++i) {
     if (!(guides.Plane(Layer::kCoverage)[i] > 0.0f)) continue;

@@ -1,6 +1,6 @@
-"""What is wrong with a .blend file before anybody looks at its scene: lost textures and libraries, drivers and scripts
-that do not run, overrides that are not heeded. Shared by export_scene.py and render_guides.py, in the same words, so
-that a cross-check's report says each of them once."""
+"""Faults of a .blend file apart from its scene: lost textures and libraries, drivers and scripts that do not run,
+overrides without effect. Shared by export_scene.py and render_guides.py, with equal messages, so that a cross-check's
+report has each of them once."""
 
 import os
 
@@ -90,7 +90,7 @@ def check_images(unsupported):
 
 
 def check_libraries(unsupported):
-    """Blender puts empty data-blocks in the place of what it does not find."""
+    """Blender replaces missing data-blocks by empty ones."""
     linked = {}
     for collection, thing in every_id():
         if thing.library is not None:

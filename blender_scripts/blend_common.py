@@ -1,4 +1,4 @@
-"""What export_scene.py and render_guides.py share: which Blender, which scene, which camera, and how they talk.
+"""Shared by export_scene.py and render_guides.py: the choice of Blender, scene and camera, and the form of messages.
 
 Both must choose alike, or a cross-check compares two different pictures. docs/blender.md states the rules.
 """
@@ -8,7 +8,7 @@ import sys
 import bpy
 from mathutils import Matrix
 
-SUPPORTED = (3, 4)  # lamp formulas, node sockets and the glTF exporter's options are known for this one
+SUPPORTED = (3, 4)  # light formulas, node sockets and the glTF exporter's options are known for this one
 EXIT_INPUT, EXIT_VERSION = 3, 5
 
 # Blender's axes (+Z up) to glTF's (+Y up): x, z, -y.
@@ -18,7 +18,7 @@ LONGEST_LINE = 380  # bytes; guidegen keeps 400 of a line in the extras, and the
 
 
 class Unsupported:
-    """Collects what cannot be expressed or rendered as meant, each line once, in order."""
+    """Collects losses in export or rendering, each line once, in order."""
 
     def __init__(self):
         self.lines = []
@@ -48,7 +48,7 @@ def fail(message, code=EXIT_INPUT):
 
 
 def check_version(way_out=""):
-    """Ends the program in a Blender that is not supported. `way_out`: what else the user may do."""
+    """Ends the program in a Blender that is not supported. `way_out`: the user's alternative."""
     if bpy.app.version[:2] != SUPPORTED:
         fail(f"this is Blender {bpy.app.version_string}; only {SUPPORTED[0]}.{SUPPORTED[1]} is supported, because "
              "lamps shine by other formulas in other versions: name another one with --blender" + way_out,
@@ -89,7 +89,7 @@ def can_be_looked_through(thing):
 
 
 def cameras_of(scene, unsupported):
-    """Those that can be looked through, in order. A camera may be hidden: nobody renders cameras."""
+    """The cameras of the scene, in order. A hidden camera counts: cameras are never rendered."""
     found = {thing for thing in scene.objects if thing.type == "CAMERA"} | ({scene.camera} - {None})
     usable = []
     for thing in sorted(found, key=lambda thing: camera_rank(scene, thing.name)):

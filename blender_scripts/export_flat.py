@@ -37,7 +37,8 @@ def material_key(material):
 
 
 def mute_visibility(thing):
-    """Animation of the viewport's eye would bring back, at the next evaluation, what the render hides."""
+    """Animation of the viewport's visibility would bring back, at the next evaluation, objects that the render
+    hides."""
     action = thing.animation_data.action if thing.animation_data else None
     for curve in action.fcurves if action else []:
         curve.mute = curve.mute or curve.data_path == "hide_viewport"
@@ -95,8 +96,8 @@ def name_of(instance, taken):
 
 
 def every_instance(depsgraph):
-    """What is rendered and may have a place in an export, with its name: pairs of an instance and a string. An instance
-    is Blender's own and only lives until the next one."""
+    """The rendered objects that may be exported, with their names: pairs of an instance and a string. An instance is
+    Blender's own and only lives until the next one."""
     taken = {}
     for instance in depsgraph.object_instances:
         thing = instance.object
@@ -138,7 +139,7 @@ def new_mesh(instance, depsgraph):
 
 
 def seen_by_camera(thing, shown, view_layer):
-    """`shown` is what stands in the scene: the thing itself, or what instances it."""
+    """`shown` is the object in the scene: the thing itself, or its instancer."""
     return thing.visible_camera and shown.visible_camera and not shown.indirect_only_get(view_layer=view_layer)
 
 
@@ -171,7 +172,7 @@ def flatten(scene, unsupported):
 
 
 def order_cameras(flat, scene, unsupported):
-    """Those of the scene, hidden ones too, and instances; blend_common says in which order."""
+    """The scene's cameras, hidden ones too, and instances; blend_common has their order."""
     usable = cameras_of(scene, unsupported)
     placed = {camera.name for camera in flat.cameras}
     flat.cameras += [Placed(thing.name, thing, thing.matrix_world.copy()) for thing in usable

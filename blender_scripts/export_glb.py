@@ -38,7 +38,7 @@ def write(path, document, binary):
 
 
 def matrix_numbers(matrix, turned):
-    """Column by column, in glTF's world. `turned` for meshes, whose vertices the exporter turns too; lamps and cameras
+    """Column by column, in glTF's world. `turned` for meshes, whose vertices the exporter turns too; lights and cameras
     look down their own −Z in both programs."""
     result = GLTF_FROM_BLENDER @ matrix
     if turned:
@@ -47,7 +47,7 @@ def matrix_numbers(matrix, turned):
 
 
 def light_of(extras):
-    """KHR_lights_punctual for other readers; ours go by the extras. None for area lamps."""
+    """KHR_lights_punctual for other readers; ours use the extras. None for area lights."""
     watts = extras["energy"]
     light = {"color": [min(max(c, 0.0), 1.0) for c in extras["color"]]}
     if extras["type"] == "SUN":
@@ -82,7 +82,7 @@ def style_of(thing):
 
 
 def complete(document, flat, materials, lamps, cameras):
-    """Gives meshes their places and names back, and adds cameras, lamps and extras."""
+    """Restores the places and names of meshes, and adds cameras, lights and extras."""
     document["asset"]["generator"] = "scumble export_scene.py"
     by_name = {node["name"]: node for node in document.get("nodes", [])}
     nodes = []

@@ -1,14 +1,14 @@
-"""Lamps, cameras and the world's colour in numbers: part of export_scene.py."""
+"""Lights, cameras and the world's colour in numbers: part of export_scene.py."""
 
 import math
 
 from export_materials import constant, previous
 
-MOST_BOUNCES = 1024  # of a lamp: Cycles' default, which limits nothing
+MOST_BOUNCES = 1024  # of a light: Cycles' default, which limits nothing
 
 
 def emission_of(lamp, complain):
-    """Colour and strength that a lamp's nodes multiply into it; ones where it has none."""
+    """Colour and strength that a light's nodes multiply into it; ones where it has none."""
     if not lamp.use_nodes or not lamp.node_tree:
         return (1.0, 1.0, 1.0), 1.0
     output = lamp.node_tree.get_output_node("CYCLES")
@@ -32,7 +32,8 @@ def emission_of(lamp, complain):
 
 
 def describe_lamp(placed, unsupported):
-    """The extras of one lamp. An area lamp's size includes its object's scale, as in Cycles; other kinds heed none."""
+    """The extras of one light. An area light's size includes its object's scale, as in Cycles; other kinds ignore
+    it."""
     lamp = placed.source.data
 
     def complain(what):

@@ -1,14 +1,14 @@
-"""Materials as glTF and our extras can say them: part of export_scene.py.
+"""Materials in the terms of glTF and our extras: part of export_scene.py.
 
 Every material becomes a new one with a Principled node that carries its colour and texture, which the exporter keeps,
-and an entry of extras that says what it really was. What a node tree says beyond that is named in `unsupported`; a tree
-that is not understood at all becomes a Diffuse surface in the material's viewport colour.
+and an entry of extras with the original shader. Other parts of a node tree are listed in `unsupported`; an unknown tree
+becomes a Diffuse surface in the material's viewport colour.
 """
 
 import bpy
 
 PLAIN = {"BSDF_DIFFUSE": "DIFFUSE", "BSDF_GLOSSY": "GLOSSY", "EMISSION": "EMISSION", "BSDF_PRINCIPLED": "PRINCIPLED"}
-CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # what Cycles gives to faces without a material
+CYCLES_DEFAULT = (0.8, 0.8, 0.8)  # Cycles' material of faces without one
 GGX = {"GGX", "MULTI_GGX"}
 
 # Inputs of the Principled node that nothing here can express, and the value at which they do nothing.
@@ -40,7 +40,7 @@ def constant(socket):
 
 
 def coordinates_fault(socket):
-    """What is wrong with the coordinates of a texture; None where glTF has them."""
+    """The fault in a texture's coordinates; None where glTF has them."""
     source = previous(socket)
     if source is None or source.node.type == "UVMAP":
         return None
@@ -53,7 +53,7 @@ def coordinates_fault(socket):
 
 
 def image_fault(node, data):
-    """What is wrong with an image texture; None where glTF has it. `data`: it holds numbers, not colours."""
+    """The fault in an image texture; None where glTF has it. `data`: it holds numbers, not colours."""
     if node.image is None:
         return f"node '{node.name}' without an image"
     if node.projection != "FLAT" or node.extension == "CLIP":
@@ -67,7 +67,7 @@ def image_fault(node, data):
 
 
 class Reader:
-    """Reads one material's nodes; what it cannot say goes to `unsupported` under the material's name."""
+    """Reads one material's nodes; losses go to `unsupported` under the material's name."""
 
     def __init__(self, name, unsupported):
         self.name = name
@@ -85,8 +85,8 @@ class Reader:
         return float(value if isinstance(value, (int, float)) else sum(value) / 3)
 
     def color(self, socket):
-        """The colour, and what glTF can keep of the input: nothing, an image's socket, or a tuple with the name of a
-        colour attribute."""
+        """The colour, and the part of the input that glTF can keep: nothing, an image's socket, or a tuple with the
+        name of a colour attribute."""
         value = constant(socket)
         if value is not None:
             return (value if isinstance(value, tuple) else (value,) * 3), None
@@ -120,7 +120,7 @@ def diffuse(color):
 
 
 def read_plain(kind, node, reader):
-    """A Diffuse, Glossy or Emission node: its extras and what feeds its colour."""
+    """A Diffuse, Glossy or Emission node: its extras and the input of its colour."""
     color, source = reader.color(node.inputs["Color"])
     bsdf = {"type": kind, "color": list(color), "texture": is_texture(source)}
     if kind == "EMISSION":
@@ -256,7 +256,7 @@ def clear_links(tree, socket):
 
 
 def simplify(materials, unsupported):
-    """For each material by its key: {"material": what the exporter gets, "name": the original's, "extras": …}."""
+    """For each material by its key: {"material": the exporter's, "name": the original's, "extras": …}."""
     entries = {}
     for number, (key, material) in enumerate(materials.items()):
         if material is None:
@@ -269,7 +269,7 @@ def simplify(materials, unsupported):
         holes, bsdf = False, diffuse(copy.diffuse_color[:3])
         if copy.use_nodes and copy.node_tree:
             bsdf, holes = simplify_nodes(copy, Reader(name, unsupported))
-        # These settings are the viewport's; Cycles shows both sides of everything and always heeds alpha.
+        # These settings are the viewport's; Cycles shows both sides of every surface and always applies alpha.
         copy.use_backface_culling = False
         copy.blend_method = "BLEND" if holes else "OPAQUE"
         extras = {"bsdf": bsdf, "pass_index": material.pass_index if material else 0}

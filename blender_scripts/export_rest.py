@@ -1,8 +1,8 @@
-"""The shape that nothing has deformed, which paint sticks to: part of export_scene.py.
+"""The undeformed shape, to which paint is fixed: part of export_scene.py.
 
-Armatures, shape keys and the like are applied as for a render, so what the exporter sees has no rest pose any more. It is
-made once more with everything switched off that only moves vertices; where that gives as many of them, each of the
-exported ones gets its place at rest as the attribute `_SCUMBLE_REST`, in the axes of glTF.
+Armatures, shape keys and the like are applied as for a render, so the exporter's mesh has no rest pose any more. The
+mesh is made once more without modifiers that only move vertices. If the number of vertices is equal, each exported one
+gets its place at rest as the attribute `_SCUMBLE_REST`, in the axes of glTF.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ def is_deformed(thing):
 
 
 def relax(thing):
-    """Returns what brings the deformation back."""
+    """Returns the functions that restore the deformation."""
     switched = [modifier for modifier in thing.modifiers if modifier.type in DEFORMERS and modifier.show_viewport]
     for modifier in switched:
         modifier.show_viewport = False
@@ -45,7 +45,7 @@ def drop_other_attributes(mesh):
         try:
             mesh.attributes.remove(mesh.attributes[name])
         except RuntimeError:
-            pass  # one of Blender's own, which the exporter knows
+            pass  # one of Blender's own, which the exporter supports
 
 
 def write_rest(mesh, thing, depsgraph):

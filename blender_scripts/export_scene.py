@@ -4,15 +4,14 @@
                                                                   [--frame N | --frames 1-24,30] [--scene NAME]
 
 `scumble guidegen scene.blend` and `stylize scene.blend` run it by themselves. Modifiers, shape keys, armatures and
-geometry nodes are applied as for a render; instances share their mesh; what is hidden from render is left out. The
-active camera comes first. docs/blender.md lists what the extras mean.
+geometry nodes are applied as for a render; instances share their mesh; objects hidden from render are left out. The
+active camera comes first. docs/blender.md explains the extras.
 
-With --frames, `#` in the output's name stands for the frame's number, and the scene is opened anew for each frame: what
-an export leaves behind, or a simulation that was not baked, cannot make a frame depend on those before it.
+With --frames, `#` in the output's name stands for the frame's number, and the scene is opened anew for each frame. So
+no frame depends on those before it, by remains of an export or by a simulation that was not baked.
 
-Each thing that cannot be expressed is one line "scumble: unsupported: …" on stderr and one in the scene's extras.
-Exit codes: 0, 3 when the scene cannot be exported, 5 when this Blender's version is not supported. The reason is a line
-"scumble: error: …" on stderr.
+Each loss is one line "scumble: unsupported: …" on stderr and one in the scene's extras. Exit codes: 0, 3 when the scene
+cannot be exported, 5 when this Blender's version is not supported. The reason is a line "scumble: error: …" on stderr.
 """
 
 import argparse
@@ -39,8 +38,8 @@ from blend_common import Unsupported, cameras_of, check_version, choose_layer, c
 
 
 def export(scene, output, unsupported):
-    """Everything is decided before the glTF exporter runs: it gets plain objects with short names of ours, so that
-    what it writes can be found again and completed."""
+    """All decisions are made before the glTF exporter runs: it gets plain objects with short names of ours, so that its
+    output can be identified and completed."""
     flat = export_flat.flatten(scene, unsupported)
     has_rest = export_rest.add_rest_positions(flat, choose_layer(scene))
     materials = export_materials.simplify(flat.materials, unsupported)
@@ -106,7 +105,7 @@ def export_frame(arguments, frame, output, unsupported):
 
 
 def is_surely_lit(scene):
-    """Whether some lamp is in the render of every frame, as far as it itself says."""
+    """Whether some light is in the render of every frame, by its own settings."""
     def blinks(thing):
         action = thing.animation_data.action if thing.animation_data else None
         return any(curve.data_path == "hide_render" for curve in (action.fcurves if action else []))
@@ -114,8 +113,8 @@ def is_surely_lit(scene):
 
 
 def export_start(arguments):
-    """What is the same in all frames: their rate, and where we must decide from where the scene is seen or lit, the
-    scene at its first frame. False where there was nothing to export."""
+    """The data of all frames: their rate, and, where we must choose the camera or the light, the scene at its first
+    frame. False where there was nothing to export."""
     scene = choose_scene(arguments.scene)
     if arguments.fps_file:
         fps, base = scene.render.fps, scene.render.fps_base

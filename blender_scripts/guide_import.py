@@ -1,8 +1,8 @@
-"""A glTF scene in Blender, lit and seen as guidegen understands it: part of render_guides.py.
+"""A glTF scene in Blender, with guidegen's lights and cameras: part of render_guides.py.
 
-Blender's importer brings meshes, materials and punctual lights (cd · 4π / 683 watts, lux / 683). This completes it:
-what export_scene.py wrote into `extras.scumble`, the cones of KHR_lights_punctual, the pictures' proportions that
-cameras are made for, matrices with shear, alpha cut-offs and back faces that cameras do not see.
+Blender's importer brings meshes, materials and punctual lights (cd · 4π / 683 watts, lux / 683). This completes it: the
+`extras.scumble` of export_scene.py, the cones of KHR_lights_punctual, the cameras' own picture proportions, matrices
+with shear, alpha cut-offs and back faces that cameras do not see.
 """
 
 import math
@@ -18,7 +18,7 @@ from guide_import_materials import complete_material, ours
 
 
 class Import:
-    """What the importer knew when the nodes were made."""
+    """The importer's data at the time when the nodes were made."""
     gltf = None
 
     def gather_import_scene_after_nodes_hook(self, *arguments):
@@ -146,7 +146,7 @@ def place_mesh(thing, expected, unsupported):
 
 def fit_camera(camera, lens, aspect, extras):
     """Sensor fit, angle and shift as guidegen reads them: the vertical extent is kept, unless the file's proportions
-    are wider than the picture's; the importer does not know the latter."""
+    are wider than the picture's, which the importer ignores."""
     camera.shift_x = camera.shift_y = 0.0
     if extras:
         camera.sensor_fit = extras["sensor_fit"]
@@ -167,7 +167,7 @@ def fit_camera(camera, lens, aspect, extras):
     if camera.type == "ORTHO":
         camera.ortho_scale = extent
         return
-    # `angle` heeds the sensor's longer side; the fitted side must be the one that it measures.
+    # `angle` belongs to the sensor's longer side; the fitted side must be the one that it measures.
     camera.lens_unit = "FOV"
     camera.sensor_width = camera.sensor_height = 36.0
     camera.angle = extent

@@ -1,8 +1,8 @@
-"""Every thing that is rendered under a name of its own, as export_scene.py names it: part of render_guides.py.
+"""Gives every rendered object its own name, as export_scene.py does: part of render_guides.py.
 
-Cryptomatte knows an instance by its object's name alone, and objects of one name as one. So instances of all kinds
+Cryptomatte identifies an instance by its object's name alone, and objects of one name as one. So instances of all kinds
 (collections, vertices, faces, particles, geometry nodes) become objects at their places, called "Instancer/Object", and
-what made them stops doing so; objects that share their name with another are renamed.
+their instancers stop making them; objects that share their name with another are renamed.
 """
 
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ import bpy
 from export_flat import RAYS, every_instance, is_generated, new_mesh, seen_by_camera, show_as_rendered
 
 LONGEST_NAME = 63  # bytes that Blender keeps of a name
-SCATTERED = {"OBJECT", "COLLECTION"}  # what particles are rendered as
+SCATTERED = {"OBJECT", "COLLECTION"}  # the rendered form of particles
 
 
 @dataclass
 class Copy:
-    """What takes an instance's place: data of the original object, or a mesh of its own."""
+    """The data for an instance's replacement: the original object's, or a mesh of its own."""
     name: str
     original: object
     mesh: object
@@ -57,7 +57,7 @@ def name_apart(scene, view_layer, unsupported):
     for instancer in instancers:
         disarm(instancer)
     for thing in scene.objects:
-        # Neither instancers that only their instances are to be seen of, nor what was shown as instances alone.
+        # Neither instancers that only show their instances, nor objects that were shown as instances alone.
         if thing.type not in {"CAMERA", "EMPTY"} and thing not in shown:
             thing.hide_render = True
     anchor = bpy.data.objects.new("scumble.anchor", None)
@@ -75,7 +75,7 @@ def rename(standing):
 
 
 def made_mesh(instance, made, depsgraph):
-    """The mesh of an instance that only geometry nodes know of; None where it is that of its object."""
+    """The mesh of an instance that only geometry nodes define; None where it is that of its object."""
     if not is_generated(instance, depsgraph):
         return None
     key = instance.object.data.as_pointer()

@@ -18,7 +18,7 @@ def trees():
 
 
 def feed(tree, socket, source):
-    """Gives `socket` what feeds or stands in `source`, an input of the same kind."""
+    """Gives `socket` the link or the value of `source`, an input of the same kind."""
     if source.is_linked:
         tree.links.new(source.links[0].from_socket, socket)
     else:
@@ -123,7 +123,7 @@ def dim(tree, socket, factor):
 
 
 def blacken_principled(tree, node, second, elsewhere):
-    """What is left of a Principled surface is its diffuse part: the base colour times 1 − metalness."""
+    """The remaining part of a Principled surface is diffuse: the base colour times 1 − metalness."""
     metallic = node.inputs["Metallic"]
     if metallic.is_linked or metallic.default_value > 0.0:
         share = math(tree, "MULTIPLY", second, 0.0)
@@ -139,7 +139,7 @@ def blacken_principled(tree, node, second, elsewhere):
 
 
 def blacken_second_surface():
-    """Takes the specular lobes away where a path meets its second surface, so that what bounces to a diffuse surface
+    """Removes the specular lobes where a path meets its second surface, so that light reflected to a diffuse surface
     comes from diffuse ones. Returns whether any material was changed."""
     changed = False
     for tree, _ in list(trees()):

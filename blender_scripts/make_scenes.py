@@ -24,8 +24,8 @@ from scene_kit import Shape, spline  # noqa: E402
 
 
 def three_lamps(target, reach):
-    """The key from the upper left over the viewer's shoulder, where the bundled exemplars have it; a cooler fill from
-    the right, a rim from behind. One lamp of each kind that glTF knows."""
+    """The key from the upper left over the viewer's shoulder, as for the bundled exemplars; a cooler fill from the
+    right, a rim from behind. One light of each kind that glTF has."""
     x, y, z = target
     kit.lamp("Key", "SUN", (x - 2 * reach, y - 2.4 * reach, z + 2.6 * reach), target, 2.6, (1.0, 0.96, 0.9))
     kit.lamp("Fill", "POINT", (x + 1.9 * reach, y - 1.6 * reach, z + 0.8 * reach), target, 28 * reach**2,
@@ -237,7 +237,7 @@ def leaf(length, width, curl):
 
 
 def branch(name, knots, bark, green, count):
-    """A twig with leaves on both sides, from half-way up."""
+    """A branch with leaves on both sides, from halfway up."""
     path = spline(knots, 60)
     Shape().tube(path, np.linspace(0.032, 0.010, 60) * kit.round_cap(2, 60), 10).place(name, bark)
     blades = Shape()
@@ -426,7 +426,8 @@ def toys():
                                                                         (0.92, 0.88, 0.75))))
     dancer(kit.material("Dancer", (0.16, 0.34, 0.55), 0.4))
     jelly(kit.material("Jelly", (0.20, 0.45, 0.15), 0.3))
-    Shape().ball((0, 0, 0.17), (0.3, 0.24, 0.17), 12, 18).place("Pebble", kit.material("Pebble", (0.4, 0.38, 0.36), 0.8),
+    Shape().ball((0, 0, 0.17), (0.3, 0.24, 0.17), 12, 18).place("Pebble",
+                                                                kit.material("Pebble", (0.4, 0.38, 0.36), 0.8),
                                                                (0.35, 1.25, 0), (0, 0, 30))
     three_lamps((0, 0, 0.7), 1.8)
     eye = kit.camera("Camera", (0.0, -7.4, 3.2), (0.0, 0.0, 0.5), 52)
@@ -443,8 +444,8 @@ def toys():
 
 
 def ball():
-    """What painters learn on: a ball on a floor before a wall, under one square lamp where the bundled exemplars have
-    their key. The lamp is a mesh that shines, for glTF has no area lamps."""
+    """A sphere on a floor before a wall, a classic exercise, under one square light at the place of the bundled
+    exemplars' key. The light is a mesh that emits, for glTF has no area lights."""
     Shape().ball((0, 0, 0), (1, 1, 1), 96, 144).place("Ball", kit.material("Ball", (0.62, 0.36, 0.24), 0.25),
                                                       at=(0, 0, 1))
     # One quadrangle each: their normals are everywhere the same.

@@ -4,8 +4,8 @@
             [--camera NAME] [--frame N] [--samples 4,16,64] [--max-bounces N] [--materials authored|pure]
 
 SCENE is a .blend, a .glb or a .gltf. OUTPUT.exr is a multilayer EXR of data: Normal, Depth, Position, DiffCol,
-GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it stands OUTPUT.camera: text that says how the
-picture was seen, for `scumble transfer --camera` and `scumble crosscheck`.
+GlossCol, Emit and Cryptomatte, one sample at the pixel's centre. Beside it is OUTPUT.camera: the camera as text, for
+`scumble transfer --camera` and `scumble crosscheck`.
 
 With --samples there are three renders of the light for each number N of the list, named after OUTPUT without its
 ending:
@@ -14,8 +14,8 @@ ending:
     OUTPUT.ldde.N.exr   the same without the specular lobes of each path's second surface: DiffCol·DiffInd is L.*DDE
     OUTPUT.ld12e.N.exr  as ldde, of one bounce: DiffCol·(DiffDir + DiffInd) is LD{1,2}E
 
---materials pure puts a Diffuse or a Glossy shader in the place of every Principled one. docs/crosscheck.md says how
-Cycles is set up, and why.
+--materials pure replaces every Principled shader by a Diffuse or a Glossy one. docs/crosscheck.md explains the settings
+of Cycles.
 
 Lines on stderr: "scumble: rendering …", "scumble: unsupported: …" for what is not rendered as guidegen means it, and
 "scumble: error: …". Exit codes: 0, 2 usage, 3 when the scene cannot be rendered, 5 when this Blender is not supported.
@@ -135,7 +135,7 @@ def set_up_cycles(scene):
     for camera in bpy.data.cameras:
         camera.dof.use_dof = False
     for lamp in bpy.data.lights:
-        lamp.cycles.use_multiple_importance_sampling = True  # without it no mirror shows the lamp
+        lamp.cycles.use_multiple_importance_sampling = True  # without it no mirror shows the light
     for thing in bpy.data.objects:
         thing.cycles.shadow_terminator_offset = thing.cycles.shadow_terminator_geometry_offset = 0.0
 

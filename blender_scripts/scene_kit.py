@@ -1,4 +1,4 @@
-"""Shapes, materials, lamps, export and previews for make_scenes.py.
+"""Shapes, materials, lights, export and previews for make_scenes.py.
 
 Everything is built from numbers, without operators that depend on the user interface, so that two runs give the same
 bytes. Blender's world: metres, +Z up; the cameras look along +Y. The exporter turns this into glTF's +Y up.
@@ -195,7 +195,7 @@ def lowest(target):
     return min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
 
 
-# ---- Camera and lamps -----------------------------------------------------------------------------------------------
+# ---- Camera and lights ----------------------------------------------------------------------------------------------
 
 
 def look(kind, name, data, at, target):
@@ -216,7 +216,7 @@ def camera(name, at, target, lens):
 
 
 def lamp(name, kind, at, target, energy, color=(1.0, 1.0, 1.0), cone_degrees=50.0):
-    """`kind` is SUN (energy in W/m²), POINT or SPOT (W). glTF has no area lamps."""
+    """`kind` is SUN (energy in W/m²), POINT or SPOT (W). glTF has no area lights."""
     data = bpy.data.lights.new(name, kind)
     data.energy = energy
     data.color = color
@@ -284,7 +284,7 @@ def export(path, moving=False):
 
 
 def make_repeatable(path, sharp_meshes):
-    """Rewrites what varies: the name of the exporter's version, and the smooth normals, which Blender adds up on
+    """Rewrites the variable parts: the name of the exporter's version, and the smooth normals, which Blender adds up on
     several threads in any order. The flat normals of `sharp_meshes` are kept."""
     data = path.read_bytes()
     length, = struct.unpack_from("<I", data, 12)

@@ -25,52 +25,52 @@ enum class NormalFrame {
 struct GuidegenOptions {
   int width = 0;  // pixels, 1 … kMaxImageSide
   int height = 0;
-  LayerSet layers;  // what is wanted on top of AlwaysWritten()
+  LayerSet layers;  // the wanted layers besides AlwaysWritten()
   // N × N subsamples of the coverage, 1 … 16; data layers are never averaged. A pixel whose centre is hit counts as at
   // least one subsample, however thin the object.
   int aa = 1;
   NormalFrame normal_frame = NormalFrame::kCamera;
   int threads = 0;  // 0: all
   std::string isa;  // Embree's "isa=" setting: "" (best of this machine), "sse2", "sse4.2", "avx", "avx2", "avx512"
-  // Embree's robust mode: rays that meet an edge or a corner never pass between two triangles. Without it the tests of
-  // boxes and triangles are a little faster, and may miss there; elsewhere hits are equal. If it is off,
+  // Embree's robust mode: rays that hit an edge or a corner never pass between two triangles. Without it the tests of
+  // boxes and triangles are slightly faster and may miss there; other hits are equal. If it is off,
   // attributes["scumble:robust"] is "false".
   bool robust = true;
   Progress progress;
 
-  // For light-path layers, and for luminance and shadow under lights with extent. Samples of a pixel, 1 … kMaxSamples;
-  // they share the pixel's first surface, so no layer is averaged across a silhouette.
+  // For light-path layers, and for luminance and shadow under lights with extent. Samples of a pixel, 1 … kMaxSamples.
+  // They share the pixel's first surface, so no layer is averaged across a silhouette.
   int samples = 64;
   // Reflections after the first surface's, 0 … kMaxBounces; 0 is direct light alone, as in Cycles.
   int max_bounces = 8;
   // Light-path layers only. Above 0: samples are doubled, to 16 at least, until the estimated error, root mean square
   // over mean, of each layer's luminance is not larger than this; `samples` does not count then.
   double noise = 0.0;
-  // Light-path layers only. Above 0: samples are taken until this time is over, or `noise` is reached. One sample is
-  // the least there is, however long it takes; no pass is begun that would last longer at the speed so far. The clock
-  // decides, so the picture may differ from run to run; GuidegenResult::samples repeats it.
+  // Light-path layers only. Above 0: samples are taken until this time is over, or `noise` is reached. At least one
+  // sample is taken, whatever it costs. No pass begins that would last longer at the speed so far. The clock decides,
+  // so the picture may differ from run to run; GuidegenResult::samples repeats it.
   double time_budget_seconds = 0.0;
-  int max_samples = kMaxSamples;  // that `noise` and the time budget may take, 1 … kMaxSamples
+  int max_samples = kMaxSamples;  // the most that `noise` and the time budget may take, 1 … kMaxSamples
   std::uint64_t seed = 0;         // another seed, other noise of equal size; in attributes["scumble:seed"] unless 0
   // Luminance and shadow always take `samples`: where they need any, `noise` and the time budget are a kUsage error.
 };
 
-// One line of the plan: what is computed, why, and what it costs.
+// One line of the plan: the layer, the reason for it, and its cost.
 struct PlanItem {
   std::string layer;   // "normal", or a step like "shadow rays"
   std::string reason;  // "always written", "asked for"
   std::string cost;    // "primary rays", "1 shadow ray per light and pixel", "none"
 };
 
-// What RenderGuides will do; `options` as there. Depends on the scene only through its lights and materials.
+// The plan of RenderGuides for these options. Depends on the scene only through its lights and materials.
 std::vector<PlanItem> PlanGuides(const Scene& scene, const GuidegenOptions& options);
 
-// Rays that were cast, by kind.
+// Numbers of rays, by kind.
 struct RayCounts {
   std::size_t primary = 0;
   std::size_t coverage = 0;  // extra subsamples
-  std::size_t shadow = 0;    // that only ask whether light is seen
-  std::size_t bounce = 0;    // that look for the next surface of a path
+  std::size_t shadow = 0;    // visibility of lights only
+  std::size_t bounce = 0;    // for the next surface of a path
 };
 
 // Counters of the inner loops. They are equal for any number of threads.
@@ -78,7 +78,7 @@ struct WorkCounts {
   std::size_t light_samples = 0;    // samples of a delta light, of a point on a light, or of a direction
   std::size_t materials = 0;        // evaluations of a material at a point: its colour or emission
   std::size_t texture_lookups = 0;  // samples of a texture
-  std::size_t texels = 0;           // that were read for it: 4 each, or 1 where nothing is interpolated
+  std::size_t texels = 0;           // read for the samples: 4 each, or 1 without interpolation
   std::size_t filtered_hits = 0;    // hits for which Embree called our filter
   std::size_t plane_bytes = 0;      // of the layers' planes
 };
@@ -88,19 +88,21 @@ struct GuidegenResult {
   RayCounts rays;
   WorkCounts work;
   int builds = 0;       // acceleration structures that this call built: 1, or 0 where the RayScene had it
-  double build_ms = 0;  // for that; 0 without a build
+  double build_ms = 0;  // time of that build; 0 without a build
   double render_ms = 0;
-  // Of each pixel, in light-path layers; 0 where they need no chance. Also in guides.attributes["scumble:samples"].
+  // Samples of each pixel, in light-path layers; 0 where no random numbers are needed. Also in
+  // guides.attributes["scumble:samples"].
   int samples = 0;
-  double noise = 0.0;  // the error estimated where `noise` or a time budget was given
+  double noise = 0.0;  // the estimated error, if `noise` or a time budget was given
 };
 
 // Casts rays through pixel centres and returns the guides (conventions in core/image/guides.h). Transforms compose in
 // double and Embree's scene is relative to the camera. Deterministic for one isa, whatever the threads; the isa in use
 // is recorded in guides.attributes["scumble:isa"]. Light-path layers are in light_paths.h; each is traced only as far
-// as its expression and the scene's lights and materials require. Layers that are not built in yet are a kUnavailable
-// error by name. An empty scene, or a camera that sees nothing, is an empty picture and no error. If options.progress
-// returns false, the call ends with kCancelled within a fraction of a second. Uses oneTBB and Embree 3.
+// as its expression and the scene's lights and materials require. A layer that is not supported yet is a kUnavailable
+// error that names it. An empty scene, or a camera that sees nothing, is an empty picture and no error. If
+// options.progress returns false, the call ends with kCancelled within a fraction of a second. Uses oneTBB and Embree
+// 3.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const GuidegenOptions& options);
 
 // The scene and camera of the next frame, which the layer `motion` is measured against. Objects are matched by name and
@@ -110,9 +112,9 @@ struct NextFrame {
   const Camera& camera;
 };
 
-// As above; `motion` can be asked for as well: how far the point that a pixel shows moves until the next frame, in
-// pixels, +X right and +Y down. It is 0 for background, for objects that are gone by then, and exactly 0 for points
-// that do not move. A point may be hidden in the next frame; `motion` does not tell.
+// RenderGuides with the layer `motion`: the movement, until the next frame, of the point that a pixel shows, in pixels,
+// +X right and +Y down. It is 0 for background and for objects that the next frame lacks, and exactly 0 for points that
+// do not move. A point may be hidden in the next frame; `motion` does not show that.
 Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, const NextFrame& next,
                                       const GuidegenOptions& options);
 
@@ -127,9 +129,10 @@ Expected<GuidegenResult> RenderGuides(const Scene& scene, const Camera& camera, 
 // Safe to use from several threads at once. A cast that is cancelled or fails leaves it as good as before.
 class RayScene {
  public:
-  // Fails with kInput where the camera has no direction, or a lens that no picture can have.
+  // Fails with kInput where the camera has no direction, or a lens without a picture.
   static Expected<RayScene> Make(const Scene& scene, const Camera& camera);
-  static Expected<RayScene> Make(const Scene&& scene, const Camera& camera) = delete;  // would not outlive this
+  static Expected<RayScene> Make(const Scene&& scene,
+                                 const Camera& camera) = delete;  // the scene would not outlive this
 
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
@@ -143,7 +146,7 @@ class RayScene {
   std::unique_ptr<State> state_;
 };
 
-// As RenderGuides above: the same bytes, whatever was cast before.
+// RenderGuides for a prepared scene: the same bytes, for any earlier casts.
 Expected<GuidegenResult> RenderGuides(const RayScene& scene, const GuidegenOptions& options);
 Expected<GuidegenResult> RenderGuides(const RayScene& scene, const NextFrame& next, const GuidegenOptions& options);
 

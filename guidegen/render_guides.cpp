@@ -14,7 +14,7 @@
 namespace scumble {
 namespace {
 
-// Loaders promise these; a file's own mistakes never get here.
+// The contract of loaders: a file's own mistakes never get here.
 void CheckMesh(const Mesh& mesh, const Scene& scene) {
   const std::size_t count = mesh.positions.size();
   const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
@@ -37,7 +37,7 @@ void CheckMaterial(const Material& material, const Scene& scene) {
   }
 }
 
-// The caller has decoded what is needed (guidegen/scene_textures.h): white in its place would be a quiet lie.
+// The caller has decoded all needed textures (guidegen/scene_textures.h): white instead would be a silent error.
 void CheckTextures(const Scene& scene, const GuidegenOptions& options) {
   const std::vector<bool> needed = NeededTextures(scene, options);
   for (std::size_t i = 0; i < std::min(needed.size(), scene.encoded_textures.size()); ++i) {
@@ -53,7 +53,7 @@ bool NeedsLight(const LayerSet& layers) {
   return false;
 }
 
-// Luminance and shadow are cast in one go with a fixed number of samples.
+// Luminance and shadow are cast at once with a fixed number of samples.
 Status CheckOpenEnd(const GuidegenOptions& options, const PathSupply& supply) {
   const bool sampled =
       supply.may_be_met && (options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow));
@@ -113,7 +113,7 @@ Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenO
     if (found != by_name.end() && std::size_t(instance.mesh) < next.scene.meshes.size()) {
       const Mesh& mesh = next.scene.meshes[std::size_t(instance.mesh)];
       const Mesh& now = scene.meshes[std::size_t(instance.mesh)];
-      // Another number of triangles is another thing under an old name.
+      // A different number of triangles means a different object under an old name.
       if (mesh.triangles.size() == now.triangles.size() && mesh.positions.size() == now.positions.size()) {
         placed.mesh = &mesh;
         placed.view_from_object = view.next_camera.ViewFromObject(found->second->world_from_object);
@@ -124,7 +124,7 @@ Status PlaceNextFrame(const Scene& scene, const NextFrame& next, const GuidegenO
   return Ok();
 }
 
-// What a transfer finds by an id: names, and the styles that the scene's author wants.
+// Data that a transfer looks up by id: names, and the styles that the scene's author assigned.
 void AddNames(const Scene& scene, const std::vector<std::uint32_t>& object_ids,
               const std::vector<std::uint32_t>& material_ids, GuideSet& guides) {
   guides.object_names = NamesById(object_ids, ObjectNames(scene));
@@ -216,7 +216,7 @@ struct RayCast {
     return result;
   }
 
-  // The options are looked at before the scene is.
+  // Options are checked before the scene.
   static Expected<GuidegenResult> RenderOnce(const Scene& scene, const Camera& camera, const NextFrame* next,
                                              const GuidegenOptions& options) {
     SCUMBLE_RETURN_IF_ERROR(CheckOptions(options, next != nullptr));

@@ -21,7 +21,7 @@ Camera SphereCamera() {
   return camera;
 }
 
-// Shines down its −Z, so its +Z points to where the light comes from.
+// It shines down its −Z, so its +Z points to the light's direction.
 Light SphereSun(const SphereOptions& options) {
   Light sun;
   sun.name = "key";

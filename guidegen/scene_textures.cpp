@@ -18,14 +18,15 @@ bool IsEncoded(const Scene& scene, std::size_t texture) {
   return texture < scene.encoded_textures.size() && scene.encoded_textures[texture];
 }
 
-// Nothing where it cannot be read.
+// Empty where it cannot be read.
 std::optional<std::uint64_t> CountPixels(const EncodedTexture& texture) {
   if (!texture.count_pixels) return std::nullopt;
   const Expected<std::uint64_t> pixels = texture.count_pixels();
   return pixels ? std::optional(*pixels) : std::nullopt;
 }
 
-// Decodes those that `wanted(scene)` names. What is left out may change materials, and with them what is wanted.
+// Decodes those that `wanted(scene)` names. Leaving a texture out may change materials, and with them the wanted
+// textures.
 template <class Wanted>
 Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
   DecodedTextures done;
@@ -37,7 +38,7 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!needed[i] || !IsEncoded(scene, i)) continue;
       const std::shared_ptr<const EncodedTexture> encoded = scene.encoded_textures[i];
-      // Asked by the header, and charged when it is there: one that is left out takes nothing.
+      // Checked by the header, and charged after decoding: a texture that is left out takes nothing.
       if (const auto promised = CountPixels(*encoded)) {
         SCUMBLE_RETURN_IF_ERROR(PictureBudget(budget).Take(scene.name, *promised));
       }

@@ -1,5 +1,5 @@
-// Pictures of a scene's materials, decoded when a layer needs them and not before. A style that asks for normals alone
-// never waits for the paint of the model, nor does it fail where that paint is missing.
+// Pictures of a scene's materials, decoded when a layer needs them and not before. A style that needs only normals
+// never waits for the model's textures, and does not fail if they are missing.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace scumble {
 
-// By the number of Scene::textures: whether RenderGuides with these options may look at it. Normal maps always; base
-// colours for albedo, for light paths that can exist, and where they may leave holes; roughness and metalness for light
-// paths; emission wherever light is asked for. Only what instances show counts, with texture coordinates for it.
+// By index of Scene::textures: whether RenderGuides with these options may read it. Normal maps always. Base colours
+// for albedo, for light paths that can exist, and for possible holes. Roughness and metalness for light paths; emission
+// wherever light is needed. Only materials of instances count, with texture coordinates for the texture.
 std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& options);
 
 struct DecodedTextures {
@@ -24,20 +24,19 @@ struct DecodedTextures {
   std::vector<std::string> warnings;  // of textures that are left out
 };
 
-// How many pixels those would have that are not decoded yet, by their headers; of one that cannot be read none:
-// decoding it says why.
+// The pixels of the textures not decoded yet, by their headers. An unreadable one counts 0: decoding reports it.
 struct TexturePixels {
   std::uint64_t all = 0;
   std::uint64_t largest = 0;  // of one
 };
 TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& options);
 
-// Decodes what RenderGuides needs with these options and is not decoded yet. A picture that is missing or broken is an
-// error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than
-// PictureBudget has are an error that names the scene. After an error nothing that was decoded is lost.
+// Decodes the textures that RenderGuides needs with these options and that are not decoded yet. A missing or damaged
+// picture is an error that names it, or a warning where it is optional in the scene's format (Wavefront's). More pixels
+// than PictureBudget allows are an error that names the scene. After an error all decoded textures are kept.
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options);
 
-// The same of all there are.
+// DecodeTextures for all textures.
 Expected<DecodedTextures> DecodeAllTextures(Scene& scene);
 
 }  // namespace scumble

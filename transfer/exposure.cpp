@@ -7,7 +7,7 @@ namespace scumble {
 std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides, int threads) {
   std::vector<float> brightest;
   std::optional<Layer> layer;
-  // Luminance before all others: it does not depend on what things are made of.
+  // Luminance first: it does not depend on materials.
   const auto measure = [&](Layer one) {
     if (!layer || one == Layer::kLuminance) layer = one;
   };

@@ -27,13 +27,13 @@ int ScaledLevels(int levels, int reference_height, int output_height) {
   return levels;
 }
 
-// Around a seed so many pixels must be flat before `variety` gives it freedom, at the reference height.
+// This many pixels around a seed must be flat before `variety` may change its source, at the reference height.
 constexpr int kFlatReach = 16;
 
 int ScaledRadius(int radius, int reference_height, int output_height) {
   if (reference_height == 0) return radius;
   const double scaled = static_cast<double>(radius) * output_height / reference_height;
-  // A style that blends goes on doing so in a small preview: without it patches would show hard edges there alone.
+  // A style that blends does so in a small preview too: otherwise chunks would show hard edges in previews only.
   return static_cast<int>(std::clamp(std::floor(scaled + 0.5), radius > 0 ? 1.0 : 0.0, 1024.0));
 }
 
@@ -89,7 +89,7 @@ Picture ScaledPaper(const Picture& paper, int reference_height, int output_heigh
   return Resample(paper, scaled(paper.width), scaled(paper.height));
 }
 
-// What is painted must be one scene: the exemplars of a style differ in light and paint only.
+// The painted scene must be one: the exemplars of a style differ in light and paint only.
 Status CheckSameScene(const Exemplar& first, const Exemplar& other) {
   const std::string both = first.name + " and " + other.name;
   if (first.is_sphere != other.is_sphere) {
@@ -213,7 +213,7 @@ Expected<PreparedStyle> PrepareInArena(const Style& style, int output_height, co
     prepared.reference_lightness = internal::ReferenceLightness(*prepared.exemplar);
   }
   if (settings.hybrid > 0.0) {
-    // In pixels of the file; the exemplar was resized by scale and height, and the tone with it.
+    // In pixels of the file; the exemplar was resized by scale and height, and the base layer with it.
     const Picture& file = style.exemplars.front().picture;
     const double ratio = static_cast<double>(prepared.exemplar->size()) / std::max(file.width, file.height);
     prepared.tones = MakeBaseLayers(*prepared.exemplar, settings.hybrid * ratio);
@@ -263,7 +263,7 @@ Expected<PreparedStyle> Prepare(const Style& style, int output_height, const Pre
 std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,
                         std::int64_t fps_denominator) {
   if (jitter_fps < 0.0) return frame;
-  // 128 bits: frame numbers that carry a date, times a rate in thousandths, leave 64 behind.
+  // 128 bits: frame numbers that contain a date, times a rate in thousandths, exceed 64.
   __extension__ using Int128 = __int128;
   const Int128 numerator = static_cast<Int128>(frame) * std::llround(jitter_fps * 1000.0) * fps_denominator;
   const Int128 denominator = static_cast<Int128>(fps_numerator) * 1000;

@@ -23,11 +23,11 @@
 namespace scumble {
 namespace {
 
-// What threads may keep in seeds; see SeedsOfBandsFit.
+// The memory that threads may use for seeds; see SeedsOfBandsFit.
 constexpr std::size_t kLeastSeedBytes = 64 << 20, kSeedBytesOfAPixel = 16;
 
-// Where the time of one style goes, as shares of it.
-constexpr double kMatchShare = 0.6;    // the rest is for votes, with their tint
+// The time of one style's steps, as shares of it.
+constexpr double kMatchShare = 0.6;    // the other steps are votes, with their tint
 constexpr double kComposeShare = 0.1;  // of the whole
 
 Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap* map, const GuideSet& guides,
@@ -54,7 +54,7 @@ Status CheckInputs(std::span<const PreparedStyle* const> styles, const StyleMap*
   return Ok();
 }
 
-// Styles are painted one after the other, each as if nothing else were there.
+// Styles are painted one after the other, each as if alone.
 class Run {
  public:
   Run(const StyleMap* map, std::size_t styles, const GuideSet& guides, const TransferOptions& options,
@@ -98,7 +98,7 @@ class Run {
     internal::RowProgress progress(options_.progress, from, 1.0, std::max(1, region_.y1 - region_.y0));
     const internal::Background background{styles.front()->paper, options_.over};
     if (background.empty() && !shadows && edged.empty() && !start_.softly_covered) {
-      // Nothing is behind, nothing half in front, and what no style paints is clear already.
+      // There is no background and no soft coverage, and unpainted pixels are clear already.
       progress.Finished(std::max(1, region_.y1 - region_.y0));
       return progress.cancelled() ? CancelledError() : Ok();
     }
@@ -108,8 +108,8 @@ class Run {
   }
 
  private:
-  // Whether nothing but the votes needs the sources, and only those of a few rows at a time.
-  // Seeds of many styles for many threads are not worth more memory than the field that is saved.
+  // Whether only the votes need the sources, and only those of a few rows at a time. The seeds of many styles and
+  // threads must not take more memory than the field that is saved.
   bool SeedsOfBandsFit(std::size_t styles) const {
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     const std::size_t columns = static_cast<std::size_t>(guides_.width()) / internal::kTileWidth + 1;
@@ -155,13 +155,13 @@ class Run {
   Status Paint(const PreparedStyle& style, int index, double from, double to) {
     const Region& extent = start_.extents[std::size_t(index)];
     Region painted = Intersection(region_, extent);
-    int reach = style.blend_radius;  // the pixels around whose sources decide what is painted
-    // A painted edge may stand in the region while its object does not.
+    int reach = style.blend_radius;  // the pixels around whose sources affect a painted one
+    // A painted edge may lie in the region while its object does not.
     for (const RimPaint& rim : style.rims) reach = std::max(reach, internal::EdgeReach(rim.band()));
     const Region near = Intersection(extent, region_.GrownBy(reach, guides_.width(), guides_.height()));
     if (painted.empty() && (style.rims.empty() || near.empty())) return Ok();
     if (painted.empty()) painted = {};
-    // Chunks of the brute force depend on every pixel above them, so it always runs over all of them.
+    // Chunks of the brute force depend on every pixel above them, so it always runs on all of them.
     const Region matched = style.settings.method == Method::kBruteForce ? extent : near;
     if (!map_) return MatchAndVote(style, matched, painted, from, to);
     const std::vector<Region>& tiles = start_.tiles[std::size_t(index)];
@@ -176,7 +176,7 @@ class Run {
   }
 
   Status PaintShadows(const PreparedStyle& style) {
-    const Progress unheard;  // far quicker than anything else
+    const Progress unheard;  // far faster than the other steps
     internal::RowProgress progress(unheard, 0.0, 1.0, std::max(1, region_.y1 - region_.y0));
     const internal::ShadowInput input{guides_, map_->style, *style.shadow, SeedsOf(style), region_};
     return internal::PaintShadows(input, out_, progress) ? Ok() : CancelledError();
@@ -203,7 +203,7 @@ class Run {
     return {style.reference_lightness, static_cast<float>(style.settings.colorize), style.settings.colorize_mode};
   }
 
-  // The scene's luminance under the exposure; made when the first style asks for it.
+  // The scene's luminance under the exposure; made when the first style needs it.
   std::span<const float> ExposedLuminance() {
     const auto plane = guides_.Plane(Layer::kLuminance);
     const float factor = static_cast<float>(Exp2(options_.exposure));
@@ -277,7 +277,7 @@ class Run {
     return Match(settings, input, progress) ? Ok() : CancelledError();
   }
 
-  // Matches one pixel of each block and lets the others take it on.
+  // Matches one pixel of each block and upsamples to the others.
   Status MatchCoarsely(const TransferSettings& settings, const internal::MatchInput& input, int step, double from,
                        double to) {
     internal::MatchInput coarse = input;

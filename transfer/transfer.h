@@ -31,7 +31,7 @@ namespace internal {
 struct BandMemory;
 }
 
-// A style made ready for outputs of one height. Immutable; any number of threads may use it at once.
+// A style prepared for outputs of one height. Immutable; any number of threads may use it at once.
 struct PreparedStyle {
   TransferSettings settings;
   LayerSet required;  // of the guides
@@ -39,7 +39,7 @@ struct PreparedStyle {
   Illumination illumination;
   float reference_lightness =
       0.0f;  // Oklab's, of paint that takes on base colours as they are; only for tints in Oklab
-  std::shared_ptr<const GuideSpace> space;  // what is matched in; null: normals alone, each counting 1
+  std::shared_ptr<const GuideSpace> space;  // the space of the match; null: normals alone, with weight 1
   std::vector<Picture> tones;               // by exemplar, see MakeBaseLayers; only where transfer.hybrid is above 0
   Paper paper;
   // By exemplar; only where transfer.edge is "exemplar" and the paint of every exemplar ends near its rim.
@@ -54,24 +54,24 @@ struct PreparedStyle {
 
 struct PrepareOptions {
   int table_resolution = LookUpTable::kResolution;  // cells a side of look-up tables, 1 … 16384
-  TableCache* cache = nullptr;                      // where they are kept; null: nowhere
+  TableCache* cache = nullptr;                      // null: none
   int threads = 0;                                  // 0: all
 };
 
 // Resizes exemplars and paper for outputs of `output_height` pixels; several exemplars become one size, the first's.
-// Fails where an exemplar is empty; where a sphere's picture is not square; where guides do not fit their picture, or
-// those of one style's exemplars are not of one scene; where one lacks a layer that has a weight; or where a setting is
-// outside the range that core/image/style.h states.
+// Fails if an exemplar is empty; if a sphere's picture is not square; if guides do not fit their picture, or those of
+// one style's exemplars are not of one scene; if one lacks a layer that has a weight; or if a setting is outside its
+// range in core/image/style.h.
 Expected<PreparedStyle> Prepare(const Style& style, int output_height, const PrepareOptions& options = {});
 
-// The luminance of the light that an exemplar is painted for: what the style says, else the mean of the luminance layer
-// of its guides, else that of its paint; over the pixels that are usable with a rim of so many pixels.
+// The luminance of the light that an exemplar is painted for. The style's value, else the mean of the luminance layer
+// of its guides, else that of its paint; over the pixels that are usable with a rim of that many pixels.
 double LuminanceOf(const Exemplar& exemplar, double rim);
 
-// The exposure that suits all of these styles, as MeasureExposure of illumination.h has it: for those that weigh light,
-// the 90th percentile of their exemplars' guides counts; for other styles of several exemplars, their luminances.
-// Nothing where no style looks at light. The guides must hold what the styles require. `threads` 0: all; they do not
-// matter to the result.
+// The exposure that suits all of these styles, by MeasureExposure of illumination.h. For styles that weigh light, the
+// 90th percentile of their exemplars' guides counts; for other styles of several exemplars, their luminances. Empty if
+// no style uses light. The guides must hold the layers that the styles require. `threads` 0: all; the result does not
+// depend on them.
 std::optional<double> MeasureExposure(std::span<const PreparedStyle> styles, const GuideSet& guides, int threads = 0);
 
 // The brute force takes time quadratic in the pixels; larger pictures are refused.
@@ -79,10 +79,10 @@ inline constexpr std::size_t kMostBruteForcePixels = 1 << 20;
 
 struct TransferOptions {
   std::uint64_t seed = 0;
-  std::int64_t frame = 0;  // with the rate, which jitter; see JitterStep
+  std::int64_t frame = 0;  // with the rate and jitter_fps; see JitterStep
   std::int64_t fps_numerator = 24;
   std::int64_t fps_denominator = 1;
-  double exposure = 0.0;          // stops by which the scene's luminance is brightened; see MeasureExposure
+  double exposure = 0.0;          // stops that brighten the scene's luminance; see MeasureExposure
   int threads = 0;                // 0: all
   const Picture* over = nullptr;  // composited underneath instead of the paper; the guides' size
   std::optional<Region> region;   // only these pixels of the result are made; empty: all
@@ -97,15 +97,15 @@ struct StageTimes {
   double compose_ms = 0;
 };
 
-// Memory that a sequence keeps from frame to frame, and what there is to look at after a transfer.
+// Memory that a sequence keeps from frame to frame, and intermediate results of a transfer.
 struct TransferScratch {
   TransferScratch();
   ~TransferScratch();
   TransferScratch(TransferScratch&&);
   TransferScratch& operator=(TransferScratch&&);
 
-  SourceField field;                 // empty where TransferOptions::keep_field did not ask for it and it was not needed
-  std::vector<std::uint8_t> active;  // 1: pixels that the style at work paints; empty likewise
+  SourceField field;                 // empty unless TransferOptions::keep_field requests it or the transfer needs it
+  std::vector<std::uint8_t> active;  // 1: pixels that the last style painted; empty likewise
   StageTimes times;
   std::vector<internal::BandMemory> bands;  // by thread
 };
@@ -117,15 +117,15 @@ struct TransferScratch {
 Status Transfer(const PreparedStyle& style, const GuideSet& guides, const TransferOptions& options,
                 TransferScratch& scratch, Picture& out);
 
-// The same with several styles in one picture: `map` says which paints what. Chunks and votes never cross from one
-// style to another. Pixels of StyleMap::kPassThrough show what is underneath, and their coverage does not count; so do
-// those of StyleMap::kShadowCatcher, but with the first style's paint where they are in shadow, if it asks for that.
-// The paper is the first style's. O(covered pixels + the rectangles around each style's pixels).
+// Transfer with several styles in one picture: `map` assigns them. Chunks and votes never cross from one style to
+// another. Pixels of StyleMap::kPassThrough show the picture underneath, and their coverage does not count. So do those
+// of StyleMap::kShadowCatcher, but with the first style's paint in shadow, if its settings enable that. The paper is
+// the first style's. O(covered pixels + the rectangles around each style's pixels).
 Status Transfer(std::span<const PreparedStyle* const> styles, const StyleMap& map, const GuideSet& guides,
                 const TransferOptions& options, TransferScratch& scratch, Picture& out);
 
-// floor(frame · jitter_fps / fps) in integers, fps = numerator / denominator: the same for a frame however a range is
-// cut. 0 for jitter_fps 0 (frozen), the frame itself for -1. jitter_fps is rounded to thousandths.
+// floor(frame · jitter_fps / fps) in integers, fps = numerator / denominator: equal for a frame however a range is cut.
+// 0 for jitter_fps 0 (frozen), the frame itself for -1. jitter_fps is rounded to thousandths.
 std::int64_t JitterStep(double jitter_fps, std::int64_t frame, std::int64_t fps_numerator,
                         std::int64_t fps_denominator);
 

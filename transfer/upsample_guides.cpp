@@ -19,8 +19,8 @@ constexpr double kCreaseDegrees = 60.0, kDepthTolerance = 0.002;
 constexpr float kCreaseCosine = 0.5f;
 constexpr std::int64_t kMaxPixels = std::int64_t(1) << 28;  // as in pictures that are read or made
 
-// The neighbours along one axis that a sample at offset k of a block lies between: the pixel itself and the one on the
-// side that k is on, with its weight in [0, 1/2).
+// The neighbours along one axis of a sample at offset k of a block: the pixel itself and the one on k's side, with its
+// weight in [0, 1/2).
 struct Side {
   int step = 0;  // -1, 0 or 1
   float weight = 0.0f;
@@ -114,11 +114,11 @@ class Upsampler {
   void Normalise(std::size_t target) {
     const glm::vec3 n = to_.Vec3(Layer::kNormal, target);
     const float length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-    if (!(length > 0.0f)) return;  // cannot be: all are within the crease angle of one
+    if (!(length > 0.0f)) return;  // impossible: all are within the crease angle of one
     for (int c = 0; c < 3; ++c) to_.Plane(Layer::kNormal, c)[target] /= length;
   }
 
-  // Coverage between the centres of pixels; beyond the picture's edge it goes on as it is.
+  // Coverage between the centres of pixels; beyond the picture's edge its values are repeated.
   float Between(int x, int y, int u, int v) const {
     const Side across = sides_[std::size_t(u)], down = sides_[std::size_t(v)];
     const auto at = [&](int qx, int qy) {
@@ -130,7 +130,7 @@ class Upsampler {
     return (1.0f - down.weight) * above + down.weight * below;
   }
 
-  // Covered is what lies above a threshold, softened over one sample; the threshold is the one that gives the block the
+  // Samples above a threshold are covered, softened over one sample; the threshold is the one that gives the block the
   // pixel's coverage.
   void Cover(int x, int y) {
     const float share = std::min(coverage_[from_.Index(x, y)], 1.0f);

@@ -1,4 +1,5 @@
-// scumble: paint a sphere, stylise a scene. One binary, one verb a task; `scumble help` prints verbs and exit codes.
+// scumble: paint a sphere, stylise a scene. One program, one command a task; `scumble help` prints commands and exit
+// codes.
 #include <fcntl.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -34,8 +35,8 @@ int Fail(const Error& error) {
   return Code(ExitCodeFor(error.kind));
 }
 
-// A file opened while standard output is closed would take its number, and receive what is printed. These stand-ins
-// refuse every read and write, so a result that nobody gets stays an error.
+// If standard output is closed, the next opened file would take its number and receive the printed text. These
+// placeholders refuse every read and write, so a lost result stays an error.
 void OccupyStandardStreams() {
   for (const int descriptor : {0, 1, 2}) {
     if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
@@ -63,7 +64,7 @@ int Run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return Fail(UsageError(ExplainUsage(app, error)));
   }
-  // More threads than cores, where they are asked for: the library would refuse them, and say so itself.
+  // Allows more threads than cores, if the user requests them: the library would refuse them with its own message.
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism,
                                     std::size_t(std::max(globals.threads, tbb::this_task_arena::max_concurrency())));
   SetIoThreads(globals.threads);

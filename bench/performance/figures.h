@@ -1,4 +1,4 @@
-// What the bench found: figures with their targets, for the table that bench/performance.py makes of them.
+// The bench's results: figures with their targets, for the table of bench/performance.py.
 #pragma once
 
 #include <optional>
@@ -18,18 +18,18 @@ struct Figure {
   std::string unit;   // "×", "ns/px", "frames/s", "bytes/px", "%"
   Spread value;
   std::optional<double> target;
-  bool at_least = false;  // whether the target is the least that is wanted, or the most
+  bool at_least = false;  // whether the target is a minimum or a maximum
   std::string note = {};
   std::vector<std::pair<std::string, double>> more =
-      {};  // further values by name, for the chart and for who reads the JSON
+      {};  // {}; // further values by name, for the chart and for readers of the JSON
 };
 
-// Collects figures and says on stderr what is being measured.
+// Collects figures and reports progress on stderr.
 class Report {
  public:
   void Say(const std::string& text) const;
   void Add(Figure figure);
-  // Facts that belong to no line: what a frame is, how quiet the machine was.
+  // Facts outside the lines: the frame, the load of the machine.
   void Note(std::string text) { notes_.push_back(std::move(text)); }
   std::string ToJson() const;
 

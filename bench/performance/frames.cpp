@@ -19,7 +19,7 @@ namespace scumble::bench {
 namespace {
 
 const std::string kSource = SCUMBLE_SOURCE_DIR;
-// Makes pixels of the hills settle on the seven levels about as those of the authors' golem do at 1024².
+// With this value the pixels of the hills settle on the seven levels about as those of the authors' golem do at 1024².
 constexpr float kRoughness = 1.2f;
 constexpr float kUnit = 1080.0f;  // pixels of the formula's unit of length
 
@@ -83,7 +83,7 @@ Camera LookingAt(const View& view, const std::string& object) {
   return camera;
 }
 
-// The widest angle of view for which `fits` holds, which it does for narrow ones, to a thousandth of the angle.
+// The widest angle of view for which `fits` holds, to a thousandth of the angle; it holds for narrow ones.
 void Widen(View& view, int width, int height, const std::function<bool(const GuideSet&)>& fits, double narrow,
            double wide) {
   while (wide > 1.001 * narrow) {
@@ -109,7 +109,7 @@ Frame CloseUp(int width, int height, const LayerSet& layers) {
   view.camera = LookingAt(view, "Suzanne");
   Widen(
       view, 192, 108, [](const GuideSet& guides) { return Covered(guides) == guides.pixel_count(); }, 1.0, 60.0);
-  view.camera.yfov_degrees *= 0.97;  // more pixels look closer
+  view.camera.yfov_degrees *= 0.97;  // more pixels of the object fit
   Frame frame = MakeFrame("close-up", Render(view, width, height, layers, 1));
   if (frame.covered != frame.guides.pixel_count()) {
     OrStop(Expected<int>(InputError("the close-up leaves pixels uncovered: has scenes/suzanne.glb changed?")));
@@ -136,7 +136,7 @@ Frame HillsFrame(int width, int height, bool all_layers) {
     const float v = (static_cast<float>(y) + 0.5f) / kUnit;
     for (int x = 0; x < width; ++x) {
       const float u = (static_cast<float>(x) + 0.5f) / kUnit;
-      // Rough in some places and smooth in others, as surfaces are.
+      // Rough in some places and smooth in others, like real surfaces.
       const float rough = 0.5f + 0.5f * std::sin(9.3f * u + 5.1f * v) * std::cos(6.9f * v - 3.3f * u);
       const float fine = kRoughness * rough * rough * rough;
       const float slope_x = 0.9f * std::sin(11.0f * u + 3.0f * v) + 0.5f * std::sin(31.0f * u - 17.0f * v) +

@@ -7,13 +7,13 @@
 namespace scumble::bench {
 namespace {
 
-// What is timed beside the plain style, and what it may cost.
+// An extension timed against the plain style, and its target.
 struct Extension {
   std::string item;
   std::string what;
   std::unique_ptr<Engine> engine;
   std::optional<double> target;
-  std::size_t against = 0;  // whose time is 1; 0 is the plain style
+  std::size_t against = 0;  // the index of the reference; 0 is the plain style
 };
 
 Extension Extended(const std::string& item, const std::string& what, const Style& style, const Frame& frame,
@@ -21,7 +21,7 @@ Extension Extended(const std::string& item, const std::string& what, const Style
   return {item, what, std::make_unique<Engine>(style, frame.guides.height()), target, against};
 }
 
-// The first is the plain style, which is timed for the others' sake.
+// The first is the plain style, which is timed as the reference.
 void MeasureCosts(const Frame& frame, const std::vector<Extension>& extensions, const PerformanceOptions& options,
                   Report& report) {
   std::vector<std::function<void()>> contestants;
@@ -48,7 +48,7 @@ Style With(const std::function<void(Style&)>& change) {
   return style;
 }
 
-// The same painting four times over, for four lights: what illumination costs, not what other paint costs.
+// One exemplar four times, for four lights: measures the cost of illumination, not of other paint.
 Style Illuminated() {
   return With([](Style& style) {
     const Exemplar exemplar = style.exemplars.front();

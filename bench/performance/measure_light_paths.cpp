@@ -10,9 +10,9 @@ namespace scumble::bench {
 namespace {
 
 constexpr int kDimensions = 15;
-constexpr int kRowStep = 16;  // the search is asked for every 16th row, and its time counts 16 times
+constexpr int kRowStep = 16;  // the search is timed on every 16th row, and its time counts 16 times
 
-// The bundled painting of a whole scene, matched in fifteen dimensions: the normal and four kinds of light paths.
+// The bundled exemplar of a whole scene, matched in fifteen dimensions: the normal and four kinds of light paths.
 Style LightPathStyle() {
   std::vector<std::string> settings;
   for (const char* layer : {"luminance", "shadow"}) settings.push_back(std::string("guide_weights.") + layer + "=0");
@@ -24,7 +24,7 @@ Style LightPathStyle() {
   return OrStop(LoadStyle(std::string(SCUMBLE_SOURCE_DIR) + "/exemplars/scene-oil", settings));
 }
 
-// As nanoflann wants points: its own Euclidean metric in floats, dimensions known when compiling.
+// Points in nanoflann's form: its own Euclidean metric in floats, dimensions known at compile time.
 struct Points {
   std::vector<std::array<float, kDimensions>> all;
 
@@ -47,7 +47,7 @@ Points ExemplarPoints(const PreparedStyle& style) {
   return points;
 }
 
-// Asks for the nearest exemplar pixel of every covered pixel of some rows; reading the guides is part of it.
+// Searches the nearest exemplar pixel of every covered pixel of some rows; reading the guides is included.
 std::uint64_t AskRows(const Tree& tree, const GuideSpace& space, const GuideSet& guides, float brightness) {
   std::uint64_t sum = 0;
   for (int y = kRowStep / 2; y < guides.height(); y += kRowStep) {

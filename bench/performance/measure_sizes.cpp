@@ -25,7 +25,7 @@ double StatusKilobytes(const std::string& name) {
   return 0.0;
 }
 
-// One line of JSON from another process; nothing where it failed.
+// One line of JSON from another process; null if it failed.
 nlohmann::json AskProcess(const std::string& command) {
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return {};
@@ -72,15 +72,15 @@ void MeasureSizes(const PerformanceOptions& options, Report& report) {
   }
 }
 
-// Guides, picture and whatever the transfer takes besides, at its peak, less what the process and the style had before.
+// Guides, picture and the transfer's other memory, at its peak, less the memory of the process and the style before.
 int PrintMemory(int width, int height, bool edge_aware) {
   Style style = PlainStyle();
   style.transfer.edge_aware = edge_aware;
   Engine engine(style, height, 2);
   style = {};
-  const Frame one = HillsFrame(16, 9, true);  // threads and their pools are there before memory is counted
+  const Frame one = HillsFrame(16, 9, true);  // threads and their pools exist before memory is counted
   malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";  // the peak is the present, from here on
+  std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak to the present value
   const double before = StatusKilobytes("VmRSS");
   const Frame frame = HillsFrame(width, height, true);
   const double guides = StatusKilobytes("VmRSS");

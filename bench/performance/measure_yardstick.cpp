@@ -19,7 +19,7 @@ YardstickGuides Planes(const GuideSet& guides) {
           guides.Plane(Layer::kNormal, 2).data()};
 }
 
-// The yardstick with what it paints, by turns a frame and its mirror image.
+// The yardstick and its frames: it paints a frame and its mirror image in turn.
 class YardstickRun {
  public:
   YardstickRun(const Frame& frame, const Engine& engine)
@@ -73,7 +73,7 @@ double CoherencePercent(const GuideSet& guides, const std::vector<YardstickSourc
   return CoherencePercent(guides, x, y);
 }
 
-// What is not the same picture is not measured.
+// Different pictures are not measured.
 void StopUnlessEqual(const Frame& frame, const Picture& engine, const Picture& other, const std::string& whose) {
   if (engine.rgba == other.rgba) return;
   std::size_t i = 0;
@@ -85,7 +85,7 @@ void StopUnlessEqual(const Frame& frame, const Picture& engine, const Picture& o
   std::exit(1);
 }
 
-// The frame with jitter as it is at first, its mirror image with jitter as it is later.
+// The frame with its first jitter, its mirror image with renewed jitter.
 void CheckSamePictures(const Frame& frame, YardstickRun& yardstick, Engine& one, Engine& two, Engine& renewed) {
   renewed.Paint(frame, true);
   yardstick.RenewJitter(renewed.options.frame);
@@ -98,7 +98,7 @@ void CheckSamePictures(const Frame& frame, YardstickRun& yardstick, Engine& one,
   StopUnlessEqual(frame, two.picture(), one.picture(), "that of one thread on two");
 }
 
-// The least that a frame could cost: the planes that a transfer reads, and the picture that it writes, copied once.
+// The minimum cost of a frame: one copy of the planes that a transfer reads, and of the picture that it writes.
 class PlainCopy {
  public:
   explicit PlainCopy(const Frame& frame)
@@ -124,7 +124,7 @@ class PlainCopy {
   std::vector<std::uint16_t> made_, out_;
 };
 
-// Nanoseconds a pixel of each stage, in the quickest of some frames; the rest is what is around the stages.
+// Nanoseconds a pixel of each stage, in the fastest of some frames; the remainder is the time outside the stages.
 std::vector<std::pair<std::string, double>> Stages(Engine& engine, const Frame& frame) {
   constexpr int kFrames = 5;
   StageTimes best;

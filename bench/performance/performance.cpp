@@ -1,6 +1,6 @@
 // Measures the transfer against the targets of docs/performance.md and prints figures as JSON; bench/performance.py
-// makes the table of them. `--help` says what can be chosen. Gates nothing, but stops where the engine's picture is not
-// the yardstick's.
+// makes the table. `--help` lists the choices. It gates nothing, but stops if the engine's picture is not the
+// yardstick's.
 #include "bench/performance/performance.h"
 
 #include <CLI/CLI.hpp>
@@ -22,7 +22,7 @@ constexpr NamedPart kParts[] = {{"yardstick", MeasureYardstick},    {"rates", Me
                                 {"radius", MeasureRadius},          {"extensions", MeasureExtensions},
                                 {"light-paths", MeasureLightPaths}, {"sizes", MeasureSizes}};
 
-// Everything once, at sizes that take a second: whether it runs, not how fast.
+// Everything once, at sizes that take a second: a test that it runs, not a measurement.
 PerformanceOptions SmokeOptions() {
   PerformanceOptions options;
   options.sizes = {{160, 90}};

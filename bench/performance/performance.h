@@ -17,13 +17,13 @@ struct PerformanceOptions {
   std::vector<std::pair<int, int>> sizes{{1920, 1080},
                                          {3840, 2160}};  // of the yardstick's frames; others have the first
   std::pair<int, int> light_size{960, 540};              // of frames with light paths, which are slow to trace
-  std::vector<double> megapixels{1, 2, 8, 33, 64};       // for linearity; the first is what others are compared with
+  std::vector<double> megapixels{1, 2, 8, 33, 64};       // for linearity; the others are compared with the first
   int light_samples = 16;
   RepeatOptions repeats;
 };
 
-// Transfers of one prepared style, the way a sequence calls them: buffers are kept, guides are the caller's. Jitter
-// that is renewed takes the next frame number at every call.
+// Transfers of one prepared style, called as by a sequence: buffers are kept, guides are the caller's. Renewed jitter
+// takes the next frame number at every call.
 class Engine {
  public:
   // Guides of `height` rows. Threads 0: all.
@@ -35,7 +35,7 @@ class Engine {
   TransferOptions options;
   const PreparedStyle& prepared() const { return styles_.front(); }
   const Picture& picture() const { return picture_; }
-  const SourceField& field() const { return scratch_.field; }  // where the options keep it
+  const SourceField& field() const { return scratch_.field; }  // if the options keep it
   const StageTimes& stages() const { return scratch_.times; }  // of the last frame
 
  private:
@@ -45,7 +45,7 @@ class Engine {
   Picture picture_;
 };
 
-// A contestant that paints the frame and its mirror image by turns, where there is one.
+// A contender that paints the frame and its mirror image, if there is one, in turn.
 std::function<void()> Painting(Engine& engine, const Frame& frame);
 
 // 1 and 2: against the yardstick, nanoseconds a pixel, frames a second, two threads, coherence.
@@ -55,10 +55,10 @@ void MeasureFrameRates(const PerformanceOptions& options, Report& report);
 void MeasureRadius(const PerformanceOptions& options, Report& report);
 void MeasureExtensions(const PerformanceOptions& options, Report& report);
 void MeasureLightPaths(const PerformanceOptions& options, Report& report);
-// 5: nanoseconds a pixel by size, and memory, which a process of its own measures: `program` is this one.
+// 5: nanoseconds a pixel by size, and memory, which a separate process measures: `program` is this one.
 void MeasureSizes(const PerformanceOptions& options, Report& report);
 void MeasureMemory(const std::string& program, const PerformanceOptions& options, Report& report);
-// What that process does: prints bytes a pixel of a frame of so many pixels.
+// The work of that process: prints bytes a pixel of a frame of that many pixels.
 int PrintMemory(int width, int height, bool edge_aware);
 
 }  // namespace scumble::bench

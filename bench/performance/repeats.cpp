@@ -25,7 +25,7 @@ RunTime Measure(const std::function<void()>& run) {
   return {end.wall_ms - start.wall_ms, end.thread_ms - start.thread_ms, end.process_ms - start.process_ms};
 }
 
-// Linear between the two values around it, as Python's statistics.quantiles has it with method="inclusive".
+// Linear between the two values around it, like Python's statistics.quantiles with method="inclusive".
 double Quantile(const std::vector<double>& sorted, double share) {
   const double place = share * static_cast<double>(sorted.size() - 1);
   const std::size_t below = static_cast<std::size_t>(place);

@@ -1,4 +1,4 @@
-// Timing by repeats that take turns: A, B, A, B, …, so that whatever else the machine does slows all of them alike.
+// Timing by alternating repeats: A, B, A, B, …, so that other load of the machine slows all of them alike.
 #pragma once
 
 #include <functional>
@@ -24,11 +24,11 @@ struct RunTime {
   double process_ms = 0.0;  // and of all threads
 };
 
-// Which of a run's times is meant: work on one thread is judged by its own processor time, which a busy machine
-// stretches least; work on several by the clock on the wall.
+// The time of a run that counts. Work on one thread is compared by its own processor time, which other load changes
+// least; work on several by wall-clock time.
 enum class Clock { kThread, kWall };
 
-// One contestant's times by round: each is the median of the runs that it had in that round.
+// One contender's times by round: each is the median of its runs in that round.
 class Times {
  public:
   void Add(const RunTime& time) { rounds_.push_back(time); }
@@ -38,25 +38,25 @@ class Times {
     return clock == Clock::kThread ? time.thread_ms : time.wall_ms;
   }
   Spread Milliseconds(Clock clock) const;
-  // How much longer the clock on the wall took than the thread: 1 on a quiet machine. Median.
+  // The ratio of wall-clock time to the thread's time: 1 on an idle machine. Median.
   double Waiting() const;
 
  private:
   std::vector<RunTime> rounds_;
 };
 
-// How often a is of b, round by round, times `factor`: the spread of quotients within one round.
+// The ratio of a to b, round by round, times `factor`: the spread of quotients within one round.
 Spread Ratio(const Times& a, const Times& b, Clock clock, double factor = 1.0);
 
 struct RepeatOptions {
-  double seconds = 6.0;  // about how long all rounds together may take
+  double seconds = 6.0;  // about the time of all rounds together
   int least_rounds = 5;
   int most_rounds = 15;
-  double turn_seconds = 0.1;  // within a round a quick contestant runs again until so much time is over, …
+  double turn_seconds = 0.1;  // within a round a fast contender runs again until this much time is over, …
   int most_runs = 7;          // … but not more often than this
 };
 
-// Each contestant runs once unmeasured, then the rounds. Times by contestant.
+// Each contender runs once unmeasured, then the rounds. Times by contender.
 std::vector<Times> TakeTurns(std::span<const std::function<void()>> contestants, const RepeatOptions& options);
 
 }  // namespace scumble::bench

@@ -64,7 +64,7 @@ bool Yardstick::Usable(Pixel u) const {
   return dx * dx + dy * dy <= usable_squared_;
 }
 
-// argmin over u of ‖normal - G_S(u)‖: on a sphere the place where that normal is.
+// argmin over u of ‖normal - G_S(u)‖: on a sphere the place with that normal.
 Yardstick::Pixel Yardstick::BestSource(float nx, float ny, float nz) const {
   const float length = std::sqrt(nx * nx + ny * ny);
   if (nz < 0.0f && !(length > 0.0f)) {
@@ -120,7 +120,7 @@ Yardstick::Pixel Yardstick::MatchPixel(const YardstickGuides& guides, Pixel p) c
   return BestSource(nx, ny, nz);
 }
 
-// The mean of what the chunks of the nine pixels around p would put there.
+// The mean of the texels that the chunks of the nine pixels around p would put there.
 void Yardstick::VotePixel(Pixel p, std::uint16_t* rgb) const {
   std::uint32_t sum[3] = {0, 0, 0};
   std::uint32_t votes = 0;

@@ -1,15 +1,15 @@
 // The yardstick that the engine's speed is measured against: the parallel StyleBlit of Sýkora et al. (Computer Graphics
-// Forum 38, 2019, section 3.2 and its pseudo-code; votes by section 3.3) as one would write it down from the paper: one
+// Forum 38, 2019, section 3.2 and its pseudo-code; votes by section 3.3) written down directly from the paper: one
 // pixel after the other, one thread, scalar, in float. Built with -O3 -march=native for this file alone.
 //
-// No trick of ours is in it, and nothing is slower than the paper asks for:
-//   - seeds come from a table of jitter, as the authors' do; it is made outside the clock where jitter is frozen;
-//   - background is skipped, which the authors' demo does not do;
+// It has none of our optimisations, and no step is slower than in the paper:
+//   - seeds come from a table of jitter, like the authors'; it is made outside the clock where jitter is frozen;
+//   - background is skipped, unlike in the authors' demo;
 //   - u* of a seed is the sphere's formula and no search, and squares of distances are compared instead of roots;
 //   - on level 0 a pixel is its own seed, so it takes its own u* without looking for the nearest of nine;
 //   - buffers are kept from frame to frame.
 // It follows the engine's rules (DESIGN §6: hashed seeds, ties, the rim), so both must give the same picture, bit for
-// bit. It stands on its own: nothing of the engine is built with that file's flags.
+// bit. It is independent: no code of the engine is built with that file's flags.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct YardstickSettings {
   std::uint64_t seed = 0;
 };
 
-// Where a pixel takes its paint from; x is kNoSource on background.
+// The source of a pixel's paint; x is kNoSource on background.
 struct YardstickSource {
   static constexpr std::int16_t kNoSource = -1;
   std::int16_t x = kNoSource;
@@ -52,7 +52,7 @@ class Yardstick {
  public:
   Yardstick(int width, int height, const YardstickExemplar& exemplar, const YardstickSettings& settings);
 
-  // The table of jitter for a time step; to be called before the first frame, and again where jitter is renewed.
+  // Makes the table of jitter for a time step. Call it before the first frame, and again when jitter is renewed.
   void RenewJitter(std::int64_t time_step);
 
   // Match, then vote at radius 1. Writes all of `rgba`: 4 · width · height values, sRGB-encoded as the paint is,

@@ -1,5 +1,5 @@
-// The exact Euclidean distance transform, with the pixel that is nearest and not only its distance. Not for other
-// folders.
+// The exact Euclidean distance transform. It finds the nearest feature pixel, not only the distance to it. Private to
+// core/filter.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -12,8 +12,8 @@ namespace scumble::internal {
 
 inline constexpr std::uint16_t kNoRow = std::numeric_limits<std::uint16_t>::max();
 
-// For every pixel the row of the nearest pixel of its column for which feature(i) holds, kNoRow where there is none;
-// ties to the upper one.
+// For every pixel, the row of the nearest pixel in its column for which feature(i) holds. kNoRow where there is none;
+// ties go to the upper row.
 template <class Feature>
 std::vector<std::uint16_t> NearestRows(int width, int height, const Feature& feature) {
   std::vector<std::uint16_t> rows(std::size_t(width) * height, kNoRow);
@@ -37,15 +37,15 @@ std::vector<std::uint16_t> NearestRows(int width, int height, const Feature& fea
   return rows;
 }
 
-// Meijster, Roerdink, Hesselink, "A General Algorithm for Computing Distance Transforms in Linear Time", ISMM 2000, in
-// integers. Calls visit(i, x, y, u, v) for every pixel with the nearest feature pixel (u, v), and does not where there
-// is no feature at all; ties to the lowest (u, v). Rows run in parallel: visit is called from several threads. Width
-// and height are at most 32768. O(width · height).
+// The distance transform of Meijster, Roerdink, Hesselink, "A General Algorithm for Computing Distance Transforms in
+// Linear Time", ISMM 2000, in integers. Calls visit(i, x, y, u, v) for every pixel with its nearest feature pixel (u,
+// v); ties go to the lowest (u, v). Without any feature pixel nothing is called. Rows run in parallel: visit is called
+// from several threads. Width and height are at most 32768. O(width · height).
 template <class Feature, class Visit>
 void ForNearestFeature(int width, int height, const Feature& feature, const Visit& visit) {
   const std::vector<std::uint16_t> rows = NearestRows(width, height, feature);
   tbb::parallel_for(0, height, [&](int y) {
-    // The lower envelope of one parabola a column: which column is nearest, from which x on.
+    // The lower envelope of one parabola a column: the nearest column, and the x from which it is nearest.
     std::vector<int> column, from;
     const auto squared = [&](int x, int u) {
       const std::int64_t dx = x - u, dy = y - rows[std::size_t(y) * width + u];
@@ -60,7 +60,7 @@ void ForNearestFeature(int width, int height, const Feature& feature, const Visi
         column.push_back(u), from.push_back(0);
         continue;
       }
-      // The last x at which the parabola on top is not beaten.
+      // The last x at which the parabola on top is the lowest.
       const std::int64_t k = column.back();
       const std::int64_t numerator =
           std::int64_t(u) * u - k * k + squared(u, u) - squared(column.back(), column.back());

@@ -9,10 +9,9 @@
 namespace scumble::internal {
 namespace {
 
-// The surface's slope in depth per pixel, from both neighbours: the gentler difference where both point the same way
-// (the steeper may be an edge), 0 where they do not. A part one pixel wide is such a turning point, and so is the top
-// of a hill, whose slope is small. Without a neighbour on both sides nothing tells a slope from a step: it counts as
-// none.
+// The surface's slope in depth per pixel, from both neighbours. Where both differences have one sign, the gentler one:
+// the steeper may be an edge. Where the signs differ, 0: a part one pixel wide turns there, and so does the top of a
+// hill, whose slope is small. Without a neighbour on both sides a slope looks like a step, so the slope counts as 0.
 float Slope(std::optional<float> before, float here, std::optional<float> after) {
   if (!before || !after) return 0.0f;
   const float back = here - *before, front = *after - here;

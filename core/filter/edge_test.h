@@ -15,14 +15,14 @@
 
 namespace scumble::internal {
 
-// The surface's slope in depth per pixel. A step shows on one side of a pixel only, or turns back on the other, and is
-// no slope. Made once for all styles of a picture; the guides must hold depth. O(pixels).
+// The surface's slope in depth per pixel. A step shows on one side of a pixel only, or turns back on the other: it is
+// no slope. Computed once for all styles of a picture. The guides must hold depth. O(pixels).
 struct DepthSlopes {
   explicit DepthSlopes(const GuideSet& guides);
   std::vector<float> x, y;
 };
 
-// The same, made when first asked for, by whichever thread is first. Keeps a reference to the guides.
+// DepthSlopes on demand: the first thread that asks computes them. Keeps a reference to the guides.
 class LazyDepthGradient {
  public:
   explicit LazyDepthGradient(const GuideSet& guides) : guides_(guides) {}
@@ -37,9 +37,9 @@ class LazyDepthGradient {
   std::optional<DepthSlopes> slopes_;
 };
 
-// How far depth may leave the slope of a surface between two pixels: a share of the nearer one's depth. In orthographic
-// views depth depends on where the camera happens to stand, so it is a share of the height that is seen; of the depth
-// only what float's rounding in casting comes to, 2^-20.
+// The depth difference allowed beyond a surface's slope between two pixels, as a share of the nearer depth. In an
+// orthographic view depth depends on where the camera stands, so the share is of the height in view. Of the depth it
+// then allows only float rounding in casting, 2^-20.
 struct DepthTolerance {
   DepthTolerance(const GuideSet& guides, double depth_tolerance);
   float At(float depth) const { return fixed + share * depth; }
@@ -48,22 +48,23 @@ struct DepthTolerance {
   float fixed = 0.0f;  // metres
 };
 
-// What one style takes for an edge. The guides must hold depth and object; slopes are theirs.
+// A style's rules for edges. The guides must hold depth and object; the slopes belong to these guides.
 struct EdgeRules {
-  // As the test has them; at 180 degrees even opposite normals pass, whose cosine rounding may put below -1.
+  // The cosine the test compares with. At 180 degrees even opposite normals pass, whose cosine rounding may put below
+  // -1.
   float CreaseCosine() const { return CreaseCosine(crease_degrees); }
   static float CreaseCosine(double degrees);
   DepthTolerance Give() const { return {guides, depth_tolerance}; }
 
   const GuideSet& guides;
-  LazyDepthGradient& slopes;  // for who needs those of the whole picture
+  LazyDepthGradient& slopes;  // for callers that need the slopes of the whole picture
   double crease_degrees = 180.0;
   double depth_tolerance = 0.0;
   std::span<const std::uint8_t> covered =
-      {};  // by pixel: whether its coverage is above 0; empty: as the guides have it
+      {};  // {}; // by pixel: whether its coverage is above 0; empty: taken from the guides
 };
 
-// Whether two neighbouring pixels look like the same piece of surface:
+// Whether two neighbouring pixels lie on one surface:
 //   - the same object id;
 //   - normals less than `crease` degrees apart; 180 takes any;
 //   - a depth difference that the surface's own slope explains: the mean of both pixels' slopes (the trapezoidal rule),
@@ -72,12 +73,12 @@ struct EdgeRules {
 //     passes.
 class EdgeTest {
  public:
-  // Keeps references to both; `guides` must hold depth and object.
+  // Keeps references to guides and slopes. `guides` must hold depth and object.
   EdgeTest(const GuideSet& guides, const DepthSlopes& slopes, double crease_degrees, double depth_tolerance);
   explicit EdgeTest(const EdgeRules& rules)
       : EdgeTest(rules.guides, rules.slopes.Get(), rules.crease_degrees, rules.depth_tolerance) {}
 
-  // What the test needs to know of one pixel.
+  // The values that the test reads at one pixel.
   struct Side {
     float object, depth, slope_x, slope_y;
     glm::vec3 normal;
@@ -89,8 +90,8 @@ class EdgeTest {
             slope_y_[pixel],
             {normal_x_[pixel], normal_y_[pixel], normal_z_[pixel]}};
   }
-  // q stands (dx, dy) pixels from p, both at most 1. To the bit the same from q's side. Along a row slopes down the
-  // columns do not matter, and the other way round.
+  // q is (dx, dy) pixels from p, both at most 1. The result from q's side is equal to the bit. Along a row the vertical
+  // slopes do not matter, and along a column the horizontal ones.
   bool SameSurface(const Side& p, const Side& q, int dx, int dy) const {
     if (p.object != q.object) return false;
     float along = 0.0f, leeway = 0.0f;

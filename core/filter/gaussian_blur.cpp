@@ -7,7 +7,7 @@
 namespace scumble {
 namespace {
 
-// One direction of a Gaussian blur; what lies outside has no weight.
+// One direction of a Gaussian blur. Values outside the plane have no weight.
 std::vector<float> BlurredAlong(const std::vector<float>& tones, int count, int stride, int lines, int line_stride,
                                 const std::vector<double>& weights) {
   const int reach = static_cast<int>(weights.size()) - 1;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPasses = 4;
 
-// Weights 1 on 2·reach + 1 samples and `ends` on one more at either side; unscaled, because the blur is a quotient.
+// Weights 1 on 2·reach + 1 samples and `ends` on one more at either side. Unscaled, because the blur is a quotient.
 struct ExtendedBox {
   int reach = 0;
   double ends = 0.0;
@@ -25,7 +25,7 @@ struct ExtendedBox {
     ends = (2.0 * l + 1.0) * (3.0 * variance - l * (l + 1.0)) / (6.0 * ((l + 1.0) * (l + 1.0) - variance));
   }
 
-  // Filters `in` into `out`, both of one length; there is nothing beyond their ends.
+  // Filters `in` into `out`, both of one length. Samples beyond the ends count as 0.
   void Filter(const std::vector<double>& in, std::vector<double>& out) const {
     const int count = static_cast<int>(in.size());
     const auto at = [&](int i) { return i >= 0 && i < count ? in[std::size_t(i)] : 0.0; };
@@ -44,7 +44,7 @@ struct Plane {
   std::vector<double> values;
 };
 
-// Along x, then turned on its side: two of these are the blur.
+// Blurs along x and transposes: two calls make the blur.
 Plane BlurRows(const Plane& plane, const ExtendedBox& box) {
   Plane turned{plane.height, plane.width, std::vector<double>(plane.values.size())};
   const int margin = kPasses * (box.reach + 1);  // what a pass carries beyond the end another may bring back

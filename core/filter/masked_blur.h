@@ -1,4 +1,4 @@
-// A Gaussian blur that looks at part of a picture only.
+// A Gaussian blur of the masked part of a picture.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace scumble::internal {
 
-// A texel's channels times its alpha: colour that transparent texels do not lend to others.
+// A texel's channels times its alpha, so that transparent texels add no colour to a mean.
 inline std::uint16_t Premultiplied(const std::uint16_t* texel, int channel) {
   if (channel == 3) return texel[3];
   return static_cast<std::uint16_t>((std::uint32_t(texel[channel]) * texel[3] + 32767u) / 65535u);

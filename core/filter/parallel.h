@@ -12,7 +12,7 @@
 
 namespace scumble::internal {
 
-// Reports a part [from, to] of the whole as rows finish; knows when the caller asked to stop.
+// Reports a part [from, to] of the whole as rows finish, and stops when the caller cancels.
 class RowProgress {
  public:
   RowProgress(const Progress& progress, double from, double to, int rows)
@@ -35,8 +35,8 @@ class RowProgress {
   int done_ = 0;
 };
 
-// Calls row(y) for every row of the region, from several threads. Rows are independent of each other, so the result
-// does not depend on how they are shared out. False if it was cancelled.
+// Calls row(y) for every row of the region, from several threads. Rows are independent, so the result does not depend
+// on how they are distributed. False if it was cancelled.
 template <class RowFunction>
 bool ForEachRow(const Region& region, RowProgress& progress, RowFunction row) {
   constexpr int kRowsPerTask = 8;

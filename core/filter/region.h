@@ -1,4 +1,4 @@
-// A rectangle of the picture, and rows of it shared out over threads.
+// A rectangle of the picture, and its rows distributed over threads.
 #pragma once
 
 #include <algorithm>

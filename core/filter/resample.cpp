@@ -50,7 +50,7 @@ std::vector<Taps> MakeTaps(int from, int to) {
   return all;
 }
 
-// Sums of colour · alpha, so that transparent texels lend no colour; undivided, so that nothing is lost.
+// Sums of colour · alpha, so that transparent texels add no colour. Not divided yet, so that no precision is lost.
 struct Sums {
   std::int64_t color[3] = {0, 0, 0};
   std::int64_t alpha = 0;

@@ -67,7 +67,7 @@ BarePaper FindBarePaper(const Picture& picture) {
       by_corner[(2 * x < picture.width ? 0 : 1) + (2 * y < picture.height ? 0 : 2)].push_back(colors.back());
     }
   }
-  // A sheet that is half see-through is no paper.
+  // A sheet that is half transparent is no paper.
   if (static_cast<double>(colors.size()) < (1.0 - kMostPaintInCorners) * count) return {};
   const glm::vec3 paper = Median(colors);
   for (const std::vector<glm::vec3>& corner : by_corner) {
@@ -87,13 +87,13 @@ void LiftPaint(const BarePaper& paper, std::uint16_t* texel) {
     texel[3] = 0;
     return;
   }
-  // With less opacity than this not even black or white paint over the paper makes the colour.
+  // The least opacity at which black or white paint over the paper still makes this colour.
   float least = 0.0f;
   for (int c = 0; c < 3; ++c) {
     const float off = color[c] - paper.color[c], room = off < 0.0f ? paper.color[c] : 1.0f - paper.color[c];
     if (room > 0.0f) least = std::max(least, std::min(1.0f, std::fabs(off) / room));
   }
-  // Out of the grain it rises to that steadily, so that no grey speck appears at once.
+  // Beyond the grain, opacity rises to that value steadily, so that no grey speck appears abruptly.
   const float opacity = std::max(by_distance, least * std::min(1.0f, 4.0f * by_distance));
   for (int c = 0; c < 3; ++c) {
     texel[c] = Srgb16FromLinear(paper.color[c] + (color[c] - paper.color[c]) / opacity);

@@ -1,4 +1,4 @@
-// What an exemplar is painted on, and the paint without it.
+// The paper of an exemplar, and the paint without it.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -7,12 +7,12 @@
 
 namespace scumble {
 
-// The ground round a painted sphere, as the corners of its picture show it.
+// The ground around a painted sphere, measured in the corners of its picture.
 struct BarePaper {
   enum class Kind {
     kPaper,        // one colour, but for its grain
-    kTransparent,  // nothing: alpha tells where paint is
-    kCovered,      // paint goes on into the corners: where it ends is unknown
+    kTransparent,  // nothing: alpha marks the paint
+    kCovered,      // paint continues into the corners: its end is unknown
   };
   Kind kind = Kind::kCovered;
   glm::vec3 color{0.0f};  // linear; for kPaper

@@ -1,4 +1,4 @@
-// Any file's channels, by name and without meaning: what is compared, before anyone asks what it stands for.
+// A file's channels by name, before they have a meaning: for comparing files.
 #pragma once
 
 #include <cstddef>

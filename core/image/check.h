@@ -1,5 +1,5 @@
 // Assertions about our own code. CHECK stays on in release builds and throws InternalError, which the command line
-// reports with exit code 6; DCHECK is for hot loops and vanishes when NDEBUG is defined.
+// reports with exit code 6. DCHECK is for hot loops and vanishes when NDEBUG is defined.
 #pragma once
 
 #include <sstream>

@@ -5,15 +5,15 @@
 //
 // This file is text to be included inside a namespace that has
 //   Lane                        a float, or a vector of floats; floats convert to it; + - * /
-//   Choice                      what comparing Lanes gives, one truth for each
+//   Choice                      the result of comparing Lanes, one truth value each
 //   LaneColor                   {Lane r, g, b}
 //   Less(a, b), Both(choice, choice), All(choice), Select(choice, yes, no), Min(a, b), Max(a, b), Sqrt(x)
 //   BitsAsNumber(x)             the integer that x's bits are, as the nearest float
 //   NumberAsBits(n)             the float whose bits are 512 · (n - 2^23), for whole n of 2^23 … 2^24
 // core/image/scalar_lane.h has them for float, transfer/tint/vector_lane-inl.h for vectors.
 
-// x^(1/3) within 1.9e-7 of the true root, relative, for 2^-126 … 3.4e38. 0 gives 0; what lies between 0 and 2^-126
-// gives something between 0 and 2^-42. Others are undefined.
+// x^(1/3) within 1.9e-7 of the true root, relative, for 2^-126 … 3.4e38. 0 gives 0; values between 0 and 2^-126 give a
+// result between 0 and 2^-42. All others are undefined.
 inline Lane CubeRoot(Lane x) {
   // A float's bits are nearly its logarithm: a third of them, negated, make x^(-1/3) within 3.5 %.
   const Lane guess = NumberAsBits(BitsAsNumber(x) * (-1.0f / (3.0f * 512.0f)) + (1419900032.0f / 512.0f + 8388608.0f));
@@ -62,7 +62,7 @@ inline Lane CodeFromLinear(Lane linear) {
   return Select(Less(linear, kLinearKink), linear * kSteepness, FiveTwelfths(linear) * kSpan - kOffset);
 }
 
-// The same of any linear value but NaN, within 0 … 65535.
+// CodeFromLinear of any linear value but NaN, clamped to 0 … 65535.
 inline Lane ClampedCode(Lane linear) { return CodeFromLinear(Min(Max(linear, 0.0f), 1.0f)); }
 
 inline LaneColor Each(Lane (*f)(Lane), LaneColor c) { return {f(c.r), f(c.g), f(c.b)}; }

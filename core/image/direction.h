@@ -1,4 +1,4 @@
-// Directions by azimuth and elevation, the way every option and file of Scumble states them.
+// Directions by azimuth and elevation, as every option and file of Scumble gives them.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace scumble {
 inline constexpr double kKeyLightAzimuth = -40.0;
 inline constexpr double kKeyLightElevation = 40.0;
 
-// The unit vector that points there. Right-handed, +Y up: azimuth turns from +Z towards +X, elevation rises from the
+// The unit vector of a direction. Right-handed, +Y up: azimuth turns from +Z towards +X, elevation rises from the
 // horizon, so that (0°, 0°) is +Z, (90°, 0°) is +X and (any, 90°) is +Y. In view space +Z is towards the viewer.
 inline glm::dvec3 DirectionFromAngles(double azimuth_degrees, double elevation_degrees) {
   const double azimuth = glm::radians(azimuth_degrees), elevation = glm::radians(elevation_degrees);

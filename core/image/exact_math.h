@@ -1,6 +1,6 @@
-// Sines, cosines and powers of two that are the same bits on every machine: additions, products and quotients of
-// doubles in a fixed order, where a libm's results differ from one processor or release to the next. For whatever
-// decides on pictures; functions that IEEE 754 defines exactly (sqrt, floor, fmod, ldexp) need no counterpart here.
+// Sines, cosines and powers of two with the same bits on every machine: additions, products and quotients of doubles in
+// a fixed order. A libm's results differ from one processor or release to the next. Used wherever the result decides on
+// pictures. Functions that IEEE 754 defines exactly (sqrt, floor, fmod, ldexp) need no counterpart here.
 #pragma once
 
 namespace scumble {
@@ -10,7 +10,7 @@ namespace scumble {
 double SinPi(double x);
 double CosPi(double x);
 
-// The same of an angle in degrees. Multiples of 90 are exact.
+// SinPi and CosPi of an angle in degrees. Multiples of 90 are exact.
 double SinDegrees(double degrees);
 double CosDegrees(double degrees);
 

@@ -1,4 +1,4 @@
-// GuideSet: what a renderer tells the transfer about every pixel.
+// GuideSet: the data of every pixel that a renderer hands to the transfer.
 //
 // Conventions, for the whole code base:
 //   - Row 0 is the top row; pixel (x, y) covers [x, x+1) × [y, y+1), its centre at +0.5.
@@ -27,13 +27,13 @@
 
 namespace scumble {
 
-// How the guides were seen; written to the EXR header as worldToCamera and worldToNDC.
+// The view of the guides. Written to the EXR header as worldToCamera and worldToNDC.
 struct GuideCamera {
   std::string name;
   glm::dmat4 view_from_world{1.0};
   glm::dmat4 clip_from_view{1.0};  // OpenGL's clip space, y up
 
-  // Whether depth says nothing of sizes.
+  // Whether the view is orthographic: depth then gives no sizes.
   bool IsOrthographic() const { return clip_from_view[2][3] == 0.0 && clip_from_view[3][3] != 0.0; }
 };
 
@@ -51,10 +51,10 @@ class GuideSet {
   LayerSet layers() const { return layers_; }
   bool Has(Layer layer) const { return layers_.Has(layer); }
 
-  // Adds the layer filled with its background value; does nothing where it exists.
+  // Adds the layer, filled with its background value. Does nothing where the layer exists.
   void Add(Layer layer);
-  // The same with anything in it, for who writes every pixel: large planes cost their first touch, so it had better be
-  // the thread's that fills them.
+  // Adds the layer unset, for callers that write every pixel. The first touch of a large plane is expensive, so the
+  // threads that fill it do it.
   void AddUnset(Layer layer);
   void Remove(Layer layer);
 
@@ -75,7 +75,8 @@ class GuideSet {
   std::map<std::string, std::string> attributes;
   std::map<std::uint32_t, std::string> object_names;
   std::map<std::uint32_t, std::string> material_names;
-  // What the scene's author wants some of them painted in, by id: names of styles, paths, or words of the command line.
+  // The styles that the scene's author assigned to objects, by id: names of styles, paths, or arguments of the command
+  // line.
   std::map<std::uint32_t, std::string> object_styles;
   std::map<std::uint32_t, std::string> material_styles;
   std::optional<GuideCamera> camera;
@@ -87,14 +88,14 @@ class GuideSet {
   std::array<std::vector<float, PlaneAllocator<float>>, kLayerCount> planes_;
 };
 
-// The value that a layer has where there is nothing.
+// The layer's value on the background.
 float BackgroundValue(Layer layer);
 
-// No id is above it: floats hold all whole numbers up to here.
+// The largest id: floats hold all whole numbers up to here.
 inline constexpr float kMostId = 1 << 24;
 
-// The id that a value of an id's layer stands for; 0, as of the background, where it stands for none: NaN, negative, or
-// above kMostId.
+// The id that a value of an id layer stands for. 0, the background's id, if the value is NaN, negative or above
+// kMostId.
 inline std::uint32_t IdOf(float value) {
   return value > 0.0f && value <= kMostId ? static_cast<std::uint32_t>(value) : 0u;
 }

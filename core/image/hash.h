@@ -1,5 +1,5 @@
-// Chance without state: every random number is a hash of what it is for, so the result does not depend on the order
-// of work, the number of threads or the way a sequence was cut.
+// Stateless random numbers: each is a hash of its purpose. So the result does not depend on the order of work, the
+// number of threads or how a sequence was cut.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ constexpr std::uint64_t Hash(Integers... values) {
   return state;
 }
 
-// Goes on where another hash ended: HashOn(Hash(a, b), c) is Hash(a, b, c).
+// Continues another hash: HashOn(Hash(a, b), c) is Hash(a, b, c).
 template <class Integer>
 constexpr std::uint64_t HashOn(std::uint64_t state, Integer value) {
   return Mix64(state ^ static_cast<std::uint64_t>(value));
@@ -43,7 +43,7 @@ constexpr std::uint64_t HashText(std::string_view text) {
   return Mix64(state);
 }
 
-// Of values as they lie in memory, eight bytes at a time: pictures are large.
+// The hash of values as they lie in memory, eight bytes at a time, because pictures are large.
 template <class T>
 std::uint64_t HashBytes(std::span<const T> values) {
   const auto bytes = std::as_bytes(values);

@@ -43,7 +43,7 @@ constexpr LayerInfo kLayers[kLayerCount] = {
     {Layer::kLpeLD12E, "lpe.LD12E", kLpeLd12eChannels, true, "first two diffuse bounces"},
 };
 
-// What other programs call the same channels: Blender's passes and the names that compositors agree on.
+// Names that other programs use for these channels: Blender's passes and the names that compositors agree on.
 struct Alias {
   const char* suffix;
   Layer layer;

@@ -9,11 +9,11 @@
 
 namespace scumble {
 
-// What a channel of an EXR file is.
+// The meaning of an EXR file's channel.
 struct ChannelMeaning {
   Layer layer;
   int component;       // 0 … ChannelCount(layer) - 1
-  std::string prefix;  // what stands before the known suffix: a view layer's name, or empty
+  std::string prefix;  // the text before the known suffix: a view layer's name, or empty
 };
 
 // Matches by the longest known suffix that starts at the beginning of the name or after a dot, upper and lower case

@@ -20,12 +20,12 @@ std::atomic<std::size_t> handed_out{0};
 
 bool IsLarge(std::size_t bytes) { return bytes >= kLargePage; }
 
-// Blocks that were given back, the oldest first.
+// Freed blocks, the oldest first.
 class KeptPlanes {
  public:
   KeptPlanes() { blocks_.reserve(kMostBlocks + 1); }
 
-  // Null: there is none of this size.
+  // Null if no block has this size.
   void* Take(std::size_t bytes) {
     const std::lock_guard lock(mutex_);
     for (std::size_t i = blocks_.size(); i-- > 0;) {
@@ -62,7 +62,7 @@ class KeptPlanes {
   std::size_t total_ = 0;
 };
 
-// Never destroyed: a set of guides may be, at the very end of a program.
+// Never destroyed: a guide set may be destroyed at the very end of a program.
 KeptPlanes& Kept() {
   static KeptPlanes& kept = *new KeptPlanes;
   return kept;
@@ -81,7 +81,7 @@ void* AllocatePlane(std::size_t bytes) {
   void* const memory = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
   if (!memory) throw std::bad_alloc();
 #if defined(__linux__)
-  // Only ever a wish: where it is not granted, pages are small.
+  // Only a hint: if the system refuses, pages are small.
   if (IsLarge(bytes)) madvise(memory, bytes / kLargePage * kLargePage, MADV_HUGEPAGE);
 #endif
   return memory;

@@ -7,15 +7,15 @@
 
 namespace scumble {
 
-// `bytes` of memory on a cache line, with anything in it; throws std::bad_alloc. The system hands out large blocks page
-// by page as they are first touched, and clears each: for a frame's planes that takes as long as a third of casting its
-// rays. So they ask for large pages, and blocks that were given back are kept for the next who asks for the same
-// size: up to kKeptPlaneBytes in all, the oldest going first. Free to use from any thread.
+// `bytes` of uninitialised memory on a cache line; throws std::bad_alloc. The system hands out large blocks page by
+// page on first touch, and clears each page. For a frame's planes that takes as long as a third of casting its rays. So
+// AllocatePlane asks for large pages, and keeps freed blocks for the next request of equal size: up to kKeptPlaneBytes
+// in all, the oldest is freed first. Free to use from any thread.
 void* AllocatePlane(std::size_t bytes);
 void FreePlane(void* memory, std::size_t bytes);
 inline constexpr std::size_t kKeptPlaneBytes = std::size_t(256) << 20;
 
-// The same for std::vector. Elements without an initial value stay as the memory came.
+// AllocatePlane as an allocator for std::vector. Elements without an initial value stay uninitialised.
 template <class T>
 class PlaneAllocator {
  public:

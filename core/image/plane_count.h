@@ -5,7 +5,7 @@
 
 namespace scumble {
 
-// Bytes that AllocatePlane has handed out since the process began, all threads together; what was given back counts on.
+// Bytes that AllocatePlane has handed out since the process began, in all threads. Freed planes stay in the count.
 std::size_t PlaneBytesHandedOut();
 
 }  // namespace scumble

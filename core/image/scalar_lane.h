@@ -25,8 +25,8 @@ inline float NumberAsBits(float n) { return std::bit_cast<float>(std::bit_cast<s
 
 #include "core/image/color_math-inl.h"
 
-// A code of 0 … 65535 to the nearest whole one, halves to the even one: of a sum above 2^23 the lowest bits are the
-// whole number.
+// Rounds a code of 0 … 65535 to the nearest whole number, halves to the even one. The lowest bits of a sum above 2^23
+// are the whole number.
 inline std::uint16_t Rounded(float code) {
   return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(code + 8388608.0f));
 }

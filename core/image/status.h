@@ -1,5 +1,5 @@
-// Errors as values, and how they are passed on. A user's mistake or a failing disk returns Error inside Expected<T>; a
-// broken promise inside the program is a CHECK (core/image/check.h). There is no third way.
+// Errors as values, and how they are passed on. A user's mistake or a failing disk returns Error inside Expected<T>. A
+// broken contract inside the program is a CHECK (core/image/check.h). There is no third kind.
 #pragma once
 
 #include "scumble/status.h"

@@ -1,5 +1,5 @@
-// Style: what an exemplar and its style.toml say, as plain data. style/ reads it from files, transfer/ carries it out;
-// the two never see each other and meet here, as guidegen/ and transfer/ meet in GuideSet.
+// Style: the content of an exemplar and its style.toml, as plain data. style/ reads it from files and transfer/ applies
+// it. The two never include each other and meet here, as guidegen/ and transfer/ meet in GuideSet.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ enum class ThresholdMetric {
   kL1,  // sum of absolute differences, the authors' own
 };
 
-// What a lighting condition costs that is not the best one for a pixel; L are luminances of the pixel, of the exemplar
+// The cost of a lighting condition that is not the best one for a pixel. L are luminances of the pixel, of the exemplar
 // that the seed chose, and of exemplar k.
 enum class LuminanceError {
   kExcess,     // |L_p - L_e| - min_k |L_p - L_k|: nothing where e is the best there is
@@ -44,12 +44,12 @@ enum class LuminanceError {
 
 enum class EdgeMode {
   kExact,     // the silhouette is the guides' coverage
-  kExemplar,  // the exemplar's own painted edge goes on along it
+  kExemplar,  // the exemplar's own painted edge continues along it
 };
 
 enum class ShadowMode {
-  kNone,   // what catches shadows shows nothing
-  kPaint,  // the style's darkest paint where the shadow layer says so
+  kNone,   // shadow catchers stay transparent
+  kPaint,  // the style's darkest paint, as strong as the shadow layer
 };
 
 enum class ColorizeMode {
@@ -57,12 +57,11 @@ enum class ColorizeMode {
   kOklab,     // lightness varies as the paint's does, hue and chroma are the scene's
 };
 
-// What each guide layer counts in the distance by which paint is found and chunks end: values are multiplied by the
-// weight (0 or more, finite; not all 0) before distances are taken. transfer/exemplar/guide_space.h says what the
-// values are.
+// The weight of each guide layer in the distance by which paint is found and chunks end. Values are multiplied by the
+// weight (0 or more, finite; not all 0) before distances are taken. transfer/exemplar/guide_space.h defines the values.
 class GuideWeights {
  public:
-  // Normals alone, counting 1: the plain engine.
+  // Normals alone, with weight 1: the plain engine.
   GuideWeights() { (*this)[Layer::kNormal] = 1.0f; }
   float& operator[](Layer layer) { return of_[static_cast<std::size_t>(layer)]; }
   float operator[](Layer layer) const { return of_[static_cast<std::size_t>(layer)]; }
@@ -71,10 +70,10 @@ class GuideWeights {
   bool ArePlain() const { return *this == GuideWeights(); }
   LayerSet Layers() const;  // those above 0
 
-  // Whether a layer can have a weight: normals, colours, radiance and shares. Ids have no distance, and places in the
-  // exemplar's scene are none in another.
+  // Whether a layer can have a weight: normals, colours, radiance and shares can. Ids have no distance. A position in
+  // the exemplar's scene means nothing in another scene.
   static bool CanWeigh(Layer layer);
-  // Whether its values are light, which is exposed first.
+  // Whether its values are light, which exposure scales first.
   static bool IsRadiance(Layer layer);
 
  private:
@@ -106,13 +105,14 @@ struct TransferSettings {
   ColorizeMode colorize_mode = ColorizeMode::kMultiply;
   double variety = 0.0;  // 0 … 90 degrees: how far from its own normal a seed on a flat surface may take its paint
   double hybrid = 0.0;   // 0 or more, infinity allowed: sigma, in pixels of the first exemplar's file, of the Gaussian
-                         // that splits tone, laid as by the Lit Sphere, from texture, copied in chunks; 0: no split
+                         // that splits the base layer, laid as by the Lit Sphere, from the detail layer, copied in
+                         // chunks; 0: no split
   int match_step = 1;    // 1 … kMaxMatchStep: one pixel of so many, by column and by row, is matched; the others take
-                         // on what those around them were matched to
+                         // on the matches of the pixels around them
   double scale = 1.0;    // exemplar size, above 0
   double rim = 2.0;      // exemplar pixels at the painted edge that are never used
   EdgeMode edge = EdgeMode::kExact;
-  ShadowMode shadow = ShadowMode::kNone;  // on the pixels that a style map says catch them
+  ShadowMode shadow = ShadowMode::kNone;  // on the pixels that a style map marks as catchers
   int reference_height = 1080;            // 0: lengths are plain pixels
 };
 
@@ -124,22 +124,22 @@ struct Exemplar {
                                         // luminance layer, without one that of the paint
   std::optional<GuideSet> guides = {};  // of what is painted, the picture's size; A and normal at least
   bool is_sphere = true;                // the geometry is the sphere that fills the picture, whatever the guides say;
-                                        // false needs guides
-  std::filesystem::path guides_file = {};  // where guides are or would be read from; empty: nowhere
+                                        // if false, guides are required
+  std::filesystem::path guides_file = {};  // the file that guides are or would be read from; empty: none
   int margin = 0;                          // pixels of the template that were cut off the file on every side
 };
 
 inline constexpr int kMaxExemplars = 4;
 inline constexpr int kMaxMatchStep = 8;
 
-// What is behind the stylised objects.
+// The background of the stylised objects.
 struct Paper {
   std::optional<std::array<std::uint16_t, 3>> color;  // 16-bit sRGB
   std::optional<Picture> picture;                     // tiled
 };
 
-// A key of style.toml that changes over time; core/style/style_keyframes.h says what it means. Without tracks a style
-// is the same in every frame.
+// A key of style.toml that changes over time, as core/style/style_keyframes.h defines it. Without tracks a style is the
+// same in every frame.
 struct StyleTrack {
   using Value = std::variant<bool, std::int64_t, double, std::string>;
   struct Key {
@@ -149,8 +149,8 @@ struct StyleTrack {
   std::string name;              // "transfer.threshold"
   std::vector<Key> keys;         // by rising frame, never empty
   bool straight = false;         // on a straight line between keys; otherwise each holds until the next
-  std::filesystem::path folder;  // that files named by values are in
-  Value current;                 // what is in the style now
+  std::filesystem::path folder;  // the folder of files that values name
+  Value current;                 // the value in the style now
 };
 
 struct Style {
@@ -162,13 +162,13 @@ struct Style {
   std::vector<StyleTrack> tracks;
 };
 
-// The layers that a transfer with this style reads: what `guidegen` is asked for, and no more.
+// The layers that a transfer with this style reads: `guidegen` makes these and no more.
 LayerSet RequiredLayers(const Style& style);
 
-// Whether the exposure of the scene's light matters: to styles of several exemplars, and to those that weigh radiance.
+// Whether the exposure of the scene's light matters: in styles of several exemplars, and in those that weigh radiance.
 bool LooksAtLight(const Style& style);
 
-// Whether it asks guides for any light or shadow, which may take samples.
+// Whether the style needs a guide of light or shadow, which may take samples.
 bool AsksForLight(const Style& style);
 
 }  // namespace scumble

@@ -31,7 +31,7 @@ Status CheckSide(const std::filesystem::path& path, int width, int height, int w
   return InputError(path.string() + " is " + Text(width, height) + ", not " + Text(wanted_width, wanted_height));
 }
 
-// "seed 0; show chunks" by first words.
+// Splits "seed 0; show chunks" into parts, by their first words.
 std::map<std::string, std::string> Parts(const std::string& settings) {
   std::map<std::string, std::string> parts;
   std::istringstream stream(settings);
@@ -43,21 +43,21 @@ std::map<std::string, std::string> Parts(const std::string& settings) {
   return parts;
 }
 
-// What pictures do not tell of that were made before all of it was always told; anything where nobody can know.
-const std::map<std::string, std::string>& Untold() {
+// Values of settings that older versions did not record; kAnySetting where the value is unknown.
+const std::map<std::string, std::string>& UnrecordedSettings() {
   static const std::map<std::string, std::string> kValues = {
       {"upsample", "1"}, {"fps", kAnySetting}, {"measured", kAnySetting}, {"samples", kAnySetting}};
   return kValues;
 }
 
-// What else only one side says differs: another version may do otherwise what it does not tell of.
+// Any other setting that one side lacks counts as a difference: another version may use another value for it.
 Status CheckSettings(const std::filesystem::path& path, const std::string& found, const std::string& wanted) {
   if (found.empty() || wanted.empty()) return Ok();
   const auto there = Parts(found), here = Parts(wanted);
   const auto value_of = [](const std::map<std::string, std::string>& parts, const std::string& name) {
     if (const auto part = parts.find(name); part != parts.end()) return part->second;
-    const auto usual = Untold().find(name);
-    return usual == Untold().end() ? std::string("untold") : usual->second;
+    const auto usual = UnrecordedSettings().find(name);
+    return usual == UnrecordedSettings().end() ? std::string("untold") : usual->second;
   };
   auto all = here;
   all.insert(there.begin(), there.end());

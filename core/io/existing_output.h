@@ -1,5 +1,5 @@
-// Whether an output of an earlier run can be kept: it must be whole, not merely there. A job that was killed leaves
-// empty files, and a disk that was full leaves truncated ones.
+// Whether an output of an earlier run can be kept: it must be complete, not merely there. A killed job leaves empty
+// files, and a full disk leaves truncated ones.
 #pragma once
 
 #include <filesystem>
@@ -10,28 +10,27 @@
 
 namespace scumble {
 
-// As the value of a setting on either side: it is not known, and agrees with all.
+// A setting whose value is unknown, on either side: it agrees with any value.
 inline constexpr const char* kAnySetting = "?";
 
-// What a picture must be; 0 stands for anything.
+// The required shape of a picture; 0 stands for any.
 struct PictureShape {
   int width = 0;
   int height = 0;
   int channels = 0;
   int bits = 0;          // a channel, as PictureBits has them
   std::string settings;  // as WritePicture keeps them: "scumble 0.1; seed 0; exposure 0.52". All that either side says
-                         // must agree, but for what older versions never told (upsample, fps, measured, samples); a
-                         // file that says nothing, and "" here, are not compared
+                         // must agree, except for settings that older versions did not record (upsample, fps, measured,
+                         // samples); a file without settings, and "" here, are not compared
 };
 
 // Channels of a picture that WritePicture writes to a file of that name: 4, and 3 for JPEG, which has no alpha.
 int PictureChannels(const std::filesystem::path& path);
 
-// Decodes the whole picture: an error says what is wrong with it, a missing file included. What it shows is not looked
-// at.
+// Decodes the whole picture. The error names the defect; a missing file is one. The picture's content is not checked.
 Status CheckWholePicture(const std::filesystem::path& path, const PictureShape& shape);
 
-// The same for a guide file, which must hold just these layers, colours as half floats if `half`. The settings are
+// The shape of a guide file, which must hold exactly these layers, colours as half floats if `half`. The settings are
 // those of the guides' attribute scumble:settings.
 struct GuideShape {
   int width = 0;

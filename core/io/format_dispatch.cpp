@@ -32,8 +32,8 @@ std::vector<fs::path> more_folders;
 
 constexpr const char* kFile = "libscumble_formats.so";
 
-// Beside the program, as in a build; or where it is installed. Only files of these full names are loaded: a name alone
-// would be looked for where the environment says, or in the folder that the program runs in.
+// Beside the program, as in a build, or the place of installation. Only files of these full names are loaded: a bare
+// name would be searched for along the environment's paths or in the working folder.
 std::vector<fs::path> Folders() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);
@@ -50,7 +50,7 @@ Error Unusable(const std::string& module, const std::string& what) {
                           ": build or install scumble again, with all of its files");
 }
 
-// The loader's own words for what the system refused it.
+// The loader's message when the system refuses it memory.
 bool IsForWantOfMemory(std::string_view reason) {
   constexpr std::string_view kWords[] = {"failed to map segment", "cannot map zero-fill pages", "annot allocate memory",
                                          "cannot create", "cannot change memory protections"};
@@ -58,10 +58,10 @@ bool IsForWantOfMemory(std::string_view reason) {
                      [&](std::string_view words) { return reason.find(words) != std::string_view::npos; });
 }
 
-// More than the module and its libraries take with Debian's OpenImageIO: 655 MB. Of addresses, not of memory.
+// Address space, not memory: more than the 655 MB that the module and its libraries take with Debian's OpenImageIO.
 constexpr std::size_t kModuleAddresses = std::size_t(768) << 20;
 
-// Whether so many bytes of addresses are to be had, under a limit such as ulimit's.
+// Whether that many bytes of address space are available, under a limit such as ulimit's.
 bool HasAddresses(std::size_t bytes) {
   void* const start = ::mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (start == MAP_FAILED) return false;
@@ -70,9 +70,9 @@ bool HasAddresses(std::size_t bytes) {
 }
 
 Expected<const Formats*> LoadFrom(const fs::path& path) {
-  // Its libraries' own beginnings crash or wait for ever where memory ends among them, so it is asked for before.
+  // The libraries' initialisers crash or hang if memory ends among them, so the space is checked before.
   if (!HasAddresses(kModuleAddresses)) throw std::bad_alloc();
-  // What the module's libraries define stays out of everybody else's way.
+  // Symbols of the module's libraries stay private to it.
   void* const module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (!module) {
     const char* const reason = ::dlerror();

@@ -1,7 +1,7 @@
-// Where OpenImageIO is: in a module that is loaded when a file first needs it. Loading that library with all that it
-// brings along takes a fifth of a second of looking up names, and a picture in PNG of a scene without EXR or JPEG needs
-// none of it; nor do Scumble's own guides and the writing of EXR pictures, for which core/io/exr/scanline_exr.h is
-// enough. Everybody else calls the functions of picture_file.h, channel_file.h, guide_file.h and existing_output.h.
+// Loads OpenImageIO, in a module, when a file first needs it. Loading that library with its dependencies takes a fifth
+// of a second of symbol lookup. A PNG picture of a scene without EXR or JPEG needs none of it. Scumble's own guides and
+// written EXR pictures do not either: core/io/exr/scanline_exr.h serves them. All other code calls the functions of
+// picture_file.h, channel_file.h, guide_file.h and existing_output.h.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@
 
 namespace scumble {
 
-// The attribute that says what a picture or guides were made with.
+// The attribute that holds the settings of a picture or guides.
 inline constexpr const char* kSettingsKey = "scumble:settings";
 
 // A picture file as it is stored.
@@ -34,8 +34,8 @@ struct StoredPicture {
 
 namespace formats {
 
-// What the functions of these names outside of this namespace do, for files that need the library. It writes no file
-// itself: that is WriteFileAtomically's, of which the module would have a copy that no handler of signals knows.
+// The library's versions of the functions of these names outside of this namespace. The module writes no file itself:
+// it would have its own copy of WriteFileAtomically, whose temporary files no signal handler removes.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 Expected<Picture> DecodePicture(std::span<const std::byte> bytes, const std::string& name);
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
@@ -50,7 +50,8 @@ void SetThreads(int threads);
 
 }  // namespace formats
 
-// Sizes of what goes to and from the module, in one number: two builds of one version may still differ in them.
+// The sizes of the types that cross the module's boundary, hashed to one number: two builds of one version may still
+// differ in them.
 inline constexpr std::uint64_t kFormatsLayout = [] {
   constexpr std::uint64_t kOffset = 0xcbf29ce484222325u, kPrime = 0x100000001b3u;  // FNV-1a's
   std::uint64_t layout = kOffset;
@@ -79,16 +80,16 @@ struct Formats {
   decltype(&formats::SetThreads) set_threads;
 };
 
-// Loads the module, once in the life of the process; it stays. kUnavailable where it is missing or of another version,
-// kMemory where a limit leaves it too few addresses; the next call tries again then. `file`, for the message, is what
-// it is needed for. Thread-safe.
+// Loads the module, once in the life of the process; it stays loaded. kUnavailable where it is missing or of another
+// version, kMemory where a limit leaves too little address space; the next call tries again then. `file` names, for the
+// message, the file that needs the module. Thread-safe.
 Expected<const Formats*> LoadFormats(const std::string& file);
-// The same to read a file, which is looked for first: what is wrong with it (kInput) is said whatever the module needs.
+// LoadFormats for reading a file. The file is checked first, so that its own error (kInput) comes before the module's.
 Expected<const Formats*> LoadFormatsToRead(const std::filesystem::path& path);
 
 namespace internal {
 
-// As SetIoThreads had it; 0: all.
+// The number that SetIoThreads set; 0: all.
 int IoThreads();
 
 }  // namespace internal

@@ -15,7 +15,7 @@ struct GuideWriteOptions {
   std::string compression = "zip";  // none, rle, zips, zip or piz: lossless only
 };
 
-// Lossless, and the quickest to write and read here: background is packed, surfaces are hardly touched.
+// Lossless, and the fastest to write and read: background is packed, surfaces hardly.
 inline constexpr const char* kFastCompression = "rle";
 
 // Writes all layers of the set, object and material names and their styles, camera matrices (worldToCamera and
@@ -23,14 +23,14 @@ inline constexpr const char* kFastCompression = "rle";
 // at all.
 Status WriteGuides(const std::filesystem::path& path, const GuideSet& guides, const GuideWriteOptions& options = {});
 
-// Whether WriteGuides knows the ending and the compression: to be asked before the work.
+// Whether WriteGuides supports the ending and the compression. Call it before the work.
 Status CheckGuideTarget(const std::filesystem::path& path, const GuideWriteOptions& options = {});
 
 struct GuideReadOptions {
   LayerSet required = AlwaysWritten();  // an error names those that are missing, and what is there
   LayerSet optional;                    // read where present
   std::string view_layer;               // which one of several in a multilayer file
-  std::string mend;  // how the caller can do without depth and object, said where nothing else is missing
+  std::string mend;  // the caller's remedy without depth and object, shown where nothing else is missing
   std::filesystem::path blender_camera;  // the .camera file of a Blender render; empty: the camera is solved
 };
 
@@ -40,7 +40,7 @@ struct GuideReadOptions {
 // `blender_camera`, or from its Position and Depth passes; names from Cryptomatte.
 Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideReadOptions& options = {});
 
-// What a guide file holds, without reading its pixels.
+// The content of a guide file, without its pixels.
 struct GuideFileInfo {
   int width = 0;
   int height = 0;
@@ -53,8 +53,8 @@ struct GuideFileInfo {
 };
 Expected<GuideFileInfo> InspectGuides(const std::filesystem::path& path);
 
-// Rounds the colour layers to half floats, as `half` does on disk: keeps the path in memory equal to the one by file.
-// Values beyond ±65504 become that.
+// Rounds the colour layers to half floats, as `half` does on disk, so that guides in memory equal those by file. Values
+// beyond ±65504 become ±65504.
 void RoundColorLayersToHalf(GuideSet& guides);
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// Settings of the picture library that hold for the whole process.
+// Settings of the picture library for the whole process.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@ namespace scumble {
 // Threads that reading and writing may use; 0 for all. Call once, before anything is read.
 void SetIoThreads(int threads);
 
-// A further folder in which the module of formats may be, for programs that do not stand beside it. Call before
-// anything is read; from any thread.
+// A further folder that may hold the module of formats, for programs installed elsewhere. Call before anything is read;
+// from any thread.
 void SetModuleFolder(const std::filesystem::path& folder);
 
 // Whether OpenImageIO has been loaded: some file needed it.

@@ -1,4 +1,4 @@
-// Independent pieces of work on several threads.
+// Independent tasks on several threads.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace scumble::internal {
 
-// Calls work(i) once for each i in [0, count), on `threads` threads at most, this one among them; 0 stands for all that
-// the machine has. Returns when all are done. The first exception is thrown on, and ends what has not begun.
+// Calls work(i) once for each i in [0, count), on at most `threads` threads, including this one; 0 stands for all of
+// the machine. Returns when all are done. The first exception is rethrown, and no further task starts.
 template <class Work>
 void ForEachIndex(int count, int threads, const Work& work) {
   if (threads <= 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -33,7 +33,7 @@ void ForEachIndex(int count, int threads, const Work& work) {
     try {
       for (int i = 1; i < std::min(threads, count); ++i) helpers.emplace_back(run);
     } catch (const std::system_error&) {
-      // No more threads are to be had: those that there are do it all.
+      // The system refused a further thread: those that run do all the work.
     }
     run();
   }

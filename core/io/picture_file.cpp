@@ -19,7 +19,7 @@
 namespace scumble {
 namespace {
 
-// A PNG that is whole and plain; nothing else.
+// Reads a complete plain PNG only.
 std::optional<Picture> ReadIfPlainPng(std::span<const std::byte> bytes, const std::string& name) {
   if (!internal::IsPng(bytes) || !internal::CheckPngIntegrity(bytes, name)) return std::nullopt;
   return internal::ReadPlainPng(bytes);
@@ -34,7 +34,7 @@ Expected<std::uint64_t> PixelsOf(std::int64_t width, std::int64_t height, const 
                     " is read, at most " + std::to_string(kMaxPicturePixels) + " pixels are");
 }
 
-// Of a PNG whose bytes are so many.
+// The pixels of a PNG of that many bytes.
 Expected<std::uint64_t> PixelsOf(const internal::PngHeader& header, std::uint64_t bytes, const std::string& name) {
   if (!internal::CanHold(bytes, header))
     return InputError("cannot read " + name + ": it promises more than it can hold");
@@ -120,7 +120,7 @@ Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std:
 
 Status WritePicture(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   SCUMBLE_RETURN_IF_ERROR(CheckPictureTarget(path, options));
-  // What the picture library says of an empty one serves for all.
+  // The picture library's error for an empty picture serves all formats.
   if (internal::Upper(path.extension().string()) == ".PNG" && !picture.empty()) {
     return WriteFileAtomically(path, Png(picture, options));
   }

@@ -22,17 +22,17 @@ namespace scumble {
 // Thread-safe.
 Expected<Picture> ReadPicture(const std::filesystem::path& path);
 
-// What a file's header says, without its pixels; of a file of layers, that of their merged picture. Thread-safe.
+// The header of a file, without its pixels. Of a file of layers, that of the merged picture. Thread-safe.
 struct PictureHeader {
   int width = 0;  // as stored, before a photograph is turned upright
   int height = 0;
   int bits = 8;    // per channel
-  double dpi = 0;  // 0: none, or a camera's or screen's 72 or 96, which say nothing of a picture
+  double dpi = 0;  // 0: none, or a camera's or screen's 72 or 96, which are no true resolution
 };
 Expected<PictureHeader> InspectPicture(const std::filesystem::path& path);
 
-// How many pixels ReadPicture would make, by as little of the file as tells: to be asked before they take memory. An
-// error where reading would be one, as far as the header shows it: no such pixels will ever be there. Thread-safe.
+// The number of pixels that ReadPicture would make, from as little of the file as possible. Call it before memory is
+// taken. An error where ReadPicture would fail, as far as the header shows. Thread-safe.
 Expected<std::uint64_t> CountPixels(const std::filesystem::path& path);
 Expected<std::uint64_t> CountPixels(std::span<const std::byte> bytes, const std::string& name);
 
@@ -47,13 +47,13 @@ struct PictureWriteOptions {
   int dpi = 0;                // pixels an inch on paper, noted in PNG, TIFF and JPEG; 0: none is noted
   bool grey = false;          // PNG and TIFF: the red channel alone, for pictures that are grey and opaque
   bool fast = false;          // EXR: kFastCompression of guide_file.h instead of zip, the same pixels
-  std::string settings = {};  // what the picture is made with, in any words; kept in PNG and EXR as scumble:settings
+  std::string settings = {};  // the picture's settings, free text; kept in PNG and EXR as scumble:settings
 };
 
 // Bits a channel that WritePicture stores under that name: 16 for EXR means half floats.
 int PictureBits(const std::filesystem::path& path, const PictureWriteOptions& options);
 
-// Whether WritePicture knows the ending and can store so many bits: to be asked before hours of work.
+// Whether WritePicture supports the ending and the bits. Call it before long work.
 Status CheckPictureTarget(const std::filesystem::path& path, const PictureWriteOptions& options = {});
 
 // Format by the file's ending. PNG and TIFF get straight alpha (not associated), JPEG is composited on white, EXR is

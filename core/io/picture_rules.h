@@ -1,4 +1,4 @@
-// What the halves of picture_file.h share.
+// Helpers that the parts of picture_file.h share.
 #pragma once
 
 #include <string>

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 using internal::Exists;
 
-// What a style without a name is called: its folder, or its file without the ending.
+// The name of a style without one: its folder's, or its file's without the ending.
 std::string NameFor(const fs::path& path, bool is_folder) {
   if (!is_folder && path.filename() != "style.toml") return path.stem().string();
   std::error_code failed;
@@ -91,7 +91,7 @@ Status SetTrack(Style& style, const StyleKey& key, const toml::array& pairs, con
   return Ok();
 }
 
-// `where` is the file and line, or the option, that the value stands in. What is wrong about key or value is kUsage.
+// `where` is the file and line, or the option, that holds the value. A wrong key or value is kUsage.
 Status SetKey(Style& style, const std::string& name, const toml::node& node, const std::string& where,
               const fs::path& folder) {
   const StyleKey* key = FindStyleKey(name);
@@ -113,7 +113,7 @@ Status SetKey(Style& style, const std::string& name, const toml::node& node, con
   return Ok();
 }
 
-// The same in a file, where a mistake is the file's and not the caller's.
+// SetKey for a file, where a mistake is the file's and not the caller's.
 Status SetKeyInFile(Style& style, const std::string& name, const toml::node& node, const fs::path& file) {
   auto done = SetKey(style, name, node, Where(file.string(), node), file.parent_path());
   if (done || done.error().kind != ErrorKind::kUsage) return done;
@@ -155,7 +155,7 @@ Status FitToSphere(int size, int margin, const fs::path& guides, Exemplar& exemp
   return Ok();
 }
 
-// What cannot be counted cannot be read either, and reading it says why.
+// A picture that cannot be counted cannot be read either; reading it gives the reason.
 Expected<Picture> ReadWithin(const StyleRoom& room, const fs::path& path) {
   constexpr std::uint64_t kPixelBytes = 4 * sizeof(std::uint16_t);
   if (room) {
@@ -177,13 +177,13 @@ Expected<GuideSet> ReadWithin(const StyleRoom& room, const fs::path& path, const
   return ReadGuides(path, options);
 }
 
-// Gives the exemplar its guides. `measure` says whether its luminance is wanted and not known.
+// Gives the exemplar its guides. `measure`: its luminance is wanted and not known.
 Status ReadExemplarGuides(const fs::path& path, bool measure, const StyleRoom& room, Exemplar& exemplar) {
   exemplar.guides_file = path;
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(path));
   GuideReadOptions options;
   if (const auto margin = info.width == info.height ? SphereMargin(info.header) : std::nullopt) {
-    // The sphere's normals are known by a formula: the file is read only for its light.
+    // The sphere's normals have a formula: the file is read only for its light.
     SCUMBLE_RETURN_IF_ERROR(FitToSphere(info.width, *margin, path, exemplar));
     const auto layers = info.layers.find("");
     if (!measure || layers == info.layers.end() || !layers->second.Has(Layer::kLuminance)) return Ok();
@@ -204,7 +204,7 @@ Status ReadExemplarGuides(const fs::path& path, bool measure, const StyleRoom& r
   return Ok();
 }
 
-// The template that `scumble sphere` wrote with these guides, as it names them.
+// The template that `scumble sphere` wrote with these guides.
 fs::path TemplateBeside(const fs::path& folder, const std::string& guides) {
   const std::string kGuides = "guides";
   std::string stem = fs::path(guides).stem().string();
@@ -215,7 +215,7 @@ fs::path TemplateBeside(const fs::path& folder, const std::string& guides) {
   return folder / "template.png";
 }
 
-// What a painter may have saved instead of the picture that style.toml names.
+// Looks for the files that a painter may have saved instead of the picture that style.toml names.
 Status CheckPaintingIsThere(const fs::path& image, const fs::path& drawn, bool several, const std::string& file) {
   if (Exists(image)) return Ok();
   const fs::path layered = fs::path(image).replace_extension(".ora");
@@ -229,7 +229,7 @@ Status CheckPaintingIsThere(const fs::path& image, const fs::path& drawn, bool s
                     " and save it under that name" + (several ? ", or take its [[exemplar]] out of " + file : ""));
 }
 
-// The style.toml that is read, and whom to ask before its pictures are.
+// The style.toml that is read, and the callback that is asked before its pictures are.
 struct StyleSource {
   fs::path path;
   const StyleRoom& room;
@@ -338,7 +338,7 @@ Expected<Style> ReadStyleFile(const fs::path& path, const StyleRoom& room) {
   return style;
 }
 
-// "exemplar.2.luminance", the one key of an exemplar that can be changed once its files are read.
+// "exemplar.2.luminance", the only key of an exemplar that can change after its files are read.
 Status SetExemplarKey(Style& style, const std::string& name, const toml::node& node) {
   const std::string where = "--set " + name + ": ";
   const std::string last = std::to_string(style.exemplars.size());
@@ -367,7 +367,7 @@ Status SetExemplarKey(Style& style, const std::string& name, const toml::node& n
   return Ok();
 }
 
-// "key=value" with TOML's values; a bare word is taken as text.
+// "key=value" with TOML's values; a bare word is text.
 Status ApplyOverride(Style& style, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -386,15 +386,15 @@ Status ApplyOverride(Style& style, const std::string& text) {
   return SetKey(style, name, *table.get("value"), "--set", fs::path());
 }
 
-// A picture named as a style. One that belongs to a style is that style: taken by itself, a painted template would show
-// its margin.
+// A picture named as a style. If the picture belongs to a style, that style is used: a painted template by itself would
+// show its margin.
 Expected<Style> ReadPictureStyle(const fs::path& path, const StyleRoom& room) {
   const fs::path beside = path.parent_path() / "style.toml";
   if (Exists(beside)) {
     auto style = ReadStyleFile(beside, room);
     if (style && fs::path(style->exemplars.front().name).filename() == path.filename()) return style;
     if (!style && style.error().kind != ErrorKind::kInput)
-      return style.error();  // too large, which says nothing of whose it is
+      return style.error();  // too large, whichever style it belongs to
   }
   SCUMBLE_ASSIGN(Picture picture, ReadWithin(room, path));
   if (LooksLikeTemplate(picture)) {

@@ -15,14 +15,14 @@ namespace scumble {
 // A style.toml that is larger is refused.
 inline constexpr std::size_t kMaxStyleBytes = 1 << 20;
 
-// Asked before so many bytes are taken for a picture of an exemplar or its guides, besides those before: what it
-// refuses is not read. Null: there is room for everything.
+// Called before that many more bytes are taken for a picture of an exemplar or its guides. If it refuses, the picture
+// is not read. Null: there is no limit.
 using StyleRoom = std::function<Status(std::uint64_t bytes)>;
 
 // Reads a style and its pictures. `overrides` are "key=value" texts with the keys of style.toml and values as TOML
 // writes them (quotes may be left off: transfer.method=litsphere); they win over the file. Of [[exemplar]] the
-// luminance can be overridden, by number from 1: exemplar.2.luminance=0.1. Every key is honoured, or refused by name:
-// unknown ones with the list of what there is, features still to come as kUnavailable.
+// luminance can be overridden, by number from 1: exemplar.2.luminance=0.1. Every key is applied, or refused by name:
+// unknown ones with the list of known ones, missing features as kUnavailable.
 //
 // A key of [transfer] may also have one value for each of several frames: threshold = [[1, 0.1], [24, 0.3]]; see
 // style_keyframes.h. The style that is returned is that of frame 0.
@@ -31,7 +31,7 @@ using StyleRoom = std::function<Status(std::uint64_t bytes)>;
 //
 // An [[exemplar]] picture is a square that the sphere fills. With `guides` naming the guides.exr that `scumble sphere`
 // wrote, the picture may also be the whole painted template: its margin is cut off. Any other guides with A and normal,
-// of the picture's size, make it a painting of that scene, of any shape.
+// of the picture's size, make it an exemplar of that scene, of any shape.
 Expected<Style> LoadStyle(const std::filesystem::path& path, const std::vector<std::string>& overrides = {},
                           const StyleRoom& room = {});
 

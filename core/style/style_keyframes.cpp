@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kPaperKey = "transfer.paper";
 
-// Whether all values between two of the track's are ones that the key takes: whole numbers, flags and words have none.
+// Whether the key takes all values between two of the track's: whole numbers, flags and words have none.
 bool TakesFractions(const StyleKey& key, const StyleTrack& track) {
   if (key.name == "transfer.jitter_fps") return false;
   Style scratch;
@@ -96,7 +96,7 @@ Expected<std::vector<std::string>> SetStyleFrame(Style& style, std::int64_t fram
 }
 
 Expected<LayerSet> LayersOverTime(const Style& style) {
-  // Layers depend on no picture, and this is asked for every frame: paper is not read again, exemplars are not copied.
+  // Layers depend on no picture, and this runs every frame: paper is not read again, exemplars are not copied.
   Style moving;
   moving.transfer = style.transfer;
   moving.exemplars.resize(style.exemplars.size());
@@ -104,7 +104,7 @@ Expected<LayerSet> LayersOverTime(const Style& style) {
   for (const StyleTrack& track : style.tracks) {
     if (track.name == kPaperKey) continue;
     moving.tracks.push_back(track);
-    // Between two frames that are named a key is on only where it is at one of them.
+    // Between two keyframes a key is on only if it is on at one of them.
     for (const auto& key : track.keys) frames.insert(frames.end(), {key.frame, key.frame + 1});
   }
   std::sort(frames.begin(), frames.end());

@@ -17,20 +17,20 @@ namespace scumble {
 // pipeline/frame_range.h).
 inline constexpr std::int64_t kMaxTrackFrame = 999'999'999;
 
-// Checks the track's keys and gives it to the style, in place of an earlier one of that name; the style gets the values
-// of frame 0. Frames must rise and lie within kMaxTrackFrame, and every value must be one that the key takes alone:
-// kUsage says which is not. Keys of [transfer] only, without the weights of guides.
+// Checks the track's keys and adds it to the style, replacing an earlier one of that name. The style gets the values of
+// frame 0. Frames must rise and lie within kMaxTrackFrame, and the key must accept every value: kUsage names the one
+// that fails. Keys of [transfer] only, without the weights of guides.
 Status AddTrack(Style& style, const StyleKey& key, StyleTrack track);
 
-// Forgets the track of that name, if there is one.
+// Removes the track of that name, if there is one.
 void RemoveTrack(Style& style, const std::string& name);
 
-// The value at a frame. Keys that take fractions move on a straight line, but for jitter_fps, whose every change
-// renews the whole pattern; all others, and infinities, hold their value until the next frame that is named.
+// The value at a frame. Keys that take fractions move on a straight line, except jitter_fps, whose every change renews
+// the whole pattern. All others, and infinities, hold their value until the next keyframe.
 KeyValue ValueAt(const StyleTrack& track, std::int64_t frame);
 
-// Puts the values of that frame into the style. Returns the names of the keys whose values are not what they were.
-// Fails where a value names a file that cannot be read.
+// Puts the values of that frame into the style. Returns the names of the keys whose values changed. Fails where a value
+// names a file that cannot be read.
 Expected<std::vector<std::string>> SetStyleFrame(Style& style, std::int64_t frame);
 
 // The layers that the style reads at one frame or another. Reads no file.

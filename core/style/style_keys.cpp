@@ -27,7 +27,7 @@ std::string Range(double low, double high) {
   return text;
 }
 
-// The nearest number that the field holds. What is too large for it is infinite, and what is above 0 stays above: a
+// The nearest number that the field holds. Too large a value becomes infinite, and a value above 0 stays above: a
 // threshold of 0 accepts nothing, the smallest one exact copies.
 template <class T>
 T Rounded(double number) {

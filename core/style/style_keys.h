@@ -14,7 +14,7 @@
 
 namespace scumble {
 
-// What the names of the keys that weigh guide layers begin with; the layer's name follows.
+// The prefix of the keys that weigh guide layers; the layer's name follows.
 inline constexpr const char* kGuideWeights = "transfer.guide_weights.";
 
 // A value as TOML has it.
@@ -27,9 +27,9 @@ struct StyleKey {
   std::string name;           // "transfer.threshold"
   std::string default_value;  // as TOML text
   std::string help;           // one line: meaning, unit, range
-  bool built_in = true;       // false: the feature is still to come, and only the default is accepted
-  // Puts the value into the style; relative paths are under `folder`. A value that does
-  // not fit is kUsage and says what was expected; a file that cannot be read is kInput.
+  bool built_in = true;       // false: the feature does not exist yet, and only the default is accepted
+  // Puts the value into the style; relative paths are under `folder`. If a value does not fit, the error is kUsage and
+  // gives the expected form. If a file cannot be read, the error is kInput.
   std::function<Status(Style&, const KeyValue&, const std::filesystem::path& folder)> set;
 };
 
@@ -39,7 +39,7 @@ std::span<const StyleKey> StyleKeys();
 // The key of that name, or null.
 const StyleKey* FindStyleKey(const std::string& name);
 
-// How a value looks in TOML.
+// The value as TOML text.
 std::string ToText(const KeyValue& value);
 
 }  // namespace scumble

@@ -5,8 +5,8 @@
 namespace scumble::internal {
 namespace {
 
-// Behind the string that begins at `begin` with a quote of either kind, by TOML 1.0's rules. One that does not end
-// where it must is an error, at which the parser stops: whatever comes behind it is as good.
+// The place after the string that begins at `begin` with a quote of either kind, by TOML 1.0's rules. A string that
+// does not end properly stops the parser, so any result will do there.
 std::size_t EndOfString(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string three(3, quote);
@@ -28,7 +28,7 @@ std::size_t EndOfString(std::string_view text, std::size_t begin) {
 }  // namespace
 
 Status CheckKeyParts(std::string_view text, const std::string& file) {
-  constexpr std::string_view kAround = "=[]{},\n";  // what stands before or behind a key
+  constexpr std::string_view kAround = "=[]{},\n";  // the characters around a key
   std::size_t parts = 1;
   for (std::size_t i = 0; i < text.size();) {
     if (text[i] == '"' || text[i] == '\'') {

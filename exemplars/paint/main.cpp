@@ -1,4 +1,4 @@
-// Paints the exemplars: spheres for the styles that come with Scumble. Exit codes are those of `scumble`.
+// Paints the exemplars: spheres for Scumble's bundled styles. Exit codes are those of `scumble`.
 #if __has_include(<malloc.h>)
 #include <malloc.h>
 #endif
@@ -33,7 +33,7 @@ int Report(const Error& error) {
   }
 }
 
-// Whether one channel holds all of it.
+// Whether all channels are equal.
 bool IsGrey(const Picture& picture) {
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
     const std::uint16_t* texel = picture.rgba.data() + i;
@@ -42,7 +42,7 @@ bool IsGrey(const Picture& picture) {
   return true;
 }
 
-// As many pixels as the guides have, for a scene's painting and its guides are of one size.
+// The pixels of the guides: a scene's exemplar has the size of its guides.
 Expected<int> SizeOfGuides(const std::filesystem::path& guides) {
   SCUMBLE_ASSIGN(const GuideFileInfo info, InspectGuides(guides));
   return info.width;
@@ -81,8 +81,8 @@ Status PaintOne(const paint::StyleEntry& style, const paint::Studio& studio, con
 
 int main(int argc, char** argv) {
 #ifdef M_PERTURB
-  // libmypaint reads a few fields of a new brush before it has set them. With this glibc clears what it hands out (the
-  // byte is inverted), and the same seed gives the same picture whatever lay in memory before.
+  // libmypaint reads a few fields of a new brush before it has set them. With this setting glibc clears new memory (the
+  // byte is inverted), so that one seed always gives one picture.
   mallopt(M_PERTURB, 0xff);
 #endif
   paint::Studio studio;

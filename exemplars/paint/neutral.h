@@ -1,11 +1,11 @@
-// Paintings in greys alone, for scenes that bring their own colours.
+// Exemplars in greys alone, for scenes with their own colours.
 #pragma once
 
 #include "exemplars/paint/engine/canvas.h"
 
 namespace scumble::paint {
 
-// Takes out what colour the brushes mixed in: red, green and blue become the same, to the bit.
+// Removes the colour that the brushes mixed in: red, green and blue become equal, to the bit.
 Colors Neutral(Colors colors);
 
 }  // namespace scumble::paint

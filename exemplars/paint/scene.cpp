@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kInside = 0.985f;  // radii: guides on the very outline are half the wall's
 
-// The value that this share of all do not exceed.
+// The smallest value that is at least as large as this share of all.
 float Quantile(std::vector<float> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
@@ -70,11 +70,11 @@ Expected<Scene> Scene::Load(const std::filesystem::path& guides) {
     return InputError(guides.string() + " shows no object named Ball: render scenes/ball.glb");
   }
   Normalise(scene.light_, 0.995);
-  // What is left of sampling noise is below what a hand answers to.
+  // The remaining sampling noise is below the response of a hand.
   scene.bounce_ = Blur(scene.bounce_, 4.0f);
   Normalise(scene.bounce_, 0.98);
   Normalise(scene.highlight_, 0.998);
-  // Beside the ball the horizon is where the floor begins.
+  // Beside the sphere the horizon is where the floor begins.
   const glm::vec3 wall = set.Vec3(scumble::Layer::kNormal, 0);
   int row = 0;
   while (row < size - 1 && glm::dot(set.Vec3(scumble::Layer::kNormal, set.Index(size - 1, row)), wall) > 0.9f) ++row;
@@ -105,11 +105,11 @@ void Scene::CoverBall(const std::vector<bool>& ball) {
   radius_ = 0.25f * unit * static_cast<float>(right - left + bottom - top);
 }
 
-float Scene::BallDistance(glm::vec2 at) const { return glm::distance(at, middle_) / radius_; }
+float Scene::SphereDistance(glm::vec2 at) const { return glm::distance(at, middle_) / radius_; }
 
 float Scene::Nearness(glm::vec2 at) const { return glm::clamp((at.y - horizon_) / (kSide - horizon_), 0.0f, 1.0f); }
 
-Seen Scene::OnBall(glm::vec2 at) const {
+Seen Scene::OnSphere(glm::vec2 at) const {
   const glm::vec2 off = at - middle_;
   const float distance = glm::length(off);
   const float most = kInside * radius_;
@@ -128,7 +128,7 @@ float Scene::Contact(glm::vec2 at) const {
   return Ramp(0.85f, 0.25f, glm::length(off));
 }
 
-Flow Scene::OverBall(const Flow& of_sphere) const {
+Flow Scene::OverSphere(const Flow& of_sphere) const {
   return [of_sphere, middle = middle_, scale = kRadius / radius_](glm::vec2 at) {
     return of_sphere((at - middle) * scale + kRadius);
   };
@@ -142,7 +142,7 @@ Flow Scene::AcrossFloor() const {
 }
 
 Flow Scene::AlongShadow() const {
-  // Away from the lamp on the floor, in the picture: to the right, and up because that is further away.
+  // Away from the light on the floor, in the picture: to the right, and up because that is farther away.
   return Slanting(-0.16f);
 }
 

@@ -5,7 +5,7 @@
 
 namespace scumble::paint {
 namespace {
-constexpr glm::vec3 kBounce{0.60f, -0.78f, -0.12f};  // where light comes back from below
+constexpr glm::vec3 kBounce{0.60f, -0.78f, -0.12f};  // direction of the light reflected from below
 }  // namespace
 
 float RimDistance(glm::vec2 at) { return glm::length(at - kRadius) / kRadius; }

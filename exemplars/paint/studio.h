@@ -1,4 +1,4 @@
-// What every style is painted with.
+// The inputs of every style's painter.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ struct Studio {
   std::filesystem::path brushes;  // the folder that holds tanda/, deevad/, classic/
   int size = 1024;
   std::uint64_t seed = 1;
-  std::filesystem::path scene;  // guides of the ball on its floor, for the styles that paint it
-  Light light = Light::kKey;    // heeded by the styles that are painted for several
+  std::filesystem::path scene;  // guides of the sphere on its floor, for the styles that paint it
+  Light light = Light::kKey;    // used by the styles that are painted for several lights
 };
 
 }  // namespace scumble::paint

@@ -7,7 +7,7 @@
 
 namespace scumble::paint {
 
-// Same studio, same picture. The sphere fills the square; what lies outside it is continued paint or paper.
+// Equal studios give equal pictures. The sphere fills the square; outside it paint or paper continues.
 using Painter = Expected<Picture>(const Studio& studio);
 
 Painter PaintCharcoal;
@@ -31,7 +31,7 @@ Painter PaintTintedWash;
 Painter PaintWatercolour;
 Painter PaintWoodcut;
 
-// What goes behind a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
+// The background of a picture in the style: the bare paper, or for oil a quiet ground, as a tile (see TileFor).
 Painter CharcoalPaper;
 Painter ChiaroscuroPaper;
 Painter ColouredPencilPaper;
@@ -57,8 +57,8 @@ struct StyleEntry {
   const char* name;
   Painter* paint;
   Painter* paper;
-  int lights = 1;      // how many of kLights it is painted for, from the first
-  bool scene = false;  // paints the ball on its floor (scene.h), not the sphere that fills the picture
+  int lights = 1;      // number of kLights that it is painted for, from the first
+  bool scene = false;  // paints the sphere on its floor (scene.h), not the sphere that fills the picture
 };
 inline constexpr StyleEntry kStyles[] = {
     {"charcoal", PaintCharcoal, CharcoalPaper},
@@ -83,7 +83,7 @@ inline constexpr StyleEntry kStyles[] = {
     {"woodcut", PaintWoodcut, WoodcutPaper},
 };
 
-// Each light's painting is a file of its own.
+// Each light's exemplar is a separate file.
 struct LightEntry {
   const char* file;
   Light light;

@@ -4,7 +4,7 @@
     python3 exemplars/scene/make_guides.py [--scumble build/scumble] [--rendered FILE]
 
 Needs numpy and OpenImageIO's Python module. Rendering takes some minutes; `--rendered` takes a file of the same
-settings instead. What `scumble guidegen` writes is then made small enough for a repository: light that comes from
+settings instead. The output of `scumble guidegen` is then made small enough for a repository: light that comes from
 other surfaces, the only noisy part, is averaged among neighbours on the same object, and values are rounded to the
 digits that matter.
 """

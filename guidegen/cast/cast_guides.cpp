@@ -28,10 +28,10 @@ namespace {
 
 bool Continue(const Progress& progress, double share) { return !progress || progress(share); }
 
-// The progress that casting takes where light paths follow, which nearly always take longer.
+// The share of the progress for casting where light paths follow, which nearly always take longer.
 constexpr double kCastShare = 0.05;
 
-// False where the caller asked to stop. Covered pixels are listed by tile where `pixels` is given.
+// False if the caller cancelled. Lists covered pixels by tile where `pixels` is given.
 bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double end, GuidegenResult& result,
                std::vector<std::vector<PathPixel>>* pixels) {
   const std::size_t columns = std::size_t(options.width + kTileSide - 1) / kTileSide;
@@ -72,7 +72,7 @@ bool CastTiles(const TileCaster& caster, const GuidegenOptions& options, double 
   return !gate.cancelled();
 }
 
-// Tiles fill them, background included.
+// Planes without initial values: tiles fill them, background included.
 GuideSet UnsetGuides(const GuidegenOptions& options) {
   GuideSet guides(options.width, options.height);
   for (const LayerInfo& info : AllLayers()) {
@@ -87,7 +87,7 @@ Expected<GuidegenResult> CastInArena(LazyScene& objects, const View& view, const
   Stopwatch watch;
   const PathFollower follower(options.layers, view.supply, options.max_bounces);
   EmbreeScene::Needs needs;
-  // Only the light of meshes without blockers needs the emitters by themselves.
+  // Only the light of meshes without blockers needs a scene of emitters alone.
   needs.emitters = options.layers.Has(Layer::kLuminance) || options.layers.Has(Layer::kShadow);
   needs.light_rays = needs.emitters || !follower.empty();
   needs.robust = options.robust;

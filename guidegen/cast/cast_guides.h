@@ -1,4 +1,4 @@
-// The one ray caster under RenderGuides and RenderSphereGuides.
+// The ray caster behind RenderGuides and RenderSphereGuides.
 #pragma once
 
 #include "guidegen/guidegen.h"
@@ -10,9 +10,8 @@ namespace scumble {
 // kUsage if an option is out of range; kUnavailable if a layer is not built in.
 Status CheckOptions(const GuidegenOptions& options, bool has_next_frame = false);
 
-// Casts into `objects`, which are built if this cast is the first that needs them so. Fills the layers, the camera and
-// the attributes; names of objects and materials are the caller's. `options` have
-// passed CheckOptions.
+// Casts into `objects`, which are built if this is the first cast with such needs. Fills the layers, the camera and the
+// attributes; the caller adds names of objects and materials. `options` have passed CheckOptions.
 Expected<GuidegenResult> CastGuides(LazyScene& objects, const View& view, const GuidegenOptions& options);
 
 }  // namespace scumble

@@ -33,7 +33,7 @@ PrimaryRays::PrimaryRays(const EmbreeScene& scene, const CameraRays& camera, int
   }
   std::sort(ranked.begin(), ranked.end());
   for (const auto& [distance, row, column] : ranked) offsets_.push_back({(column + 0.5) / n, (row + 0.5) / n});
-  // Pixels differ in the ray's origin or in its direction, by the kind of the camera.
+  // Pixels differ in the ray's origin or in its direction, depending on the camera's kind.
   const auto moved = [&](double x, double y) {
     const ViewRay ray = camera.Through(x, y);
     return camera.orthographic() ? ray.origin : ray.direction;
@@ -48,9 +48,9 @@ void PrimaryRays::PlaceRays(const Tile& tile, TileRays& rays) const {
   std::copy_n(up_.begin() + tile.y0, kTileSide, rays.up.begin());
 }
 
-// From where on the rays of a packet that was cast are clear. A ray that passed backs both before and behind what it
-// met, by context.passed, is cast again, only as far as that hit. The back itself may be a rounding nearer than float
-// has it: half of the distance counts.
+// The distance from which each ray of a cast packet is clear. A ray that passed backs both before and behind its hit,
+// by context.passed, is cast again, only as far as that hit. The back itself may be a rounding error nearer than float
+// has it, so half of the distance counts.
 template <class Packet>
 void PrimaryRays::FindClear(const Packet& packet, const int* valid, CastContext& context, float* clear_from) const {
   constexpr int kRays = kRaysIn<Packet>;
@@ -90,7 +90,7 @@ void PrimaryRays::CastPackets(const Tile& tile, const TileRays& rays, bool find_
   if (find_clear && backs_) context.passed = passed.data();
   Packet packet = {};
   alignas(64) int valid[kRays];
-  // Of the packets in a column and in a row of them.
+  // The rays of the packets in a column and in a row.
   alignas(64) std::array<std::array<float, kRays>, kTileSquares> across;
   alignas(64) std::array<std::array<float, kRays>, kTileSide / kRows> up;
   for (int lane = 0; lane < kRays; ++lane) {
@@ -136,9 +136,9 @@ void PrimaryRays::CastCentres(const Tile& tile, const TileRays& rays, bool find_
   }
 }
 
-// Pixels that are covered all over without casting a ray. Where the centres of a pixel and of its four neighbours see
-// the same triangle, the triangle's picture is convex and holds the diamond between those centres, and with it the
-// whole pixel. The same goes for a sphere. Nothing follows for surfaces with holes, nor at the tile's border.
+// Finds pixels that are covered completely without casting a ray. If the centres of a pixel and of its four neighbours
+// see one triangle, the triangle's picture is convex and holds the diamond between those centres, and so the whole
+// pixel. A sphere's picture is convex too. Surfaces with holes and pixels at the tile's border are never counted.
 PrimaryRays::Mask PrimaryRays::FindWhole(const Tile& tile, const TileHits& hits) const {
   Mask whole;
   for (int row = 1; row < tile.height - 1; ++row) {
@@ -174,8 +174,8 @@ std::array<PrimaryRays::Samples, kTilePixels> PrimaryRays::CastSubsamples(const 
   return covered;
 }
 
-// Looks for a surface at the covered subsamples, nearest first, and returns how many rays that took. The nearest nearly
-// always has it; a ray that grazes an edge may be blocked in one packet and pass alone.
+// Looks for a surface at the covered subsamples, nearest first, and returns the number of rays cast. The nearest one
+// nearly always has it. A ray that grazes an edge may be blocked in one packet and pass alone.
 std::size_t PrimaryRays::CastMissed(const Tile& tile, Samples samples, int pixel, TileHits& hits,
                                     std::vector<Moved>& moved) const {
   std::size_t cast = 0;

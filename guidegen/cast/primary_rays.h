@@ -1,4 +1,4 @@
-// The camera's rays through one tile: what the pixels' centres meet, and how far the pixels are covered.
+// The camera's rays through one tile: the hits of the pixels' centres, and the coverage of the pixels.
 #pragma once
 
 #include <array>
@@ -23,17 +23,17 @@ class PrimaryRays {
 
   void PlaceRays(const Tile& tile, TileRays& rays) const;
 
-  // `find_clear`: whether hits.clear_from is asked for.
+  // `find_clear`: whether hits.clear_from is needed.
   void CastCentres(const Tile& tile, const TileRays& rays, bool find_clear, TileHits& hits) const;
 
-  // A pixel whose centre misses, and the place in the picture whose ray hit an object instead.
+  // A pixel whose centre misses, and the place in the picture whose ray hit an object.
   struct Moved {
     int pixel;
     glm::dvec2 at;
   };
-  // Fills the coverage of a tile whose centres are cast. If a pixel's centre misses, but a subsample meets something,
-  // the pixel takes the hit of its nearest covered subsample, and is added to `moved`. A pixel whose centre is hit
-  // counts as one subsample at least, so that nothing thin is lost between them. Returns the number of rays.
+  // Fills the coverage of a tile whose centres are cast. If a pixel's centre misses but a subsample hits, the pixel
+  // takes the hit of its nearest covered subsample and is added to `moved`. A pixel whose centre hits has at least one
+  // covered subsample, so that no thin object is lost. Returns the number of rays.
   std::size_t Cover(const Tile& tile, TileHits& hits, std::array<float, kTilePixels>& coverage,
                     std::vector<Moved>& moved) const;
 
@@ -56,10 +56,10 @@ class PrimaryRays {
 
   const EmbreeScene& scene_;
   const CameraRays& camera_;
-  const bool backs_;             // whether camera rays may pass what rays of light do not
+  const bool backs_;             // whether camera rays may pass surfaces that block rays of light
   std::vector<Offset> offsets_;  // of subsamples, by rank
-  std::vector<double> across_;   // of the rays through centres, as TileRays has it, by the picture's column
-  std::vector<double> up_;       // and by its row; a tile's more of both than there are
+  std::vector<double> across_;   // of the rays through centres, as in TileRays, by the picture's column
+  std::vector<double> up_;       // and by its row; both are padded to whole tiles
 };
 
 }  // namespace scumble

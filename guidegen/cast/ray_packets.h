@@ -1,4 +1,4 @@
-// Packets of rays as Embree has them, and the pixels of a tile.
+// Embree's packets of rays, and the pixels of a tile.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace scumble {
 
 inline constexpr int kPacket = 8;  // any-hit rays
 
-// A ray and the stretch of it, in lengths of its direction, on which surfaces count.
+// A ray and the part of it, in lengths of its direction, on which surfaces count.
 struct Segment {
   glm::dvec3 origin;
   glm::dvec3 direction;

@@ -36,7 +36,7 @@ std::array<float*, 3> PlanesOrNull(GuideSet& guides, Layer layer) {
   return {PlaneOrNull(guides, layer, 0), PlaneOrNull(guides, layer, 1), PlaneOrNull(guides, layer, 2)};
 }
 
-// The objects whose emission luminance and shadow need; none where neither is wanted.
+// The objects whose emission luminance and shadow need; empty where neither is wanted.
 std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSet& guides) {
   if (!guides.Has(Layer::kLuminance) && !guides.Has(Layer::kShadow)) return {};
   return scene.objects();
@@ -45,7 +45,7 @@ std::span<const PlacedObject> LitObjects(const EmbreeScene& scene, const GuideSe
 // Planes of more pixels than this do not stay in the caches until they are read.
 constexpr std::size_t kCachedPixels = std::size_t(1) << 19;
 
-// The sampler's stream for luminance and shadow: not the light paths' own.
+// The sampler's stream for luminance and shadow: different from that of the light paths.
 constexpr std::uint32_t kAreaLightStream = 1;
 
 }  // namespace
@@ -90,7 +90,7 @@ TileCaster::Scratch::Scratch(const TileCaster& caster)
 glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const {
   const PlacedObject& next = view_.next_objects[hits.object[pixel]];
   if (!next.mesh) return glm::dvec2(0.0);
-  // Both frames use equal arithmetic, so that points at rest move by exactly 0.
+  // Both frames use equal arithmetic, so that still points move by exactly 0.
   const auto seen_at = [&](const PlacedObject& object, const CameraRays& camera) {
     const Triangle triangle = ViewTriangle(object, hits.primitive[pixel]);
     return camera.PixelOf(triangle.corner[0] + (triangle.corner[1] - triangle.corner[0]) * barycentric.x +
@@ -101,7 +101,7 @@ glm::dvec2 TileCaster::MotionOf(const TileHits& hits, int pixel, const glm::dvec
   return from && to ? *to - *from : glm::dvec2(0.0);
 }
 
-// What no vector can tell: spheres, normal maps, degenerate triangles, rays that do not go through a pixel's centre.
+// Pixels that the vector code cannot do: spheres, normal maps, degenerate triangles, rays that miss the pixel's centre.
 void TileCaster::WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const {
   const TileHits& hits = scratch.hits;
   const PlacedObject& object = scene_.objects()[hits.object[pixel]];
@@ -231,7 +231,7 @@ void TileCaster::Fill(const Tile& tile, TriangleCache& triangles, TileScratch& s
       }
     });
   }
-  // Where nothing shines, luminance and shadow keep their background value, which is 0.
+  // Where nothing emits, luminance and shadow keep their background value, which is 0.
   if (lit_) Light(tile, hits, scratch.lit, share);
 }
 

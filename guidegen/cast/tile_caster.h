@@ -22,10 +22,10 @@ namespace scumble {
 // Casts tiles into a GuideSet. Shared by all threads; tiles do not overlap, so nothing is locked.
 class TileCaster {
  public:
-  // All four outlive the caster. Of the set's layers every pixel is written, background included.
+  // All four outlive the caster. It writes every pixel of the set's layers, background included.
   TileCaster(const EmbreeScene& scene, const View& view, const GuidegenOptions& options, GuideSet& guides);
 
-  // What a thread keeps from tile to tile. It never changes what is written.
+  // Buffers that a thread keeps from tile to tile. They never change the result.
   class Scratch {
    public:
     explicit Scratch(const TileCaster& caster);
@@ -45,22 +45,22 @@ class TileCaster {
     std::vector<OfTile> tiles;
   };
 
-  // One thread's share of the work: the gate that it asks whether to go on, and the rays that it has cast.
+  // One thread's share of the work: the gate for cancellation, and the rays that it has cast.
   struct Share {
     ProgressGate& gate;
     RayCounts rays;
   };
 
-  // Casts 1 to kStripTiles tiles that stand side by side from the left to the right. Adds what was cast to `share`,
-  // and to pixels[i], unless there are none, the covered pixels of tile i for their light paths. Other threads see what
-  // was written after PublishTiles(). If the gate is cancelled, the tiles may stay incomplete.
+  // Casts 1 to kStripTiles tiles that stand side by side, from left to right. Adds the counts to `share`. Unless
+  // `pixels` is empty, adds the covered pixels of tile i to pixels[i] for their light paths. Other threads see the
+  // values after PublishTiles(). If the gate is cancelled, the tiles may stay incomplete.
   void Cast(std::span<const Tile> tiles, Scratch& scratch, Share& share,
             std::span<std::vector<PathPixel>> pixels = {}) const;
 
  private:
   using TileScratch = Scratch::OfTile;
 
-  // A layer that is wanted; background is what its pixels are where nothing was met.
+  // A layer that is wanted; background is the value of pixels without a hit.
   struct Plane {
     float* values;
     float background;
@@ -77,10 +77,10 @@ class TileCaster {
     std::array<float*, 3> pref{};
     std::array<float*, 3> albedo{};
     std::array<float*, 2> motion{};
-    std::vector<Plane> others;  // that are not written as whole tiles
+    std::vector<Plane> others;  // layers that are not written as whole tiles
   };
 
-  // How far the place that was hit moves in the picture until the next frame, pixels; 0 where it is not seen then.
+  // The movement of a hit point in the picture until the next frame, in pixels; 0 if it is not in view then.
   glm::dvec2 MotionOf(const TileHits& hits, int pixel, const glm::dvec2& barycentric) const;
   void WritePlain(int pixel, const glm::dvec2& at, TileScratch& scratch) const;
   void WriteOthers(const Tile& tile, int pixel, const glm::dvec2& at, TileScratch& scratch) const;
@@ -104,7 +104,7 @@ class TileCaster {
   const LightSet lights_;
   const std::vector<ObjectRecord> object_records_;
   Planes planes_;
-  bool lit_ = false;     // luminance or shadow, and something shines
+  bool lit_ = false;     // luminance or shadow is wanted, and something emits
   bool points_ = false;  // whether any layer needs more than TileGuides
 };
 

@@ -1,4 +1,4 @@
-// What the primary rays of one tile have met, and where its pixels stand in arrays.
+// The hits of one tile's primary rays, and the place of its pixels in arrays.
 #pragma once
 
 #include <array>
@@ -18,8 +18,7 @@ struct Tile {
   int height = 0;
 };
 
-// Tiles that are worked on together, side by side: their rows of a plane are
-// written in one go.
+// Tiles that are cast together, side by side: their rows of a plane are written at once.
 inline constexpr int kStripTiles = 4;
 
 // Squares of 4 × 4 pixels one after the other, row by row inside and out: a square is a packet of rays, and its halves
@@ -39,21 +38,21 @@ constexpr int TileRow(int pixel) {
   return (pixel / (kSquarePixels * kTileSquares)) * kSquareSide + pixel % kSquarePixels / kSquareSide;
 }
 
-// By TilePixel. Pixels beyond the tile's edge meet nothing.
+// By TilePixel. Pixels beyond the tile's edge have no hit.
 struct TileHits {
   static constexpr std::uint32_t kNothing = ~0u;  // as Embree has it
   alignas(64) std::array<std::uint32_t, kTilePixels> object;
   alignas(64) std::array<std::uint32_t, kTilePixels> primitive;
 
-  // From where up to its hit the ray is clear for rays of light, too, in lengths of its direction. Only set for hits,
-  // and only where it is asked for.
+  // The distance, in lengths of the ray's direction, from which the ray is clear for rays of light too, up to its hit.
+  // Only set for hits, and only on request.
   alignas(64) std::array<float, kTilePixels> clear_from;
 
   bool Met(int pixel) const { return object[std::size_t(pixel)] != kNothing; }
 };
 
-// The rays through the pixels' centres: what they have across and up, of the origin where the picture is orthographic
-// and of the direction otherwise. The rest is 0, and −1 for direction.z.
+// The rays through the pixels' centres: their horizontal and vertical parts, of the origin where the picture is
+// orthographic and of the direction otherwise. The other parts are 0, and −1 for direction.z.
 struct TileRays {
   bool orthographic = false;
   std::array<double, kTileSide> across{};  // by column

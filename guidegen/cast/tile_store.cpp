@@ -15,8 +15,7 @@ namespace scumble {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A whole row of a tile is one line of the cache, where it begins with one. Lines that follow one another cost less
-// than such from here and there.
+// A whole row of a tile is one cache line, if it is aligned. Consecutive lines are cheaper than scattered ones.
 void StreamTiles(int rows, std::span<const float* const> values, float* to, std::size_t stride) {
   const hn::CappedTag<float, kSquareSide> d;
   for (int row = 0; row < rows; ++row, to += stride) {
@@ -57,7 +56,7 @@ void StoreTiles(std::span<const Tile> tiles, std::span<const float* const> value
     for (int row = 0; row < tile.height; ++row, to += stride) {
       for (int column = 0; column < tile.width; column += kSquareSide) {
         const float* square = values[done] + TilePixel(column, row);
-        // A number known at compile time makes one move of it.
+        // A size known at compile time becomes one move.
         if (column + kSquareSide <= tile.width) {
           std::copy_n(square, kSquareSide, to + column);
         } else {

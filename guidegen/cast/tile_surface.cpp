@@ -196,7 +196,7 @@ class TileWork {
     const Doubles d;
     const Floats f;
     const Keys k;
-    // Embree's id of nothing makes the upper half of the key all ones, which is no object's.
+    // Embree's id of a miss makes the upper half of the key all ones, which no object has.
     const auto keys = hn::Load(k, keys_ + pixel);
     const auto met = hn::Lt(keys, hn::Set(k, std::uint64_t(TileHits::kNothing) << 32));
     if (hn::AllFalse(k, met)) return StoreBackground(pixel);
@@ -233,7 +233,7 @@ class TileWork {
     const D3 origin = rays_.orthographic ? D3{across, up, zero} : D3{zero, zero, zero};
     const D3 direction = rays_.orthographic ? D3{zero, zero, hn::Set(d, -1.0)} : D3{across, up, hn::Set(d, -1.0)};
 
-    // MeetTriangle. A product with −1 changes the sign and no more.
+    // MeetTriangle. A product with −1 only changes the sign.
     const D3 from = {hn::Sub(origin.x, triangles.corner.x), hn::Sub(origin.y, triangles.corner.y),
                      hn::Sub(origin.z, triangles.corner.z)};
     const D3 moment = {hn::Sub(hn::Neg(from.y), hn::Mul(direction.y, from.z)),
@@ -251,7 +251,7 @@ class TileWork {
       return hn::Add(hn::Sub(corner, hn::Mul(first, v)), hn::Mul(second, w));
     };
     const D z = mix(triangles.corner.z, triangles.first_edge.z, triangles.second_edge.z);
-    // Products with 1 or −1 are signs, for less.
+    // A product with 1 or −1 is done as a change of sign, which is cheaper.
     const D minus = hn::Set(d, -0.0);
     const auto back = hn::Gt(hn::Xor(along, hn::And(objects.winding, minus)), zero);
     const D side = hn::IfThenElseZero(back, minus);
@@ -284,7 +284,7 @@ class TileWork {
     const D infinity = hn::Set(d, std::numeric_limits<double>::infinity());
     const D depth = hn::IfThenElse(met_double, ZeroAtLeast(hn::Neg(z)), infinity);
     hn::Store(hn::DemoteTo(f, depth), f, guides_.depth.data() + pixel);
-    // The square root and its division wait for each other; by themselves they need not wait for anything else.
+    // The square root and its division depend on each other only, so they are done in a loop of their own.
     hn::Store(hn::IfThenElseZero(met_double, shading.x), d, shading_[0] + pixel);
     hn::Store(hn::IfThenElseZero(met_double, shading.y), d, shading_[1] + pixel);
     hn::Store(hn::IfThenElseZero(met_double, shading.z), d, shading_[2] + pixel);
@@ -310,7 +310,7 @@ class TileWork {
     }
   }
 
-  // MakeUnit where a square is ordinary.
+  // MakeUnit for ordinary squares.
   template <bool kPoints>
   HWY_INLINE void MakeUnits(std::size_t pixel) {
     const Doubles d;

@@ -1,4 +1,4 @@
-// FindSurfacePoint for all centres of a tile at once, as wide as the machine's vectors are.
+// FindSurfacePoint for all centres of a tile at once, with the machine's vector width.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace scumble {
 
-// By TilePixel, as the layers of these names hold it; background where nothing was met.
+// By TilePixel, the values of the layers of these names; background where there is no hit.
 struct TileGuides {
   alignas(64) std::array<float, kTilePixels> depth;
   alignas(64) std::array<float, kTilePixels> object;
   alignas(64) std::array<float, kTilePixels> material;
   alignas(64) std::array<std::array<float, kTilePixels>, 3> normal;
-  // Pixels that the vector code cannot do. Their guides are not set; the plain code does them.
+  // Pixels that the vector code leaves to the plain code. Their guides are not set.
   std::array<std::uint8_t, kTilePixels> left_over;
   int left_over_count = 0;
 };
 
-// By TilePixel, as SurfacePoint has it; anything where nothing was met.
+// By TilePixel, as in SurfacePoint; undefined where there is no hit.
 struct TilePoints {
   alignas(64) std::array<std::array<double, kTilePixels>, 2> barycentric;
   alignas(64) std::array<std::array<double, kTilePixels>, 3> position;
@@ -32,7 +32,7 @@ struct TilePoints {
   void Set(int pixel, const SurfacePoint& point);
 };
 
-// Every bit as FindSurfacePoint has it, on every machine. `points` may be null.
+// Equal to FindSurfacePoint in every bit, on every machine. `points` may be null.
 void FindTileSurface(const TileHits& hits, const TileRays& rays, TriangleCache& triangles, TileGuides& guides,
                      TilePoints* points);
 

@@ -27,16 +27,17 @@ struct Sample {
   AreaLighting& sum;
   RayCounts& rays;
 
-  // Whether directions look for a light, too.
+  // Whether sampled directions search for a light, too.
   bool LooksFor(int light) const { return lights.IsWideFrom(point.position, light); }
 
-  // What a direction brings of a light that drawing a point of it has `density` to find; the balance heuristic.
+  // The weighted contribution of a direction to a light that point sampling finds with `density`; the balance
+  // heuristic.
   double Weighed(int light, const glm::dvec3& radiance, double density, double reflected) const {
     const double chosen = lights.FewHaveExtent() ? 1.0 : lights.Probability(point, light, false);
     return Brightness(radiance) * reflected / (reflected + density * chosen);
   }
 
-  // A point of a light that was chosen with a probability.
+  // Adds a point of a light that was chosen with a probability.
   void TakeLight(int light_number, double probability, double u, double v) {
     const LightDraw draw = lights.Draw(light_number, point.position, u, v);
     const double reflected = DiffuseDensity(point, draw.direction);
@@ -55,7 +56,7 @@ struct Sample {
     sum.unoccluded += light;
   }
 
-  // A point of each light that is no delta light where these are few, or else of one of them.
+  // If few lights have extent, a point of each; otherwise a point of one of them.
   void TakeLights(const Sampler& sampler, std::uint32_t index) {
     if (!lights.FewHaveExtent()) {
       const Quad u = sampler.Draw(index, 1);
@@ -70,7 +71,7 @@ struct Sample {
     }
   }
 
-  // A direction of the surface.
+  // Adds a direction of the surface.
   void TakeDirection(const Quad& u) {
     ++thread_counters.light_samples;
     const glm::dvec2 disc = SquareToDisc(u[0], u[1]);
@@ -104,7 +105,7 @@ struct Sample {
     }
   }
 
-  // Light of the mesh that a direction has met.
+  // Light of the mesh that a sampled direction hit.
   double Emitted(const RTCRayHit& hit, const glm::dvec3& direction, double reflected) const {
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return 0.0;
     const int light = lights.EmitterOf(hit.hit.geomID);

@@ -1,5 +1,5 @@
-// Direct light on white Lambert from lights with extent: area lights, meshes that emit, the world. This is the part of
-// the luminance and shadow layers that takes many rays.
+// Direct light on white Lambert from lights with extent: area lights, meshes that emit, the world. These are the rays
+// that make luminance and shadow expensive.
 #pragma once
 
 #include "guidegen/guidegen.h"

@@ -12,7 +12,7 @@
 namespace scumble {
 namespace {
 
-// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is so small; and a radiance, over
+// Metres up to which a light has no extent. Floats hold nothing smaller, so no scene is smaller; and a radiance, over
 // the square of it, stays within a double's range.
 constexpr double kLeastRadius = 0x1p-149;
 
@@ -43,7 +43,7 @@ Status PlaceCone(const Light& light, const std::string& who, PlacedLight& placed
   const double cos_inner = std::cos(glm::radians(light.inner_cone_degrees));
   const double cos_outer = std::cos(glm::radians(light.outer_cone_degrees));
   if (!std::isfinite(cos_inner) || !std::isfinite(cos_outer) || !std::isfinite(light.spot_blend)) {
-    return InputError(who + "has a cone that is not finite: mend its angles");
+    return InputError(who + "has a cone that is not finite: fix its angles");
   }
   placed.cone_scale = 1.0 / std::max(0.001, cos_inner - cos_outer);
   placed.cone_offset = -cos_outer * placed.cone_scale;
@@ -78,7 +78,7 @@ Expected<PlacedLight> PlaceLight(const Light& light, const CameraPose& camera) {
   const glm::dvec3 axis(light.world_from_light[2]);
   const double length = glm::length(axis);
   if (!std::isfinite(position.x + position.y + position.z)) {
-    return InputError(who + "stands at a place that is not finite: mend its matrix");
+    return InputError(who + "stands at a place that is not finite: fix its matrix");
   }
   placed.position = camera.ViewFromWorld(position);
   if (light.type == LightType::kPoint || light.type == LightType::kSpot) {

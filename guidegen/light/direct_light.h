@@ -16,7 +16,7 @@ namespace scumble {
 struct PlacedLight {
   LightType type = LightType::kPoint;
   glm::dvec3 position{0.0};
-  glm::dvec3 axis{0.0, 0.0, -1.0};  // unit, where it shines
+  glm::dvec3 axis{0.0, 0.0, -1.0};  // unit, the direction in which it shines
   glm::dvec3 color{0.0};            // colour × intensity, in the units of Light::intensity
   double intensity = 0.0;           // its Rec.709 luminance
   double cone_scale = 0.0;          // spot: attenuation is clamp(cosine · scale + offset)²
@@ -40,9 +40,9 @@ Expected<std::vector<PlacedLight>> PlaceLights(const std::vector<Light>& lights,
 // The share of a spot's intensity that leaves it in a direction, a unit vector; 1 for other lights.
 double SpotAttenuation(const PlacedLight& light, const glm::dvec3& from_light);
 
-// What one delta light does to a point.
+// The effect of one delta light on a point.
 struct LightSample {
-  double luminance = 0.0;    // reflected radiance of white Lambert, irradiance/π; 0 where the light cannot reach
+  double luminance = 0.0;    // reflected radiance of white Lambert, irradiance/π; 0 where the light cannot shine
   glm::dvec3 to_light{0.0};  // view space; reaches the light at length 1 unless `endless`
   bool endless = false;      // a sun: infinitely far
 };

@@ -15,10 +15,10 @@
 namespace scumble {
 namespace {
 
-// Before so many samples an estimated error is chance itself, and does not end the sampling.
+// With fewer samples an estimated error is noise itself, and does not end the sampling.
 constexpr int kLeastSamplesForNoise = 16;
 
-// Paths of a pixel after which the caller may ask to stop: they take far less than a tenth of a second.
+// Paths of a pixel between two polls for cancellation: they take far less than a tenth of a second.
 constexpr int kSamplesBetweenPolls = 64;
 
 void AddRays(const RayCounts& from, RayCounts& to) {
@@ -26,7 +26,7 @@ void AddRays(const RayCounts& from, RayCounts& to) {
   to.bounce += from.bounce;
 }
 
-// What one list of pixels saw in one pass, for the estimate of the error: per layer, over the pixels' luminances.
+// Statistics of one list of pixels in one pass, for the estimate of the error: per layer, over the pixels' luminances.
 struct PassStatistics {
   std::array<double, kMaxPathLayers> sum{};
   std::array<double, kMaxPathLayers> squared_error{};
@@ -46,13 +46,13 @@ class LightPasses {
         layers_(follower.layers().size()),
         statistics_(pixels.size()) {}
 
-  // Keeps what was sampled, so that a next pass can go on.
+  // Keeps the sums, so that a next pass can continue.
   void KeepSums() {
     kept_.resize(pixels_.size());
     for (std::size_t i = 0; i < pixels_.size(); ++i) kept_[i].assign(pixels_[i].size() * layers_, glm::dvec3(0.0));
   }
 
-  // Brings every pixel from `done` samples to `wanted`, and writes the layers. False where the caller asked to stop.
+  // Brings every pixel from `done` samples to `wanted`, and writes the layers. False if the caller cancelled.
   bool Run(int done, int wanted, ProgressGate& gate) {
     tbb::parallel_for(std::size_t(0), pixels_.size(), [&](std::size_t list) {
       if (gate.cancelled()) return;
@@ -97,7 +97,7 @@ class LightPasses {
   const WorkCounts& work() const { return work_; }
 
  private:
-  // False where the caller asked to stop; nothing is written then.
+  // False if the caller cancelled; nothing is written then.
   bool Shade(const PathPixel& pixel, int done, int wanted, PathSums& sums, PassStatistics& statistics,
              ProgressGate& gate) {
     const LightPathTracer::First first = tracer_.FirstVertex(pixel);
@@ -116,7 +116,7 @@ class LightPasses {
       Write(follower_.layers()[layer], pixel.index, light);
       statistics.sum[layer] += Brightness(light);
       if (done == 0 || wanted == done) continue;
-      // Two means of independent samples differ by their errors; half the difference is that of their own mean.
+      // Two means of independent samples differ by their errors; half the difference is the error of their own mean.
       const double old_mean = Brightness(before[layer]) / done;
       const double new_mean = Brightness(sums[layer] - before[layer]) / (wanted - done);
       const double error = (old_mean - new_mean) * std::sqrt(double(done) * (wanted - done)) / wanted;
@@ -126,7 +126,7 @@ class LightPasses {
   }
 
   void Write(Layer layer, std::size_t index, const glm::dvec3& light) {
-    // What is brighter than a float can tell is written as the brightest.
+    // Values brighter than a float's range become the largest float.
     constexpr double kMaxFloat = std::numeric_limits<float>::max();
     for (int c = 0; c < 3; ++c) guides_.Plane(layer, c)[index] = float(std::min(light[c], kMaxFloat));
   }
@@ -143,10 +143,11 @@ class LightPasses {
   WorkCounts work_;
 };
 
-// How far the samples go next: doubled, or as many as the time allows at the speed so far. No further: `done`.
+// The number of samples after the next pass: doubled, or as many as the time allows at the speed so far. `done` if no
+// further pass fits.
 int NextSamples(int done, double seconds, const GuidegenOptions& options) {
-  // Nobody knows what a sample costs before there is one. Without a clock the first pass is half of the least that
-  // tells the error, or of all there may be.
+  // The cost of a sample is unknown before the first pass. Without a clock that pass is half of the least number that
+  // gives an error estimate, or of the limit.
   if (done == 0) {
     if (options.time_budget_seconds > 0.0) return 1;
     return std::clamp(options.max_samples / 2, 1, kLeastSamplesForNoise / 2);
@@ -178,7 +179,7 @@ LightPassResult TraceLightPaths(const LightPathTracer& tracer, const PathFollowe
   passes.KeepSums();
   Stopwatch watch;
   double seconds = 0.0;
-  // Nobody knows how many passes there will be, so each one takes half of what is left of the progress.
+  // The number of passes is unknown, so each one takes half of the remaining progress.
   for (double begin = progress_begin; !result.cancelled; begin = 0.5 * (begin + 1.0)) {
     const int wanted = NextSamples(result.samples, seconds, options);
     if (wanted == result.samples) break;

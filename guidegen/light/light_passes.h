@@ -1,4 +1,4 @@
-// How many samples the light paths of a picture get, and how they are averaged into its layers.
+// Decides the number of samples of a picture's light paths, and averages them into its layers.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace scumble {
 
-// What the light paths took.
+// The cost of the light paths.
 struct LightPassResult {
   RayCounts rays;
   WorkCounts work;
-  int samples = 0;     // of each pixel; 0 where the light needs no chance
-  double noise = 0.0;  // estimated, as GuidegenOptions::noise; 0 where it was not asked for
+  int samples = 0;     // of each pixel; 0 where the light needs no random numbers
+  double noise = 0.0;  // estimated, as GuidegenOptions::noise; 0 where it was not requested
   bool cancelled = false;
 };
 
-// Fills the follower's layers of `guides`; the others keep their zeros. `pixels` are the covered ones, in lists that
-// are worked on one at a time. The picture does not depend on how the lists are cut, nor on the threads.
+// Fills the follower's layers of `guides`; the other layers keep their zeros. `pixels` are the covered ones, in lists
+// that are processed one at a time. The picture depends neither on how the lists are cut nor on the threads.
 LightPassResult TraceLightPaths(const LightPathTracer& tracer, const PathFollower& follower,
                                 const std::vector<std::vector<PathPixel>>& pixels, const GuidegenOptions& options,
                                 double progress_begin, GuideSet& guides);

@@ -14,10 +14,10 @@ namespace {
 
 using std::numbers::pi;
 
-// The distance from a plane, over the largest coordinate, that doubles cannot be trusted to tell.
+// The distance from a plane, over the largest coordinate, below which doubles do not determine the side.
 constexpr double kFlat = 0x1.0p-40;
 
-// Irradiance beyond this does not fit a float once it is reflected, and could become infinite before.
+// Larger irradiance does not fit a float once it is reflected, and could overflow before.
 constexpr double kMostIrradiance = std::numeric_limits<float>::max();
 
 double AreaOf(const PlacedLight& light) {
@@ -102,7 +102,7 @@ LightDraw DrawArea(const PlacedLight& light, const glm::dvec3& point, double u, 
 
 LightDraw MeetSun(const PlacedLight& sun, const glm::dvec3& direction) {
   LightDraw met;
-  // By the sine, which tells small angles apart; beyond a right angle the sine falls again.
+  // Uses the sine, which resolves small angles; beyond a right angle the sine falls again.
   const double sine = glm::length(glm::cross(direction, sun.axis));
   const double cosine = -glm::dot(direction, sun.axis);
   if (!(cosine > 0.0) || sine > std::sin(sun.half_angle)) return met;
@@ -144,8 +144,8 @@ LightDraw MeetArea(const PlacedLight& light, const glm::dvec3& point, const glm:
   return met;
 }
 
-// The most of a spot's intensity that reaches a place from any point of its disc: from the one that is nearest the
-// axis. The attenuation depends on the part along the axis alone.
+// The largest share of a spot's intensity that reaches a place from any point of its disc: that of the point nearest
+// the axis. The attenuation depends on the part along the axis alone.
 double MostAttenuation(const PlacedLight& spot, const glm::dvec3& from_centre) {
   const double distance = glm::length(from_centre);
   if (!(distance > spot.radius)) return 1.0;
@@ -214,12 +214,12 @@ void LightSet::AddEmitter(std::uint32_t object) {
 double LightSet::Weight(int light, const SurfacePoint& point, bool with_delta) const {
   const TreeLight& shape = shapes_[std::size_t(light)];
   if (shape.is_delta && !with_delta) return 0.0;
-  if (IsEmitter(light)) return BallWeight(shape.centre, shape.radius, shape.power, point);
+  if (IsEmitter(light)) return SphereWeight(shape.centre, shape.radius, shape.power, point);
   const PlacedLight& placed = analytic_[std::size_t(light)];
   if (shape.is_sun) return SunWeight(-placed.axis, placed.half_angle, shape.power, point);
   const glm::dvec3 from_light = point.position - placed.position;
   if (placed.type == LightType::kArea && !(glm::dot(from_light, placed.axis) > 0.0)) return 0.0;
-  const double weight = BallWeight(shape.centre, shape.radius, shape.power, point);
+  const double weight = SphereWeight(shape.centre, shape.radius, shape.power, point);
   return placed.type == LightType::kSpot && weight > 0.0 ? weight * MostAttenuation(placed, from_light) : weight;
 }
 
@@ -277,7 +277,7 @@ LightDraw LightSet::DrawEmitter(const Emitter& emitter, const glm::dvec3& point,
   const glm::dvec3 normal = glm::normalize(glm::cross(first, second));
   double largest = LargestCoordinate(point);
   for (const glm::dvec3& corner : triangle.corner) largest = std::max(largest, LargestCoordinate(corner));
-  // A flat emitter does not light itself: so near its plane, the side is rounding alone.
+  // A flat emitter does not light itself: this near its plane, the side is rounding alone.
   const double off_plane = std::abs(glm::dot(normal, to_target));
   if (!(off_plane > largest * kFlat)) return draw;
   const double cosine = off_plane / std::sqrt(square);

@@ -1,6 +1,6 @@
-// Every light of a scene as a path tracer wants it: chosen, sampled, and hit by rays. Analytic lights (those of the
-// scene's list, with and without extent), meshes that emit, and the world. An analytic light has no surface: it neither
-// casts a shadow nor hides what is behind it.
+// Every light of a scene for a path tracer: chosen, sampled, and hit by rays. Analytic lights (those of the scene's
+// list, with and without extent), meshes that emit, and the world. An analytic light has no surface: it casts no shadow
+// and hides nothing.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ struct LightDraw {
   bool endless = false;       // the light is infinitely far
   bool is_delta = false;
   glm::dvec3 radiance{0.0};  // of delta lights: the irradiance of a surface that faces them
-  double density = 0.0;      // per solid angle, without the choice of the light; of no meaning for delta lights
-  // Of meshes that emit: the triangle that the target is on, and how far from it, in metres along the ray, Embree's
-  // floats may find the mesh.
+  double density = 0.0;      // per solid angle, without the choice of the light; meaningless for delta lights
+  // Of meshes that emit: the triangle of the target, and the distance from it, in metres along the ray, at which
+  // Embree's floats may find the mesh.
   static constexpr std::uint32_t kNoObject = ~0u;
   std::uint32_t object = kNoObject;
   std::uint32_t primitive = 0;
@@ -45,7 +45,7 @@ class LightSet {
   bool has_emitters() const { return !emitters_.empty(); }
   bool has_extended_analytic() const { return delta_count_ < int(analytic_.size()); }
   bool has_world() const { return world_ != glm::dvec3(0.0); }
-  // Whether a ray may meet light: whether anything but delta lights shines.
+  // Whether a ray may hit a light: whether any light but a delta light shines.
   bool CanBeMet() const { return has_emitters() || has_extended_analytic() || has_world(); }
   bool empty() const { return count() == 0 && !has_world(); }
   bool IsDelta(int light) const { return light < int(analytic_.size()) && analytic_[std::size_t(light)].IsDelta(); }
@@ -62,11 +62,11 @@ class LightSet {
   bool IsWideFrom(const glm::dvec3& point, int light) const { return IsWide(shapes_[std::size_t(light)], point); }
   bool AnyWideFrom(const glm::dvec3& point) const;
 
-  // u picks among triangles too and is stretched for it. A draw that cannot reach the point has no radiance.
+  // u also chooses a triangle and is rescaled for it. A draw that cannot reach the point has no radiance.
   LightDraw Draw(int light, const glm::dvec3& point, double u, double v) const;
 
-  // Calls visit(light, radiance, density) for each analytic light with extent that the ray meets before `length`
-  // (infinite: it meets nothing else); `density` is Draw's. The world is left to the caller.
+  // Calls visit(light, radiance, density) for each analytic light with extent that the ray hits before `length`
+  // (infinite: it hits nothing else); `density` is Draw's. The caller handles the world.
   template <class Visit>
   void VisitAnalytic(const glm::dvec3& point, const glm::dvec3& direction, double length, const Visit& visit) const {
     if (!has_extended_analytic()) return;
@@ -77,7 +77,7 @@ class LightSet {
     });
   }
 
-  // Calls visit(emitter) for each mesh that emits and that the ray may meet; for others near the ray, too.
+  // Calls visit(emitter) for each mesh that emits and that the ray may hit, and for others near the ray.
   template <class Visit>
   void VisitEmitters(const glm::dvec3& point, const glm::dvec3& direction, const Visit& visit) const {
     if (!has_emitters()) return;
@@ -88,7 +88,7 @@ class LightSet {
 
   // The light that an object is, or −1.
   int EmitterOf(std::uint32_t object) const { return emitter_of_[object]; }
-  // With which density Draw takes the direction to this point of an emitter.
+  // The density with which Draw chooses the direction to this point of an emitter.
   double EmitterDensity(int light, const glm::dvec3& point, const SurfacePoint& on_emitter) const;
 
  private:

@@ -12,7 +12,7 @@ constexpr double kLeastCosine = 0.1;
 
 }  // namespace
 
-double BallWeight(const glm::dvec3& centre, double radius, double power, const SurfacePoint& point) {
+double SphereWeight(const glm::dvec3& centre, double radius, double power, const SurfacePoint& point) {
   const glm::dvec3 to_centre = centre - point.position;
   if (glm::dot(point.facing, to_centre) < -radius) return 0.0;
   const double square = std::max(glm::dot(to_centre, to_centre), kLeastSquaredDistance);
@@ -21,7 +21,7 @@ double BallWeight(const glm::dvec3& centre, double radius, double power, const S
 }
 
 double SunWeight(const glm::dvec3& direction, double half_angle, double power, const SurfacePoint& point) {
-  // The sine, and more: a wide sun is spread over a flat disc.
+  // At least the sine: a wide sun is spread over a flat disc.
   const double spread = std::min(std::tan(half_angle), 1.0);
   if (glm::dot(point.facing, direction) < -spread) return 0.0;
   return power * std::clamp(glm::dot(point.normal, direction) + spread, kLeastCosine, 1.0);
@@ -32,7 +32,7 @@ LightTree::LightTree(std::span<const TreeLight> lights) : order_(lights.size()),
   if (!lights.empty()) Build(lights, 0, std::uint32_t(lights.size()), 0, 0);
 }
 
-// Halves a leaf that is too large along its longest side; suns, which have no place, are kept together at one end.
+// Halves a leaf that is too large along its longest side. Suns have no place and stay together at one end.
 std::uint32_t LightTree::Build(std::span<const TreeLight> lights, std::uint32_t begin, std::uint32_t end,
                                std::uint64_t path, int depth) {
   const std::uint32_t index = std::uint32_t(nodes_.size());
@@ -83,7 +83,7 @@ std::uint32_t LightTree::Build(std::span<const TreeLight> lights, std::uint32_t 
 
 double LightTree::NodeWeight(const Node& node, const SurfacePoint& point, bool with_delta) const {
   const double power = node.power[with_delta];
-  return std::isinf(node.radius) ? power : BallWeight(node.centre, node.radius, power, point);
+  return std::isinf(node.radius) ? power : SphereWeight(node.centre, node.radius, power, point);
 }
 
 double LightTree::FirstShare(const Node& node, const SurfacePoint& point, bool with_delta) const {

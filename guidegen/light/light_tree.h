@@ -2,7 +2,7 @@
 //
 // After Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", HPG 2018, without its
 // splitting: going down, the side that may light the receiver more is taken more often. The few lights of a leaf are
-// weighed one by one, and a scene with few lights is a single leaf.
+// weighted individually, and a scene with few lights is a single leaf.
 #pragma once
 
 #include <algorithm>
@@ -23,12 +23,12 @@ inline constexpr double kLeastSquaredDistance = 1e-30;
 struct LightChoice {
   int light = -1;  // −1: none can reach the point
   double probability = 0.0;
-  // The remainder of the random number that chose, stretched to [0, 1). It is used to sample a point of the light, so
-  // that the points on each light are spread as evenly as the numbers were.
+  // The remainder of the random number that chose, rescaled to [0, 1). It samples a point of the light, so that the
+  // points on each light are as evenly distributed as the numbers.
   double remainder = 0.0;
 };
 
-// A light as the tree sees it: a bounding sphere, or a sun, which is equally strong everywhere.
+// A light in the tree: a bounding sphere, or a sun, which is equally strong everywhere.
 struct TreeLight {
   glm::dvec3 centre{0.0};
   double radius = 0.0;  // of suns half the angle, in radians
@@ -37,10 +37,10 @@ struct TreeLight {
   bool is_delta = false;
 };
 
-// About the irradiance that lights of this power, all within a ball, can bring to a point; 0 only where none of them
-// can rise above its horizon. The cosine counts as 0.1 at least: highlights do not follow it.
-double BallWeight(const glm::dvec3& centre, double radius, double power, const SurfacePoint& point);
-// The same for light that comes from one direction.
+// The approximate irradiance that lights of this power inside a sphere can bring to a point. 0 only if none of them can
+// rise above its horizon. The cosine counts as 0.1 at least, because highlights do not follow it.
+double SphereWeight(const glm::dvec3& centre, double radius, double power, const SurfacePoint& point);
+// SphereWeight's counterpart for light from one direction.
 double SunWeight(const glm::dvec3& direction, double half_angle, double power, const SurfacePoint& point);
 
 // Whether a light fills so much of the hemisphere that directions of a wide lobe should sample it too. For a smaller
@@ -59,8 +59,8 @@ class LightTree {
   LightTree() = default;
   explicit LightTree(std::span<const TreeLight> lights);
 
-  // A light by chance, u in [0, 1). `weight(light)` tells the lights of a leaf apart: about the irradiance that each
-  // can bring, 0 where it brings none. `with_delta` says whether lights without extent take part.
+  // A random light, u in [0, 1). `weight(light)` is the approximate irradiance of a light in a leaf, 0 where it brings
+  // none. `with_delta` says whether lights without extent take part.
   template <class Weight>
   LightChoice Choose(const SurfacePoint& point, double u, bool with_delta, const Weight& weight) const {
     LightChoice choice;
@@ -86,8 +86,8 @@ class LightTree {
       if (left < weights[i]) break;
       left -= weights[i];
     }
-    choice.remainder =
-        std::clamp(choice.remainder, 0.0, kBelowOne);  // rounding may leave a little over for the last one
+    choice.remainder = std::clamp(choice.remainder, 0.0,
+                                  kBelowOne);  // rounding may leave a remainder slightly above 1 for the last one
     return choice;
   }
 

@@ -1,4 +1,4 @@
-// Whether a light is seen from a surface.
+// Whether a light is visible from a surface.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,7 +8,7 @@
 
 namespace scumble {
 
-// Whether anything of `blockers` lies between a surface and the light that was drawn from it.
+// Whether any of `blockers` lies between a surface and the light that was drawn from it.
 bool IsBlocked(const EmbreeScene& scene, const glm::dvec3& origin, const LightDraw& draw,
                Blockers blockers = Blockers::kAll);
 

@@ -12,7 +12,7 @@ namespace {
 constexpr int kMaxItems = 60;
 constexpr std::string_view kLetters = "LDSE";
 
-// The events in braces or as one letter, and what follows; nothing where the text is no expression.
+// Takes the events in braces or as one letter off the text; empty if the text is no expression.
 std::optional<unsigned> TakeEvents(std::string_view& text) {
   const auto letter = [](char c) -> unsigned {
     const std::size_t at = kLetters.find(c);
@@ -33,7 +33,7 @@ std::optional<unsigned> TakeEvents(std::string_view& text) {
   return events;
 }
 
-// How often: from `least` to `most`, the latter −1 for any number.
+// The repetition: from `least` to `most` times; −1 for no limit.
 struct Repeat {
   int least = 1;
   int most = 1;
@@ -74,7 +74,7 @@ std::optional<Repeat> TakeRepeat(std::string_view& text) {
 
 }  // namespace
 
-// One event of the expression: which letters it takes, whether it may be left out, whether it may come again.
+// One event of the expression: its letters, whether it is optional, whether it may repeat.
 struct PathExpression::Item {
   unsigned events;
   bool optional;
@@ -107,7 +107,7 @@ Expected<PathExpression> PathExpression::Parse(std::string_view text) {
   return expression;
 }
 
-// The subset construction. Bit i of a set means that the next event may be item i; the last bit, that all are done.
+// The subset construction. Bit i of a set: the next event may be item i. The last bit: all items are done.
 void PathExpression::Compile(const std::vector<Item>& items) {
   const auto close = [&](std::uint64_t set) {
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -140,7 +140,7 @@ void PathExpression::Compile(const std::vector<Item>& items) {
   }
 }
 
-// States from which no event leads to acceptance become kDead, so that a tracer stops as early as can be.
+// States from which no event leads to acceptance become kDead, so that a tracer stops as early as possible.
 void PathExpression::DropHopeless() {
   std::vector<bool> hopeful(nodes_.size());
   for (bool changed = true; changed;) {

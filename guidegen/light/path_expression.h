@@ -1,6 +1,6 @@
-// Light-path expressions: which paths belong to a layer (Heckbert 1990). A path is written from its light to the eye,
-// one letter an event: L the light, D a diffuse and S a specular reflection, E the eye. "LDE" is direct diffuse light,
-// "LE" a light that is seen itself.
+// Light-path expressions: they define which paths belong to a layer (Heckbert 1990). A path is written from its light
+// to the eye, one letter an event: L the light, D a diffuse and S a specular reflection, E the eye. "LDE" is direct
+// diffuse light, "LE" a light in direct view.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ inline constexpr int kPathEvents = 4;
 class PathExpression {
  public:
   using State = std::int16_t;
-  static constexpr State kDead = -1;  // whatever follows, the path will not match
+  static constexpr State kDead = -1;  // no continuation can match
 
   // A sequence of L, D, S, E, "." (any event) and sets like "[DS]", each with an optional "*", "+", "?", "{n}",
   // "{m,n}" or "{m,}". Fails with kUsage, quoting the text, on anything else and on more than 60 events.
@@ -32,7 +32,7 @@ class PathExpression {
   }
   // Whether the path is complete and matches.
   bool Accepts(State state) const { return state != kDead && nodes_[std::size_t(state)].accepts; }
-  // Whether a light met here completes a path that matches.
+  // Whether a light hit here completes a path that matches.
   bool EndsWithLight(State state) const { return Accepts(Step(state, PathEvent::kLight)); }
 
   // Whether a whole path, written from the light to the eye as above, matches; false for other letters.

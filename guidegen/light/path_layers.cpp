@@ -71,7 +71,7 @@ PathFollower::PathFollower(const LayerSet& asked, const PathSupply& supply, int 
   }
 }
 
-// The largest number of reflections, up to `most`, of a path that matches with what the scene holds; −1 for none.
+// The largest number of reflections, up to `most`, of a path that matches with the scene's parts; −1 for none.
 int PathFollower::LongestPath(const PathExpression& expression, int most) const {
   std::vector<PathExpression::State> states = {expression.Step(expression.Start(), PathEvent::kEye)};
   int longest = -1;

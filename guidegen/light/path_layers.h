@@ -15,10 +15,10 @@ inline constexpr int kMaxPathLayers = 5;
 
 // Kinds of light and reflection in a scene: the parts that paths are made of.
 struct PathSupply {
-  bool light = false;            // anything that shines
+  bool light = false;            // anything that emits
   std::size_t delta_lights = 0;  // lights without extent
   bool may_be_met = false;       // a light that has an extent: area lights, meshes, the world
-  bool diffuse = false;          // materials that reflect so
+  bool diffuse = false;          // some material reflects diffusely
   bool specular = false;
 };
 PathSupply SupplyOf(const Scene& scene);
@@ -27,24 +27,24 @@ PathSupply SupplyOf(const Scene& scene);
 const char* PathLayerExpression(Layer layer);
 LayerSet PathLayers();
 
-// How far a path has come in each layer's expression.
+// The state of a path in each layer's expression.
 using PathState = std::array<PathExpression::State, kMaxPathLayers>;
 
-// The layers asked for whose paths can exist with what there is; the others stay 0 and cost nothing. Immutable.
+// The requested layers whose paths can exist in the scene; the others stay 0 and cost nothing. Immutable.
 class PathFollower {
  public:
   PathFollower(const LayerSet& asked, const PathSupply& supply, int max_bounces);
 
   std::span<const Layer> layers() const { return layers_; }
   bool empty() const { return layers_.empty(); }
-  // Whether chance is needed: a light that has an extent may be met, or a path has more than one reflection.
+  // Whether random numbers are needed: a light with extent may be hit, or a path has more than one reflection.
   bool NeedsSamples() const { return needs_samples_; }
   // Whether any path has more than one reflection.
   bool Bounces() const { return bounces_; }
 
   PathState AtEye() const;
   PathState Step(const PathState& state, PathEvent event) const;
-  // Whether light that is found now belongs to a layer, and to which.
+  // Whether light found now belongs to some layer.
   bool WantsLight(const PathState& state) const;
   bool WantsLight(const PathState& state, int layer) const {
     return expressions_[std::size_t(layer)].EndsWithLight(state[std::size_t(layer)]);

@@ -12,10 +12,10 @@
 namespace scumble {
 namespace {
 
-// Reflections after which roulette begins: before, paths carry most of the light.
+// Reflections after which roulette begins: the paths before it carry most of the light.
 constexpr int kFirstRoulette = 1;
 constexpr double kLeastSurvival = 0.05;
-// A lobe that is wanted is chosen at least this often, however little of the light it carries.
+// A wanted lobe is chosen with at least this probability, however little light it carries.
 constexpr double kLeastLobe = 0.1;
 
 // The sets of random numbers for points of lights on the first surface; the path's own begin at 0.
@@ -26,8 +26,8 @@ constexpr PathEvent kLobeEvents[2] = {PathEvent::kDiffuse, PathEvent::kSpecular}
 // The balance heuristic: the weight of a technique of density `a` beside one of density `b`.
 double Balance(double a, double b) { return std::isinf(a) ? 1.0 : a / (a + b); }
 
-// The blur of what a path sees after a wide reflection, by the smallest density on its way: Cycles' "filter glossy" at
-// its default of 1. A mirror that only diffuse light looks into would otherwise show lights as fireflies.
+// The blur that a path applies after a wide reflection, by its smallest density so far: Cycles' "filter glossy" at its
+// default of 1. Otherwise a mirror in diffuse light would show lights as fireflies.
 double RoughenedAlpha(double density) { return density < 1.0 ? 0.5 * std::sqrt(1.0 - density) : 0.0; }
 
 double Largest(const glm::dvec3& c) { return std::max(c.r, std::max(c.g, c.b)); }
@@ -81,13 +81,13 @@ LightPathTracer::Lobes LightPathTracer::LobesAt(const Vertex& vertex, const Path
   return lobes;
 }
 
-// Whether directions of a lobe look for a light, beside points drawn on it. The same answer is given to both
-// techniques, so that their weights add up to one.
+// Whether directions of a lobe search for a light, beside points drawn on it. Both techniques get one answer, so that
+// their weights add up to one.
 bool LightPathTracer::LooksFor(int light, const Vertex& vertex, int lobe) const {
   return lobe == 1 || lights_.IsWideFrom(vertex.point.position, light);
 }
 
-// Whether directions of a lobe may meet light that they look for.
+// Whether directions of a lobe may hit a light that they search for.
 bool LightPathTracer::MayMeetLight(const Vertex& vertex, int lobe) const {
   if (lobe == 1 || lights_.has_world()) return lights_.CanBeMet();
   return lights_.CanBeMet() && lights_.AnyWideFrom(vertex.point.position);
@@ -121,10 +121,10 @@ void LightPathTracer::AddDraw(const Vertex& vertex, const Lobes& lobes, int ligh
   }
 }
 
-// Analytic lights that a sampled direction meets before `length`, and the world where it meets nothing.
+// Analytic lights that a sampled direction hits before `length`, and the world where it hits nothing.
 void LightPathTracer::AddMet(const Vertex& vertex, const PathState& state, const Flight& flight, double length,
                              PathSums& sums) const {
-  // From where the ray leaves: a light in the surface itself is then behind it, however either is rounded.
+  // From the ray's origin: a light in the surface itself is then behind it, however either is rounded.
   lights_.VisitAnalytic(vertex.origin, flight.direction, length,
                         [&](int light, const glm::dvec3& radiance, double density) {
                           if (!LooksFor(light, vertex, flight.lobe)) return;
@@ -166,7 +166,7 @@ void LightPathTracer::AddExact(const First& pixel, PathSums& sums, RayCounts& ra
   }
 }
 
-// Light on the first surface by a point of each light with extent: all of its noise is then that of shadows' edges.
+// Direct light on the first surface by a point of each light with extent: the only noise left is that of shadow edges.
 void LightPathTracer::AddEach(const Vertex& vertex, const Lobes& lobes, const Sampler& sampler, std::uint32_t sample,
                               PathSums& sums, RayCounts& rays) const {
   for (int light = 0; light < lights_.count(); ++light) {
@@ -177,13 +177,13 @@ void LightPathTracer::AddEach(const Vertex& vertex, const Lobes& lobes, const Sa
   }
 }
 
-// The probability with which a light was sampled at the vertex that a flight has left.
+// The probability with which a light was chosen at the vertex that a flight left.
 double LightPathTracer::ChoiceOf(int light, const Vertex& vertex, const Flight& flight) const {
   if (flight.first && lights_.FewHaveExtent()) return 1.0;
   return lights_.Probability(vertex.point, light, !flight.first);
 }
 
-// Light on a vertex by one light that is chosen.
+// Direct light on a vertex by one chosen light.
 void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const Quad& u, bool with_delta,
                                 const glm::dvec3& throughput, PathSums& sums, RayCounts& rays) const {
   const LightChoice choice = lights_.Choose(vertex.point, u[0], with_delta);
@@ -192,7 +192,7 @@ void LightPathTracer::AddChosen(const Vertex& vertex, const Lobes& lobes, const 
   AddDraw(vertex, lobes, choice.light, draw, choice.probability, throughput, sums, rays);
 }
 
-// Sends the path on by one of its lobes, roulette included. False where it ends.
+// Continues the path by one of its lobes, roulette included. False where it ends.
 bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Quad& u, int bounce,
                               Flight& flight) const {
   flight.lobe = u[2] < lobes.probability[0] ? 0 : 1;
@@ -213,7 +213,7 @@ bool LightPathTracer::Scatter(const Vertex& vertex, const Lobes& lobes, const Qu
   return u[3] < survival;
 }
 
-// Follows the flight to the next surface, adding the light that it meets; nothing where the path ends.
+// Follows the flight to the next surface and adds the light on it; empty where the path ends.
 std::optional<LightPathTracer::Vertex> LightPathTracer::Fly(const Vertex& vertex, const Lobes& lobes,
                                                             const Flight& flight, bool goes_on, PathSums& sums,
                                                             RayCounts& rays) const {

@@ -1,15 +1,15 @@
 // The path tracer behind the light-path layers: from the eye, with next-event estimation, multiple importance sampling
 // and Russian roulette (Veach 1997; Kajiya 1986).
 //
-// Each reflection chooses one lobe, so that every path has one string of events, and what it carries goes to exactly
-// the layers whose expression matches. On the first surface lights without extent are summed, not sampled: where
-// nothing else is asked for, no random number is drawn. Lights with extent are each sampled there while they are few;
-// everywhere else one light is chosen.
+// Each reflection chooses one lobe, so that every path has one string of events, and its light goes to exactly the
+// layers whose expression matches. On the first surface lights without extent are summed, not sampled: if no other
+// light is needed, no random number is drawn. Few lights with extent are each sampled there; everywhere else one light
+// is chosen.
 //
-// No path's light is clamped. The result is biased all the same, as Cycles' is by default ("filter glossy" at 1): after
-// a wide reflection, specular lobes are made rougher. Caustics, light that a mirror or a smooth metal throws on a
-// diffuse surface, are blurred by it, and so is what a diffuse surface's light sees in them; no number of samples makes
-// them sharp. What the eye sees first keeps its roughness.
+// No path's light is clamped. The result is still biased, as in Cycles by default ("filter glossy" at 1): after a wide
+// reflection, specular lobes are made rougher. This blurs caustics, the light that a mirror or a smooth metal throws on
+// a diffuse surface, and mirrors in diffuse light. More samples do not make them sharp. The first visible surface keeps
+// its roughness.
 #pragma once
 
 #include <array>
@@ -31,12 +31,12 @@ namespace scumble {
 // Radiance by the number of a follower's layer.
 using PathSums = std::array<glm::dvec3, kMaxPathLayers>;
 
-// A pixel whose light is wanted, by what its primary ray met.
+// A pixel whose light is wanted, with the hit of its primary ray.
 struct PathPixel {
   std::uint32_t index = 0;  // in the picture
   std::uint32_t object = 0;
   std::uint32_t primitive = 0;
-  glm::dvec2 at{0.0};       // where in the picture the ray went through
+  glm::dvec2 at{0.0};       // the place in the picture of its ray
   float clear_from = 0.0f;  // as in TileHits
 };
 
@@ -50,15 +50,15 @@ class LightPathTracer {
   struct Vertex {
     SurfacePoint point;
     SurfaceBsdf bsdf;
-    glm::dvec3 origin;  // where rays leave it
+    glm::dvec3 origin;  // origin of the rays that leave it
     std::uint32_t object;
     std::uint32_t primitive;
   };
-  // What can happen at a vertex: index 0 is the diffuse, 1 the specular lobe.
+  // The possible reflections at a vertex: index 0 is the diffuse lobe, 1 the specular one.
   struct Lobes {
-    std::array<PathState, 2> after;          // where the path is with this reflection
-    std::array<bool, 2> lit = {};            // light that comes by this lobe belongs to a layer
-    std::array<double, 2> probability = {};  // with which the path goes on by this lobe
+    std::array<PathState, 2> after;          // the path's state after this reflection
+    std::array<bool, 2> lit = {};            // light through this lobe belongs to a layer
+    std::array<double, 2> probability = {};  // that the path continues by this lobe
   };
   // A pixel's first surface, which all its samples share.
   struct First {
@@ -67,14 +67,14 @@ class LightPathTracer {
   };
   First FirstVertex(const PathPixel& pixel) const;
 
-  // The part that needs no random numbers: emission that the eye sees, and delta lights on the first surface.
+  // The part without random numbers: emission in view, and delta lights on the first surface.
   void AddExact(const First& first, PathSums& sums, RayCounts& rays) const;
-  // One path and all its light. The mean over the samples 0 … N − 1 and the exact part make the layers.
+  // One path and its light. The layers are the mean over the samples 0 … N − 1 plus the exact part.
   void AddSample(const First& first, const Sampler& sampler, std::uint32_t sample, PathSums& sums,
                  RayCounts& rays) const;
 
  private:
-  // The ray that carries a path on, and what it met.
+  // The ray that continues a path, and its hit.
   struct Flight {
     glm::dvec3 throughput{1.0};
     glm::dvec3 direction{0.0};

@@ -44,8 +44,8 @@ constexpr std::uint32_t ReverseBits(std::uint32_t x) {
   return ((x & 0xAAAAAAAAu) >> 1) | ((x & 0x55555555u) << 1);
 }
 
-// All four coordinates, with their bits reversed, by the bytes of the index with its bits reversed: between two
-// scrambles nothing needs to be turned round, and a point is four look-ups instead of 128 tests of a bit.
+// All four coordinates, bit-reversed, by the bytes of the bit-reversed index. Between two scrambles no reversal is
+// needed, and a point takes four look-ups instead of 128 tests of a bit.
 using ReversedPoint = std::array<std::uint32_t, 4>;
 using ByteTables = std::array<std::array<ReversedPoint, 256>, 4>;
 

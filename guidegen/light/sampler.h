@@ -13,8 +13,8 @@ namespace scumble {
 // Four numbers in [0, 1).
 using Quad = std::array<double, 4>;
 
-// The samples of one pixel. The same (seed, stream, pixel, index, set) gives the same numbers on every machine. Streams
-// are for purposes that must not share their numbers, seeds for whoever wants the same picture with other noise.
+// The samples of one pixel. Equal (seed, stream, pixel, index, set) give equal numbers on every machine. Streams
+// separate purposes that must not share numbers; seeds give the same picture with different noise.
 class Sampler {
  public:
   explicit Sampler(std::uint32_t pixel, std::uint32_t stream = 0, std::uint64_t seed = 0);

@@ -1,4 +1,4 @@
-// What a cast looks at besides the objects: the camera's rays, lights, and the next frame.
+// A cast's input besides the objects: the camera's rays, lights, and the next frame.
 #pragma once
 
 #include <vector>
@@ -13,12 +13,12 @@ namespace scumble {
 // All in the camera's view space. The objects are the EmbreeScene's.
 struct View {
   CameraRays camera;
-  std::vector<PlacedLight> lights;  // these and what follows only where a layer needs them
+  std::vector<PlacedLight> lights;  // these and the following members only where a layer needs them
   glm::dvec3 world_radiance{0.0};
   PathSupply supply;
 
-  // For the motion layer; empty where it is not asked for. Each of the scene's objects, in their order, as it stands in
-  // the next frame before that frame's camera; without a mesh where it is gone by then.
+  // For the motion layer; empty where it is not wanted. Each of the scene's objects, in their order, as placed before
+  // the next frame's camera; without a mesh if the next frame lacks it.
   std::vector<PlacedObject> next_objects;
   CameraRays next_camera;
 };

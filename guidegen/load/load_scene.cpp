@@ -37,8 +37,8 @@ Expected<Scene> LoadByEnding(const std::filesystem::path& path) {
                     "'; expected a scene in .glb, .gltf, .obj or .ply");
 }
 
-// What every loader promises about its scene (guidegen/scene/scene.h).
-void CheckPromises(const Scene& scene) {
+// Checks the contract of every loader about its scene (guidegen/scene/scene.h).
+void CheckContract(const Scene& scene) {
   SCUMBLE_CHECK(!scene.materials.empty());
   for (const Mesh& mesh : scene.meshes) {
     SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.positions.size());
@@ -66,7 +66,7 @@ Status Finish(const std::filesystem::path& path, bool has_geometry, TextureLoadi
   scene.name = path.string();
   if (scene.materials.empty()) DefaultMaterial(scene);
   if (!has_geometry) scene.warnings.push_back("there is no geometry in the scene, its picture is empty");
-  CheckPromises(scene);
+  CheckContract(scene);
   if (textures == TextureLoading::kWhenNeeded) return Ok();
   SCUMBLE_ASSIGN(const DecodedTextures decoded, DecodeAllTextures(scene));
   scene.warnings.insert(scene.warnings.end(), decoded.warnings.begin(), decoded.warnings.end());

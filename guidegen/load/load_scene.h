@@ -13,13 +13,13 @@ namespace scumble {
 
 enum class TextureLoading {
   kNow,         // the scene is complete
-  kWhenNeeded,  // DecodeTextures is called before the scene is rendered, and tells what is wrong with them
+  kWhenNeeded,  // DecodeTextures is called before the scene is rendered, and reports damaged ones
 };
 
-// Loads by the file's ending. Missing normals are made smooth, weighted by angle. A scene without geometry is legal
-// (a warning says so). Errors name the file and what is wrong with it: unreadable, corrupt, an accessor that points
-// outside its buffer, an index that points outside its attributes, a texture that is missing. Never reads outside the
-// file's data. A scene that moves is seen at rest: its nodes as they stand, skins and morph weights applied.
+// Loads by the file's ending. Missing normals are made smooth, weighted by angle. A scene without geometry is legal,
+// with a warning. Errors name the file and the defect: unreadable, corrupt, an accessor that points outside its buffer,
+// an index that points outside its attributes, a missing texture. Never reads outside the file's data. A moving scene
+// is loaded at rest: nodes with their own transforms, skins and morph weights applied.
 Expected<Scene> LoadScene(const std::filesystem::path& path, TextureLoading textures = TextureLoading::kNow);
 
 struct AnimationOptions {
@@ -29,29 +29,28 @@ struct AnimationOptions {
 
 struct GltfRig;
 
-// A scene over time: the file is parsed once, then it can be seen at any time. What does not move (textures, materials,
-// shapes at rest) is loaded once and kept by whoever holds the Scene. Files that know no time, and glTF without an
-// animation, are scenes that stand still. Immutable once loaded; free to use from any thread.
+// A scene over time: the file is parsed once and posed at any time. Static parts (textures, materials, shapes at rest)
+// are loaded once and shared by all copies of the Scene. Formats without time, and glTF without an animation, are
+// static scenes. Immutable once loaded; free to use from any thread.
 class AnimatedScene {
  public:
-  // Errors as LoadScene has them, and those of the animation and the skins, which name the place. An unknown animation
-  // name is a usage error that lists the names there are.
+  // Errors as LoadScene's, and those of the animation and the skins, which name the place. An unknown animation name is
+  // a usage error that lists the file's names.
   static Expected<AnimatedScene> Load(const std::filesystem::path& path, const AnimationOptions& options = {});
 
   bool moves() const;
-  const Scene& rest() const { return rest_; }  // as LoadScene sees it
-  std::vector<Instance> objects() const;       // all that are seen at any time, as at rest
+  const Scene& rest() const { return rest_; }  // as LoadScene returns it
+  std::vector<Instance> objects() const;       // all that are visible at any time, as at rest
   double duration_seconds() const;             // of the last key, from 0; Blender puts frame N at N / fps
   const std::vector<std::string>& animations() const { return animations_; }  // the file's, by name
 
-  // A copy at that time. Before the first key and after the last one everything stands still. The result depends on
-  // the time alone, not on what was asked before. Fails where the animation has no sense at that time (a camera scaled
-  // to nothing).
+  // A copy at that time. Before the first key and after the last one the scene is static. The result depends on the
+  // time alone, not on earlier calls. Fails where the animation is invalid at that time (a camera scaled to nothing).
   Expected<Scene> SceneAt(double seconds) const;
 
-  // The same in place, for sequences: `scene` came from SceneAt. Rewrites instances, matrices of cameras and lights of
-  // the file, and deformed shapes; lights and cameras that were added behind the file's stay, and textures are not
-  // touched. After an error `scene` is only good for another MoveTo.
+  // SceneAt in place, for sequences: `scene` came from SceneAt. Rewrites instances, matrices of the file's cameras and
+  // lights, and deformed shapes. Lights and cameras appended after the file's stay, and textures are not changed. After
+  // an error `scene` is only valid for another MoveTo.
   Status MoveTo(double seconds, Scene& scene) const;
 
  private:

@@ -42,7 +42,7 @@ std::vector<glm::dvec2> Project(std::span<const glm::vec3> corners) {
   return flat;
 }
 
-// What is left of a polygon while its ears are cut off.
+// The remaining polygon while its ears are cut off.
 class Ears {
  public:
   explicit Ears(std::span<const glm::vec3> corners)
@@ -58,8 +58,9 @@ class Ears {
     return {ring_[(at + n - 1) % n], ring_[at], ring_[(at + 1) % n]};
   }
 
-  // Whether no corner that is left lies in the triangle. Asked again of the same triangle, it goes on with the corner
-  // that was in the way: those before it are outside for good. So all looks are for three triangles a corner at most.
+  // Whether no remaining corner lies in the triangle. If asked again for one triangle, it continues with the corner
+  // that was inside: those before it are outside for good. So all calls together visit at most three triangles a
+  // corner.
   bool IsEar(std::size_t at) {
     const glm::uvec3 triangle = Triangle(at);
     const glm::dvec2 &a = points_[triangle.x], &b = points_[triangle.y], &c = points_[triangle.z];
@@ -83,7 +84,7 @@ class Ears {
 
  private:
   const std::vector<glm::dvec2> points_;
-  std::vector<unsigned> cleared_;  // of the triangle at each corner, how many points are known not to be in it
+  std::vector<unsigned> cleared_;  // of the triangle at each corner, how many points are known to be outside it
   std::vector<bool> gone_;
   std::vector<unsigned> ring_;
   std::uint64_t looks_ = 0;
@@ -94,7 +95,7 @@ bool IsPlain(const Material& material) {
          material.normal_texture.texture < 0 && material.double_sided;
 }
 
-// The first of "default", "default#2", … that no material has, or that a plain one has, whose index `found` then is.
+// The first of "default", "default#2", … that no material has, or that a plain one has: `found` is then its index.
 std::string DefaultName(const Scene& scene, int& found) {
   std::map<std::string_view, int> named;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -119,7 +120,7 @@ Expected<std::vector<std::byte>> ReadRegularFile(const std::filesystem::path& pa
     return InputError("cannot read " + path.string() + ": it is no regular file");
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) return ReadWholeFile(path, 0);  // which says why not
+  if (error) return ReadWholeFile(path, 0);  // reports the reason
   constexpr std::uintmax_t kMostBytes = std::uintmax_t(8) << 30;
   if (size > kMostBytes) return InputError(path.string() + " is larger than " + std::to_string(kMostBytes) + " bytes");
   return ReadWholeFile(path, size, ", which is what the system says it has: copy it to a plain file once it is whole");
@@ -191,7 +192,7 @@ std::uint64_t TriangulatePolygon(std::span<const glm::vec3> corners, std::vector
   }
   Ears ears(corners);
   const std::vector<unsigned>& ring = ears.ring();
-  // Starting behind the last ear spreads the cuts, and makes a convex polygon's triangles less thin.
+  // Starting after the last ear spreads the cuts, and makes a convex polygon's triangles less thin.
   std::size_t at = 1, misses = 0;
   while (ring.size() > 3 && misses < ring.size()) {
     at %= ring.size();

@@ -11,7 +11,7 @@
 namespace scumble {
 namespace {
 
-// Sums shorter than this share of their weight have no direction that can be trusted.
+// Sums shorter than this share of their weight have no reliable direction.
 constexpr double kVanishing = 1e-6;
 
 struct NormalSum {

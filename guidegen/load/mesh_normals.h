@@ -1,8 +1,8 @@
 // Normals and tangents for meshes whose files give none.
 //
 // Normals are smooth: the sum of the adjoining triangles' normals, each weighted by its angle at the vertex (Thürmer &
-// Wüthrich, "Computing vertex normals from polygonal facets", 1998), so they do not depend on how a surface is cut into
-// triangles. Tangents follow Lengyel, "Computing tangent space basis vectors for an arbitrary mesh", 2001, with the
+// Wüthrich, "Computing vertex normals from polygonal facets", 1998), so they do not depend on the triangulation.
+// Tangents follow Lengyel, "Computing tangent space basis vectors for an arbitrary mesh", 2001, with the
 // triangles weighted likewise. Sums are in double and in the order of the triangles: the same bits every time.
 #pragma once
 
@@ -19,8 +19,8 @@ namespace scumble {
 // One id per vertex; vertices at exactly the same place share one. Positions must not be NaN.
 std::vector<std::uint32_t> WeldByPosition(std::span<const glm::vec3> positions);
 
-// One unit normal per vertex; vertices with equal `weld` ids share theirs. Where the joint normal vanishes (a sheet
-// with both sides modelled) a vertex takes that of its own triangles; without any triangle of positive area, +Z.
+// One unit normal per vertex; vertices with equal `weld` ids share theirs. If the shared normal vanishes (a sheet
+// modelled with both sides), a vertex takes that of its own triangles; without any triangle of positive area, +Z.
 // Indices must be valid; `weld` ids must be below the number of positions.
 std::vector<glm::vec3> SmoothNormals(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
                                      std::span<const std::uint32_t> weld);

@@ -19,7 +19,7 @@ glm::vec3 Color(const tinyobj::real_t* from) {
   return color;
 }
 
-// From 0 to `most`; 0 for what is no number.
+// From 0 to `most`; 0 for NaN.
 float UpTo(tinyobj::real_t from, float most) {
   const auto value = static_cast<float>(from);
   return std::isfinite(value) ? std::clamp(value, 0.0f, most) : 0.0f;
@@ -43,8 +43,8 @@ TextureUse UseTexture(const MtlLibrary& library, const Scene& scene, const std::
   return use;
 }
 
-// MTL knows a colour, a highlight and its exponent. They are read as Blender 3.4 reads and writes them. A highlight
-// only says that there is a coat: how strongly one reflects is glTF's.
+// MTL has a colour, a highlight and its exponent. They are read as Blender 3.4 reads and writes them. A highlight only
+// means that there is a coat: its strength is glTF's.
 void SetLighting(const tinyobj::material_t& from, Material& material) {
   const glm::vec3 highlight = Color(from.specular);
   material.roughness = 1.0f - std::sqrt(UpTo(from.shininess, 1000.0f) / 1000.0f);

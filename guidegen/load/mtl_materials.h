@@ -13,13 +13,13 @@ namespace scumble {
 
 struct MtlLibrary {
   std::vector<tinyobj::material_t> materials;
-  std::map<std::string, int> textures;  // the scene's, by the name that the library has for them
+  std::map<std::string, int> textures;  // indices of the scene's textures, by the library's names
 };
 
-// The textures that a material uses, by name; for MakeMaterial they must be among the library's.
+// The textures of a material, by name; for MakeMaterial they must be among the library's.
 std::vector<std::string> TexturesOf(const tinyobj::material_t& material);
 
-// A material of the library, without a name. What is left out of the scene's textures is as if it had never been named.
+// A material of the library, without a name. Textures that the scene leaves out are ignored.
 Material MakeMaterial(const MtlLibrary& library, std::size_t index, const Scene& scene);
 
 }  // namespace scumble

@@ -23,8 +23,8 @@
 namespace scumble {
 namespace {
 
-// Where an object's middle lies within this distance of 0 or of a neighbour's origin, that is good enough: floats step
-// by 1/256 there at most. So scenes in millimetres, 60 m of them, keep the one origin of the file.
+// If an object's middle lies within this distance of 0 or of a neighbour's origin, that origin is good enough: floats
+// step by at most 1/256 there. So scenes in millimetres, 60 m of them, keep the file's one origin.
 constexpr double kOneOrigin = 65536.0;
 
 bool IsFar(const glm::dvec3& a, const glm::dvec3& b) {
@@ -32,12 +32,12 @@ bool IsFar(const glm::dvec3& a, const glm::dvec3& b) {
   return std::max({away.x, away.y, away.z}) > kOneOrigin;
 }
 
-// Origins of which each is far from all others, found by cells of that size.
+// Origins that are far from each other, found by cells of that size.
 struct NearOrigins {
   std::vector<glm::dvec3> origins;
   std::map<std::array<double, 3>, std::vector<std::size_t>> cells;
 
-  // The place of the first that is not far; otherwise this becomes one.
+  // The index of the first origin that is near; otherwise the place becomes an origin.
   std::size_t Find(const glm::dvec3& place) {
     const glm::dvec3 cell = glm::floor(place / kOneOrigin);
     std::size_t first = origins.size();
@@ -120,9 +120,9 @@ class ObjLoader {
     return {v[0], v[1], v[2]};
   }
 
-  // Text holds any number of digits: surveyors' files stand millions of metres from 0. One origin does for most files,
-  // and then they have one, as objects that touch must round their corners alike. In the others a thing at 0 may stand
-  // beside a surveyor's, and what is far has origins of its own.
+  // Text holds any number of digits: surveyors' files lie millions of metres from 0. If one origin is enough for the
+  // file, it has only one, because objects that touch must round their corners alike. Otherwise objects at 0 may stand
+  // beside a surveyor's, and each far shape has its own origin.
   void ChooseOrigins() {
     PlaceBox whole;
     for (const tinyobj::shape_t& shape : shapes_) {
@@ -135,7 +135,7 @@ class ObjLoader {
     }
     const glm::dvec3 common = OriginOf(whole);
     frames_.push_back({0, common});
-    // In the order of their places, so that it does not matter where they stand in the file.
+    // Ordered by place, so that their order in the file does not matter.
     std::map<std::array<double, 3>, std::vector<std::size_t>> far_shapes;
     for (std::size_t s = 0; s < shapes_.size(); ++s) {
       const glm::dvec3 own = origins_[s];
@@ -161,7 +161,7 @@ class ObjLoader {
     }
   }
 
-  // Gives a shape vertices of its own, behind all others.
+  // Gives a shape its own vertices, after all others.
   void CopyVertices(tinyobj::mesh_t& mesh) {
     const bool has_colors = HasColors();
     const auto copy = [](std::vector<double>& values, std::size_t vertex) {
@@ -193,14 +193,14 @@ class ObjLoader {
     }
   }
 
-  // One of the file's lists that faces point into.
+  // One of the file's lists that faces index.
   struct IndexedList {
     const char* what;
     std::size_t count;
     bool optional;
   };
 
-  // An index of the file, counted from 0 and resolved; -1 stands for none where the list is optional.
+  // An index of the file, counted from 0 and resolved; -1 means none where the list is optional.
   Status CheckIndex(int index, const IndexedList& list, const std::string& shape) const {
     if (index >= 0 ? std::size_t(index) < list.count : list.optional && index == -1) return Ok();
     return InputError(file_ + ": a face of '" + Excerpt(shape, 80) + "' uses " + list.what + " " +
@@ -267,7 +267,7 @@ class ObjLoader {
     ++faces_;
   }
 
-  // Each frame by itself: positions that are equal are one place only where they have one origin.
+  // Welds each frame separately: equal positions are one place only if they share an origin.
   std::vector<std::uint32_t> WeldFrames() const {
     std::vector<std::uint32_t> weld = WeldByPosition(std::span(positions_).first(EndOf(0)));
     for (std::size_t f = 1; f < frames_.size(); ++f) {
@@ -279,7 +279,7 @@ class ObjLoader {
     return weld;
   }
 
-  // Smooth over all that has one origin, so that no seam shows between shapes or materials. In a file with smoothing
+  // Smooth over all shapes with one origin, so that no seam shows between shapes or materials. In a file with smoothing
   // groups a normal is shared inside a group only, and group 0 means flat faces; a file without any is smooth
   // everywhere.
   void ComputeNormals() {
@@ -319,7 +319,7 @@ class ObjLoader {
     }
   }
 
-  // To be decoded later. Where it is left out, the materials that use it are made anew, and no others: a library may
+  // Keeps a texture for later decoding. If it is left out, only the materials that use it are made anew: a library may
   // have as many missing textures as materials.
   void KeepTexture(const std::string& name, std::size_t material) {
     const auto [known, is_new] = mtl_->textures.try_emplace(name, static_cast<int>(scene_.textures.size()));
@@ -343,8 +343,8 @@ class ObjLoader {
     scene_.encoded_textures.push_back(std::move(texture));
   }
 
-  // The material of faces without one: Blender's, which has no highlight. Where
-  // the vertices have colours, those are the surface's.
+  // The material of faces without one: Blender's, which has no highlight. Vertex colours, where present, are the
+  // surface's.
   int PlainMaterial() {
     if (plain_material_ < 0) {
       Material material;
@@ -371,7 +371,7 @@ class ObjLoader {
         shape_names.push_back(names.Take(shapes_[s].name.empty() ? "shape_" + std::to_string(s) : shapes_[s].name));
       }
     }
-    // Triangles come shape by shape, but a shape may come back to a material.
+    // Triangles are ordered by shape, but a shape may return to a material.
     for (std::size_t begin = 0; begin < triangles_.size();) {
       std::size_t end = begin;
       std::map<int, std::vector<std::size_t>> by_material;
@@ -436,7 +436,7 @@ class ObjLoader {
     return IsFinite(color) ? glm::max(color, glm::vec4(0.0f)) : glm::vec4(1.0f);
   }
 
-  // The file's vertices, or what far shapes have of their own: from the first one to the next frame's, relative to one
+  // The file's vertices, or the own vertices of far shapes: from the first one to the next frame's, relative to one
   // origin.
   struct Frame {
     std::size_t first = 0;

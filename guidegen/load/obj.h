@@ -1,8 +1,8 @@
-// Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load/load_scene.h), which also sees to what all
-// formats have in common.
+// Wavefront OBJ with MTL, by tinyobjloader. Use LoadScene (guidegen/load/load_scene.h), which also does the work common
+// to all formats.
 //
 // Each shape (o or g) becomes an object, one instance for each of its materials. Read: polygons, normals, texture
-// coordinates (v turned over), vertex colours (sRGB-encoded), smoothing groups where there are no normals. A material
+// coordinates (v flipped), vertex colours (sRGB-encoded), smoothing groups where there are no normals. A material
 // library or texture that is missing is a warning, not an error: OBJ files are often passed on without them.
 //
 // Vertices far from 0, as surveyors' are, keep their digits: the objects stand at the middle of what faces use in the
@@ -11,11 +11,11 @@
 // place, and normals that the file lacks are smooth across objects that share one.
 //
 // From the MTL, as Blender 3.4 understands it:
-//   Kd, map_Kd    base colour, linear; the map stands in place of Kd; -s, -o and -clamp are heeded
+//   Kd, map_Kd    base colour, linear; the map stands in place of Kd; -s, -o and -clamp apply
 //   Ks            0 or absent: no highlight, Lambert. Else glTF's coat, however strong Ks is; with a black Kd, GGX in
 //                 the colour Ks
 //   Ns            roughness 1 − √(Ns/1000)
-//   illum 3, Ka   a metal, to the share that Ka says
+//   illum 3, Ka   a metal, with Ka as its metalness
 //   Pr, Pm        roughness and metalness, where above 0, instead of those
 //   Ke, map_Ke    emission; the map stands in place of Ke
 //   d, norm       opacity; normal map

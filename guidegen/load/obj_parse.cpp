@@ -13,9 +13,9 @@ namespace {
 
 bool IsBlank(char c) { return c == ' ' || c == '\t'; }
 
-// Turns lines into comments that tinyobjloader would keep and no code here reads; line numbers stay. Of a subdivision
-// tag's 20 bytes it makes 360 KB, and again in each shape. The lines and points of an object it copies at each change
-// of material: the first index of each kind says that they are there.
+// Turns lines into comments that tinyobjloader would store but no code here reads; line numbers stay. A subdivision tag
+// of 20 bytes becomes 360 KB, and again in each shape. The lines and points of an object are copied at each change of
+// material; the first index of each kind shows that they exist.
 void BlankUnused(std::string& text) {
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   bool has_lines = false, has_points = false;  // in this object or group
@@ -38,7 +38,7 @@ void BlankUnused(std::string& text) {
   }
 }
 
-// Reads material libraries from regular files only, each once under whatever name, and says which one is missing.
+// Reads material libraries from regular files only, each file once, and names missing ones.
 class LibraryReader : public tinyobj::MaterialReader {
  public:
   LibraryReader(const std::filesystem::path& scene, WarningCounter& warnings) : scene_(scene), warnings_(warnings) {}

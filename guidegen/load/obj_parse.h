@@ -18,11 +18,11 @@ struct ObjContents {
   std::vector<tinyobj::material_t> materials;
 };
 
-// Fills `contents` from a file. A library that is missing becomes a warning; what tinyobjloader refuses or throws
-// becomes a kInput error that names the file. Only regular files are read.
+// Fills `contents` from a file. A missing library becomes a warning; tinyobjloader's refusals and exceptions become
+// kInput errors that name the file. Only regular files are read.
 Status ParseObj(const std::filesystem::path& path, WarningCounter& warnings, ObjContents& contents);
 
-// The file that a scene names, which stands beside it.
+// The path of a file that a scene names, which is beside the scene.
 std::filesystem::path BesideScene(const std::filesystem::path& scene, std::string name);
 
 }  // namespace scumble

@@ -53,7 +53,7 @@ struct Element {
 struct Header {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<Element> elements;
-  std::size_t body = 0;  // first byte behind the header
+  std::size_t body = 0;  // first byte after the header
 };
 
 // The meaning of a vertex property; kSkip for those that are not used.
@@ -99,7 +99,7 @@ class Values {
 
   std::size_t remaining() const { return bytes_.size() - at_; }
 
-  // The least that a value of this type takes up.
+  // The smallest size of a value of this type.
   std::size_t LeastBytes(PlyType type) const { return format_ == PlyFormat::kAscii ? 2 : Bytes(type); }
 
   bool Next(PlyType type, double& value) {
@@ -241,7 +241,7 @@ class PlyLoader {
     } else if (keyword == "element") {
       Element element;
       if (!(words >> element.name >> element.count)) return Bad("the header line '" + Excerpt(line, 80) + "'");
-      // A second list of vertices might have other properties, and faces could not say which of the two they mean.
+      // A second list of vertices might have different properties, and faces do not say which list they index.
       const auto is_twin = [&](const Element& other) { return other.name == element.name; };
       if (element.name == "vertex" && std::any_of(header_.elements.begin(), header_.elements.end(), is_twin)) {
         return Bad("its header has a second 'element vertex'; expected one, join them into it");
@@ -268,13 +268,13 @@ class PlyLoader {
     return Ok();
   }
 
-  // Refuses a count that the rest of the file cannot hold, before anything is allocated for it.
+  // Refuses a count that the remaining file cannot hold, before anything is allocated for it.
   Status CheckRoom(const Element& element, const Values& values) {
     std::size_t least = 0;
     for (const Property& property : element.properties) {
       least += values.LeastBytes(property.list_count ? *property.list_count : property.type);
     }
-    // The last word of a text needs no space behind it.
+    // The last word of a text needs no space after it.
     if (element.count > (values.remaining() + 1) / least) {
       return Bad("it promises " + std::to_string(element.count) + " of '" + Excerpt(element.name, 40) +
                  "', more than its " + std::to_string(values.remaining()) + " bytes can hold; the file was cut short");
@@ -355,7 +355,7 @@ class PlyLoader {
     return IsFinite(color) ? glm::clamp(color, glm::vec4(0.0f), glm::vec4(1.0f)) : glm::vec4(1.0f);
   }
 
-  // Reads faces, and steps over every other element.
+  // Reads faces, and skips every other element.
   Status ReadFaces(const Element& element, Values& values) {
     const bool is_face = element.name == "face";
     if (!is_face && element.count > 0)
@@ -397,8 +397,8 @@ class PlyLoader {
     return Ok();
   }
 
-  // Moves the shape to its origin, which is known once all faces are. A vertex that no face uses goes to where one is
-  // used: it may be any distance away, and all vertices are framed.
+  // Moves the shape to its origin, which is known once all faces are read. A vertex outside all faces may be any
+  // distance away, and framing includes all vertices: it moves to a used vertex.
   void PlaceVertices() {
     if (places_.empty()) return;
     PlaceBox box;
@@ -413,7 +413,7 @@ class PlyLoader {
     }
   }
 
-  // Cuts the polygons, which are fans so far, as their corners stand now.
+  // Cuts the polygons, until now fans, by the final corners.
   void CutPolygons() {
     std::vector<glm::uvec3> cuts;
     for (const Polygon& polygon : polygons_) {
@@ -446,7 +446,7 @@ class PlyLoader {
     return scene;
   }
 
-  // Triangles of the mesh, one behind the other.
+  // Consecutive triangles of the mesh.
   struct Polygon {
     std::uint32_t first = 0, triangles = 0;
   };

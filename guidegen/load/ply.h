@@ -1,12 +1,12 @@
 // PLY, ASCII and binary of either byte order: scans and exchange files of one mesh. Use LoadScene
-// (guidegen/load/load_scene.h), which also sees to what all formats have in common.
+// (guidegen/load/load_scene.h), which also does the work common to all formats.
 //
 // Read: positions, normals, colours (sRGB-encoded, as scanners and MeshLab write them), texture coordinates (s t, u v
-// or texture_u texture_v; v turned over), faces of any number of corners. Other elements and properties are skipped. A
+// or texture_u texture_v; v flipped), faces of any number of corners. Other elements and properties are skipped. A
 // cloud of points without faces is a scene without geometry. The object is named after the file. Its surface is
 // Lambert, in the file's colours or in Blender's grey of 0.8. Positions of type double that lie far from 0, as
 // surveyors' do, keep their digits: the object then stands at the middle of its shape instead of at 0, and its rest
-// positions are relative to that. The shape is what faces use, whatever else the file lists.
+// positions are relative to that. The shape is that of the vertices in faces.
 #pragma once
 
 #include <filesystem>

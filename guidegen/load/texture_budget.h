@@ -1,4 +1,4 @@
-// How many pixels all pictures of a scene may hold together.
+// The limit of pixels in all pictures of a scene.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace scumble {
 
-// A picture of a few bytes can hold any number of pixels, up to 2^28, and a scene any number of such pictures: this
-// refuses those beyond what a machine can be expected to hold.
+// A picture of a few bytes can hold up to 2^28 pixels, and a scene any number of such pictures. This budget refuses
+// more pixels than a machine can be expected to hold.
 class PictureBudget {
  public:
   static constexpr std::uint64_t kMaxPixels = std::uint64_t(1) << 30;  // 8 GiB, 64 pictures of 4096 × 4096
 
   explicit PictureBudget(std::uint64_t max_pixels = kMaxPixels) : max_pixels_(max_pixels) {}
 
-  // One more picture; kInput, naming the file, where it is one too many.
+  // Takes one more picture; kInput, naming the file, over the limit.
   Status Take(const std::string& file, const Picture& picture) {
     return Take(file, std::uint64_t(picture.width) * std::uint64_t(picture.height));
   }

@@ -12,7 +12,7 @@ namespace {
 
 std::string Called(const Camera& camera) { return "camera \"" + camera.name + "\" "; }
 
-// Empty when the camera can be used.
+// Empty if the camera is usable; otherwise its fault.
 std::string FindFault(const Camera& camera) {
   if (camera.orthographic) {
     if (!(camera.ymag > 0.0) || !std::isfinite(camera.ymag)) {

@@ -12,13 +12,12 @@
 
 namespace scumble {
 
-// Where a camera stands and how it is turned: its view space, for pictures of any size. Immutable; free to use from any
-// thread.
+// The place and rotation of a camera: its view space, for pictures of any size. Immutable; free to use from any thread.
 class CameraPose {
  public:
-  // Only the direction of the camera matrix's axes counts: scale is dropped and shear is straightened, keeping the
-  // viewing direction. Fails with kInput, naming the camera, on a matrix that has no direction, an angle outside
-  // (0, 180), a height that is not positive, a shift that is not finite, or a far plane before the near one.
+  // Only the direction of the camera matrix's axes counts: scale is dropped and shear is removed, keeping the viewing
+  // direction. Fails with kInput, naming the camera, on a matrix that has no direction, an angle outside (0, 180), a
+  // height that is not positive, a shift that is not finite, or a far plane before the near one.
   static Expected<CameraPose> Make(const Camera& camera);
 
   // The camera's position is subtracted before anything is rotated: two places 1e7 m from the origin and one metre
@@ -38,7 +37,7 @@ class CameraPose {
 // A camera in front of a picture of a certain size. Immutable; free to use from any thread.
 class CameraRays : public CameraPose {
  public:
-  // Fails as CameraPose::Make does, and with kInput where rays would leave kLargestInRay.
+  // Fails as CameraPose::Make does, and with kInput where rays would exceed kLargestInRay.
   static Expected<CameraRays> Make(const Camera& camera, int width, int height);
 
   // The ray through a point of the picture, in pixels from the top left corner.
@@ -47,15 +46,15 @@ class CameraRays : public CameraPose {
   // Whether rays differ in their origin; otherwise in their direction.
   bool orthographic() const { return orthographic_; }
 
-  // Where in the picture a point of view space is seen, the inverse of Through; nothing behind the eye.
+  // The place in the picture of a point of view space, the inverse of Through; empty behind the eye.
   std::optional<glm::dvec2> PixelOf(const glm::dvec3& point) const;
 
-  // Planar depth between which surfaces are seen; the far one may be infinite.
+  // The planar depths between which surfaces are visible; the far one may be infinite.
   double near_depth() const { return near_depth_; }
   double far_depth() const { return far_depth_; }
 
   // For the file's header. OpenGL has no matrix for a near plane at the eye or a far plane at infinity in an
-  // orthographic picture; there, 1 cm and 1 km behind the near plane stand in. x and y do not depend on them.
+  // orthographic picture; 1 cm and 1 km behind the near plane replace them. x and y do not depend on them.
   GuideCamera ToGuideCamera() const;
 
  private:

@@ -11,7 +11,7 @@
 namespace scumble {
 namespace {
 
-// Of the matrix, the sizes, and the first and last position: enough to tell nearly all objects apart.
+// A hash of the matrix, the sizes, and the first and last position: enough to separate nearly all objects.
 std::uint64_t HashOf(const PlacedObject& object) {
   const Mesh& mesh = *object.mesh;
   std::uint64_t hash = Hash(mesh.positions.size(), mesh.triangles.size());

@@ -1,4 +1,4 @@
-// Coincident instances: objects that stand exactly where another one stands.
+// Coincident instances: objects at exactly the same place.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 namespace scumble {
 
 // By object: whether a later object of the list has an equal shape at an equal place, and hides it. Of coincident
-// objects the last one is seen, as with paint. Without this rule a ray meets the one that the hierarchy offers last,
+// objects the last one is seen, as with paint. Without this rule a ray hits the one that the hierarchy visits last,
 // which differs from pixel to pixel. Equal shapes have equal positions and triangles under an equal matrix. An object
 // with holes hides nothing, nor does one that is culled where the other is not. An emissive object is never hidden,
 // because it is a light as well. Shapes that touch, or whose sums of matrix and positions agree, do not count. A mesh

@@ -19,7 +19,7 @@ namespace {
 
 struct IsaInfo {
   const char* name;
-  RTCDeviceProperty native_packets;  // the property by which Embree's instruction sets differ
+  RTCDeviceProperty native_packets;  // the property in which Embree's instruction sets differ
 };
 
 // Best first.
@@ -29,7 +29,7 @@ constexpr std::array<IsaInfo, 5> kIsas = {{{"avx512", RTC_DEVICE_PROPERTY_NATIVE
                                            {"sse4.2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED},
                                            {"sse2", RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED}}};
 
-// Embree does not check the processor and dies on the first unknown instruction, so the processor is checked first.
+// Embree does not check the processor and crashes on the first unknown instruction, so the processor is checked first.
 bool MachineHas(const std::string& isa) {
 #if defined(__x86_64__)
   if (isa == "sse2") return __builtin_cpu_supports("sse2");
@@ -45,11 +45,11 @@ bool MachineHas(const std::string& isa) {
 #endif
 }
 
-// The packet width that an instruction set promises must be there: a build of Embree without it falls back silently.
+// The instruction set's packet width must be available: a build of Embree without it falls back silently.
 RTCDevice OpenIfSupported(const IsaInfo& isa) {
   if (!MachineHas(isa.name)) return nullptr;
-  // No cache for surfaces that Embree would divide: there are none, it is 128 MB of addresses, and a device that finds
-  // no room for it never lets go of its own lock.
+  // Disables the cache for subdivision surfaces: there are none, it takes 128 MB of addresses, and a device without
+  // room for it never releases its own lock.
   RTCDevice device = rtcNewDevice(("isa=" + std::string(isa.name) + ",tessellation_cache_size=0").c_str());
   if (device && rtcGetDeviceProperty(device, isa.native_packets) == 0) {
     rtcReleaseDevice(device);
@@ -69,8 +69,8 @@ std::string AvailableIsas() {
   return names;
 }
 
-// Whether the ray leaves the plane of the triangle, or runs along it, so that it cannot meet it: to float, what lies in
-// a large ground or just above it may be below that ground.
+// Whether the ray leaves the plane of the triangle, or runs along it, so that it cannot hit it: in float, a point in a
+// large ground or just above it may be below that ground.
 bool LeavesPlane(const PlacedObject& object, std::uint32_t primitive, const glm::dvec3& origin,
                  const glm::dvec3& direction) {
   const Triangle triangle = ViewTriangle(object, primitive);
@@ -80,7 +80,7 @@ bool LeavesPlane(const PlacedObject& object, std::uint32_t primitive, const glm:
 }
 
 // Whether any triangle is longer than half of its largest coordinate. On a shorter one no place has a coordinate below
-// half of the largest, so rays of light from anything that lies on it start high enough (docs/numerics.md).
+// half of the largest, so rays of light from a surface on it start high enough (docs/numerics.md).
 bool ReachesFar(const PlacedObject& object) {
   const std::vector<glm::uvec3>& triangles = object.mesh->triangles;
   std::atomic<bool> found = false;
@@ -99,7 +99,7 @@ void FilterHits(const RTCFilterFunctionNArguments* args) {
   const PlacedObject& object = *static_cast<const PlacedObject*>(args->geometryUserPtr);
   const CastContext& context = *reinterpret_cast<const CastContext*>(args->context);
   const bool cull = context.camera_rays && !object.material->double_sided;
-  if (context.camera_rays && !cull && !MayHaveHoles(*object.material)) return;  // only rays of light have a question
+  if (context.camera_rays && !cull && !MayHaveHoles(*object.material)) return;  // only rays of light need a test
   const bool may_be_target = context.target.object && MayEmit(*object.material);
   const unsigned count = args->N;
   for (unsigned i = 0; i < count; ++i) {
@@ -181,14 +181,14 @@ RTCGeometry MakeSphere(RTCDevice device, const PlacedObject& object) {
   return geometry;
 }
 
-// Robust: no cracks between neighbours, and nothing thin is lost.
+// Robust: no cracks between neighbours, and no thin object is lost.
 RTCScene NewScene(RTCDevice device, bool robust) {
   RTCScene scene = rtcNewScene(device);
   if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   return scene;
 }
 
-// If the gate is cancelled, the scene is of no use.
+// If the gate is cancelled, the scene is unusable.
 void CommitScene(RTCScene scene, ProgressGate& gate) {
   const auto go_on = [](void* asked, double) { return static_cast<ProgressGate*>(asked)->Continue(); };
   rtcSetSceneProgressMonitorFunction(scene, go_on, &gate);
@@ -208,7 +208,7 @@ Expected<EmbreeScene> EmbreeScene::Build(std::vector<PlacedObject> objects, cons
 }
 
 Status EmbreeScene::OpenDevice(const std::string& isa) {
-  rtcGetDeviceError(nullptr);  // what an earlier device left behind on this thread
+  rtcGetDeviceError(nullptr);  // an earlier device's error on this thread
   bool known = isa.empty();
   for (const IsaInfo& candidate : kIsas) {
     if (!isa.empty() && isa != candidate.name) continue;
@@ -218,7 +218,8 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
       isa_ = candidate.name;
       return Ok();
     }
-    // Not the next instruction set then: its guides would be others. Want of threads is an unknown error to Embree.
+    // No fallback to the next instruction set here: its guides would differ. Embree reports a lack of threads as an
+    // unknown error.
     const RTCError error = rtcGetDeviceError(nullptr);
     if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN) {
       return MemoryError(
@@ -233,7 +234,7 @@ Status EmbreeScene::OpenDevice(const std::string& isa) {
 }
 
 Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
-  std::string reason;  // the first of a row is the root of the others
+  std::string reason;  // the first of several is the cause of the others
   rtcSetDeviceErrorFunction(
       device_.get(),
       [](void* kept, RTCError, const char* text) {
@@ -267,7 +268,7 @@ Status EmbreeScene::Commit(const Needs& needs, const Progress& progress) {
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
     return MemoryError("the scene does not fit into memory: give it fewer triangles or instances");
   }
-  // Any other failure, as want of threads, has no code of its own but a text.
+  // Any other failure, such as a lack of threads, has no code of its own but a text.
   throw std::runtime_error(reason);
 }
 

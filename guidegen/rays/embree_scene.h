@@ -15,24 +15,24 @@
 
 namespace scumble {
 
-// The place on an emissive mesh that a shadow ray goes to. It does not shade itself. So the triangle that was sampled
-// does not count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the
-// sampled place: the next triangle, or the next part of a light that was cut into several meshes.
+// The point on an emissive mesh that a shadow ray aims at. It does not shade itself. So the sampled triangle does not
+// count, wherever Embree's floats put it. Nor do emissive surfaces so near the ray's end that they may be the sampled
+// point: the next triangle, or the next part of a light that was cut into several meshes.
 struct ShadowTarget {
   const PlacedObject* object = nullptr;
   std::uint32_t primitive = 0;
   float near_end = 1.0f;  // in lengths of the ray's direction
 };
 
-// Where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Embree visits boxes in its own
-// order, so backs behind the hit may be among them.
+// The places where a camera ray passed backs of single-sided surfaces, in lengths of its direction. Embree visits boxes
+// in its own order, so backs behind the hit may be among them.
 struct BacksPassed {
   float nearest = std::numeric_limits<float>::infinity();
   float farthest = -std::numeric_limits<float>::infinity();
 };
 
-// What Embree hands to filter functions. Camera rays do not see the back of single-sided surfaces; shadow rays do,
-// because a wall keeps its shadow when it is cut away for the viewer.
+// The context that Embree passes to filter functions. Camera rays do not hit the back of single-sided surfaces. Shadow
+// rays do, because a wall keeps its shadow when it is cut away for the viewer.
 struct CastContext {
   explicit CastContext(bool for_camera_rays) : camera_rays(for_camera_rays) {
     rtcInitIntersectContext(&embree);
@@ -47,23 +47,22 @@ struct CastContext {
 // Owns a device and a scene in view space, one geometry for each object. Casting rays from several threads is safe.
 class EmbreeScene {
  public:
-  // `isa` as in GuidegenOptions; one that is unknown, or that this machine or this build of Embree lacks, is a kUsage
+  // `isa` as in GuidegenOptions; an unknown one, or one that this machine or this build of Embree lacks, is a kUsage
   // error. Builds in the calling thread's oneTBB arena, whose size is the only limit: Embree's own "threads=" would
   // throttle oneTBB for the whole process. The hierarchy is the same at any thread count. Triangles with corners that
   // are not finite are left out.
   struct Needs {
-    bool light_rays = false;  // rays to lights will be cast, as ShadowTarget has them, not only those of the camera
-    bool emitters = false;    // emitters() will be asked for
+    bool light_rays = false;  // rays to lights will be cast, as ShadowTarget describes, not only camera rays
+    bool emitters = false;    // emitters() will be called
     bool robust = true;       // as in GuidegenOptions
   };
-  // While it builds, `progress` is asked with a share of 0 whether to go on; if it says no, Build fails with
-  // kCancelled.
+  // During the build `progress` is called with a share of 0; if it returns false, Build fails with kCancelled.
   static Expected<EmbreeScene> Build(std::vector<PlacedObject> objects, const std::string& isa, const Needs& needs,
                                      const Progress& progress = {});
 
   RTCScene handle() const { return scene_.get(); }
   RTCScene emitters() const { return emitters_.get(); }   // the objects that emit, under the same ids; null: none
-  const std::string& isa() const { return isa_; }         // what is in use, never empty
+  const std::string& isa() const { return isa_; }         // the one in use, never empty
   bool wide_packets() const { return isa_ == "avx512"; }  // whether packets of 16 rays are faster than those of 8
   const std::vector<PlacedObject>& objects() const { return *objects_; }  // by Embree's geometry id
 

@@ -15,7 +15,7 @@ bool LazyScene::Suits(const std::string& isa, const EmbreeScene::Needs& needs) c
 
 Expected<LazyScene::Lease> LazyScene::Get(const std::string& isa, const EmbreeScene::Needs& needs,
                                           const Progress& progress) {
-  // Another thread may build for seconds: this one can still be cancelled.
+  // Another thread may build for seconds: this thread can still be cancelled.
   std::unique_lock lock(mutex_, std::try_to_lock);
   for (ProgressGate gate(progress, 1, 0.0, 0.0); !lock.owns_lock();) {
     if (!gate.Continue()) return CancelledError();
@@ -23,7 +23,7 @@ Expected<LazyScene::Lease> LazyScene::Get(const std::string& isa, const EmbreeSc
     (void)lock.try_lock();
   }
   if (Suits(isa, needs)) return Lease{scene_, false};
-  // Needs only grow, so that casts which take turns do not build each time.
+  // Needs only grow, so that alternating casts do not build each time.
   EmbreeScene::Needs all = needs;
   all.light_rays = needs.light_rays || (scene_ && needs_.light_rays);
   all.emitters = needs.emitters || (scene_ && needs_.emitters);

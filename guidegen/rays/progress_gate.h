@@ -10,10 +10,11 @@
 
 namespace scumble {
 
-// Counts tiles and passes the share on, one caller at a time. A thread that finds another one in the callback works on.
+// Counts tiles and passes the share on, one caller at a time. A thread that finds another one in the callback continues
+// its work.
 class ProgressGate {
  public:
-  // This work is the stretch from `begin` to `end` of the whole, which is 1. `progress` is borrowed.
+  // This work is the part from `begin` to `end` of the whole, which is 1. `progress` is borrowed.
   ProgressGate(const Progress& progress, std::size_t total, double begin, double end)
       : progress_(progress), total_(total), begin_(begin), end_(end) {}
 
@@ -29,7 +30,7 @@ class ProgressGate {
     if (done < total_) Report();
   }
 
-  // Inside a tile that may take long: whether to go on. Asks the caller at most every kPollInterval.
+  // For long tiles: whether to go on. Calls the caller back at most every kPollInterval.
   bool Continue() {
     if (!progress_) return true;
     if (cancelled()) return false;

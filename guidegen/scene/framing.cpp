@@ -15,7 +15,7 @@ using std::numbers::pi;
 
 constexpr double kRadiansPerDegree = pi / 180.0;
 constexpr double kFramingYfovDegrees = 35.0;
-constexpr double kFramingMargin = 1.1;  // the sphere fills 1 / 1.1 of the narrower side
+constexpr double kFramingMargin = 1.1;  // the sphere takes 1 / 1.1 of the narrower side
 
 struct Sphere {
   glm::dvec3 center{0.0};
@@ -31,7 +31,7 @@ void ForEachPoint(const Scene& scene, Visit visit) {
   }
 }
 
-// Around the middle of the bounding box: at most √3 times too large, and it does not depend on the order of vertices.
+// Around the middle of the bounding box: at most √3 times too large, and independent of the order of vertices.
 Sphere BoundingSphere(const Scene& scene) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   ForEachPoint(scene, [&](const glm::dvec3& p) {
@@ -47,7 +47,7 @@ Sphere BoundingSphere(const Scene& scene) {
 }
 
 // Rotation whose +Z points at (azimuth, elevation), +X level. Built from the angles and not from a world "up", so that
-// straight up and straight down are views like any other.
+// straight up and straight down need no special case.
 glm::dmat4 Facing(double azimuth_degrees, double elevation_degrees) {
   const glm::dvec3 level = DirectionFromAngles(azimuth_degrees, 0.0);
   const glm::dvec3 right(level.z, 0.0, -level.x), back = DirectionFromAngles(azimuth_degrees, elevation_degrees);
@@ -80,7 +80,7 @@ Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect) 
   const Sphere sphere = BoundingSphere(scene);
   const double half_y = 0.5 * kFramingYfovDegrees * kRadiansPerDegree;
   const double half_narrow = std::min(half_y, std::atan(std::tan(half_y) * aspect));
-  // The margin widens the picture, not the distance, so it is the same share of the picture at any angle of view.
+  // The margin widens the picture, not the distance, so it is an equal share of the picture at any angle of view.
   const double half_framed = std::atan(std::tan(half_narrow) / kFramingMargin);
   const double distance = view.distance > 0.0 ? view.distance : sphere.radius / std::sin(half_framed);
   Camera camera;

@@ -11,7 +11,7 @@
 
 namespace scumble {
 
-// From where a scene without a camera is seen. Azimuth from +Z towards +X, elevation up from the horizon, degrees.
+// The view of a scene without a camera. Azimuth from +Z towards +X, elevation up from the horizon, degrees.
 struct ViewAngles {
   double azimuth = 35.0;
   double elevation = 20.0;
@@ -25,9 +25,9 @@ Camera FramingCamera(const Scene& scene, const ViewAngles& view, double aspect);
 // camera's view space.
 Light KeyLight(const Camera& camera, double azimuth = kKeyLightAzimuth, double elevation = kKeyLightElevation);
 
-// Makes the scene ready to be seen: picks the camera by name (empty: the first; none in the file or `view` given: a
-// framing one), and adds the key light to the scene where it has no light and `needs_light`. Each such decision is one
-// line of `notes`, for stderr. An unknown camera name is a usage error that lists the names there are.
+// Prepares the scene for rendering. Picks the camera by name (empty: the first; none in the file or `view` given: a
+// framing one). Adds the key light to the scene if it has no light and `needs_light`. Each such decision is one line of
+// `notes`, for stderr. An unknown camera name is a usage error that lists the names in the file.
 struct PreparedView {
   Camera camera;
   std::vector<std::string> notes;

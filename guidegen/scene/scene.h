@@ -1,5 +1,5 @@
-// A scene as the ray caster wants it: triangles, instances, materials, cameras, lights. Loaders fill it; nothing in
-// here knows a file format. World space is glTF's: metres, right-handed, +Y up.
+// The scene of the ray caster: triangles, instances, materials, cameras, lights. Loaders fill it; it is independent of
+// file formats. World space is glTF's: metres, right-handed, +Y up.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace scumble {
 
 enum class TextureWrap { kRepeat, kMirror, kClamp };
 
-// A use of a texture: which picture, which UV set, how it repeats, and KHR_texture_transform.
+// A use of a texture: its picture, UV set and repetition, and KHR_texture_transform.
 struct TextureUse {
   int texture = -1;  // index into Scene::textures, -1 for none
   int uv_set = 0;    // 0 or 1
@@ -32,8 +32,8 @@ struct TextureUse {
 
 enum class AlphaMode { kOpaque, kMask, kBlend };
 
-// How a surface answers light. The last three are Blender's pure shaders, which glTF cannot say: Lambert and GGX
-// without Fresnel, whose colour is the base colour, and a black surface that only emits.
+// A surface's response to light. The last three are Blender's pure shaders, which glTF lacks: Lambert and GGX without
+// Fresnel, whose colour is the base colour, and a black surface that only emits.
 enum class Bsdf { kMetallicRoughness, kDiffuse, kGlossy, kEmission };
 
 // Textures are kept as their pictures are stored; colours are decoded from sRGB when sampled, normals are not.
@@ -53,7 +53,7 @@ struct Material {
   TextureUse metallic_roughness_texture;  // linear: G multiplies the roughness, B the metalness
   glm::vec3 emission{0.0f};               // radiance, linear, from both sides
   TextureUse emission_texture;
-  std::string style{};  // as Instance::style, which goes before it
+  std::string style{};  // as Instance::style, which takes precedence
 };
 
 // One glTF primitive: a triangle list with one material. Every non-empty attribute has one value per position.
@@ -64,7 +64,7 @@ struct Mesh {
   std::vector<glm::vec4> tangents;  // xyz and handedness; only where a normal map needs them
   std::vector<glm::vec4> colors;    // linear; multiplied into the base colour
   std::vector<glm::uvec3> triangles;
-  // The shape that nothing has deformed, in the file's own space: what `pref` holds. Empty: the same as `positions`.
+  // The undeformed shape, in the file's own space: the layer `pref`. Empty: equal to `positions`.
   std::vector<glm::vec3> rest_positions;
   int material = 0;  // index into Scene::materials, always valid
 };
@@ -73,11 +73,11 @@ struct Instance {
   std::string object;  // full name: the node's; its hash is the object id
   int mesh = 0;
   glm::dmat4 world_from_object{1.0};
-  std::string style{};  // what the scene's author wants it painted in; empty: nothing was said
-  int pass_index = 0;   // Blender's, 0 … 32767; 0: none was given
+  std::string style{};  // the style that the scene's author assigned; empty: none
+  int pass_index = 0;   // Blender's, 0 … 32767; 0: none
 };
 
-// Which side of the picture a camera's extent measures: a fixed one, or the longer one of whatever picture is made.
+// The side of the picture that a camera's extent measures: a fixed one, or the longer one of any picture.
 enum class CameraFit { kVertical, kHorizontal, kLonger };
 
 struct Camera {
@@ -87,11 +87,11 @@ struct Camera {
   double yfov_degrees = 40.0;  // perspective: full angle, vertical unless `fit` says otherwise, in (0, 180)
   double ymag = 1.0;           // orthographic: half the height, or half the side that `fit` names, m
   CameraFit fit = CameraFit::kVertical;
-  double shift_x = 0.0;  // moves the picture's frame right and up across the scene, as Blender's lens shift does:
+  double shift_x = 0.0;  // moves the picture's frame right and up across the scene, like Blender's lens shift:
   double shift_y = 0.0;  // fractions of the side that `fit` names
-  // Both kinds keep the vertical extent and let the picture's own proportions decide the horizontal one, except where
-  // the file states an aspect (width / height) larger than the picture's: then the horizontal extent is kept. Looked at
-  // only where `fit` is vertical.
+  // Both kinds keep the vertical extent, and the picture's own proportions set the horizontal one. If the file states
+  // an aspect (width / height) larger than the picture's, the horizontal extent is kept instead. Used only where `fit`
+  // is vertical.
   std::optional<double> aspect;
   double z_near = 0.0;
   double z_far = std::numeric_limits<double>::infinity();
@@ -122,14 +122,13 @@ struct Light {
 
 struct Scene;
 
-// What a texture is decoded from, by DecodeTextures of guidegen/scene_textures.h. Immutable: copies of a scene share
-// it.
+// The source of a texture, for DecodeTextures of guidegen/scene_textures.h. Immutable: copies of a scene share it.
 struct EncodedTexture {
   std::function<Expected<Picture>()> decode;
-  std::function<Expected<std::uint64_t>()> count_pixels;  // that `decode` will make, by the header
-  std::size_t bytes = 0;                                  // that are kept in memory until then
-  // Makes the scene's materials do without: the texture's picture is empty and nothing encoded is left of it. Null:
-  // they cannot, and a picture that cannot be decoded is an error.
+  std::function<Expected<std::uint64_t>()> count_pixels;  // of the picture that `decode` makes, by the header
+  std::size_t bytes = 0;                                  // kept in memory until then
+  // Removes the texture from the scene's materials: its picture is empty and no encoded data is left. Null: it is
+  // required, and a picture that cannot be decoded is an error.
   std::function<void(Scene&)> leave_out;
 };
 
@@ -139,12 +138,13 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<Material> materials;  // never empty once loaded
   std::vector<Picture> textures;
-  // Of each texture that is not decoded yet, with an empty picture in `textures`; null, or no longer there: it is.
+  // The source of each texture that is not decoded yet, with an empty picture in `textures`; null or absent: it is
+  // decoded.
   std::vector<std::shared_ptr<const EncodedTexture>> encoded_textures;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
-  glm::vec3 world_radiance{0.0f};     // from every direction that meets nothing; linear
-  std::vector<std::string> warnings;  // what the file asks for and we do not do, in the user's words
+  glm::vec3 world_radiance{0.0f};     // from every direction without a hit; linear
+  std::vector<std::string> warnings;  // unsupported requests of the file, in the user's words
 };
 
 }  // namespace scumble

@@ -5,7 +5,7 @@
 
 namespace scumble {
 
-// Embree takes no ray with a larger component, of its origin in metres or of its direction: built with assertions, as
+// Embree accepts no ray with a larger component, of its origin in metres or of its direction: built with assertions, as
 // Debian's is, it ends the process. Its own limit is 1.844e18.
 inline constexpr double kLargestInRay = 0x1.9p60;
 

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// What glTF gives every dielectric: an index of refraction of 1.5.
+// glTF's value for every dielectric: an index of refraction of 1.5.
 constexpr double kDielectricF0 = 0.04;
 // Below this GGX's peak is too sharp to be evaluated; Cycles has this limit, too.
 constexpr double kSmoothestAlpha = 1e-4;
@@ -99,9 +99,9 @@ SurfaceBsdf::SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, co
 
 glm::dvec3 SurfaceBsdf::Fresnel(double cosine) const { return fresnel_ ? f0_ + (1.0 - f0_) * Schlick(cosine) : f0_; }
 
-// What a dielectric coat lets through: (1 − F) on the way in and on the way out, scaled so that the whole lobe returns
-// 1 − F of what comes in (the form is Ashikhmin and Shirley's, 2000). glTF's own weight, 1 − F at the half vector,
-// would return up to 1.7 times the light at grazing angles.
+// The transmission of a dielectric coat: (1 − F) on the way in and out, scaled so that the whole lobe returns 1 − F of
+// the incoming light (the form is Ashikhmin and Shirley's, 2000). glTF's own weight, 1 − F at the half vector, would
+// return up to 1.7 times the light at grazing angles.
 double SurfaceBsdf::Coupling(double cosine) const {
   if (!fresnel_) return 1.0;
   const auto passes = [](double c) { return (1.0 - kDielectricF0) * (1.0 - Schlick(c)); };

@@ -1,9 +1,9 @@
-// How a surface answers light: a Lambert lobe and a GGX lobe, each with its own event of light-path expressions.
+// A surface's response to light: a Lambert lobe and a GGX lobe, each with its own event of light-path expressions.
 //
 // Walter et al., "Microfacet models for refraction", EGSR 2007; Heitz, "Sampling the GGX distribution of visible
-// normals", JCGT 2018. Masking and shadowing are Smith's, separable, as in glTF 2.0 and in Cycles 3.4; what bounces
-// between microfacets is lost, so no surface returns more than it receives, but for white under
-// a coat: 0.13% at most, as the diffuse part goes by the eye's angle alone.
+// normals", JCGT 2018. Masking and shadowing are Smith's, separable, as in glTF 2.0 and in Cycles 3.4. Light between
+// microfacets is lost, so no surface returns more than it receives. White under a coat is the exception, by 0.13% at
+// most, because the diffuse part depends on the eye's angle alone.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,7 +12,7 @@
 
 namespace scumble {
 
-// One surface point's answer. Directions are unit vectors in view space that point away from the surface.
+// The response of one surface point. Directions are unit vectors in view space that point away from the surface.
 class SurfaceBsdf {
  public:
   // A sampled direction. `weight` is value × cosine / density; 0 where there is no reflection.
@@ -22,14 +22,14 @@ class SurfaceBsdf {
     double density = 0.0;  // per solid angle; infinite for a mirror
   };
 
-  // What is reflected towards a direction, times the cosine there.
+  // The reflection towards a direction, times the cosine there.
   struct Value {
     glm::dvec3 value{0.0};
     double density = 0.0;  // with which the lobe's Sample would have chosen that direction
   };
 
-  // `to_eye` points back along the path. A shading normal that turns away from it is bent for the specular lobe.
-  // The specular lobe is made at least as rough as `least_alpha`.
+  // `to_eye` points back along the path. If a shading normal faces away from it, the normal is bent for the specular
+  // lobe. The specular lobe is at least as rough as `least_alpha`.
   SurfaceBsdf(const PlacedObject& object, std::uint32_t primitive, const SurfacePoint& point, const glm::dvec3& to_eye,
               double least_alpha = 0.0);
 
@@ -38,7 +38,7 @@ class SurfaceBsdf {
   // Smooth enough that only one direction counts: evaluating gives 0.
   bool IsMirror() const { return mirror_; }
 
-  // About the share of light that each lobe reflects, for choosing between them.
+  // Approximately the share of light that each lobe reflects, for choosing between them.
   double DiffuseShare() const;
   double SpecularShare() const;
 
@@ -57,12 +57,13 @@ class SurfaceBsdf {
   glm::dvec3 to_eye_;
   glm::dvec3 diffuse_{0.0};
   glm::dvec3 f0_{0.0};
-  bool fresnel_ = false;  // f0 grows to 1 at grazing angles, and the diffuse lobe gets what the coat lets through
+  bool fresnel_ =
+      false;  // f0 grows to 1 at grazing angles, and the diffuse lobe gets the light that the coat transmits
   bool mirror_ = false;
   double alpha_ = 1.0;
 };
 
-// Whether a material can ever send light back in that way; without looking at textures.
+// Whether a material can reflect light diffusely; textures are not read.
 bool MayBeDiffuse(const Material& material);
 bool MayBeSpecular(const Material& material);
 bool MayEmit(const Material& material);

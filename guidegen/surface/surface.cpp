@@ -22,7 +22,7 @@ auto Interpolate(const std::vector<T>& values, const glm::uvec3& triangle, const
   return a * (1.0f - v - w) + b * v + c * w;
 }
 
-// The place on a triangle's edge that the ray's line passes at the least distance.
+// The point of a triangle's edge with the least distance from the ray's line.
 struct EdgePlace {
   glm::dvec2 barycentric;
   double miss;   // squared distance
@@ -43,22 +43,22 @@ EdgePlace NearestOnEdge(const Triangle& triangle, int i, const ViewRay& ray, dou
   const double share = length > 0.0 ? glm::clamp(-glm::dot(from, across) / length, 0.0, 1.0) : 0.0;
   const glm::dvec3 miss = from + across * share;
   const double reach = along(corner + edge * share);
-  constexpr double kRounding = 0x1p-48;  // some steps of a double, of what was added up
+  constexpr double kRounding = 0x1p-48;  // several rounding steps of a double, relative to the summands
   const bool behind = reach < 0.0 && reach * reach * squared >
                                          kRounding * kRounding *
                                              (glm::dot(corner, corner) + glm::dot(edge, edge) + summands * summands);
   return {glm::mix(kCorners[i], kCorners[next], share), glm::dot(miss, miss), reach, behind};
 }
 
-// The barycentrics of the place on a triangle's edges that the ray passes at the least distance. A triangle seen edge
-// on shows two of its edges there: of places before the ray's origin that lie on the ray, to a step of float of their
+// The barycentrics of the point on a triangle's edges with the least distance from the ray. A triangle seen edge on
+// shows two of its edges there. Of points before the ray's origin that lie on the ray, to a float's step of their
 // distance, it is the first.
 glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray, double summands) {
   EdgePlace places[3];
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     places[i] = NearestOnEdge(triangle, i, ray, summands);
-    if (places[i].behind) places[i].miss += kLargestPlainSquare;  // for want of anything before
+    if (places[i].behind) places[i].miss += kLargestPlainSquare;  // no point lies before the origin
     least = std::min(least, places[i].miss);
   }
   const double step_squared = kEdgeOn * kEdgeOn * glm::dot(ray.direction, ray.direction);
@@ -73,10 +73,10 @@ glm::dvec2 NearestOnEdges(const Triangle& triangle, const ViewRay& ray, double s
   return first;
 }
 
-// Möller & Trumbore 1997, in double; `area` is the cross product of the triangle's edges. Rays that just miss the
-// triangle, because Embree sees it with its corners rounded to float, meet the nearest place of its edges, in space: in
-// barycentrics a triangle's height is 1 however low it is seen, and a micrometre may seem to be a thousand triangles.
-// `summands` is the largest of what was added up to the corners and the origin, whose roundings are theirs.
+// Möller & Trumbore 1997, in double; `area` is the cross product of the triangle's edges. Embree rounds corners to
+// float, so a ray may just miss the triangle. Such rays get the nearest point of its edges, in space. In barycentrics a
+// triangle's height is 1 at any angle, and a micrometre may seem to be a thousand triangles. `summands` is the largest
+// summand of the corners and the origin, which bounds their rounding.
 glm::dvec2 MeetTriangle(const Triangle& triangle, const glm::dvec3& area, const ViewRay& ray, double summands) {
   const glm::dvec3 moment = glm::cross(ray.origin - triangle.corner[0], ray.direction);
   const double seen = glm::dot(area, ray.direction);
@@ -142,8 +142,8 @@ SurfacePoint FindTrianglePoint(const PlacedObject& object, std::uint32_t primiti
   return point;
 }
 
-// The object's matrix must be rigid. Where the exact ray passes the sphere that Embree's rounded one has met, the point
-// is the silhouette's nearest.
+// The object's matrix must be rigid. If the exact ray misses the sphere that Embree's rounded one hit, the point is the
+// nearest one of the silhouette.
 SurfacePoint FindSpherePoint(const PlacedObject& object, const ViewRay& ray) {
   const glm::dvec3 centre(object.view_from_object[3]);
   const double length = glm::length(ray.direction);
@@ -168,7 +168,7 @@ double LargestCoordinate(const glm::dvec3& v) {
   return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z));
 }
 
-// Vectors whose square would leave a double's range are scaled first.
+// Vectors whose square would exceed a double's range are scaled first.
 bool MakeUnit(glm::dvec3& v) {
   const double squared = glm::dot(v, v);
   if (squared > kLeastPlainSquare && squared < kLargestPlainSquare) {

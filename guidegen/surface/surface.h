@@ -1,4 +1,4 @@
-// From a hit to what the eye sees there: the exact point, normals, base colour.
+// The exact surface point of a hit: position, normals, base colour.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace scumble {
 
-// An instance as it stands before the camera. Borrows the scene's data, which must outlive it.
+// An instance placed before the camera. Borrows the scene's data, which must outlive it.
 struct PlacedObject {
   const Mesh* mesh = nullptr;  // null: the unit sphere about the object's origin
   const Material* material = nullptr;
@@ -44,9 +44,9 @@ inline Triangle ViewTriangle(const PlacedObject& object, std::uint32_t primitive
   return triangle;
 }
 
-// A triangle that a ray sees as lower than this share of its length, because it is a sliver or lies edge on: there the
-// place where the ray crosses it is lost in double's rounding (2^-47 of the distance over the share), and the nearest
-// place of its edges is no farther from the ray than half a step of float.
+// The height over length below which a ray sees a triangle edge on, because it is a sliver or is seen from the side.
+// The ray's crossing is then lost in double's rounding (2^-47 of the distance over the share), and the nearest point of
+// the edges is at most half a float's step from the ray.
 inline constexpr double kEdgeOn = 0x1p-24;
 double LongestEdgeSquared(const Triangle& triangle);
 
@@ -56,33 +56,33 @@ struct SurfacePoint {
   glm::dvec3 normal{0.0};           // unit shading normal, view space
   glm::dvec3 rest_position{0.0};    // object space
   glm::dvec2 barycentric{0.0};      // weights of the second and third corner
-  double largest_coordinate = 0.0;  // of the point and its triangle: what float rounding errors are relative to
-  // The longest offset of a ray's origin from the point with nothing between: back along the ray that met it, to that
-  // ray's start, or to a place before the last back of a single-sided surface that a camera ray passed. 0: unknown. The
-  // caster of the ray sets it (MaxRayOffset in rays/ray_offset.h).
+  double largest_coordinate = 0.0;  // of the point and its triangle: float rounding errors are relative to it
+  // The longest offset of a ray's origin from the point with nothing between. It leads back along the ray that hit the
+  // point, to that ray's start, or to a place before the last back of a single-sided surface that a camera ray passed.
+  // 0: unknown. The caster of the ray sets it (MaxRayOffset in rays/ray_offset.h).
   glm::dvec3 max_ray_offset{0.0};
 };
 
-// Embree's hit is a float's worth of the truth; this meets the same surface again in double. A triangle that the exact
-// ray misses, or sees edge on, is met where the ray comes nearest to its edges. The point always lies on the surface. A
-// back face has both normals flipped, as Cycles does. A shading normal that is zero or NaN gives way to the geometric
-// one; a triangle without area faces the eye.
+// Intersects the surface of Embree's hit again in double, because the hit has only a float's precision. If the exact
+// ray misses a triangle, or sees it edge on, the point is the nearest one to the ray on its edges. The point always
+// lies on the surface. A back face has both normals flipped, as in Cycles. If a shading normal is zero or NaN, the
+// geometric one replaces it; a triangle without area faces the eye.
 SurfacePoint FindSurfacePoint(const PlacedObject& object, std::uint32_t primitive, const ViewRay& ray);
 
-// Where a point of a mesh's triangle is before anything deforms it, object space.
+// The place of a point of a mesh's triangle before any deformation, object space.
 glm::dvec3 RestPosition(const PlacedObject& object, std::uint32_t primitive, const glm::dvec2& barycentric);
 
 // Whether the shading normal is more than the corners' normals, interpolated.
 bool HasNormalMap(const PlacedObject& object);
 
-// Interpolated unit normals shorter than this have cancelled out: what is left is rounding.
+// Interpolated unit normals shorter than this have cancelled out: only rounding is left.
 inline constexpr double kShortestNormal = 1e-6;
 
 // Squares of lengths between which a vector is made a unit vector without being scaled first.
 inline constexpr double kLeastPlainSquare = 1e-200;
 inline constexpr double kLargestPlainSquare = 1e200;
 
-// False, and nothing changed, where there is no direction.
+// False, and `v` unchanged, where there is no direction.
 bool MakeUnit(glm::dvec3& v);
 
 double LargestCoordinate(const glm::dvec3& v);
@@ -90,17 +90,17 @@ double LargestCoordinate(const glm::dvec3& v);
 // Base colour × texture × vertex colour, linear, and alpha.
 glm::vec4 SurfaceColor(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
 
-// A texture at a point of the surface: its stored values, or its linear colour. Nothing where the use names no texture
-// or the mesh lacks its UV set.
+// A texture at a point of the surface: its stored values, or its linear colour. Empty where the use names no texture or
+// the mesh lacks its UV set.
 std::optional<glm::vec4> SampleSurface(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
                                        glm::dvec2 barycentric);
 std::optional<glm::vec4> SampleSurfaceColor(const PlacedObject& object, const TextureUse& use, std::uint32_t primitive,
                                             glm::dvec2 barycentric);
 
-// Whether no object is single-sided: rays of light, which meet backs as well, then pass wherever camera rays pass.
+// Whether no object is single-sided: rays of light, which also hit backs, then pass wherever camera rays pass.
 bool AllDoubleSided(std::span<const PlacedObject> objects);
 
-// Whether rays pass here: alpha masks, and blending taken for a mask at one half.
+// Whether rays pass here: alpha masks, and blending as a mask at one half.
 bool IsHole(const PlacedObject& object, std::uint32_t primitive, glm::dvec2 barycentric);
 bool MayHaveHoles(const Material& material);
 

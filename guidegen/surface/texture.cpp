@@ -9,7 +9,7 @@
 namespace scumble {
 namespace {
 
-// Brings a coordinate into a range where its product with the picture's size fits an int.
+// Reduces a coordinate so that its product with the picture's size fits an int.
 double Fold(double coordinate, TextureWrap wrap) {
   if (!std::isfinite(coordinate)) return 0.0;
   switch (wrap) {

@@ -1,4 +1,4 @@
-// Values of textures, as glTF's samplers have them.
+// Values of textures, by glTF's samplers.
 #pragma once
 
 #include <glm/glm.hpp>

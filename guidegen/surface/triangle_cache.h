@@ -9,43 +9,43 @@
 
 namespace scumble {
 
-// What FindSurfacePoint takes from an object.
+// FindSurfacePoint's data of an object.
 struct ObjectRecord {
   double view_from_normal[9];  // columns
   double winding;
   float object_id;
   float material_id;
-  // Nothing but a triangle's corners decides its surface: no sphere, no normal map, no missing normals.
+  // Only a triangle's corners determine its surface: no sphere, no normal map, no missing normals.
   bool interpolates;
 };
 std::vector<ObjectRecord> MakeObjectRecords(std::span<const PlacedObject> objects);
 
-// What FindSurfacePoint takes from a triangle, by the same sums.
+// FindSurfacePoint's data of a triangle, by equal sums.
 struct TriangleRecord {
   double corner[3];       // the first, view space
   double first_edge[3];   // back from the second corner to the first
   double second_edge[3];  // from the first corner to the third
   double area[3];         // the edges' cross product
-  double edge_on;         // kEdgeOn times the longest edge's square, and twice that so as to err on the safe side
+  double edge_on;         // kEdgeOn times the longest edge's square, and twice that as a safety margin
   float normal[9];        // of the three corners, object space
-  bool regular;           // false: it takes FindSurfacePoint itself to say what is here
+  bool regular;           // false: FindSurfacePoint itself is needed here
   // Of caches with points only.
   double facing[3];  // `area` as a unit vector
   double largest_coordinate;
 };
 
-// The triangles met last, for one thread. Answers do not depend on what was asked before.
+// The triangles that were hit last, for one thread. Results do not depend on earlier calls.
 class TriangleCache {
  public:
-  // Between two calls of Begin at most so many different triangles may be asked for.
+  // The most triangles between two calls of Begin.
   static constexpr std::size_t kMost = 256;
 
-  // Both are borrowed, and the cache is cleared with every change of them by making a new one.
+  // Both are borrowed; after a change of either, make a new cache.
   TriangleCache(std::span<const PlacedObject> objects, std::span<const ObjectRecord> records, bool points);
 
-  // Forgets nothing, but what was found before may go now.
+  // Releases nothing yet, but lets earlier records be replaced.
   void Begin() { ++now_; }
-  // What is found stays where it is until the next Begin.
+  // The record stays in place until the next Begin.
   const TriangleRecord& Find(std::uint32_t object, std::uint32_t primitive) {
     for (std::uint32_t place = primitive + object * 97u;; ++place) {
       Slot& slot = slots_[place % kSize];

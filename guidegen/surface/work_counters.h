@@ -1,6 +1,6 @@
-// Counters that the innermost loops of the ray caster add to. Each thread has its own, so that nothing is locked and
-// nothing is passed down to the loops. The function that splits the work adds up the differences. Sums of integers do
-// not depend on the split.
+// Counters that the innermost loops of the ray caster add to. Each thread has its own, so that there are no locks and
+// no arguments in the loops. The function that splits the work adds up the differences. Sums of integers do not depend
+// on the split.
 #pragma once
 
 #include <cstddef>

@@ -123,7 +123,7 @@ PixelCounts CountPixels(std::span<const std::uint8_t> flags) {
   return counts;
 }
 
-// The three planes of a layer of normals, X, Y, Z; nothing where the layer is not one of normals.
+// The three planes of a layer of normals, X, Y, Z; empty for other layers.
 std::optional<std::array<std::string, 3>> NormalChannels(const std::vector<std::string>& channels) {
   std::array<std::string, 3> found;
   for (const std::string& channel : channels) {
@@ -239,7 +239,7 @@ Status CheckInputs(const ChannelImage& a, const ChannelImage& b, const CompareOp
   return Ok();
 }
 
-// `count` of `total` pixels beyond a threshold: does that make the picture differ?
+// Whether `count` of `total` pixels beyond a threshold make the picture differ.
 bool TooMany(const DifferenceThresholds& thresholds, std::size_t count, std::size_t total, std::size_t allowed) {
   return count > allowed && static_cast<double>(count) > thresholds.percent / 100.0 * static_cast<double>(total);
 }

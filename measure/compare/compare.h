@@ -1,7 +1,7 @@
-// Two files, channel by channel: how far apart they are, where, and whether that is too far.
+// Compares two files channel by channel: the differences, their places, and whether they exceed thresholds.
 //
 // The options are those of OpenImageIO's idiff with the meaning that its documentation gives them. Where idiff 2.4
-// does otherwise we follow the documentation: every threshold is looked at whether or not another one was passed,
+// deviates we follow the documentation: every threshold is tested, whether or not another one was exceeded,
 // channels are matched by name, differing sizes are an error, and NaN is a difference.
 #pragma once
 
@@ -40,8 +40,8 @@ enum class Verdict {
 };
 const char* VerdictName(Verdict verdict);  // "equal", "warn", "fail"
 
-// The largest difference. A NaN on either side, or an infinity that the other side does not equal, is infinitely far;
-// of equally far values the first counts, in the order of channels, then rows.
+// The largest difference. A NaN on either side, or an infinity that the other side does not equal, counts as infinite.
+// Among equal differences the first counts, in the order of channels, then rows.
 struct WorstValue {
   std::string channel;
   int x = 0;  // in the whole picture, so that cropped renders name the pixel that a viewer shows
@@ -52,8 +52,7 @@ struct WorstValue {
 };
 
 // Statistics of |a − b| over one or more channels. The mean, RMS and PSNR leave out the incomparable values, which
-// `incomparable` counts: those where a NaN stands on either or both sides, or an infinity that the other does not
-// equal.
+// `incomparable` counts: those with a NaN on either or both sides, or an infinity that the other does not equal.
 struct DifferenceStats {
   std::size_t values = 0;
   std::size_t different = 0;  // a != b, at any distance
@@ -62,11 +61,11 @@ struct DifferenceStats {
   double rms = 0.0;
   double psnr_db = std::numeric_limits<double>::infinity();  // 20·log10(peak / rms)
   double peak = 1.0;                                         // the largest finite |a| or |b|, at least 1
-  std::optional<WorstValue> worst;                           // nothing where all values are equal
+  std::optional<WorstValue> worst;                           // empty where all values are equal
 };
 
-// Angles between the normals of two files, over the pixels where both are unit within 0.002. Percentiles are by
-// nearest rank: the smallest angle that is not exceeded by that share of the pixels.
+// Angles between the normals of two files, over the pixels where both are unit within 0.002. Percentiles are by nearest
+// rank: the smallest angle that is at least as large as that share of them.
 struct AngularStats {
   std::size_t pixels = 0;
   std::size_t unmatched = 0;  // pixels where one of the two is unit and the other is not
@@ -84,7 +83,7 @@ struct ChannelReport {
   DifferenceStats stats;
 };
 
-// How many pixels are beyond each threshold.
+// The number of pixels beyond each threshold.
 struct PixelCounts {
   std::size_t over_warn = 0;
   std::size_t over_fail = 0;
@@ -115,15 +114,15 @@ struct CompareReport {
   std::vector<std::string> reasons;  // why the verdict is not kEqual, one sentence each
 };
 
-// The layer that a channel belongs to: what stands before the last dot ("ViewLayer.Normal" of "ViewLayer.Normal.X").
-// Without a dot R, G and B make up "color", and any other channel is a layer of its own.
+// The layer of a channel: the text before the last dot ("ViewLayer.Normal" of "ViewLayer.Normal.X"). Without a dot R, G
+// and B make up "color", and any other channel is a layer of its own.
 std::string LayerOfChannel(const std::string& channel);
 
 // Compares all channels that both have under the same name. Errors: sizes or positions differ, no name in common, a
 // layer asked for that neither has, thresholds that are negative or NaN, a percentage above 100. O(values).
 Expected<CompareReport> Compare(const ChannelImage& a, const ChannelImage& b, const CompareOptions& options = {});
 
-// A guide set as channels under their file names, to compare what is in memory. `name` stands for it in reports.
+// A guide set as channels under their file names, to compare guides in memory. `name` stands for it in reports.
 ChannelImage ChannelsOf(const GuideSet& guides, const std::string& name);
 
 // The report as JSON, two spaces of indentation, ending in a newline. NaN and infinities, which JSON lacks, are the

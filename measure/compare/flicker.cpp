@@ -30,7 +30,7 @@ double MeanDifference(const MeanColor& a, const MeanColor& b) {
   return (std::fabs(a[0] - b[0]) + std::fabs(a[1] - b[1]) + std::fabs(a[2] - b[2])) / 3.0;
 }
 
-// Where a pixel goes: the upper left of the four pixels there, and how far it is from it.
+// The target of a pixel: the upper left of the four pixels there, and the fraction beyond it.
 struct Target {
   int x = 0, y = 0;
   double along_x = 0.0, along_y = 0.0;  // [0, 1)
@@ -143,7 +143,7 @@ class Flicker {
     return sum;
   }
 
-  // a moved bilinearly by the same fractions of a pixel, then read as b is.
+  // `a` shifted bilinearly by that fraction of a pixel, then sampled like b.
   MeanColor MovedByItself(int x, int y, const Target& target) const {
     const auto weights = [](double t) {
       return std::array<double, 3>{t * (1 - t), (1 - t) * (1 - t) + t * t, t * (1 - t)};

@@ -62,7 +62,7 @@ double LabCurve(double t) {
   return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
 }
 
-// L*a*b* with the Hunt adjustment: what is dark has less colour.
+// L*a*b* with the Hunt adjustment: dark colours have less chroma.
 glm::dvec3 HuntLabFromLinear(glm::dvec3 rgb) {
   const glm::dvec3 xyz = Space().xyz_from_rgb * rgb / Space().white;
   const double fx = LabCurve(xyz.x), fy = LabCurve(xyz.y), fz = LabCurve(xyz.z), lightness = 116.0 * fy - 16.0;
@@ -81,7 +81,7 @@ double LargestDifference() {
   return largest;
 }
 
-// Differences up to p_c of the largest take up p_t of the range.
+// Differences up to p_c of the largest are mapped to p_t of the range.
 double ColorError(glm::dvec3 reference, glm::dvec3 test) {
   const double error = std::pow(Hyab(reference, test), kQc), largest = LargestDifference(), knee = kPc * largest;
   return error < knee ? kPt / knee * error : kPt + (error - knee) / (largest - knee) * (1.0 - kPt);
@@ -189,7 +189,7 @@ Plane Filtered(const Plane& plane, const Weights& across, const Weights& down, i
   return out;
 }
 
-// What the eye makes of a picture.
+// A picture as the eye filters it.
 struct Seen {
   Plane lightness, a, b;  // blurred, in Hunt-adjusted L*a*b*
   Plane edges, points;    // 0 … √2

@@ -1,11 +1,11 @@
-// LDR-FLIP: how visible the difference of two pictures is to someone who flips between them.
+// LDR-FLIP: the visibility of the difference of two pictures to a viewer who flips between them.
 //
 // P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild: FLIP: A Difference Evaluator
-// for Alternating Images, HPG 2020. Its colour pipeline: both pictures are blurred as the eye's contrast sensitivity
-// blurs them, compared in Hunt-adjusted L*a*b* by the HyAB distance, and errors are spread over 0 … 1. Its feature
-// pipeline: that is raised where one picture has an edge or a point that the other lacks. The constants are the
+// for Alternating Images, HPG 2020. Its colour pipeline: both pictures are filtered by the eye's contrast sensitivity,
+// compared in Hunt-adjusted L*a*b* by the HyAB distance, and errors are spread over 0 … 1. Its feature pipeline raises
+// the error where one picture has an edge or a point that the other lacks. The constants are the
 // paper's: q_c 0.7, p_c 0.4, p_t 0.95, q_f 0.5, w 0.082°, its contrast sensitivity functions, primaries and white of
-// sRGB; luminance is divided by 116 as the authors' errata have it. Borders are continued by their last pixel, as in
+// sRGB; luminance is divided by 116 as the authors' errata have it. Border pixels are repeated, as in
 // their code. Of a whole map they recommend the mean.
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace scumble {
 
-// Pixels of a display that one degree of the viewer's sight takes in: distance · (pixels / width) · π / 180.
+// Pixels of a display in one degree of the viewer's sight: distance · (pixels / width) · π / 180.
 constexpr double PixelsPerDegree(double distance_m, double width_pixels, double width_m) {
   return distance_m * (width_pixels / width_m) * std::numbers::pi / 180.0;
 }
@@ -26,7 +26,7 @@ constexpr double PixelsPerDegree(double distance_m, double width_pixels, double 
 struct FlipOptions {
   // Above 0 and at most 1000. The published default: a display of 4K, 0.7 m wide and 0.7 m away, 67.02.
   double pixels_per_degree = PixelsPerDegree(0.7, 3840.0, 0.7);
-  int threads = 0;  // 0: all; they do not matter to the result
+  int threads = 0;  // 0: all; the result does not depend on them
 };
 
 struct FlipReport {
@@ -50,7 +50,7 @@ struct LinearColors {
 // degree out of range (kUsage). O(pixels · pixels per degree), about 70 bytes a pixel.
 Expected<FlipReport> MeasureFlip(const Picture& reference, const Picture& test, const FlipOptions& options = {});
 
-// The same of linear colours; `rms` is of the clamped linear values.
+// MeasureFlip of linear colours; `rms` is of the clamped linear values.
 Expected<FlipReport> MeasureFlip(const LinearColors& reference, const LinearColors& test,
                                  const FlipOptions& options = {});
 

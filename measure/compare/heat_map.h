@@ -1,4 +1,4 @@
-// A picture of where two files differ.
+// A picture of the differences between two files.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 namespace scumble {
 
 struct HeatMapOptions {
-  double full_scale = 0.0;          // the difference that is shown as full yellow; 0: the largest there is
+  double full_scale = 0.0;          // the difference shown as full yellow; 0: the largest one
   std::vector<std::string> layers;  // as in CompareOptions
 };
 
@@ -23,11 +23,11 @@ struct HeatMap {
 
 // Per pixel the largest |a − b| of the channels that both files have: dark blue where equal, over grey, to yellow at
 // full scale and above; magenta where a NaN or a lone infinity makes the pixel incomparable. The ramp is straight in
-// Oklab with rising lightness, so it reads alike in grey and with colour-blind eyes. Errors as those of Compare.
+// Oklab with rising lightness, so it is readable in grey and by colour-blind viewers. Errors as those of Compare.
 Expected<HeatMap> DifferenceHeatMap(const ChannelImage& a, const ChannelImage& b, const HeatMapOptions& options = {});
 
-// The same colours for values of one's own, row by row: 0 is dark blue, full_scale (above 0) and more yellow;
-// transparent where NaN. `values` are width × height.
+// The same colours for other values, row by row: 0 is dark blue, full_scale (above 0) and more yellow; transparent
+// where NaN. `values` are width × height.
 Picture ValueHeatMap(std::span<const float> values, int width, int height, double full_scale);
 
 }  // namespace scumble

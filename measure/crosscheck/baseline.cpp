@@ -92,7 +92,7 @@ Expected<BaselineScene> ReadScene(const nlohmann::json& json, const std::string&
 double RoundedUp(double value) {
   if (!(value > 0.0) || !std::isfinite(value)) return value;
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  // Through text, so that 0.0007 is written and not 0.0007000000000000001.
+  // By way of text, so that 0.0007 is written and not 0.0007000000000000001.
   return std::stod(fmt::format("{:.1e}", std::ceil(value / unit * (1.0 - 1e-12)) * unit));
 }
 
@@ -102,7 +102,7 @@ Expected<Baseline> ParseBaseline(std::string_view text, const std::string& file)
   nlohmann::json json;
   try {
     json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& problem) {  // whose own words quote what it read, of any length
+  } catch (const nlohmann::json::parse_error& problem) {  // its own text quotes the input, of any length
     const std::string_view read = text.substr(0, problem.byte == 0 ? 0 : problem.byte - 1);
     const auto line = 1 + std::count(read.begin(), read.end(), '\n');
     const std::size_t column = read.size() - (read.rfind('\n') + 1) + 1;  // npos + 1 is 0

@@ -1,11 +1,10 @@
-// Limits of a cross-check that a team commits: measured once, kept since. They can tighten the built-in limits and
-// never loosen them.
+// Committed limits of a cross-check, measured once. They can tighten the built-in limits and never loosen them.
 //
 // A baseline is JSON:
 //   {"scumble_baseline": 1, "blender": "3.4.1",
 //    "scenes": {"suzanne.glb": {"size": "640x360", "samples": 64, "max_bounces": 8, "limits": {"normal 99% within":
 //    0.0007}}}}
-// A scene may name its "camera" and "frame", where they were chosen. Figures are named by layer and name.
+// A scene may name its "camera" and "frame", if they were chosen. Figures are named by layer and name.
 #pragma once
 
 #include <map>
@@ -24,7 +23,7 @@ struct BaselineScene {
 };
 
 struct Baseline {
-  std::string blender;                          // version that made the reference; empty: not said
+  std::string blender;                          // version that made the reference; empty: unknown
   std::map<std::string, BaselineScene> scenes;  // by file name, without folders
 };
 
@@ -35,16 +34,16 @@ Expected<Baseline> ParseBaseline(std::string_view text, const std::string& file)
 // Two spaces of indentation, scenes and limits in alphabetical order, ending in a newline.
 std::string BaselineToJson(const Baseline& baseline);
 
-// Why the baseline cannot judge a scene of that file name rendered so, with how to mend it; empty where it can. To be
-// asked before the renders.
+// The reason why the baseline does not apply to a scene of that file name rendered so, with the remedy; empty if it
+// applies. Call it before the renders.
 std::string BaselineMismatch(const Baseline& baseline, const std::string& scene, const CrosscheckSetup& setup);
 
-// Puts the baseline's limits into the report. A figure that it names and that was not measured fails the verdict.
-// Returns what deserves a line on stderr: limits above the built-in ones, which stay without effect.
+// Puts the baseline's limits into the report. A figure in the baseline that was not measured fails the verdict. Returns
+// warnings for stderr: limits above the built-in ones, which have no effect.
 std::vector<std::string> ApplyBaseline(const Baseline& baseline, const std::string& scene, CrosscheckReport& report);
 
-// Makes the report's figures the scene's entry: measured × 1.25, and for light twice the standard error on top, rounded
-// up to two digits, never above the built-in limit and never below what counting or rounding makes senseless.
+// Makes the report's figures the scene's entry. Each limit is measured × 1.25, for light plus twice the standard error,
+// rounded up to two digits. It is never above the built-in limit, and never below the step of counting or rounding.
 void RecordInBaseline(const CrosscheckReport& report, const std::string& scene, Baseline& baseline);
 
 }  // namespace scumble

@@ -20,7 +20,7 @@ struct Axis {
   double At(double value) const { return begin + (std::log10(value) - low) / (high - low) * (end - begin); }
 };
 
-// Where something is worth a line.
+// Whether the layer has noise to draw.
 bool IsDrawn(const CrosscheckNoise& layer) { return layer.slope.has_value(); }
 
 Axis SampleAxis(const std::vector<int>& samples) {
@@ -73,7 +73,7 @@ std::string Guide(const Axis& x, const Axis& y, const std::vector<const Crossche
                      y.At(start), x.At(last), y.At(end));
 }
 
-// Names beside the lines' ends, pushed apart where they would lie over one another.
+// Heights of the names beside the lines' ends, moved apart where they would overlap.
 std::vector<double> LabelHeights(const Axis& y, const std::vector<const CrosscheckNoise*>& layers) {
   constexpr double kApart = 15;
   std::vector<std::size_t> order(layers.size());

@@ -50,7 +50,7 @@ namespace {
 
 using internal::PutColor;
 
-// By nearest rank: the smallest value that is not exceeded by that share of all. NaN counts as infinitely far.
+// By nearest rank: the smallest value that is at least as large as that share of all. NaN counts as infinite.
 double Percentile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   for (double& value : values) {
@@ -62,12 +62,12 @@ double Percentile(std::vector<double> values, double share) {
   return *place;
 }
 
-// In double, by both products: acos alone cannot tell small angles.
+// In double, by both products: acos alone does not resolve small angles.
 double AngleDegrees(glm::dvec3 a, glm::dvec3 b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * (180.0 / 3.14159265358979323846);
 }
 
-// How far a layer's pixels are apart, and how a value of it looks.
+// The distance of a layer's pixels, and the display of its values.
 struct LayerMeasure {
   Layer layer;
   std::function<double(std::size_t)> difference;
@@ -86,7 +86,7 @@ std::vector<LayerMeasure> Measures(const GuideSet& a, const GuideSet& b) {
   const auto relative = [](double x, double y) { return std::fabs(x - y) / std::max(std::fabs(x), 1e-30); };
   const auto depth_a = a.Plane(Layer::kDepth), depth_b = b.Plane(Layer::kDepth);
   float nearest = std::numeric_limits<float>::infinity(),
-        farthest = 0.0f;  // of what is nearer than what is read for infinite
+        farthest = 0.0f;  // of the distances below the one that counts as infinite
   for (const float z : depth_a) {
     if (z < 1e30f) nearest = std::min(nearest, z), farthest = std::max(farthest, z);
   }
@@ -207,12 +207,12 @@ void AddCoverage(const GuideSet& a, const GuideSet& b, CrosscheckReport& report)
     differing += (a.Plane(Layer::kCoverage)[i] >= 0.5f) != (b.Plane(Layer::kCoverage)[i] >= 0.5f);
   }
   const double percent = 100.0 * static_cast<double>(differing) / static_cast<double>(a.pixel_count());
-  // In a baseline one pixel may go either way.
+  // In a baseline one pixel may differ either way.
   const double one_pixel = 100.0 / static_cast<double>(a.pixel_count());
   report.figures.push_back({"A", "differing", "% of pixels", percent, 0.02, 0, one_pixel});
 }
 
-// Objects of which no pixel is compared are named: wires and leaves are narrower than what the erosion takes off.
+// Names objects without a compared pixel: the erosion removes wires and leaves.
 void CountCovered(const GuideSet& a, const GuideSet& b, const std::vector<std::size_t>& mask,
                   CrosscheckReport& report) {
   const auto covered_a = a.Plane(Layer::kCoverage), covered_b = b.Plane(Layer::kCoverage);

@@ -14,28 +14,28 @@
 
 namespace scumble {
 
-// One figure and the limit it must keep.
+// One figure and its limit.
 struct CrosscheckFigure {
   std::string layer;  // "normal"
   std::string name;   // "99% within"
   std::string unit;   // "degrees"
   double value = 0;
   double limit = 0;                           // built in
-  double error = 0;                           // standard error of the value; 0 where chance plays no part
+  double error = 0;                           // standard error of the value; 0 where no sampling is involved
   double floor = 0;                           // the least limit that makes sense in a baseline
   std::string note = {};                      // "no such light"
   std::optional<double> baseline_limit = {};  // from a file; can tighten and never loosen
-  // Whether the limit must be shown to be kept. If not, it is enough that it is not shown to be broken.
+  // If true, the figure must be proved to be within the limit. If false, it must not be proved to be beyond it.
   bool must_prove = true;
 
   double LimitInForce() const;
   bool TightenedByBaseline() const { return baseline_limit && *baseline_limit < limit; }
-  // Beyond the limit by more than twice the error explains. NaN breaks every limit.
+  // Beyond the limit by more than twice the error. NaN breaks every limit.
   bool broken() const { return !(value - 2.0 * error <= LimitInForce()); }
-  // Within the limit even if twice the error is against it.
+  // Within the limit even with twice the error added.
   bool Proved() const { return value + 2.0 * error <= LimitInForce(); }
   bool kept() const { return must_prove ? Proved() : !broken(); }
-  // Neither: more samples would tell.
+  // Neither: more samples would decide.
   bool TooNoisy() const { return !kept() && !broken(); }
 };
 
@@ -45,15 +45,15 @@ struct CrosscheckPictures {
   Picture reference;
   Picture ours;
   Picture difference;
-  std::string look;        // how both are shown, in words; empty where it goes without saying
-  std::string full_scale;  // what the colours of the difference mean, in words
-  // The colours of the difference from the least to the most, for CSS, and what stands at evenly spaced places below
+  std::string look;        // how both are shown, in words; empty for plain display
+  std::string full_scale;  // the meaning of the difference's colours, in words
+  // The colours of the difference from the least to the most, for CSS, and the labels at evenly spaced places below
   // them.
   std::vector<std::string> scale_colors = {};
   std::vector<std::string> scale_labels = {};
 };
 
-// How far ours and the reference are apart pixel by pixel, at several sample counts.
+// The pixelwise difference between ours and the reference, at several sample counts.
 struct CrosscheckNoise {
   std::string layer;
   std::vector<int> samples;     // ascending
@@ -69,7 +69,7 @@ struct CrosscheckNoise {
   double worst_ours = 0;
 };
 
-// What was rendered: two reports compare only where these agree.
+// The set-up of the renders: two reports are comparable only if these agree.
 struct CrosscheckSetup {
   int width = 0;
   int height = 0;
@@ -85,16 +85,16 @@ inline constexpr std::size_t kLeastCompared = 100;
 
 enum class CrosscheckOutcome {
   kAgrees,
-  kNotProved,  // nothing speaks against it but figures that are too noisy
+  kNotProved,  // only noisy figures prevent a verdict
   kDiffers,
   kNotCompared,  // a side could not be made
 };
 
 struct CrosscheckReport {
   std::string scene;
-  std::string failure = {};  // why it could not be compared; then the rest is empty but for the set-up
+  std::string failure = {};  // the reason why it could not be compared; then all other fields but the set-up are empty
   CrosscheckSetup setup;
-  std::size_t covered = 0;    // pixels where both sides show something
+  std::size_t covered = 0;    // pixels that both sides cover
   std::size_t compared = 0;   // of these, inside the eroded masks
   std::string too_thin = {};  // objects of which no pixel is compared, for people
   bool glossy = false;        // the reference shows a specular surface
@@ -102,23 +102,22 @@ struct CrosscheckReport {
   std::vector<CrosscheckNoise> noise;
   std::vector<CrosscheckPictures> pictures;
   std::vector<std::string> skipped;      // layers that one side lacks: they fail the verdict
-  std::vector<std::string> problems;     // whatever else fails the verdict, one sentence each
-  std::vector<std::string> unsupported;  // what one side or both do not express, one sentence each
-  std::vector<std::string> warnings;     // what is not compared as authored, on purpose
+  std::vector<std::string> problems;     // other reasons for failure, one sentence each
+  std::vector<std::string> unsupported;  // features that one side or both lack, one sentence each
+  std::vector<std::string> warnings;     // deliberate differences from the authored scene
   std::string scumble_version = {};      // of this program
   std::string blender_version = {};      // of the reference; empty where it is not known
   std::string baseline_mismatch =
-      {};                           // why the baseline does not judge this scene; empty where it does or there is none
+      {};  // {}; // the reason why the baseline does not apply to this scene; empty where it does or there is none
   bool KeepsBuiltInLimits() const;  // the verdict without any baseline
   CrosscheckOutcome Outcome() const;
   bool passed() const { return Outcome() == CrosscheckOutcome::kAgrees; }
 };
 
 struct CrosscheckOptions {
-  int erode_pixels = 2;  // compared are pixels whose neighbourhood shows one and the same object in both
+  int erode_pixels = 2;  // only pixels whose neighbourhood shows one object in both are compared
   bool make_pictures = true;
-  // By pixel: 1 where albedo is not compared, because the reference's surface has none and shines instead. Empty:
-  // nowhere.
+  // By pixel: 1 where albedo is not compared, because the reference's surface only emits. Empty: nowhere.
   std::vector<std::uint8_t> without_albedo = {};
 };
 
@@ -140,13 +139,12 @@ struct CrosscheckLight {
 // ascending order of samples; figures and pictures are those of the last. Each layer has two figures:
 //   - "mean difference": Σ|mean ours − mean reference| / Σ mean reference over the three channels, in percent. Its
 //   error is
-//     the sum of the channels' standard errors, so it holds however the channels' noise hangs together. Limits: LDE
+//     the sum of the channels' standard errors, so it holds for any correlation of the channels' noise. Limits: LDE
 //     0.5%, LSE 2%, the others 1.5% where nothing is glossy and 2% else.
 //   - "8x8 tiles": the root mean square difference of the means of tiles of 8 × 8 pixels over the mean, in percent,
-//   with
-//     what the noise adds taken off: light that is in the wrong place. Limit 5%; layers whose noise hides more than
-//     that are not judged by it.
-// Noise is told from real differences by the change of each pixel's difference from one sample count to the last; with
+//   less the noise's part: light in the wrong place. Limit 5%; it does not apply to layers whose noise hides more.
+// Noise is separated from real differences by the change of each pixel's difference from one sample count to the last;
+// with
 // a single count by its spread. `indirect` is full − LDE − LSE where the surface itself does not shine. Zero in both is
 // "no such light"; zero in one alone breaks. Every value of ours must be finite and not negative. A layer that either
 // side lacks is skipped, and fails the verdict. Errors: sizes differ.
@@ -160,7 +158,7 @@ std::string CrosscheckToJson(const std::vector<CrosscheckReport>& reports);
 
 // "agrees", "not proved", "differs", "could not be compared".
 const char* OutcomeName(CrosscheckOutcome outcome);
-// The verdict's own line, and why it fails, one sentence each.
+// The verdict's own line, and the reasons for a failure, one sentence each.
 std::string CrosscheckVerdict(const CrosscheckReport& report);
 std::vector<std::string> WhyCrosscheckFails(const CrosscheckReport& report);
 

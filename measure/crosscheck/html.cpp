@@ -24,18 +24,20 @@ Expected<std::string> ImageTag(const Picture& picture, const std::string& captio
 
 constexpr const char* kStyle = R"(
 tr.broken td { color: var(--bad); font-weight: 600; } td.first { font-weight: 600; } td.again { color: transparent; }
-.verdict { display: inline-block; padding: .1rem .7rem; border-radius: 1rem; font-size: .85em; font-weight: 600; border: 1.5px solid; }
+.verdict { display: inline-block; padding: .1rem .7rem; border-radius: 1rem; font-size: .85em; font-weight: 600;
+  border: 1.5px solid; }
 .agrees { color: var(--good); } .differs { color: var(--bad); } .unproved { color: var(--warn); }
 .scale { height: .6rem; border-radius: 3px; margin-top: .4rem; border: 1px solid var(--line); }
 .labels { display: flex; justify-content: space-between; color: var(--soft); font-size: .78rem; }
 .fails { background: var(--badground); border-left: 4px solid var(--bad); padding: .4rem 1rem; margin: .6rem 0; }
 td.state { white-space: nowrap; }
 .row { display: grid; grid-template-columns: repeat(3, 1fr); gap: .8rem; } figure { margin: 0; }
-svg { max-width: 44rem; width: 100%; font: 12px system-ui, sans-serif; } svg text { fill: var(--soft); } svg text.label { fill: revert-layer; }
+svg { max-width: 44rem; width: 100%; font: 12px system-ui, sans-serif; } svg text { fill: var(--soft); }
+svg text.label { fill: revert-layer; }
 svg .grid { stroke: var(--line); } svg .guide { stroke: var(--soft); stroke-dasharray: 5 5; stroke-width: 1.4; }
 )";
 
-// A mark too: colours alone are not for every eye.
+// With a mark, because not every viewer separates the colours.
 std::string Badge(CrosscheckOutcome outcome) {
   const char* kind = outcome == CrosscheckOutcome::kAgrees      ? "agrees\">✓"
                      : outcome == CrosscheckOutcome::kNotProved ? "unproved\">?"
@@ -52,7 +54,7 @@ CrosscheckOutcome OutcomeOf(const std::vector<CrosscheckReport>& reports) {
 
 std::string Anchor(std::size_t index) { return fmt::format("scene{}", index + 1); }
 
-// The figure nearest to its limit, or farthest beyond it: what a reader of the summary wants to know first.
+// The figure nearest to its limit, or farthest beyond it: the most important one of the summary.
 const CrosscheckFigure* Tightest(const CrosscheckReport& report) {
   const CrosscheckFigure* tightest = nullptr;
   double most = -1.0;

@@ -9,16 +9,16 @@
 
 namespace scumble {
 
-// What the page says about the run.
+// The run's data for the page.
 struct CrosscheckRun {
   std::string reference;      // "Cycles, Blender 3.4.1"
   std::string command;        // how to repeat it
   std::string baseline = {};  // the file that tightened limits; empty: none
 };
 
-// A table of all scenes on top; for each scene what fails, what is not compared as authored, figures and limits, noise
-// against samples, and for each layer both pictures and where they differ. Pictures are embedded as PNG; nothing is
-// loaded from elsewhere. The page follows the reader's choice of dark or light.
+// A table of all scenes at the top. For each scene: failures, deliberate differences from the authored scene, figures
+// and limits, noise against samples, and for each layer both pictures and their difference. Pictures are embedded as
+// PNG; the page loads nothing from elsewhere. The page follows the reader's choice of dark or light.
 Expected<std::string> CrosscheckToHtml(const std::vector<CrosscheckReport>& reports, const CrosscheckRun& run);
 
 }  // namespace scumble

@@ -18,11 +18,11 @@ namespace {
 using internal::PutColor;
 
 constexpr Layer kLightLayers[] = {Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE, Layer::kLpeLD12E, Layer::kLpeFull};
-constexpr double kNoiseFree = 1e-3;      // NRMSE below which a layer holds no noise worth a slope
+constexpr double kNoiseFree = 1e-3;      // NRMSE below which a layer's noise has no useful slope
 constexpr double kBaselineFloor = 0.01;  // percent
 constexpr double kTileLimit = 5.0;       // percent
 
-// A layer, or what is computed from several, in both sets.
+// A layer, or a sum of several, in both sets.
 struct LightMeasure {
   std::string name;
   double limit;  // percent
@@ -54,7 +54,7 @@ std::vector<LightMeasure> LightMeasures(const std::vector<std::size_t>& mask, co
                         [layer](const GuideSet& g, std::size_t i) { return glm::dvec3(g.Vec3(layer, i)); }, mask});
   }
   if (!there.Contains({Layer::kLpeFull, Layer::kLpeLDE, Layer::kLpeLSE})) return measures;
-  std::vector<std::size_t> dark;  // the surface itself does not shine
+  std::vector<std::size_t> dark;  // where the surface itself does not emit
   for (const std::size_t i : mask) {
     if (!last.reference.emits[i]) dark.push_back(i);
   }
@@ -88,7 +88,7 @@ LightSums SumUp(const LightMeasure& measure, const CrosscheckLight& light) {
 
 double Total(const glm::dvec3& v) { return v.x + v.y + v.z; }
 
-// What is left of full − LDE − LSE where nothing else is there: differences of rounded floats, no light.
+// Removes the remainder of full − LDE − LSE where there is no other light: differences of rounded floats.
 void ForgetRounding(const LightMeasure& measure, const CrosscheckLight& light, LightSums& sums) {
   if (measure.name != "indirect") return;
   double full_reference = 0, full_ours = 0;
@@ -101,9 +101,9 @@ void ForgetRounding(const LightMeasure& measure, const CrosscheckLight& light, L
   sums.ours_zero = std::fabs(Total(sums.ours)) <= kRounding * full_ours;
 }
 
-// What the noise adds to the square of each masked pixel's difference, by channel, in the mask's order. A pixel's mean
-// of N samples holds those of M samples before, so the two differ by noise alone, whose variance is σ²(1/M − 1/N); that
-// of the pixel itself is σ²/N. What both sides really disagree about does not change and drops out.
+// The noise's part of the square of each masked pixel's difference, by channel, in the mask's order. A pixel's mean of
+// N samples includes its mean of M earlier samples. So the two differ by noise alone, whose variance is σ²(1/M − 1/N);
+// that of the pixel itself is σ²/N. Real differences of both sides are constant and cancel.
 std::vector<glm::dvec3> NoiseVariances(const LightMeasure& measure, const std::vector<CrosscheckLight>& light) {
   std::vector<glm::dvec3> variances;
   variances.reserve(measure.mask.size());
@@ -150,7 +150,7 @@ CrosscheckFigure MeanFigure(const LightMeasure& measure, const LightSums& sums,
   return figure;
 }
 
-// Light in the wrong place: what is left of the differences of tiles' means when the noise's share is taken off.
+// Light in the wrong place: the differences of tiles' means less the noise's part.
 CrosscheckFigure TileFigure(const LightMeasure& measure, const LightSums& sums, const CrosscheckLight& light,
                             const std::vector<glm::dvec3>& variances) {
   constexpr int kTile = 8;
@@ -185,8 +185,8 @@ CrosscheckFigure TileFigure(const LightMeasure& measure, const LightSums& sums, 
   CrosscheckFigure figure{measure.name, "8x8 tiles", "%", 0.0, kTileLimit, 0.0, kBaselineFloor};
   figure.must_prove = false;
   figure.value = scale * std::sqrt(std::max(mean, 0.0));
-  // Twice the figure's error reaches from it to the root of the least that the square may be; where that is below 0, or
-  // the noise hides everything, to the most.
+  // Twice the figure's error reaches to the root of the least value of the square. If that is below 0, or the noise
+  // exceeds everything, it reaches to the greatest.
   const double least = scale * std::sqrt(std::max(mean - 2.0 * error, 0.0));
   figure.error = 0.5 * (mean > 0.0 ? figure.value - least : scale * std::sqrt(2.0 * error));
   if (std::isnan(mean)) figure.value = mean;
@@ -237,7 +237,7 @@ CrosscheckNoise NoiseOf(const LightMeasure& measure, const std::vector<Crosschec
   return noise;
 }
 
-// Values of ours that are no radiance, over the whole picture and all sample counts.
+// Our values that are not finite or negative, over the whole picture and all sample counts.
 CrosscheckFigure ImpossibleValues(const std::vector<CrosscheckLight>& light, const LayerSet& there) {
   CrosscheckFigure figure{"lpe", "NaN, inf or < 0", "values", 0.0, 0.0};
   for (const Layer layer : kLightLayers) {
@@ -255,7 +255,7 @@ CrosscheckFigure ImpossibleValues(const std::vector<CrosscheckLight>& light, con
   return figure;
 }
 
-// 1 over the 99th percentile of the reference's brightest channel: what becomes white.
+// 1 over the 99th percentile of the reference's brightest channel, which becomes white.
 double ExposureFor(const LightMeasure& measure, const CrosscheckLight& light) {
   std::vector<double> values;
   for (const GuideSet* side : {&light.reference.guides, &light.ours}) {
@@ -273,7 +273,7 @@ double ExposureFor(const LightMeasure& measure, const CrosscheckLight& light) {
   return 1.0 / *place;
 }
 
-// Black where equal, to orange where ours is brighter, to blue where it is darker, magenta where there is no number.
+// Black where equal, to orange where ours is brighter, to blue where it is darker, magenta for NaN.
 glm::vec3 SignedColor(double difference) {
   if (!std::isfinite(difference)) return {1.0f, 0.0f, 1.0f};
   const auto share = static_cast<float>(std::min(1.0, std::fabs(difference) * 10.0));

@@ -1,4 +1,4 @@
-// What the files of the cross-check share. Not for other folders.
+// Helpers shared by the files of the cross-check. Private to measure/crosscheck.
 #pragma once
 
 #include <cstddef>

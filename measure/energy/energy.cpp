@@ -46,7 +46,7 @@ Status CheckSizes(const std::string& name, const Picture* picture, const Guides&
                     ", its guides are not: render both at one size");
 }
 
-// Copies what the mask shows; `largest` grows to the largest absolute guide.
+// Copies the pixels inside the mask; `largest` grows to the largest absolute guide.
 template <class IsShown>
 Expected<PatchPlanes> MakePlanes(const std::string& name, const Picture& picture, const Guides& guides,
                                  const IsShown& is_shown, double& largest) {
@@ -142,7 +142,7 @@ std::vector<Spot> SpotsOf(const PatchPlanes& planes) {
   return spots;
 }
 
-// Which normals a picture shows, in cubes of side 1/8 with all of their neighbours.
+// The normals that a picture shows, in cubes of side 1/8 with all of their neighbours.
 class ShownNormals {
  public:
   explicit ShownNormals(const PatchPlanes& planes) : shown_(kSide * kSide * kSide, 0) {
@@ -176,7 +176,7 @@ class ShownNormals {
   std::vector<std::uint8_t> shown_;
 };
 
-// Which spots are looked at.
+// The spots to measure.
 struct Sample {
   internal::StratifiedSample drawn;
   std::vector<Spot> spots;
@@ -197,8 +197,8 @@ Estimate MeanOf(const Sample& sample, const std::vector<EnergySample>& samples, 
 
 using Places = std::vector<PatchSearch::Place>;
 
-// Where the pixels of a patch have gone or come from, moved back by their distance from its middle: in a copy all of
-// them agree. `other_of(x, y)` is of a pixel of `planes` that counts; nothing where it is not known.
+// The places from or to which the pixels of a patch were copied, moved back by their distance from its middle: in a
+// copy all of them agree. `other_of(x, y)` is of a valid pixel of `planes`; empty where it is unknown.
 template <class OtherOf>
 Places Guesses(const PatchPlanes& planes, int x, int y, const OtherOf& other_of) {
   Places guesses;
@@ -218,7 +218,7 @@ Places Guesses(const PatchPlanes& planes, int x, int y, const OtherOf& other_of)
   return guesses;
 }
 
-// Where the picture's pixels took their paint from, and the other way round.
+// The sources of the picture's pixels, and the inverse map.
 class KnownSources {
  public:
   KnownSources(const SourcePlanes* sources, std::span<const PatchPlanes> exemplars) : sources_(sources) {
@@ -293,7 +293,7 @@ Status CheckInputs(const EnergyTarget& target, const Guides& guides, std::span<c
 double ColorOf(const EnergySample& sample) { return sample.color; }
 double GuideOf(const EnergySample& sample) { return sample.guide; }
 
-// The nearest patch of `there`, which `search` is of, to each spot of `here`. `guesses(spot)` are good first ones.
+// The nearest patch of `there`, by `search`, to each spot of `here`. `guesses(spot)` are good first candidates.
 template <class GuessesOf>
 std::vector<EnergySample> Look(const PatchSearch& search, std::span<const PatchPlanes> here,
                                std::span<const PatchPlanes> there, const Sample& sample, const EnergyOptions& options,

@@ -7,7 +7,7 @@
 namespace scumble {
 namespace {
 
-// Its cosine. The rule is that of the transfer's IsFlat (transfer/match/variety.cpp), which a test holds it to.
+// Its cosine. The rule equals the transfer's IsFlat (transfer/match/variety.cpp); a test compares them.
 constexpr float kHalfADegree = 0.99996192f;
 
 struct Step {

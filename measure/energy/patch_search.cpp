@@ -17,8 +17,8 @@ constexpr int kMostNumbers = 60;
 constexpr float kSumSlack = 1.0f - (kMostNumbers + 4) * 0x1.0p-24f;
 constexpr std::size_t kNormalGuides = 3;  // x, y and z, before all other guides
 
-// Smooth patterns hold most of what patches of paint differ by: the polynomials of the degrees 0, 1 and 2 that are
-// orthonormal on the grid.
+// Smooth patterns explain most of the difference between patches of paint: the polynomials of the degrees 0, 1 and 2
+// that are orthonormal on the grid.
 std::array<std::array<double, 2 * kPatchRadius + 1>, 3> Polynomials(int radius) {
   std::array<std::array<double, 2 * kPatchRadius + 1>, 3> out{};
   double mean = 0.0;
@@ -35,7 +35,7 @@ std::array<std::array<double, 2 * kPatchRadius + 1>, 3> Polynomials(int radius) 
   return out;
 }
 
-// Of a squared distance, what counts of it where `free` of its root does not.
+// The part of a squared distance whose root exceeds `free`.
 double BeyondFree(double squared, double free) {
   const double beyond = std::max(0.0, std::sqrt(squared) - free);
   return beyond * beyond;
@@ -67,11 +67,7 @@ PatchSearch::PatchSearch(std::span<const PatchPlanes> exemplars, double guide_we
     for (const float free : exemplar.free) most_free_ = std::max(most_free_, double(free));
   }
   SCUMBLE_CHECK(most_free_ == 0.0 || guides_ >= kNormalGuides);
-  // Values are at most `scale`, and a patch has n of them. A number is at most 5 · scale (a pattern's length is 1 and a
-  // plane of a patch has 25 places), or √n · scale where it is the length of what is left; both are rounded to float,
-  // their difference is, and that less the slack: up to 6 · √n · scale · 2⁻²⁴. The square of that length is a sum of n
-  // squares less others, in doubles: off by at most 4 · n · (n · scale²) · 2⁻⁵³, and its root by the root of that, as
-  // the square may be 0. That happens on both sides.
+  // An upper bound of rounding errors: see docs/numerics.md, "Derivations".
   const double scale = std::max(1.0, std::sqrt(guide_weight) * largest_guide);
   const double n = kPatchPlaces * kPatchColors;
   slack_ = static_cast<float>(scale * (8.0 * std::sqrt(n) * 0x1.0p-24 + 2.0 * 2.0 * n * 0x1.0p-26));
@@ -96,7 +92,7 @@ PatchSearch::Level PatchSearch::MakeLevel(int radius) const {
       for (int x = 0; x < exemplars_[e].width; x += kTileSide) AddTile(level, static_cast<int>(e), x, y);
     }
   }
-  // Boxes, by number: a query goes through all tiles with one number after the other.
+  // Boxes, by number: a query reads one number of all tiles after the other.
   level.low.assign(level.tiles * std::size_t(level.numbers), std::numeric_limits<float>::infinity());
   level.high.assign(level.low.size(), -std::numeric_limits<float>::infinity());
   for (std::size_t tile = 0; tile < level.tiles; ++tile) {
@@ -144,8 +140,8 @@ void PatchSearch::AddTile(Level& level, int exemplar, int tile_x, int tile_y) co
   }
 }
 
-// color(c, dx, dy) is the patch and guide(g) its middle. Colours are projected on all patterns, then come the guides
-// and the length of what is left of the colours.
+// color(c, dx, dy) is the patch and guide(g) its middle. The numbers are the colours' projections on all patterns, then
+// the guides, and the length of the colours' remainder.
 template <class Color, class Guide>
 void PatchSearch::Project(const Level& level, const Color& color, const Guide& guide, float* numbers) const {
   const int r = level.radius;
@@ -207,8 +203,8 @@ bool PatchSearch::Fits(const PatchPlanes& exemplar, const PatchQuery& query, int
   return true;
 }
 
-// Sums only grow, in floating point too, so a part of one that exceeds the best ends it. Colours are whole numbers
-// below 2^39 together: exact in any order.
+// Sums only grow, in floating point too, so a partial sum above the best ends the loop. Colours are whole numbers below
+// 2^39 together: exact in any order.
 void PatchSearch::Try(const PatchQuery& query, const Place& place, Best& best) const {
   const PatchPlanes& exemplar = exemplars_[std::size_t(place.exemplar)];
   const std::ptrdiff_t middle = exemplar.Index(place.x, place.y), stride = exemplar.stride();
@@ -236,8 +232,8 @@ void PatchSearch::Try(const PatchQuery& query, const Place& place, Best& best) c
   best.match = {place.exemplar, place.x, place.y, color * kColorWeight * query.whole, guide};
 }
 
-// Adds to bounds[i] the squares of distance(number, i) over all numbers, each less the slack; normals first, as what is
-// free comes off their length.
+// Adds to bounds[i] the squares of distance(number, i) over all numbers, each less the slack; normals first, because
+// their free distance is subtracted from their length.
 template <class Distance>
 void PatchSearch::AddBounds(const Level& level, double free, std::span<float> bounds, const Distance& distance) const {
   const auto add = [&](std::size_t from, std::size_t to) {
@@ -288,8 +284,8 @@ PatchMatch PatchSearch::Nearest(const PatchQuery& query, std::span<const Place> 
     if (Fits(exemplars_[std::size_t(guess.exemplar)], query, guess.x, guess.y)) Try(query, guess, best);
   }
   const Level& level = levels_[std::size_t(query.core)];
-  // The middle (2 · core + 1)² places of the query, which all count: their distance is a lower bound of the whole one,
-  // the more so as that is scaled up where some do not.
+  // The middle (2 · core + 1)² places of the query, which are all valid: their distance is a lower bound of the whole
+  // one, which is scaled up where some places are invalid.
   std::vector<std::size_t> at(std::size_t(2 * kPatchRadius + 1) * (2 * kPatchRadius + 1));
   for (std::size_t i = 0; i < query.offsets.size(); ++i) {
     at[std::size_t((query.offsets[i].y + kPatchRadius) * (2 * kPatchRadius + 1) + query.offsets[i].x + kPatchRadius)] =

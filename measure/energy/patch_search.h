@@ -1,12 +1,11 @@
-// The exact nearest patch of an exemplar, without looking at all of them.
+// The exact nearest patch of an exemplar by branch and bound [Fukunaga & Narendra 1975], with projections as in [Hel-Or
+// & Hel-Or 2005].
 //
-// Positions are kept in tiles of 8 × 8 with a few numbers each that bound distances from below: projections of the
-// patch onto orthonormal patterns, whose differences add up to no more than the patches' own squared distance, and the
-// length of what the projections leave, which by the triangle inequality may be added; the guides of the middle stand
-// for themselves, normals less what is free of them. A tile's box of these numbers bounds all of its positions. Tiles
-// are visited by rising bound until that exceeds the best distance found: branch and bound [Fukunaga & Narendra 1975],
-// with projections as in [Hel-Or & Hel-Or 2005]. All bounds are lowered by what rounding could have raised them, so
-// that what comes out is the minimum over all positions, to the bit.
+// Positions are stored in tiles of 8 × 8 with a few numbers each that bound distances from below. These are projections
+// of the patch onto orthonormal patterns, the length of the remainder, and the guides of the middle, normals less their
+// free distance. A tile's box of these numbers bounds all of its positions. Tiles are visited by rising bound until it
+// exceeds the best distance. All bounds are lowered by the largest rounding error, so that the result is the minimum
+// over all positions, to the bit. docs/numerics.md ("Derivations") shows why the numbers are bounds.
 #pragma once
 
 #include <array>
@@ -28,8 +27,8 @@ struct PatchPlanes {
   int height = 0;
   std::vector<std::vector<float>> planes;
   std::vector<std::uint8_t> mask;
-  // By place, 0 … 2: how far apart the first three guides, which are normals, may be without cost; of the two places
-  // compared the one that grants more. Empty: 0.
+  // By place, 0 … 2: the distance of the first three guides, which are normals, that costs nothing; the larger value of
+  // the two places counts. Empty: 0.
   std::vector<float> free;
 
   PatchPlanes(int w, int h, std::size_t plane_count);
@@ -37,34 +36,34 @@ struct PatchPlanes {
   std::ptrdiff_t Index(int x, int y) const { return (y + kPatchRadius) * stride() + x + kPatchRadius; }
 };
 
-// The patch around a pixel of the target, and what it is to find.
+// The patch around a pixel of the target, as a query.
 struct PatchQuery {
   struct Offset {
     int x = 0, y = 0;
   };
-  std::vector<Offset> offsets;                          // that count, in row order
+  std::vector<Offset> offsets;                          // of valid places, in row order
   std::array<std::vector<float>, kPatchColors> colors;  // one for each offset
   std::vector<float> guides;                            // of the middle
   double free = 0.0;                                    // likewise
-  int core = 0;        // the largest radius, at most the search's, whose places all count
-  double whole = 1.0;  // 25 / offsets, by which colour counts
+  int core = 0;        // the largest radius, at most the search's, whose places are all valid
+  double whole = 1.0;  // 25 / offsets, the factor of colour
 };
 
 struct PatchMatch {
   int exemplar = -1, x = 0, y = 0;
-  double color = 0.0;  // squared differences of the places that count, as 0 … 1, times `whole`
+  double color = 0.0;  // squared differences of the valid places, as 0 … 1, times `whole`
   double guide =
       0.0;  // of the middle: the square of the distance of the normals beyond `free`, and those of the others
 };
 
 class PatchSearch {
  public:
-  // `exemplars` must outlive the search and have alike many planes. `guide_weight` is at least 0. `largest_guide`
+  // `exemplars` must outlive the search and have equal numbers of planes. `guide_weight` is at least 0. `largest_guide`
   // bounds the absolute values of the guides of exemplars and targets.
   PatchSearch(std::span<const PatchPlanes> exemplars, double guide_weight, double largest_guide);
 
-  // 2, 1 or 0: the largest for which some exemplar has a position all round which everything is usable; −1: none is
-  // usable.
+  // 2, 1 or 0: the largest radius for which some exemplar has a position with a completely usable surrounding; −1: none
+  // is usable.
   int radius() const { return radius_; }
 
   // Pixel (x, y) of the target must be in its mask.
@@ -74,7 +73,7 @@ class PatchSearch {
     int exemplar = 0, x = 0, y = 0;
   };
   // The position where color + guide_weight · guide is least, of equals the first by exemplar, y and x. `guesses` are
-  // looked at first; those that do not fit are passed over. Safe to call from several threads.
+  // tried first; those that do not fit are skipped. Safe to call from several threads.
   PatchMatch Nearest(const PatchQuery& query, std::span<const Place> guesses) const;
 
  private:
@@ -112,7 +111,7 @@ class PatchSearch {
   std::size_t guides_ = 0;
   double guide_weight_ = 0.0;
   double most_free_ = 0.0;  // of all places of all exemplars
-  float slack_ = 0.0f;      // by which each difference of two numbers may be too large
+  float slack_ = 0.0f;      // the largest error of the difference of two numbers
   int radius_ = -1;
   std::vector<Level> levels_;  // by radius
 };

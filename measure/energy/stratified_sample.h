@@ -1,6 +1,6 @@
-// Means from a stratified sample: a list is cut into pieces of equal length, and two places of each are drawn without
-// replacement [Cochran 1977, §5.5]. Where neighbours in the list are alike, the mean is surer than from places drawn
-// anywhere.
+// Means from a stratified sample: a list is cut into strata of equal length, and two places of each are drawn without
+// replacement [Cochran 1977, §5.5]. If neighbours in the list are alike, the mean is more certain than with
+// unstratified places.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace scumble {
 
 struct Estimate {
   double mean = 0.0;
-  double standard_error = 0.0;  // of the sample; 0 where every place was looked at
+  double standard_error = 0.0;  // of the sample; 0 where every place was measured
 };
 
 namespace internal {
@@ -20,7 +20,7 @@ namespace internal {
 struct StratifiedSample {
   std::vector<std::size_t> places;  // in the list
   std::vector<std::size_t>
-      strata;  // sizes, one for each two places; empty: every place of the list is there, in its order
+      strata;  // strata; // sizes, one for each two places; empty: the sample is the whole list, in its order
 };
 
 // `samples`, rounded up to even, of a list of `count` places, by a hash of the seed; 0, or as many as there are: all.

@@ -32,7 +32,7 @@ class PixelSets {
   std::vector<std::uint32_t> parent_;
 };
 
-// Is the source of `q`, which lies (dx, dy) away from `p`, the same distance away from the source of `p`?
+// Whether p and q, (dx, dy) apart, have sources that are equally far apart.
 bool SameOffset(const SourcePlanes& planes, std::size_t p, std::size_t q, int dx, int dy) {
   if (!planes.exemplar.empty() && planes.exemplar[p] != planes.exemplar[q]) return false;
   return planes.source_x[q] - planes.source_x[p] == dx && planes.source_y[q] - planes.source_y[p] == dy;

@@ -44,7 +44,7 @@ ExplainColor Mixed(ExplainColor a, ExplainColor b, float share) {
   return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 
-// Lighting conditions, told apart by any eye (Okabe and Ito's palette).
+// Lighting conditions, in colours that every viewer separates (Okabe and Ito's palette).
 ExplainColor ExemplarColor(int exemplar) {
   constexpr std::array<std::array<int, 3>, 4> kColors = {
       {{230, 159, 0}, {86, 180, 233}, {0, 158, 115}, {204, 121, 167}}};
@@ -60,12 +60,12 @@ class Painter {
   bool Painted(std::size_t i) const { return planes_.level[i] >= 0; }
   std::size_t StyleAt(std::size_t i) const { return planes_.style.empty() ? 0 : planes_.style[i]; }
 
-  // A hash of what all pixels of a chunk have in common, and neighbouring chunks have not.
+  // A hash of the values that a chunk's pixels share and that differ between neighbouring chunks.
   std::uint64_t ChunkAt(std::size_t i, int x, int y) const {
     return Hash(planes_.source_x[i] - x, planes_.source_y[i] - y, planes_.exemplar[i], StyleAt(i));
   }
 
-  // Where a chunk ends to the right or below. Pixels that stand alone have no room for a border.
+  // Whether a chunk ends to the right or below. Single pixels have no room for a border.
   bool Border(std::size_t i, int x, int y) const {
     if (planes_.level[i] < 1) return false;
     const std::uint64_t chunk = ChunkAt(i, x, y);
@@ -88,7 +88,7 @@ class Painter {
         return ErrorColor(planes_.error[i], planes_.threshold[StyleAt(i)]);
       case Explanation::kExemplar:
         return ExemplarColor(planes_.exemplar[i]);
-      // The golden ratio keeps the hues of few and of many styles apart.
+      // The golden ratio separates the hues of few and of many styles.
       case Explanation::kStyles: {
         const double turns = 0.16 + 0.6180339887 * static_cast<double>(StyleAt(i));
         return FromHue(0.72f, 0.13f, static_cast<float>(turns - std::floor(turns)));

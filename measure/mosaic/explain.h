@@ -1,4 +1,4 @@
-// Pictures that explain a result: where every pixel's paint came from, in which pieces, and how well it fits.
+// Pictures that explain a result: the source of every pixel's paint, the chunks, and the guide error.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,20 @@
 namespace scumble {
 
 enum class Explanation {
-  kSources,   // the nearest-neighbour field: source x is red, y green, which exemplar blue
-  kChunks,    // every chunk a colour of its own, dark where it ends
-  kBorders,   // the result with the ends of its chunks drawn over it
+  kSources,   // the nearest-neighbour field: source x is red, y green, the exemplar blue
+  kChunks,    // every chunk in its own colour, dark at its border
+  kBorders,   // the result with the borders of its chunks drawn over it
   kLevels,    // the level that settled a pixel: LevelColor
   kError,     // guide distance at the chosen source: ErrorColor
-  kExemplar,  // which lighting condition
-  kStyles,    // which style
+  kExemplar,  // the lighting condition
+  kStyles,    // the style
 };
 
 // "sources", "chunks", …, in the enum's order; and back.
 std::vector<std::string> ExplanationNames();
 std::optional<Explanation> FindExplanation(std::string_view name);
 
-// Views of width × height values, rows from the top; nothing is kept. What a picture does not show may be empty.
+// Views of width × height values, rows from the top; they are not stored. Unused ones may be empty.
 struct ExplainPlanes {
   static constexpr std::uint16_t kNoStyle = 0xffff;
 
@@ -38,7 +38,7 @@ struct ExplainPlanes {
   std::span<const std::int16_t> source_y;
   std::span<const std::int8_t> level;  // below 0: not painted
   std::span<const std::uint8_t> exemplar;
-  std::span<const std::uint16_t> style;  // kNoStyle: left as it was; empty: there is one style, 0
+  std::span<const std::uint16_t> style;  // kNoStyle: unchanged; empty: there is one style, 0
   std::span<const float> error;          // guide distance, 0 or more
   // By style.
   std::vector<int> exemplar_size;  // side of the resized exemplar, pixels
@@ -47,7 +47,7 @@ struct ExplainPlanes {
   const Picture* result = nullptr;  // for kBorders
 };
 
-// Pixels that are not painted are transparent, save in kBorders, which is the result. Deterministic, O(pixels).
+// Unpainted pixels are transparent, except in kBorders, which is the result. Deterministic, O(pixels).
 Picture Explain(Explanation what, const ExplainPlanes& planes);
 
 // 16-bit sRGB.
@@ -56,8 +56,8 @@ struct ExplainColor {
   bool operator==(const ExplainColor&) const = default;
 };
 
-// Level l is a grid of 2^l pixels. From violet over green to yellow, evenly lighter in Oklab, so it reads in grey and
-// with colour-blind eyes too; the same level has the same colour in every picture. 7 and above are alike.
+// Level l is a grid of 2^l pixels. From violet over green to yellow, in even steps of Oklab's lightness, so it is
+// readable in grey and by colour-blind viewers. A level has one colour in every picture; 7 and above are alike.
 ExplainColor LevelColor(int level);
 
 // Black at 0, orange at the threshold, white at twice that and above, both halves straight in Oklab. With a threshold

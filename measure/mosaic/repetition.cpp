@@ -37,7 +37,7 @@ std::vector<float> Lightness(const Picture& picture, const PictureRegion& region
   return tones;
 }
 
-// Pearson's correlation of the tones with themselves, (dx, dy) away, where both are inside.
+// Pearson's correlation of the values with themselves, (dx, dy) away, where both are inside.
 double Correlation(const std::vector<float>& tones, int width, int height, int dx, int dy) {
   double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
   for (int y = std::max(0, -dy); y < std::min(height, height - dy); ++y) {
@@ -76,7 +76,7 @@ AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const Picture
   }
   AutocorrelationPeak peak{-1.0, 0, 0};
   bool any = false;
-  // The other half plane holds the same shifts turned round.
+  // The other half plane holds the same shifts reversed.
   for (int dy = 0; dy <= region.height / 2; dy += step) {
     for (int dx = -(region.width / 2 / step) * step; dx <= region.width / 2; dx += step) {
       if (std::max(std::abs(dx), dy) <= options.least_shift || (dy == 0 && dx < 0)) continue;

@@ -1,4 +1,4 @@
-// How much a picture repeats itself, and how much its seams show: the measures of a flat wall.
+// The repetition of a picture, and the visibility of its seams: the measures of a flat wall.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace scumble {
 
-// Mean number of times that a source pixel which shows at all shows over the covered pixels: covered / distinct
-// sources. 0 where nothing is covered.
+// The mean number of covered pixels for each source pixel that occurs: covered / distinct sources. 0 where nothing is
+// covered.
 double SourceRepetition(const SourcePlanes& planes);
 
 // A rectangle of a picture, pixels [x, x + width) × [y, y + height).
@@ -29,32 +29,32 @@ struct AutocorrelationPeak {
 };
 
 struct AutocorrelationOptions {
-  int least_shift = 8;  // shifts of up to so many pixels are left out: within them any texture is alike
+  int least_shift = 8;  // shifts up to this are left out: within them any texture is alike
   int step = 1;         // only shifts that are multiples of it
-  // Standard deviation in pixels of the Gaussian whose blur is subtracted first; 0: nothing is. Without it, patches of
-  // different tone correlate over every shift that is smaller than a patch; with it, only repeated strokes do.
+  // Standard deviation in pixels of the Gaussian whose blur is subtracted first; 0: no subtraction. Without it, chunks
+  // of different tone correlate over every shift that is smaller than a chunk; with it, only repeated strokes do.
   double subtract_sigma = 0.0;
 };
 
 // The highest normalised correlation (Pearson's, of the Oklab lightness) of a region with itself, shifted by up to half
 // its size but by more than the least shift in one direction. Direct sums: O(region² / 2 / step²). The region must lie
-// in the picture; the blur sees nothing outside it.
+// in the picture; the blur ignores pixels outside it.
 AutocorrelationPeak HighestAutocorrelation(const Picture& picture, const PictureRegion& region,
                                            const AutocorrelationOptions& options = {});
 
-// How much the tone changes from patch to patch: the standard deviation over the region of its Oklab lightness (0 … 1)
-// under a Gaussian blur of `sigma` pixels, which sees nothing outside the region. 0 for one tone.
+// The change of tone from chunk to chunk: the standard deviation over the region of its Oklab lightness (0 … 1) under a
+// Gaussian blur of `sigma` pixels, which ignores pixels outside the region. 0 for one tone.
 double ToneSpread(const Picture& picture, const PictureRegion& region, double sigma);
 
 struct SeamStrength {
   double along_borders = 0.0;  // mean difference of Oklab colours between neighbours in different chunks
-  double inside = 0.0;         // the same inside chunks: where nothing was blended, the exemplar's own
-  double excess = 0.0;         // along_borders / inside - 1; 0: seams cannot be told from the paint
+  double inside = 0.0;         // the same inside chunks: without blending, the exemplar's own
+  double excess = 0.0;         // along_borders / inside - 1; 0: seams do not stand out from the paint
   std::size_t border_pairs = 0;
   std::size_t inside_pairs = 0;
 };
 
-// Right and lower neighbours that are both covered; a chunk is what shares its offset and exemplar. O(pixels).
+// Right and lower neighbours that are both covered; a chunk shares one offset and exemplar. O(pixels).
 SeamStrength MeasureSeams(const Picture& picture, const SourcePlanes& planes);
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// Connected patches of pixels: holes, bare places.
+// Connected regions of pixels: holes, bare places.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@ namespace scumble {
 struct Patches {
   std::size_t count = 0;
   std::size_t pixels = 0;   // of all of them
-  std::size_t largest = 0;  // pixels of the largest, the first in row order of those that are equal
-  int x = 0, y = 0;         // the pixel of it that is nearest to its middle
+  std::size_t largest = 0;  // pixels of the largest; of equal ones the first in row order
+  int x = 0, y = 0;         // its pixel nearest to its middle
 };
 
-// The 4-connected patches of pixels that are not 0, of at least `least` pixels. `mask` holds width × height values in
+// The 4-connected regions of pixels that are not 0, of at least `least` pixels. `mask` holds width × height values in
 // row order. O(pixels).
 Patches FindPatches(const std::vector<std::uint8_t>& mask, int width, int height, std::size_t least = 1);
 
-// 1 where at least `share` (0 … 1) of the pixels in the square of side 2 · reach + 1 round a pixel are not 0; what lies
-// outside the picture counts as 0. O(pixels).
+// 1 where at least `share` (0 … 1) of the pixels in the square of side 2 · reach + 1 around a pixel are not 0; those
+// outside the picture count as 0. O(pixels).
 std::vector<std::uint8_t> MostlySet(const std::vector<std::uint8_t>& mask, int width, int height, int reach,
                                     double share);
 

@@ -1,4 +1,4 @@
-// What a painting's alpha channel lets through.
+// The transparency of an exemplar's paint.
 #pragma once
 
 #include "measure/painting/connected_regions.h"
@@ -8,16 +8,16 @@ namespace scumble {
 
 struct AlphaReport {
   Patches holes;                     // usable pixels that are fully transparent (alpha of 1% or less)
-  Patches translucent;               // usable pixels of paint that is partly see-through, edges of holes left out
-  double transparent_percent = 0.0;  // of what is usable: all pixels that are not opaque
+  Patches translucent;               // usable pixels of partly transparent paint, edges of holes left out
+  double transparent_percent = 0.0;  // of the usable pixels: all that are not opaque
   double translucent_percent = 0.0;
   bool premultiplied = false;  // colours fade to black with alpha: they were saved multiplied by it
-  bool clear_corners = false;  // of a sphere: what lies beyond 1.15 radii is transparent
+  bool clear_corners = false;  // of a sphere: everything beyond 1.15 radii is transparent
 };
 
-// Premultiplied is what fits better, by half, as the colour of the nearest opaque paint (within 4 pixels) times alpha
-// than as that colour itself; over the pixels of the whole picture that are between 5% and 95% opaque, if there are 16
-// of them. Dark paint tells nothing. O(pixels).
+// Decides whether colours are premultiplied: whether the colour of the nearest opaque paint (within 4 pixels) times
+// alpha fits better, by half, than that colour itself. It uses all pixels between 5% and 95% opaque, if there are 16 of
+// them. Dark paint gives no evidence. O(pixels).
 AlphaReport MeasureAlpha(const PaintSheet& sheet);
 
 }  // namespace scumble

@@ -11,7 +11,7 @@ namespace {
 
 using Weight = PaintFault::Weight;
 
-// Limits, calibrated on the bundled styles, none of which is at fault, and on paintings with one mistake each.
+// Limits, calibrated on the bundled styles, all without faults, and on exemplars with one mistake each.
 constexpr int kSmallest = 256;                         // pixels
 constexpr double kMarginRatio = 0.8;                   // sphere to template: 1 / (1 + 2 · 1/8)
 constexpr double kOffCentre = 0.01;                    // of the diameter
@@ -23,9 +23,9 @@ constexpr double kLeastRange = 25.0;                   // L*, of the style
 constexpr double kLeastRangeOfOne = 10.0;              // L*, of one of several lights
 constexpr double kSeesLight = 0.3, kClearLight = 0.5;  // correlation
 constexpr double kOtherLight = 45.0;                   // degrees
-// A pattern that is this much the same wherever it is; or less, and as much after many periods as after one; or in
-// pieces of another direction each. Hatching by hand, ink and woodcut included, stays below 0.35, 0.7 of its peak, and
-// 0.5.
+// A pattern that is equally regular everywhere; or less so, but as strong after many periods as after one; or with a
+// direction of its own in each window. Hatching by hand, ink and woodcut included, stays below 0.35, 0.7 of its peak,
+// and 0.5.
 constexpr double kRegular = 0.45, kWeakly = 0.15, kEchoes = 0.85, kRegularLocally = 0.6;
 
 // Of a percentage that is not 0.
@@ -38,17 +38,17 @@ class Faults {
  public:
   Faults(const PaintTraits& traits, const PaintFaultContext& context) : traits_(traits), context_(context) {}
 
-  void Add(const char* code, std::string what, std::string mend) {
-    found_.push_back({code, Weight::kMistake, std::move(what), std::move(mend), std::nullopt});
+  void Add(const char* code, std::string what, std::string remedy) {
+    found_.push_back({code, Weight::kMistake, std::move(what), std::move(remedy), std::nullopt});
   }
   // `place` in the picture without its margin.
-  void AddAt(const char* code, int x, int y, std::string what, std::string mend) {
+  void AddAt(const char* code, int x, int y, std::string what, std::string remedy) {
     const std::pair<int, int> place(x + context_.margin, y + context_.margin);
     found_.push_back({code, Weight::kMistake, fmt::format("{}, around x={}, y={}", what, place.first, place.second),
-                      std::move(mend), place});
+                      std::move(remedy), place});
   }
-  void Remark(const char* code, std::string what, std::string mend) {
-    Add(code, std::move(what), std::move(mend));
+  void Remark(const char* code, std::string what, std::string remedy) {
+    Add(code, std::move(what), std::move(remedy));
     found_.back().weight = Weight::kRemark;
   }
   bool Has(const std::string& code) const {
@@ -113,7 +113,7 @@ void Faults::LookAtDisc() {
             sphere));
   }
   if (!disc.found) return;
-  // Paint that covers the sphere whole does no harm, wherever its own outline is.
+  // If paint covers the whole sphere, its own outline does no harm.
   if (shift > kOffCentre * size && disc.radius - shift < 0.995 * middle) {
     return Add(
         "off-centre",

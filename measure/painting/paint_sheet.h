@@ -1,5 +1,4 @@
-// A painted exemplar as the measures of paint see it: its picture, the pixels that a transfer may show, how they are
-// turned.
+// A painted exemplar for the measures of paint: its picture, the usable pixels, and their normals.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +14,8 @@ namespace scumble {
 // and axes are those of view space (core/image/guides.h).
 class PaintSheet {
  public:
-  // Usable is, on a sphere, what lies `rim` pixels or more inside the circle that fills the square; in a painted scene,
-  // what its guides cover. The picture is not empty; that of a sphere is square.
+  // Usable pixels: on a sphere, those at least `rim` pixels inside the circle that fills the square; in a painted
+  // scene, those that its guides cover. The picture is not empty; that of a sphere is square.
   PaintSheet(const Exemplar& exemplar, double rim);
 
   const Picture& picture() const { return exemplar_.picture; }
@@ -31,11 +30,11 @@ class PaintSheet {
   // The unit normal at a usable pixel's centre.
   glm::vec3 Normal(int x, int y) const;
 
-  // Whether there is paint at all: alpha above a hundredth.
+  // Whether there is paint: alpha above a hundredth.
   bool Shows(int x, int y) const { return picture().At(x, y)[3] > kClearAlpha; }
 
-  // CIE L* (0 black … 100 white) of every pixel: translucent paint as it looks on white paper, transparent as its
-  // colour says.
+  // CIE L* (0 black … 100 white) of every pixel: translucent paint as on white paper, transparent pixels by their
+  // colour.
   const std::vector<float>& lightness() const { return lightness_; }
 
   static constexpr std::uint16_t kClearAlpha = 655;

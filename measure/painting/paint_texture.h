@@ -1,4 +1,4 @@
-// The texture of a painting: whether its strokes have a direction, and whether it is a regular pattern.
+// The texture of an exemplar: whether its strokes have a direction, and whether it is a regular pattern.
 #pragma once
 
 #include "measure/painting/paint_sheet.h"
@@ -13,8 +13,8 @@ struct TextureReport {
   RegularityReport regularity;
 };
 
-// In up to 25 windows, evenly spread over what is usable, each wholly inside it: squares of 128 pixels, in pictures
-// below 512 of a quarter of the shorter side. Nothing is measured where none of 16 pixels or more fits.
+// In up to 25 windows, evenly distributed over the usable pixels, each wholly inside: squares of 128 pixels, in
+// pictures below 512 of a quarter of the shorter side. Not measured if no window of at least 16 pixels fits.
 TextureReport MeasureTexture(const PaintSheet& sheet);
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// How light and dark a painting is, and where its light comes from.
+// The tone of an exemplar, and the direction of its light.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace scumble {
 
-// CIE L* over usable pixels that are not transparent; all 0 where there is none. Percentiles, so that one speck is no
-// range.
+// CIE L* over usable pixels that are not transparent; all 0 where there is none. Percentiles, because a single speck is
+// no range.
 struct ToneReport {
   double darkest = 0.0;    // 1st percentile
   double brightest = 0.0;  // 99th percentile
@@ -17,11 +17,11 @@ struct ToneReport {
 };
 ToneReport MeasureTone(const PaintSheet& sheet);
 
-// The direction of a distant light under which a matt surface would be light and dark where the painting is.
+// The direction of a distant light that would shade a matt surface as the exemplar is painted.
 struct PaintedLight {
   double azimuth = 0.0;  // degrees, as in core/image/direction.h
   double elevation = 0.0;
-  double correlation = 0.0;  // Pearson's, 0 … 1, of the painting's L* with max(0, n · light); 0: no light to be seen
+  double correlation = 0.0;  // Pearson's, 0 … 1, of the exemplar's L* with max(0, n · light); 0: no light was found
 };
 
 // Searches all directions from which some usable pixel would be lit, to a degree. The lightness is averaged in cells of

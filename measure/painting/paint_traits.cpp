@@ -15,7 +15,7 @@ constexpr int kAlikeInScans = 6 * 257;  // with paper's and scanner's noise
 constexpr int kAnyGrey = 65536;
 constexpr int kClearlyGrey = 245 * 257;  // of the printed one, whose lights are paper
 
-// `lightest`: where the template is lighter than that, it counts as paper.
+// `lightest`: the template counts as paper where it is lighter than this.
 Patches FindBareTemplate(const PaintSheet& sheet, const Picture& bare, int tolerance, int lightest) {
   SCUMBLE_CHECK(bare.width == sheet.width() && bare.height == sheet.height());
   std::vector<std::uint8_t> alike(sheet.lightness().size(), 0);
@@ -33,7 +33,7 @@ Patches FindBareTemplate(const PaintSheet& sheet, const Picture& bare, int toler
                      std::max<std::size_t>(4, least));
 }
 
-// The printed sphere stands on white paper; grey paper may well have its tone.
+// The printed sphere is on white paper; grey paper may have its tone.
 bool IsOnWhite(const PaintSheet& sheet) {
   constexpr float kWhite = 0.85f;  // linear; 237 of 255
   const BarePaper ground = FindBarePaper(sheet.picture());

@@ -1,4 +1,4 @@
-// Everything that is measured of one painting: what its table row and its check are made of.
+// All measures of one exemplar: for its table row and its check.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,24 @@ namespace scumble {
 struct PaintTraits {
   int width = 0, height = 0;  // of the picture without its template's margin, pixels
   bool is_sphere = true;
-  double covered_percent = 0.0;  // of what is usable: painted, and not the paper that the corners show
+  double covered_percent = 0.0;  // of the usable pixels: painted, and not the paper in the corners
   ToneReport tone;
   PaintedLight light;
   TextureReport texture;
   AlphaReport alpha;
   // Of spheres:
-  bool ground_known = false;  // the paper round the paint can be told from it
+  bool ground_known = false;  // the paper around the paint is distinct from the paint
   PaintedDisc disc;
   double fringe_percent = 0.0;  // of the rim
   Patches bare_shade;
-  Patches bare_template;          // pixels that are still the kit's own grey, in patches of 0.05% of the disc or more
+  Patches bare_template;          // pixels that still have the kit's own grey, in regions of 0.05% of the disc or more
   double template_percent = 0.0;  // of the disc
   std::optional<PaintedLight> template_light;  // of the template that it was painted over
 };
 
 // `rim` is the style's, in pixels. `bare_template` is the unpainted sphere, the size of the exemplar's picture, or
-// null. A pixel is bare where the picture is the template's within 2 of 255 on 90% of the 9×9 pixels round it: paint
-// that meets the same grey by chance is not. `printed_template` is the pale sphere of the page, likewise or null; a
+// null. A pixel is bare if the picture equals the template within 2 of 255 on 90% of the 9×9 pixels around it: paint
+// with an equal grey by chance does not count. `printed_template` is the pale sphere of the page, likewise or null; a
 // scan of it is bare within 6 of 255 where it is grey, and on white paper alone. The exemplar's picture must not be
 // empty. Deterministic; some 0.3 s at 1024².
 PaintTraits MeasurePaint(const Exemplar& exemplar, double rim, const Picture* bare_template,

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kDirections = 720;
 
-// The mean of the 3×3 texels round one, so that a paper's grain is no paint.
+// The mean of the 3×3 texels around one, so that a paper's grain is no paint.
 std::array<std::uint16_t, 4> MeanTexel(const Picture& picture, int x, int y) {
   std::array<std::uint32_t, 4> sums{};
   std::uint32_t count = 0;
@@ -76,8 +76,7 @@ Ray RayOf(int i) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-// Inward from the picture's edge, where each ray first meets paint. Rays on which paint reaches the edge have no
-// outline.
+// The first paint of each ray inward from the picture's edge. Rays on which paint reaches the edge have no outline.
 std::vector<glm::dvec2> Outline(const PaintOnGround& paint) {
   const int size = paint.sheet().width();
   const double middle = 0.5 * size;
@@ -96,7 +95,7 @@ std::vector<glm::dvec2> Outline(const PaintOnGround& paint) {
         continue;
       }
       if (++run < 6) continue;
-      // The mask's mean over 3×3 texels puts the outline half a pixel to a pixel out.
+      // The mask's mean over 3×3 texels moves the outline half a pixel to a pixel outward.
       if (ground >= 6) points.push_back(ray.At(middle, distance + 2.5 - 0.5));
       break;
     }
@@ -104,13 +103,13 @@ std::vector<glm::dvec2> Outline(const PaintOnGround& paint) {
   return points;
 }
 
-// Whether ground stands between the usable rim and paint that is of clearly another colour.
+// Whether ground lies between the usable rim and paint of a clearly different colour.
 bool HasFringe(const PaintOnGround& paint, const Ray& ray) {
   const PaintSheet& sheet = paint.sheet();
   const double middle = 0.5 * sheet.width(), usable = middle - std::max(1.0, sheet.rim());
   const double least = std::max(1.0, 0.004 * middle), widest = 0.1 * middle, beside = std::max(2.0, 0.03 * middle);
   constexpr float kOtherColour = 0.15f;  // in Oklab
-  // A rim that leaves next to nothing of the sphere has no room for a fringe.
+  // If the rim leaves almost none of the sphere, there is no room for a fringe.
   if (!(usable > widest + beside + 2.0)) return false;
   const auto pixel_at = [&](double depth) {
     return glm::clamp(glm::ivec2(ray.At(middle, usable - depth)), 0, sheet.width() - 1);
@@ -134,7 +133,7 @@ PaintOnGround::PaintOnGround(const PaintSheet& sheet) : sheet_(sheet), mask_(she
   SCUMBLE_CHECK(sheet.is_sphere());
   ground_ = FindBarePaper(sheet.picture());
   if (!known()) return;
-  // Paint that goes on into the corners may be of nearly one colour there; on paper there is next to none of it.
+  // Paint that continues into the corners may have nearly one colour there; on paper there is almost none of it.
   constexpr double kCornersFrom = 1.15, kMostPaint = 0.15;
   const double middle = 0.5 * sheet.width();
   std::size_t corners = 0, painted = 0;
@@ -188,7 +187,7 @@ double FringeOfRim(const PaintOnGround& paint) {
   if (!paint.known()) return 0.0;
   std::vector<bool> fringed;
   for (int i = 0; i < kDirections; ++i) fringed.push_back(HasFringe(paint, RayOf(i)));
-  // Gaps between strokes are no fringe: one is 5 degrees long or longer.
+  // Gaps between strokes are no fringe: a fringe is at least 5 degrees long.
   constexpr int kLeastRun = kDirections * 5 / 360;
   int share = 0;
   for (int i = 0; i < kDirections; ++i) {

@@ -12,7 +12,7 @@
 namespace scumble {
 namespace {
 
-// Normalised autocorrelation at shifts (dx, dy), |dx| ≤ reach, 0 ≤ dy ≤ reach; the other half is the same turned round.
+// Normalised autocorrelation at shifts (dx, dy), |dx| ≤ reach, 0 ≤ dy ≤ reach; the other half mirrors it.
 class Autocorrelation {
  public:
   explicit Autocorrelation(int reach) : reach_(reach), values_(std::size_t(2 * reach + 1) * (reach + 1), 0.0) {}
@@ -40,7 +40,7 @@ struct Texture {
   double spread = 0.0;
 };
 
-// What is left of the window without its slow changes, as integers of 1/100: sums of them are exact, and fast.
+// The window without its slow changes, as integers of 1/100: sums of them are exact, and fast.
 Texture HighPassed(const std::vector<float>& plane, int width, const PictureRegion& region) {
   std::vector<float> tones;
   for (int y = 0; y < region.height; ++y) {
@@ -82,7 +82,7 @@ Autocorrelation Correlate(const std::vector<std::int16_t>& values, int side, int
   return result;
 }
 
-// The lowest value on the way from the middle in a direction, which has length 1.
+// The lowest value between the middle and the shift, along a direction of length 1.
 double LowestOnTheWay(const Autocorrelation& values, double cosine, double sine, double length) {
   double lowest = 1.0;
   for (int step = 1; step <= length; ++step) {
@@ -111,7 +111,7 @@ bool IsPeak(const Autocorrelation& values, int dx, int dy) {
 
 struct Pattern {
   Peak highest;
-  Peak nearest;  // of those that are nearly as high: a pattern comes back at every multiple of its period
+  Peak nearest;  // of the peaks nearly as high: a pattern repeats at every multiple of its period
   double echo = 0.0;
 };
 
@@ -151,7 +151,7 @@ void Describe(const Autocorrelation& values, const Peak& peak, RegularityReport&
   if (peak.value == 0.0) return;
   report.period = LengthOf(peak);
   report.direction = DirectionOf(peak.dx, peak.dy);
-  // Along lines the texture stays what it is, for as long as it takes to come back across them.
+  // Along a line the texture is constant, over at least the period across it.
   const double length = std::max(report.period, values.reach() / 3.0);
   double most = -1.0, along_x = 0.0, along_y = 0.0;
   for (int degrees = 0; degrees < 180; degrees += 2) {
@@ -161,7 +161,7 @@ void Describe(const Autocorrelation& values, const Peak& peak, RegularityReport&
   }
   report.grid = most < 0.3 * peak.value;
   if (report.grid) return;
-  // The nearest shift of whole pixels that meets the next line may lie beside the shortest way.
+  // The nearest shift in whole pixels to the next line may not be perpendicular to the lines.
   report.period = std::fabs(peak.dx * along_y - peak.dy * along_x);
   report.direction = DirectionOf(-along_y, along_x);
 }

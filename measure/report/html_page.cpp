@@ -12,16 +12,22 @@ constexpr const char* kStyle = R"(
   --line: #35373e; --good: #4dbb82; --bad: #ff8a80; --warn: #e5b04a; --badground: #3a2221; } }
 body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 80rem; padding: 0 1.2rem; color: var(--text);
   background: var(--ground); }
-h1 { font-weight: 600; margin-bottom: .3rem; } h2 { margin: 3rem 0 .2rem; font-weight: 600; } h3 { margin: 1.8rem 0 .4rem; font-size: 1rem; }
+h1 { font-weight: 600; margin-bottom: .3rem; } h2 { margin: 3rem 0 .2rem; font-weight: 600; }
+h3 { margin: 1.8rem 0 .4rem; font-size: 1rem; }
 p { margin: .3rem 0; } .soft { color: var(--soft); } a { color: inherit; }
-section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: .2rem 1.2rem .8rem; margin: .8rem 0; overflow-x: auto; }
+section { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: .2rem 1.2rem .8rem;
+  margin: .8rem 0; overflow-x: auto; }
 table { border-collapse: collapse; margin: .6rem 0; } th { font-weight: 600; color: var(--soft); font-size: .85rem; }
-th, td { text-align: left; padding: .28rem 1.4rem .28rem 0; border-bottom: 1px solid var(--line); vertical-align: baseline; }
-tr:last-child td { border-bottom: 0; } th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+th, td { text-align: left; padding: .28rem 1.4rem .28rem 0; border-bottom: 1px solid var(--line);
+  vertical-align: baseline; }
+tr:last-child td { border-bottom: 0; }
+th.number, td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 ul { margin: .2rem 0; padding-left: 1.2rem; }
-img { width: 100%; border-radius: 4px; background: repeating-conic-gradient(#8884 0 25%, #8882 0 50%) 0 0 / 16px 16px; display: block; }
+img { width: 100%; border-radius: 4px; background: repeating-conic-gradient(#8884 0 25%, #8882 0 50%) 0 0 / 16px 16px;
+  display: block; }
 figcaption { color: var(--soft); font-size: .82rem; padding-top: .25rem; }
-code { background: var(--card); border: 1px solid var(--line); padding: .05rem .35rem; border-radius: 3px; overflow-wrap: anywhere; }
+code { background: var(--card); border: 1px solid var(--line); padding: .05rem .35rem; border-radius: 3px;
+  overflow-wrap: anywhere; }
 )";
 
 }  // namespace

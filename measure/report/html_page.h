@@ -1,4 +1,4 @@
-// What our HTML pages share: one style of the house, text made safe, pictures inside the file.
+// Shared parts of our HTML pages: one style sheet, escaped text, embedded pictures.
 #pragma once
 
 #include <cstddef>
@@ -7,17 +7,17 @@
 
 namespace scumble::internal {
 
-// Text as it may stand in HTML, in attributes with either quotes, and in SVG.
+// Text escaped for HTML, for attributes with either quotes, and for SVG.
 std::string EscapeHtml(const std::string& text);
 
 // RFC 4648, with padding.
 std::string Base64(std::span<const std::byte> bytes);
 
-// Bytes of a PNG as an address of their own.
+// Bytes of a PNG as a data URI.
 std::string PngAddress(std::span<const std::byte> png);
 
-// Everything up to and including <body>: colours for dark and light, tables, figures, code, and `style` after them. The
-// page tells the browser to load nothing from elsewhere.
+// Everything up to and including <body>: colours for dark and light, tables, figures, code, then `style`. The page
+// forbids the browser to load anything from elsewhere.
 std::string PageHead(const std::string& title, const std::string& style);
 
 }  // namespace scumble::internal

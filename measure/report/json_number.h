@@ -6,7 +6,7 @@
 
 namespace scumble {
 
-// JSON has no word for what is no number or beyond all of them: "nan", "inf" and "-inf" as text.
+// JSON has no NaN or infinity: they become the texts "nan", "inf" and "-inf".
 inline nlohmann::ordered_json JsonNumber(double value) {
   if (std::isnan(value)) return "nan";
   if (std::isinf(value)) return value > 0 ? "inf" : "-inf";

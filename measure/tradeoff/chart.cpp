@@ -20,7 +20,7 @@ constexpr double kWidth = 920, kHeight = 540, kLegend = 170;
 constexpr double kLeft = 64, kRight = 24, kBottom = 48;
 constexpr double kLetter = 6.4, kLetterHeight = 13;  // of the labels, about
 
-// Where colours do not come from the page.
+// For a chart without the page's colours.
 constexpr const char* kOwnStyle =
     "<style>text { fill: #444; } .title { fill: #222; font-size: 15px; } .grid { stroke: #ddd; } "
     ".front { stroke: #222; fill: none; stroke-width: 1.6; stroke-dasharray: 6 3; } .ring { stroke: #222; fill: none; "
@@ -124,7 +124,7 @@ std::string Grid(const Chart& chart, const ChartLook& look) {
     const double y = chart.up.At(tick);
     svg +=
         fmt::format("<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" class=\"grid\"/>", kLeft, chart.right, y, y);
-    // What is 0 but for rounding shall not read as 1e-17.
+    // A tick that is 0 but for rounding must not read as 1e-17.
     const double shown = std::abs(tick) < 1e-9 * (chart.up.high - chart.up.low) ? 0.0 : tick;
     svg += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{:g}</text>\n", kLeft - 8, y + 4, shown);
   }
@@ -136,7 +136,7 @@ std::string Grid(const Chart& chart, const ChartLook& look) {
                    (chart.top + bottom) / 2, ErrorName(look.error));
 }
 
-// Steps: between two points of the front nothing is known to be had but the cheaper one.
+// Steps: between two points of the front only the cheaper one is available.
 std::string FrontLine(const Chart& chart) {
   if (chart.front.empty()) return "";
   std::string path;
@@ -163,7 +163,7 @@ std::string Bars(const Chart& chart, const Point& point) {
   return svg;
 }
 
-// What a pointer that rests on a point is told.
+// The text for a pointer on a point.
 std::string Words(const TradeMeasure& variant, bool front) {
   std::string words = variant.name + (variant.chosen ? ", the style as it is" : "") +
                       (variant.exact ? ", the exact one" : "") + (front ? ", on the front" : "");
@@ -246,7 +246,7 @@ std::string Legend(const TradeReport& report, const Chart& chart) {
 
 std::string ChartMark(std::size_t axis, double x, double y) {
   const char* color = kChartColors[axis % std::size(kChartColors)];
-  // 7 shapes and 6 colours: 42 marks before one comes again.
+  // 7 shapes and 6 colours: 42 marks before one repeats.
   constexpr const char* kShapes[] = {"M-4.5 0A4.5 4.5 0 1 0 4.5 0A4.5 4.5 0 1 0 -4.5 0Z",
                                      "M-4 -4H4V4H-4Z",
                                      "M0 -5L5 4H-5Z",
@@ -273,7 +273,7 @@ std::string DrawTradeChart(const TradeReport& report, const ChartLook& look) {
                        EscapeHtml(TradeTitle(report)), kLeft, EscapeHtml(TradeSetup(report)));
   }
   svg += Grid(chart, look) + FrontLine(chart);
-  // What is on the front lies above the rest.
+  // Points of the front lie above the others.
   for (const bool front : {false, true}) {
     for (const Point& point : chart.points) {
       if (point.front == front) svg += PointMark(chart, point, report, look.page);

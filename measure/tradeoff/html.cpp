@@ -28,7 +28,7 @@ std::string Costs(const TradeMeasure& variant) {
   return fmt::format("{} ms, both {}", ShortFigure(variant.total_ms.median), ShortEstimate(variant.both));
 }
 
-// Where the style as it is stands.
+// The place of the unchanged style.
 std::string OwnPlace(const TradeReport& report, const std::vector<std::size_t>& front) {
   const auto own =
       std::find_if(report.variants.begin(), report.variants.end(), [](const auto& variant) { return variant.chosen; });
@@ -87,7 +87,7 @@ std::string Choices(const TradeReport& report) {
   return html + "</fieldset>\n</form>\n";
 }
 
-// What is chosen is shown by style sheet alone, so that it works without scripts.
+// The choice works by style sheet alone, so that it needs no scripts.
 std::string ChoiceStyle(const TradeReport& report) {
   std::string css = "@supports selector(:has(*)) {\n.plot, .plot.first { display: none; }\n";
   for (std::size_t t = 0; t < std::size(kTimes); ++t) {
@@ -174,7 +174,7 @@ std::string Table(const TradeReport& report) {
   return html + "</tbody></table>\n</section>\n";
 }
 
-// Under a picture: its figures, how to make it again.
+// The text under a picture: its figures and its command.
 std::string Caption(const TradeReport& report, std::size_t i, bool front) {
   const TradeMeasure& variant = report.variants[i];
   std::string html = "<figcaption><b>" + EscapeHtml(variant.name) + "</b>";
@@ -225,8 +225,8 @@ constexpr const char* kFlip = R"(<dialog id="flip" aria-labelledby="flip-name">
 <button type="button" id="flip-next" aria-label="the next way">↓</button>
 <button type="button" id="flip-close">close</button></span></div>
 <div class="stage" id="flip-stage"></div>
-<p class="soft">← → or a click flip between this way and the style as it is; ↑ ↓ go to other ways; s shows both side by side;
-Esc closes.</p>
+<p class="soft">← → or a click flip between this way and the style as it is; ↑ ↓ go to other ways;
+s shows both side by side; Esc closes.</p>
 </dialog>
 )";
 

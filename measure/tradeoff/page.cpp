@@ -18,23 +18,29 @@ svg .bar { stroke: var(--soft); stroke-width: .8; } svg .name, svg > .bar { poin
 svg a.point:hover path, svg a.point:focus path { stroke: var(--text); stroke-width: 2; }
 #told { white-space: pre-line; min-height: 7.5em; }
 #ways th, #ways td { padding-right: .9rem; } #ways tbody th { color: var(--text); white-space: nowrap; }
-#ways thead button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer; text-align: inherit; }
-#ways th[aria-sort=ascending] button::after { content: " ▲"; } #ways th[aria-sort=descending] button::after { content: " ▼"; }
+#ways thead button { font: inherit; color: inherit; background: none; border: 0; padding: 0; cursor: pointer;
+  text-align: inherit; }
+#ways th[aria-sort=ascending] button::after { content: " ▲"; }
+#ways th[aria-sort=descending] button::after { content: " ▼"; }
 tr.chosen > * { background: color-mix(in srgb, var(--good) 14%, transparent); } .star { color: var(--good); }
 .ways { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(30rem, 100%), 1fr)); gap: 1.4rem; }
 figure { margin: 0; } img { height: auto; } figure.way:target { outline: 3px solid var(--good); outline-offset: 6px; }
 figure.way img { cursor: zoom-in; }
-dialog { width: 100vw; max-width: none; height: 100vh; max-height: none; margin: 0; padding: .8rem 1.2rem; border: 0; box-sizing: border-box;
-  color: var(--text); background: var(--ground); }
+dialog { width: 100vw; max-width: none; height: 100vh; max-height: none; margin: 0; padding: .8rem 1.2rem; border: 0;
+  box-sizing: border-box; color: var(--text); background: var(--ground); }
 dialog .bar { display: flex; justify-content: space-between; gap: 1rem; flex-wrap: wrap; }
-dialog button { font: inherit; color: inherit; background: var(--card); border: 1px solid var(--line); border-radius: 4px; cursor: pointer; }
+dialog button { font: inherit; color: inherit; background: var(--card); border: 1px solid var(--line);
+  border-radius: 4px; cursor: pointer; }
 dialog button[aria-pressed=true] { border-color: var(--text); }
 .stage { display: flex; gap: .8rem; overflow: auto; margin: .6rem 0; cursor: pointer; } .stage figure { flex: none; }
 .stage img { width: auto; max-width: none; } .stage.flip figure:not(.on) { display: none; }
 @media print {
-  :root { color-scheme: light; --text: #000; --soft: #444; --ground: #fff; --card: #fff; --line: #ccc; --good: #1f7a4a; }
-  body { margin: 0; max-width: none; font-size: 9pt; } .choose, dialog { display: none; } section { border: 0; padding: 0; overflow: visible; }
-  @page { size: landscape; } #ways, #ways th { font-size: 6pt; } #ways th, #ways td { padding: 1pt .6em 1pt 0; } #ways thead th { white-space: normal; }
+  :root { color-scheme: light; --text: #000; --soft: #444; --ground: #fff; --card: #fff; --line: #ccc;
+    --good: #1f7a4a; }
+  body { margin: 0; max-width: none; font-size: 9pt; } .choose, dialog { display: none; }
+  section { border: 0; padding: 0; overflow: visible; }
+  @page { size: landscape; } #ways, #ways th { font-size: 6pt; } #ways th, #ways td { padding: 1pt .6em 1pt 0; }
+  #ways thead th { white-space: normal; }
   #told { min-height: 0; } svg.chart { max-width: 20cm; }
   .ways { grid-template-columns: 1fr 1fr; } figure.way, tr { break-inside: avoid; }
 }
@@ -47,7 +53,7 @@ const char* const kTradePageScript = R"(
   const told = byId("told"), table = byId("ways"), flip = byId("flip");
   if (!told) return;
 
-  // What a pointer or the focus rests on is said below the chart.
+  // The text for the point under the pointer or the focus shows below the chart.
   const atFirst = told.textContent;
   const tell = event => {
     const point = event.target.closest && event.target.closest("a.point");
@@ -56,10 +62,11 @@ const char* const kTradePageScript = R"(
   byId("chart").addEventListener("pointerover", tell);
   byId("chart").addEventListener("focusin", tell);
 
-  // Columns sort; what was not measured stays last.
+  // Columns sort; empty cells stay last.
   const valueOf = cell => "v" in cell.dataset ? cell.dataset.v : cell.textContent;
   const sortBy = (column, descending) => {
-    const rows = [...table.tBodies[0].rows], number = table.tHead.rows[0].cells[column].classList.contains("number") || column === 0;
+    const rows = [...table.tBodies[0].rows];
+    const number = table.tHead.rows[0].cells[column].classList.contains("number") || column === 0;
     rows.sort((a, b) => {
       const [x, y] = [a, b].map(row => valueOf(row.cells[column]));
       if (x === "" || y === "") return (x === "") - (y === "");
@@ -82,7 +89,8 @@ const char* const kTradePageScript = R"(
 
   // Two pictures at full size, to flip between.
   const ways = [...document.querySelectorAll("figure.way")], own = ways.find(way => way.classList.contains("chosen"));
-  const pictureOf = way => way.querySelector("img") || (way.dataset.same ? byId("way-" + way.dataset.same).querySelector("img") : null);
+  const pictureOf = way => way.querySelector("img") ||
+    (way.dataset.same ? byId("way-" + way.dataset.same).querySelector("img") : null);
   const nameOf = way => way.querySelector("figcaption b").textContent;
   const stage = byId("flip-stage");
   let at = 0;
@@ -105,7 +113,8 @@ const char* const kTradePageScript = R"(
     const way = ways[at];
     say(way);
     stage.replaceChildren(...(own && own !== way ? [way, own] : [way]).filter(pictureOf).map((shown, i) => {
-      const figure = document.createElement("figure"), image = new Image(), caption = document.createElement("figcaption");
+      const figure = document.createElement("figure"), image = new Image();
+      const caption = document.createElement("figcaption");
       image.src = pictureOf(shown).src;
       image.alt = nameOf(shown);
       caption.textContent = nameOf(shown);

@@ -1,4 +1,4 @@
-// Which settings are worth choosing: those that nothing else beats in time and error at once.
+// The Pareto front: settings that no other setting beats in both time and error.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace scumble {
 
-// Both in any unit, less being better.
+// Both in any unit, less is better.
 struct TradePoint {
   double time = 0.0;
   double error = 0.0;
@@ -16,7 +16,7 @@ struct TradePoint {
 // The places in `points` of the Pareto front, by rising time. One point beats another if it is worse in neither and
 // better in one. Points that are equal in both do not beat each other: all are on the front if one is, in the order
 // given. So the errors along the front fall strictly from each time to the next longer one. A point with a NaN was not
-// measured: it is never on the front and beats nobody. Infinities are numbers like others. O(n log n).
+// measured: it is never on the front and beats no point. Infinities are numbers like others. O(n log n).
 std::vector<std::size_t> ParetoFront(std::span<const TradePoint> points);
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// What the files of the trade-off's report share. Not for other folders.
+// Helpers shared by the files of the trade-off's report. Private to measure/tradeoff.
 #pragma once
 
 #include <optional>
@@ -9,40 +9,40 @@
 
 namespace scumble::internal {
 
-// A figure, or nothing where none was measured: a time or memory of 0, an estimate of NaN.
+// A figure; empty if it was not measured: a time or memory of 0, an estimate of NaN.
 std::optional<double> Taken(double time_or_memory);
 std::optional<double> Taken(const Estimate& estimate);
 
-// For each variant, whether a front may have it, if its figures are good enough: it was timed, differs by more than
-// chance, can be chosen, since `stylize` has options for it, and stands for its picture, as at FrontOf.
+// For each variant, whether it may be on a front, given good figures. It was timed, differs by more than its random
+// seed, can be chosen by options of `stylize`, and represents its picture, as at FrontOf.
 std::vector<bool> MayBeOnFront(const TradeReport& report);
 
 // For each variant, whether it is on the front.
 std::vector<bool> OnFront(const TradeReport& report);
 
-// As people read them, "–" where there is none: three digits that count.
+// For people, with three significant digits; "–" where there is none.
 std::string ShortFigure(const std::optional<double>& value);
 std::string ShortEstimate(const Estimate& estimate);           // "0.412 ± 0.004"; no error where all was looked at
 std::string ShortTime(const Quartiles& time);                  // "12.3 (11.9–13.0)"
 std::string ShortMegabytes(std::size_t bytes);                 // of 10⁶ bytes
 std::string ShortPercent(const std::optional<double>& share);  // 0.897 is "89.7"
 
-// Of the whole: its scene, style, size, machine; in one line each.
+// Titles: scene, style, size, machine; in one line each.
 std::string TradeTitle(const TradeReport& report);  // "suzanne in oil"
 std::string TradeSetup(const TradeReport& report);  // "960×540 pixels, AMD …, 2 threads; medians of 5 runs; λ = 10"
 
-// To bear in mind wherever ways are ranked.
+// A note to show wherever variants are ranked.
 inline constexpr const char* kMindBlending =
     "Blending mostly scores better and makes strokes soft: compare ways of one blend_radius and one edge_aware.";
 
-// What a chart has on its axes.
+// The quantity on a chart's time axis.
 enum class ChartTime { kTotal, kTransfer, kMemory };
 enum class ChartError { kBoth, kEnergy, kMissing };
 
 struct ChartLook {
   ChartTime time = ChartTime::kTotal;
   ChartError error = ChartError::kBoth;
-  bool page = false;  // for the page: colours of its style sheet, points link to the pictures; else a file of its own
+  bool page = false;  // for the page: colours of its style sheet, links from points to pictures; else a separate file
 };
 
 // A chart as described at TradeChart.

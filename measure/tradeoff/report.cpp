@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kNone = "–";
 
-// Digits behind the point that leave three which count.
+// Digits after the point for three significant ones.
 int Decimals(double value) {
   if (value == 0.0 || !std::isfinite(value)) return 2;
   return std::clamp(2 - static_cast<int>(std::floor(std::log10(std::abs(value)))), 0, 6);
@@ -89,7 +89,7 @@ bool CanBeChosen(const TradeMeasure& variant) {
   return !variant.by_chance && (variant.chosen || !variant.options.empty());
 }
 
-// One run has no quartiles to be sure by.
+// One run has no quartiles for a comparison.
 bool IsSurelyQuicker(const TradeMeasure& variant, const TradeMeasure& other) {
   const bool once = variant.total_ms.lower == variant.total_ms.upper || other.total_ms.lower == other.total_ms.upper;
   return !once && variant.total_ms.upper < other.total_ms.lower;
@@ -100,7 +100,7 @@ bool IsSurelyQuicker(const TradeMeasure& variant, const TradeMeasure& other) {
 namespace internal {
 
 std::vector<bool> MayBeOnFront(const TradeReport& report) {
-  std::map<std::size_t, std::size_t> standing;  // who stands for a picture, by the first way that makes it
+  std::map<std::size_t, std::size_t> standing;  // the representative of a picture, by the first variant that makes it
   for (std::size_t i = 0; i < report.variants.size(); ++i) {
     const TradeMeasure& variant = report.variants[i];
     if (!CanBeChosen(variant) || !Taken(variant.total_ms.median)) continue;

@@ -31,7 +31,7 @@ std::vector<double> TicksOf(const ChartScale& scale) {
                                  : rough < 3.5 * power ? 2.0
                                  : rough < 7.5 * power ? 5.0
                                                        : 10.0);
-    // Whole multiples: adding up the step would show its rounding.
+    // Whole multiples: adding the step repeatedly would show its rounding.
     for (double k = std::ceil(low / step); k * step <= high; ++k) ticks.push_back(k * step);
   }
   std::erase_if(ticks, [&](double tick) { return tick < low || tick > high; });

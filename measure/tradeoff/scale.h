@@ -1,4 +1,4 @@
-// Axes of the trade-off's chart. Not for other folders.
+// Axes of the trade-off's chart. Private to measure/tradeoff.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace scumble::internal {
 
-// Values to places in a picture, linear or logarithmic.
+// Maps values to places in a picture, linearly or logarithmically.
 struct ChartScale {
   bool logarithmic = false;
   double low = 0.0, high = 1.0;   // values at its ends; their decimal logarithms where it is logarithmic

@@ -17,7 +17,7 @@ using Row = std::array<std::string, kColumns>;
 
 constexpr std::size_t kName = 1;
 
-// Characters, which is what a terminal gives a column each.
+// Characters: a terminal gives each one column.
 std::size_t WidthOf(const std::string& utf8) {
   return static_cast<std::size_t>(std::count_if(utf8.begin(), utf8.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
@@ -33,7 +33,7 @@ std::string CutTo(const std::string& utf8, std::size_t width) {
   return cut + "…";
 }
 
-// Without the spaces and the 0 before the point, for which there is no room: "0.412±.004".
+// Without the spaces and the 0 before the point, which would not fit: "0.412±.004".
 std::string Narrow(const Estimate& estimate) {
   const std::string wide = internal::ShortEstimate(estimate);
   const std::size_t sign = wide.find(" ± ");
@@ -87,7 +87,7 @@ std::array<std::size_t, kColumns> WidthsOf(const std::vector<Row>& rows) {
   return widths;
 }
 
-// The error of the guides as such, of the few variants whose guides are not the exact ones.
+// The error of the guides themselves, of the few variants whose guides are not exact.
 std::string GuideTable(const TradeReport& report) {
   std::string text;
   for (const std::size_t i : ByAxis(report)) {

@@ -1,5 +1,5 @@
-// An armature, shape keys and moving objects, exported by Blender's own glTF exporter: where each vertex is at a frame
-// against where Blender has it. tests/blender/make_animation.py makes the scene.
+// An armature, shape keys and moving objects, exported by Blender's own glTF exporter: each vertex's place at a frame
+// against Blender's. tests/blender/make_animation.py makes the scene.
 #include <gmock/gmock.h>
 
 #include <cmath>

@@ -83,7 +83,7 @@ TEST_F(CrosscheckBlender, ASampleSceneAgreesKeepsItsGuidesAndItsBaseline) {
   }
   EXPECT_NE(TextOf(At("report.html")).find("<svg"), std::string::npos);
 
-  // A baseline that nobody can keep: exit code 1, and it says which limit is whose.
+  // A baseline with impossible limits: exit code 1, and a message that names each limit and its source.
   Json baseline = Json::parse(TextOf(At("b.json")), nullptr, false);
   ASSERT_FALSE(baseline.is_discarded());
   EXPECT_EQ(baseline["blender"].get<std::string>().rfind("3.4", 0), 0u);

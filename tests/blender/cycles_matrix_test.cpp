@@ -1,5 +1,5 @@
-// Every kind of lamp over diffuse, glossy and textured surfaces, and what else a light path may get wrong, against
-// Cycles: `scumble crosscheck` on the scenes of tests/blender/make_matrix.py, by its built-in limits.
+// Every kind of light over diffuse, glossy and textured surfaces, and other difficult light paths, against Cycles:
+// `scumble crosscheck` on the scenes of tests/blender/make_matrix.py, by its built-in limits.
 #include <cstdlib>
 #include <map>
 #include <utility>

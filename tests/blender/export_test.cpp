@@ -1,5 +1,5 @@
-// Blender scenes, through the real Blender: what the loader makes of an export against Blender's own numbers, and the
-// verbs that run the export by themselves. tests/blender/make_cases.py makes the scenes.
+// Blender scenes, through the real Blender: the loaded export against Blender's own numbers, and the commands that run
+// the export themselves. tests/blender/make_cases.py makes the scenes.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -464,7 +464,7 @@ TEST_F(BlenderVerbs, StylizeToo) {
   EXPECT_TRUE(Exists("p.png"));
 }
 
-// What is measured of a .blend is what is painted of it: its frame, and its view.
+// A .blend is measured in the frame and view in which it is painted.
 TEST_F(BlenderVerbs, TradeoffAndBudgetTakeAFrame) {
   WriteStyle("style");
   const Arguments seen = {"--style", "style", "--size", "64x36", "--view", "20,30", "--frame", "6"};

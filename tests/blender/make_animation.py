@@ -2,7 +2,8 @@
 
     blender -b -noaudio --factory-startup -P tests/blender/make_animation.py -- --output FOLDER
 
-FOLDER gets animated.glb and expected.json. Positions are glTF's: metres, +Y up. A vertex is known by its rest position.
+FOLDER gets animated.glb and expected.json. Positions are glTF's: metres, +Y up. A vertex is identified by its rest
+position.
 """
 
 import argparse
@@ -123,7 +124,7 @@ def point(vector):
 
 
 def evaluated(thing):
-    """[[rest position in the file, world position], …]; the exporter puts a skinned mesh's rest into the world."""
+    """[[rest position in the file, world position], …]; the exporter puts a skinned mesh's rest pose into the world."""
     file_from_rest = thing.matrix_world if thing.find_armature() else Matrix()
     shown = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = shown.to_mesh()

@@ -1,4 +1,4 @@
-"""Makes the .blend files of blender_export_test.cpp, and expected.json with what Blender itself says of them.
+"""Makes the .blend files of blender_export_test.cpp, and expected.json with Blender's own numbers.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_cases.py -- --output FOLDER
 """
@@ -46,7 +46,7 @@ def save(folder, name):
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / (name + ".blend")), check_existing=False)
 
 
-# ---- Lamps ----------------------------------------------------------------------------------------------------------
+# ---- Lights ---------------------------------------------------------------------------------------------------------
 
 
 def lamp(name, kind, energy, location=(0, 0, 3), **settings):
@@ -283,7 +283,7 @@ def deformed():
 
 def bounds():
     """Names, triangles, and corners of the boxes in Blender's world, as the render has them: evaluated with the
-    render's modifiers set by hand, in a way that owes nothing to the export."""
+    render's modifiers set by hand, independently of the export."""
     scene, layer = bpy.context.scene, bpy.context.view_layer
     smooth, off = bpy.data.objects["Smooth"].modifiers[0], bpy.data.objects["Off"].modifiers[0]
     smooth.levels, off.show_viewport = 2, False
@@ -347,7 +347,7 @@ def cameras():
     return result
 
 
-# ---- What Cycles renders --------------------------------------------------------------------------------------------
+# ---- Visible to Cycles ----------------------------------------------------------------------------------------------
 
 
 def ball(name, location, scale, material, collection=None):
@@ -443,7 +443,8 @@ def broken(folder):
     return {}
 
 
-CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras, "rendered": rendered}
+CASES = {"lamps": lamps, "materials": materials, "objects": objects, "deformed": deformed, "cameras": cameras,
+         "rendered": rendered}
 FILES = {"broken": broken}  # these write their files themselves
 
 

@@ -43,13 +43,14 @@ def mesh(name, build, location, made, smooth=False):
 
 
 def room():
-    """A box that moves, a ball of metal, a point lamp."""
+    """A box that moves, a sphere of metal, a point light."""
     scene = bpy.context.scene
     floor = material("Floor", "ShaderNodeBsdfDiffuse", (0.7, 0.6, 0.5))
     red = material("Red", "ShaderNodeBsdfDiffuse", (0.8, 0.2, 0.1))
     metal = material("Metal", "ShaderNodeBsdfGlossy", (0.9, 0.8, 0.6), 0.5)
     mesh("Floor", lambda b: bmesh.ops.create_grid(b, x_segments=1, y_segments=1, size=3.0), (0, 0, 0), floor)
-    mesh("Ball", lambda b: bmesh.ops.create_uvsphere(b, u_segments=96, v_segments=48, radius=0.7), (-0.8, 0, 0.7), metal, True)
+    mesh("Ball", lambda b: bmesh.ops.create_uvsphere(b, u_segments=96, v_segments=48, radius=0.7), (-0.8, 0, 0.7),
+         metal, True)
     box = mesh("Box", lambda b: bmesh.ops.create_cube(b, size=1.0), (0.8, 0.2, 0.5), red)
     for frame, x in ((1, 0.8), (5, 1.4)):
         box.location.x = x

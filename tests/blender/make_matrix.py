@@ -1,10 +1,10 @@
-"""Makes the .blend files of cycles_matrix_test.cpp: every kind of lamp over diffuse, glossy and textured surfaces, and
-one scene for each other thing that a lighting pass may get wrong.
+"""Makes the .blend files of cycles_matrix_test.cpp: every kind of light over diffuse, glossy and textured surfaces, and
+one scene for each other difficulty of a lighting pass.
 
     blender -b -noaudio --factory-startup -P tests/blender/make_matrix.py -- --output FOLDER [--only NAME,NAME]
 
-FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME the layers that it is about, the picture's size,
-and the samples that its noise asks for.
+FOLDER gets NAME.blend for each scene, and matrix.json: for each NAME its layers, the picture's size, and the samples
+that its noise needs.
 """
 
 import argparse
@@ -136,8 +136,8 @@ def diffuse_set():
 
 
 def glossy_set(small=0.0):
-    """Roughness 0.1 to 0.8, and a mirror. One wall stays diffuse, so that there is something to mirror. What sees the
-    smooth things is rough: caustics of caustics would need thousands of samples on both sides."""
+    """Roughness 0.1 to 0.8, and a mirror. One wall stays diffuse, as a source of light to mirror. The other surfaces
+    are rough: caustics of caustics would need thousands of samples on both sides."""
     return {"Floor": material("glossy", (0.7, 0.7, 0.7), 0.8), "Back": material("glossy", (0.7, 0.7, 0.8), 0.7),
             "Side": material("diffuse", (0.8, 0.2, 0.12)), "Ball": material("glossy", (0.9, 0.8, 0.5), 0.1),
             "Box": material("glossy", (0.4, 0.6, 0.9), 0.7), "Ring": material("glossy", (0.8, 0.8, 0.8), 0.6),
@@ -145,7 +145,8 @@ def glossy_set(small=0.0):
 
 
 def glossy_set_for_points():
-    """A mirror shows no lamp without extent; made rougher by the filter for glossy paths it makes fireflies of them."""
+    """A mirror shows no light without extent; made rougher by the filter for glossy paths it makes fireflies of
+    them."""
     return glossy_set(0.3)
 
 
@@ -158,7 +159,7 @@ def textured_set():
             "Small": material("glossy", white, 0.6, waves)}
 
 
-# ---- The room, lamps, cameras ----------------------------------------------------------------------------------------
+# ---- The room, lights, cameras ---------------------------------------------------------------------------------------
 
 
 def room(materials):
@@ -235,7 +236,7 @@ def panel(strength):
 
 
 def emissive():
-    """A panel and a ball that shine; both are seen."""
+    """A panel and a sphere that emit; both are visible."""
     room(diffuse_set())
     panel(12)
     ball("Lantern", (0.4, 0.2, 1.5), 0.25, material("emission", (0.4, 0.6, 1.0), strength=15))
@@ -290,7 +291,7 @@ def instances():
 
 
 def principled():
-    """What a cross-check renders with pure shaders in the place of Principled ones."""
+    """A scene that a cross-check renders with pure shaders in the place of Principled ones."""
     waves = picture("Waves")
     materials = {name: material("principled", color, 0.5) for name, color in (
         ("Floor", (0.8, 0.78, 0.74)), ("Back", (0.75, 0.75, 0.8)), ("Side", (0.8, 0.2, 0.12)),

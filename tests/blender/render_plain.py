@@ -1,10 +1,10 @@
-"""Renders a small scene as someone would by hand who wants guides from it: passes switched on, all else as it was.
+"""Renders a small scene like a user who wants guides from it: passes switched on, all other settings unchanged.
 
     blender -b -noaudio --factory-startup -P tests/blender/render_plain.py -- --output FOLDER --shot NAME …
 
-Writes FOLDER/NAME.exr, multilayer, and FOLDER/NAME.camera with the camera that Blender had. A shot's name says what is
-out of the ordinary: one of the cameras (landscape, portrait, shifted, ortho, far), the film (opaque, clear), the
-filter (filtered, sharp), and lens, dof, slightdof or nopos: "shifted-opaque-filtered".
+Writes FOLDER/NAME.exr, multilayer, and FOLDER/NAME.camera with the camera that Blender had. A shot's name lists its
+special settings: one of the cameras (landscape, portrait, shifted, ortho, far), the film (opaque, clear), the filter
+(filtered, sharp), and lens, dof, slightdof or nopos: "shifted-opaque-filtered".
 """
 
 import argparse

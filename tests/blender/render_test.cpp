@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Rendered once for all tests; what a shot's name means stands in render_plain.py.
+// Rendered once for all tests; render_plain.py explains the names of the shots.
 class Shots : public testing::Environment {
  public:
   void SetUp() override {
@@ -81,7 +81,7 @@ TEST(BlenderRender, TheSolvedCameraIsBlendersOwn) {
   }
 }
 
-// A circle of confusion below a pixel scatters positions and leaves no doubt about the camera.
+// A circle of confusion below a pixel scatters positions and still determines the camera.
 TEST(BlenderRender, ALittleDepthOfFieldIsNoHindrance) {
   const GuideSet solved = Read("landscape-slightdof", false);
   const auto told = ReadBlenderCamera(Shots::File("landscape-slightdof.camera"));
@@ -108,7 +108,7 @@ TEST(BlenderRender, NamesAreThoseOfTheScene) {
   EXPECT_EQ(sharp.material_names.begin()->second, "Red \"paint\"");
 }
 
-// An opaque film's alpha is 1 everywhere; Cryptomatte knows what a transparent film's alpha would have been.
+// An opaque film's alpha is 1 everywhere; Cryptomatte has the coverage of a transparent film.
 TEST(BlenderRender, CoverageIsThatOfATransparentFilm) {
   const GuideSet opaque = Read("landscape-opaque-filtered", false), clear = Read("landscape-clear-filtered", false);
   std::size_t partial = 0;

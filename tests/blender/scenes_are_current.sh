@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The committed sample scenes are what blender_scripts/make_scenes.py makes. Compared by their guides, not byte by byte:
-# Blender's last bits may differ from one processor to the next.
+# The committed sample scenes equal the output of blender_scripts/make_scenes.py. Compared by their guides, not byte by
+# byte: Blender's last bits may differ from one processor to the next.
 # Usage: scenes_are_current.sh PROGRAM SOURCE_FOLDER
 set -eu
 program=$1
@@ -8,7 +8,8 @@ source=$2
 fresh=$(mktemp -d)
 trap 'rm -rf "$fresh"' EXIT
 
-blender -b -noaudio --factory-startup -P "$source/blender_scripts/make_scenes.py" -- --output "$fresh" > "$fresh/log" 2>&1 ||
+blender -b -noaudio --factory-startup -P "$source/blender_scripts/make_scenes.py" -- --output "$fresh" \
+    > "$fresh/log" 2>&1 ||
   { cat "$fresh/log"; exit 1; }
 for committed in "$source"/scenes/*.glb; do
   name=$(basename "$committed")

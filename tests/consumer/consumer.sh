@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A program outside the tree, built against the installed files alone: by CMake's package and by pkg-config. Both paint
-# what `scumble stylize` paints.
+# the picture of `scumble stylize`.
 # Usage: consumer.sh SOURCE BUILD
 set -eu
 source=$(cd "$1" && pwd)

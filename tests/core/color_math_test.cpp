@@ -1,4 +1,4 @@
-// The cube root, sRGB's curve and Oklab as floats have them, against the C library in long double.
+// The cube root, sRGB's curve and Oklab in floats, against the C library in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>

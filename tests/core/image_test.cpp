@@ -1,4 +1,4 @@
-// The small foundations: colour, chance, layer names, ids and what a guide set must satisfy.
+// The foundations: colour, hashes, layer names, ids and the rules of a guide set.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -97,7 +97,7 @@ TEST(Chance, OrderAndCountOfArgumentsMatter) {
   EXPECT_EQ(Hash(-1), Hash(std::int64_t(-1))) << "a negative cell is the same cell in any integer type";
   EXPECT_NE(HashText("ab"), HashText("ba"));
   EXPECT_NE(HashText(""), HashText(std::string_view("\0", 1)));
-  // Other machines and compilers must find these very values, or the same guides give another picture.
+  // Other machines and compilers must give these very values, or equal guides give different pictures.
   static_assert(Mix64(0) == 0xe220a8397b1dcdafull, "the first number of SplitMix64 with seed 0");
 }
 
@@ -365,8 +365,8 @@ TEST(GuideSets, TheBackgroundMayHoldAnything) {
   EXPECT_TRUE(guides.Validate("g"));
 }
 
-// What is above 2^24 or no number stands for nothing: in 32 bits it would be undefined, and 2^33 + 7168 the id 7168 on
-// some machines.
+// Values above 2^24 and NaN stand for no id: in 32 bits the conversion would be undefined, and 2^33 + 7168 the id 7168
+// on some machines.
 TEST(GuideSets, IdsAreThoseThatFloatsHold) {
   for (const float whole : {1.0f, 7168.0f, 16777215.0f, 16777216.0f}) EXPECT_EQ(IdOf(whole), std::uint32_t(whole));
   EXPECT_EQ(IdOf(3.75f), 3u);

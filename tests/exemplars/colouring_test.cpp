@@ -1,4 +1,4 @@
-// The hand that colours, against the formulas in its header.
+// The colouring hand against the formulas in its header.
 #include "exemplars/paint/engine/colouring.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ Ground Plain(glm::vec3 color, float tooth = 0.5f, int size = 128) {
   return {Field(Sheet{size}, tooth), Colors(Sheet{size}, color)};
 }
 
-Wish Everywhere(glm::vec3 color) {
-  return MakeWish([=](glm::vec2) { return color; });
+TargetColors Everywhere(glm::vec3 color) {
+  return MakeTargetColors([=](glm::vec2) { return color; });
 }
 
 float PressureOn(glm::vec3 ground, glm::vec3 wanted, const Stick& stick, const Hand& hand = kHand) {
@@ -46,7 +46,7 @@ TEST(Colouring, ChalkIsPressedByTheShareThatBringsTheColourNearest) {
 
 TEST(Colouring, WaxShinesThrough) {
   const Stick blue{{0.4f, 0.5f, 0.9f}, true};
-  // Half of what the glaze takes away is half of the way.
+  // Half of the glaze's absorption is half of the way.
   const glm::vec3 wanted = 0.5f * kGrey + 0.5f * kGrey * blue.color;
   EXPECT_NEAR(PressureOn(kGrey, wanted, blue), 0.5f, 1e-3f);
   EXPECT_EQ(PressureOn(kGrey, glm::vec3(0.9f), blue), 0.0f) << "a glaze never lightens";
@@ -139,11 +139,12 @@ TEST(Colouring, StrokesDoNotCurlRoundAPole) {
 }
 
 TEST(Colouring, AWishIsAskedWhereItWasMade) {
-  const Wish wish = MakeWish([](glm::vec2 at) { return glm::vec3(at / kSide, 0.25f); });
+  const TargetColors target_colors = MakeTargetColors([](glm::vec2 at) { return glm::vec3(at / kSide, 0.25f); });
   for (const glm::vec2 at : {glm::vec2(3.0f, 1000.0f), glm::vec2(512.0f, 100.0f)}) {
-    EXPECT_LT(glm::distance(ColorIn(wish, at), glm::vec3(at / kSide, 0.25f)), 0.004f);
+    EXPECT_LT(glm::distance(ColorIn(target_colors, at), glm::vec3(at / kSide, 0.25f)), 0.004f);
   }
-  EXPECT_EQ(ColorIn(wish, {-50.0f, 2000.0f}), ColorIn(wish, {0.0f, 1023.0f})) << "past the edge it goes on";
+  EXPECT_EQ(ColorIn(target_colors, {-50.0f, 2000.0f}), ColorIn(target_colors, {0.0f, 1023.0f}))
+      << "past the edge it goes on";
 }
 
 }  // namespace

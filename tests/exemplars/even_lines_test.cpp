@@ -22,7 +22,7 @@ TEST(EvenLines, ParallelOnesFillTheSheetAtTheirSpacing) {
   std::vector<float> heights;
   for (const Stroke& line : lines) {
     heights.push_back(line.front().at.y);
-    // From one margin to the other: nothing stands in its way.
+    // From one margin to the other: there is no obstacle.
     EXPECT_LT(line.front().at.x, -80.0f);
     EXPECT_GT(line.back().at.x, kSide + 80.0f);
   }

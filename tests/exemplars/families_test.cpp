@@ -54,8 +54,7 @@ TEST(Families, LinesAreCirclesOfLatitudeAtEvenDistances) {
   }
 }
 
-// Seen across the lines, no two neighbours come nearer than the thinning promises, and tone does not pile up at the
-// rim.
+// Seen across the lines, no two neighbours come nearer than the thinning allows, and tone does not pile up at the rim.
 TEST(Families, LinesDoNotCrowdTowardsTheRim) {
   Chance chance(7, 3);
   FamilyOptions options = Exact();

@@ -1,4 +1,4 @@
-// The hairs of the paint program's ink brush: where they may go, and what wet, dry and one-sided mean.
+// The hairs of the paint program's ink brush: their paths, and the effect of wet, dry and one-sided ink.
 #include "exemplars/paint/engine/hairs.h"
 
 #include <gtest/gtest.h>

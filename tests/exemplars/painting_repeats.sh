@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Painting an exemplar twice with one seed gives the same bytes, and another seed another picture: every style is painted
-# twice, by turns with one seed and with two. At a small size. Usage: painting_repeats.sh PAINT_EXEMPLARS EXEMPLARS
+# Painting an exemplar twice with one random seed gives equal bytes, and another seed another picture: every style is
+# painted twice, alternately with one seed and with two. At a small size.
+# Usage: painting_repeats.sh PAINT_EXEMPLARS EXEMPLARS
 set -eu
 paint=$1
 exemplars=$2
@@ -28,13 +29,13 @@ for style in "$folder"/first/*/; do
     if cmp -s "$picture" "$folder/seed-2/$file"; then echo "$file: the seed changes nothing"; exit 1; fi
   done
 done
-# What the bundled styles list is what is painted.
+# The painted exemplars are those that the bundled styles list.
 for style in "$exemplars"/*/style.toml; do
   name=$(basename "$(dirname "$style")")
   for picture in $(sed -n 's/^\(image\|paper\) = "\(.*\.png\)".*/\2/p' "$style"); do
     [ -s "$folder/first/$name/$picture" ] || { echo "$name: no $picture"; exit 1; }
   done
 done
-# A scene's painting has its guides' size unless another is asked for; without those guides nothing is painted.
+# A scene's exemplar has its guides' size by default; without those guides it is refused.
 if "$paint" --style scene-ink --scene "$folder/none.exr" -o "$folder" 2> "$folder/message"; then exit 1; fi
 grep -q "none.exr" "$folder/message" || { cat "$folder/message"; exit 1; }

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Files that change while they are read: a texture that comes and goes, guides that are cut short and made whole again
 under the reader. Each run ends by itself: well and with the bytes that whole files give, or with exit code 3 (no
-readable input) and a sentence that names a file, never by a signal. Then pipes that nobody reads any more.
+readable input) and a sentence that names a file, never by a signal. Then pipes without a reader.
 
-What is changed, and when, is drawn from a seeded generator; when the program looks, is not.
+A seeded generator draws the changes and their times; the times of the program's reads are not fixed.
 
 Usage: faults_changed.py PROGRAM SOURCE
 """
@@ -45,13 +45,13 @@ def is_refusal(code, said, name):
 
 
 def both_ends(failures, ends, what):
-    """A race that always goes one way tries nothing. The file is whole about half of the time, whatever the pace: of 25
-    runs all would end alike once in sixteen million, were they drawn evenly."""
+    """A race with one outcome tests nothing. The file is whole about half of the time, at any pace: if the outcomes
+    were drawn evenly, 25 runs would all be equal once in sixteen million."""
     failures.check(ends.get(0, 0) > 0 and ends.get(3, 0) > 0, f"{what}: runs ended only with {ends}")
 
 
 def whole_or_refused(program, failures, run, times, output, whole, blamed, what):
-    """Every run ends with the whole bytes, or says what is wrong with the file that it blames; both must occur."""
+    """Every run ends with the whole bytes, or names the damaged file and its fault; both must occur."""
     ends = {}
     for i in range(times):
         output.unlink(missing_ok=True)
@@ -122,11 +122,13 @@ def guides_cut_short(program, failures, chance):
 
     guides.write_bytes(good)
     with Meanwhile(cut_and_mend):
-        whole_or_refused(program, failures, run, 40, output, whole, "guides.exr", "guides cut and mended while they are read")
+        whole_or_refused(program, failures, run, 40, output, whole, "guides.exr",
+                         "guides cut and restored while they are read")
 
 
 def pipes_nobody_reads(program, failures):
-    for arguments in (["help"], ["info", "guides.exr", "--json"], ["transfer", "guides.exr", "--style", "style", "--frames",
+    for arguments in (["help"], ["info", "guides.exr", "--json"], ["transfer", "guides.exr", "--style", "style",
+                                                                   "--frames",
                                                                   "1-40", "-o", "f.##.png"]):
         for is_ignored in (False, True):
             reader, writer = os.pipe()

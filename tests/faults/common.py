@@ -1,4 +1,4 @@
-"""What the tests of faults share: small inputs, how the program is run, and what its end must look like."""
+"""Shared code of the tests of faults: small inputs, running the program, and checks of its end."""
 import json
 import os
 import pathlib
@@ -12,12 +12,12 @@ import OpenImageIO as oiio
 SUFFIX = ".scumble-tmp"
 # Files of `tradeoff -o`, with the one picture that every report has.
 REPORT = ("report.html", "chart.svg", "tradeoff.csv", "tradeoff.json", "pictures/01-the-style.png")
-# How much longer a program may take than it should: tests/CMakeLists.txt says so where a sanitizer slows it down.
+# The factor of a program's time limit: tests/CMakeLists.txt sets it where a sanitizer slows it down.
 SLOWER = int(os.environ.get("SCUMBLE_TESTS_SLOWER", "1"))
 
 
 class Failures:
-    """Collects what was wrong; the test fails at its end, with all of it."""
+    """Collects faults; the test fails at its end, with all of them."""
 
     def __init__(self):
         self.lines = []
@@ -76,7 +76,7 @@ def write_picture(path, values):
 
 
 def write_style(folder, size=64, rules=""):
-    """A painted ball of many colours, of which no compression makes much."""
+    """A painted sphere of many colours, which compresses badly."""
     folder.mkdir(parents=True)
     y, x = numpy.mgrid[0:size, 0:size]
     inside = (x + 0.5 - size / 2) ** 2 + (y + 0.5 - size / 2) ** 2 <= (size / 2) ** 2

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Full disks and folders that nobody may write to, for every kind of file that the program writes: exit code 4, a
-sentence with the file's name and the system's reason, an older file as it was, no temporary file; and a cache that
-cannot be kept is no failure at all.
+"""Full disks and read-only folders, for every kind of file that the program writes: exit code 4, a sentence with the
+file's name and the system's reason, an older file as it was, no temporary file; and a cache that cannot be kept is no
+failure at all.
 
 Runs in a mount namespace of its own, where it mounts a small disk in memory and a folder for reading only. Exit code 77
 (skipped) where the system allows no namespaces, or where no other user may run the program.
@@ -48,7 +48,7 @@ def fill(disk, pages=0):
 
 
 def older_files(folder):
-    """What a run would replace there."""
+    """The files that a run would replace there."""
     (folder / "trade" / "pictures").mkdir(parents=True)
     for older in ("p.png", "g.exr", "f.2.png", *(f"trade/{name}" for name in common.REPORT)):
         (folder / older).write_text("an older one")
@@ -60,7 +60,7 @@ def tradeoff(scene, folder):
 
 
 def outputs(folder, scene, guides):
-    """What writes each kind of file into the folder: (a file that it cannot write, arguments)."""
+    """The command for each kind of file in the folder: (a file that it cannot write, arguments)."""
     transfer = ["transfer", guides, "--style", "style"]
     kinds = {f"p{ending}": [*transfer, "-o", folder / f"p{ending}"] for ending in (".png", ".exr", ".tif", ".jpg")}
     kinds["g.exr"] = ["guidegen", scene, "--size", 64, "-o", folder / "g.exr"]
@@ -79,7 +79,7 @@ def outputs(folder, scene, guides):
 
 
 def refuses(program, failures, folder, scene, reason, **more):
-    """Every kind of output is refused there for that reason, and what was there stays."""
+    """Every kind of output is refused there for that reason, and existing files stay."""
     before = common.contents(folder)
     for name, arguments in outputs(folder, scene, "g.exr").items():
         code, said = program.run(*arguments, **more)
@@ -94,7 +94,8 @@ def standard_output(program, failures):
     for arguments in (["--help"], ["info", "g.exr", "--json"], ["compare", "g.exr", "g.exr"], ["styles"]):
         with open("/dev/full", "w") as full:
             code, said = program.run(*arguments, stdout=full)
-        failures.check(code == 4 and "standard output" in common.error_in(said), f"{arguments} > /dev/full: {code}: {said}")
+        failures.check(code == 4 and "standard output" in common.error_in(said),
+                       f"{arguments} > /dev/full: {code}: {said}")
 
 
 def report_without_room(program, failures, disk, scene):
@@ -109,8 +110,8 @@ def report_without_room(program, failures, disk, scene):
 
 
 def caches(program, failures, disk, read_only):
-    """A cache that keeps nothing changes nothing: neither of tables nor of the times of --budget-ms, where an hour is
-    enough for the style as it is whatever they are."""
+    """A cache that keeps nothing has no effect on the result: neither one of tables nor one of the times of
+    --budget-ms, where an hour is enough for the unchanged style at any times."""
     run = ["transfer", "g.exr", "--style", "style", "-o", "c.png"]
     kept = program.folder / "cache" / "scumble"
     one_cache(program, failures, disk, read_only, [*run, "--set", "transfer.nearest=table"], kept, True)
@@ -118,7 +119,7 @@ def caches(program, failures, disk, read_only):
 
 
 def one_cache(program, failures, disk, read_only, run, folder, is_same):
-    """is_same: what is made again has the same bytes, as times have not."""
+    """is_same: files made again have the same bytes, unlike times."""
     code, said = program.run(*run)
     failures.check(code == 0, said)
     whole = (program.folder / "c.png").read_bytes()
@@ -134,13 +135,15 @@ def one_cache(program, failures, disk, read_only, run, folder, is_same):
     for damaged in (b"", table[:8], table[:-1], table + b"x", bytes(len(table)), bytes(flipped)):
         kept[0].write_bytes(damaged)
         code, said = program.run(*run)
-        failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"damaged {kept[0]}: {code}: {said}")
+        failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole,
+                       f"damaged {kept[0]}: {code}: {said}")
         made = kept[0].read_bytes()
         failures.check(made == table if is_same else made != damaged, f"damaged, {kept[0]} is made again")
     kept[0].unlink()
     kept[0].mkdir()
     code, said = program.run(*run)
-    failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole, f"a folder for {kept[0]}: {code}: {said}")
+    failures.check(code == 0 and (program.folder / "c.png").read_bytes() == whole,
+                   f"a folder for {kept[0]}: {code}: {said}")
 
 
 def permissions(program, failures, scene):
@@ -190,13 +193,14 @@ def main():
             failures.check(code == 0, said)
         code, said = program.run("sphere", "--size", 512, "--only", "png", "-o", "kit")
         failures.check(code == 0, said)
-        for kind in (["sphere", "--rectify", "kit/template.png", "--size", 64, "-o", "lit.png"], tradeoff(scene, "trade")):
+        for kind in (["sphere", "--rectify", "kit/template.png", "--size", 64, "-o", "lit.png"],
+                     tradeoff(scene, "trade")):
             code, said = program.run(*kind)  # where there is room
             failures.check(code == 0, said)
         failures.check(set(common.REPORT) <= set(common.contents(program.folder / "trade")), "a report's files")
         disk, read_only = program.folder / "disk", program.folder / "read_only"
         disk.mkdir()
-        mount("-t", "tmpfs", "-o", "size=64k", "none", disk)  # in a namespace: gone with the last who is in it
+        mount("-t", "tmpfs", "-o", "size=64k", "none", disk)  # in a namespace: unmounted when its last process ends
         older_files(disk)
         fill(disk)
         refuses(program, failures, disk, scene, "No space left on device")
@@ -211,7 +215,7 @@ def main():
         for mounted in (disk, read_only):
             subprocess.run(["umount", str(mounted)])
     if not failures.lines and not all_tried:
-        raise SystemExit(77)  # skipped: what could be tried is right
+        raise SystemExit(77)  # skipped: all possible checks passed
     failures.end()
 
 

@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Kills the program at random moments while it writes sequences, until fifty kills have met it between its first file
-and its last, and looks at what is left: every file
-under a final name holds the very bytes of a run that nobody killed, and `--resume` makes the rest, with the same bytes,
-and takes away the temporary file that a killed run could not. Then signals that a program may answer, which leave no
+and its last. Every file under a final name must have the bytes of a complete run. `--resume` must make the missing
+files, with the same bytes, and remove the temporary file of a killed run. Then signals with handlers, which leave no
 temporary file at all; and runs at the same time in one folder, of which some are killed.
 
 The moments are drawn from a seeded generator, in shares of the time that whole runs take here and now from their first
@@ -24,7 +23,7 @@ FRAMES = 12
 
 
 class Verb:
-    """A sequence, what it must be, and how long it takes."""
+    """A sequence, its expected files, and its time."""
 
     def __init__(self, program, name, arguments, failures):
         self.program, self.name, self.failures = program, name, failures
@@ -84,8 +83,8 @@ class Verb:
 
 def kill_many(verbs, chance, kills):
     running = between = with_leftover = tries = 0
-    # Moments are uniform in the median time from the first file to the last, so more than half of them meet what they are
-    # for. A quarter is what no pace of the machine should spoil.
+    # Moments are uniform in the median time from the first file to the last, so more than half of them hit. A quarter
+    # must hit at any pace of the machine.
     while between < kills and tries < 4 * kills:
         i, tries = tries, tries + 1
         verb = verbs[i % len(verbs)]
@@ -129,7 +128,7 @@ def run_together(verb, chance, times):
         for place, process in enumerate(runs):
             _, said = process.communicate()
             verb.failures.check(place == 0 or process.returncode == 0, f"beside others: {process.returncode}: {said}")
-        verb.program.run(*verb.arguments, "--resume")  # what the killed one left may have been locked when they looked
+        verb.program.run(*verb.arguments, "--resume")  # the killed run's file may have been locked when they looked
         verb.check_whole(f"three at once, round {i}")
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Runs verbs under `ulimit -v`, from the least that lets the system load the program up to where all goes well, and
-finely spaced between, so that memory ends in every stage. Verbs that refuse beforehand what will not fit are told every other
-time to try all the same. Each run must end by itself: well and with the very bytes of a run without a limit, or with exit code
-6, a sentence, and no file. Never by a signal, never with a wrong reason.
+"""Runs commands under `ulimit -v`, from the least with which the system loads the program up to a limit without errors,
+finely spaced, so that memory ends in every stage. Commands that refuse too large runs beforehand get a larger
+--max-memory every other time. Each run must end by itself: with success and the bytes of a run without a limit, or with
+exit code 6, a sentence, and no file. Never by a signal, never with a wrong reason.
 
 Usage: faults_memory.py PROGRAM SOURCE [STEP_KB [VERB…]], of those listed below; left out: all
 """
@@ -27,8 +27,9 @@ def limits_for(kilobytes):
 
 
 def told_by_no_clock(contents):
-    """Without what tells of times: the pages of a trade."""
-    return {name: content for name, content in contents.items() if pathlib.PurePath(name).parts[0] != "t" or name.endswith(".png")}
+    """Without files that contain times: the pages of a trade-off."""
+    return {name: content for name, content in contents.items()
+            if pathlib.PurePath(name).parts[0] != "t" or name.endswith(".png")}
 
 
 def first_loaded(program):
@@ -45,7 +46,8 @@ def first_loaded(program):
 
 
 def few_addresses(program, failures):
-    """Enough for all but OpenImageIO: what it is for, what is missing and the way out are said, and no other reason."""
+    """Enough for all but OpenImageIO: the message has its purpose, the missing memory and the remedy, and no other
+    reason."""
     limit = limits_for(800000)
     code, said = program.run("compare", "g.exr", "p.png", preexec_fn=limit)
     error = common.error_in(said)
@@ -56,7 +58,8 @@ def few_addresses(program, failures):
                     ["transfer", "missing.exr", "--style", "style", "-o", "x.png"]):
         code, said = program.run(*missing, preexec_fn=limit)
         error = common.error_in(said)
-        failures.check(code == 3 and "missing." in error and "no such file" in error, f"few addresses, {missing}: {code}: {said}")
+        failures.check(code == 3 and "missing." in error and "no such file" in error,
+                       f"few addresses, {missing}: {code}: {said}")
     code, said = program.run("compare", "p.png", "p.png", "--flip", preexec_fn=limit)
     failures.check(code == 0, f"few addresses, plain PNGs: {code}: {said}")
 
@@ -83,13 +86,15 @@ def main():
             "transfer to EXR": ["transfer", "g.exr", "--style", "style", "--threads", 1, "-o", "out/p.exr"],
             "transfer to JPEG": ["transfer", "g.exr", "--style", "style", "-o", "out/p.jpg"],
             "a sequence": ["guidegen", scene, "--size", 48, "--frames", "1-3", "-o", "out/g.#.exr"],
-            "stylize": ["stylize", scene, "--style", source / "exemplars" / "charcoal", "--size", 96, "-o", "out/p.png"],
+            "stylize": ["stylize", scene, "--style", source / "exemplars" / "charcoal", "--size", 96, "-o",
+                        "out/p.png"],
             "sphere": ["sphere", "--size", 96, "-o", "out"],
             "info": ["info", "g.exr"],
             "styles": ["styles", "check", source / "exemplars" / "charcoal", "--quiet"],
             "compare": ["compare", "g.exr", "g.exr", "-o", "out/map.png"],
             "compare, by FLIP": ["compare", "p.png", "p.png", "--flip", "-o", "out/map.png"],
-            "tradeoff": ["tradeoff", scene, "--style", "style", "--size", 48, "--only", "levels 1,seed +1", "--repeat", 1,
+            "tradeoff": ["tradeoff", scene, "--style", "style", "--size", 48, "--only", "levels 1,seed +1", "--repeat",
+                         1,
                          "--no-memory", "-o", "out/t"],
         }
         few_addresses(program, failures)
@@ -126,7 +131,8 @@ def main():
                 kilobytes += step if well < 4 else 4 * step
             failures.check(well >= 16, f"{verb}: never went well within {kilobytes} kB")
             print(f"{verb}: well from about {kilobytes // MB} MB", flush=True)
-        print(f"{runs} runs, {foreseen} refused beforehand, in {ended} memory or threads ended; the program loads within {least} kB")
+        print(f"{runs} runs, {foreseen} refused beforehand, in {ended} memory or threads ended; the program loads "
+              f"within {least} kB")
         failures.check(ended >= runs // 8, "memory hardly ever ended")
     failures.end()
 

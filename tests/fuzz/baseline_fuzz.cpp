@@ -1,4 +1,4 @@
-// Baselines of a cross-check, in JSON. What is read survives being written and read again.
+// Baselines of a cross-check, in JSON. A baseline survives writing and reading again.
 #include "measure/crosscheck/baseline.h"
 #include "tests/fuzz/fuzz_target.h"
 

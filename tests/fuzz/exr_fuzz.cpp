@@ -1,5 +1,5 @@
 // EXR files of any program: guides with parts, view layers, Blender's passes and Cryptomattes, by the module of
-// formats. What the plain reader makes of a file is the same.
+// formats. The plain reader must give the same result.
 #include <cstring>
 
 #include "core/io/channel_file.h"

@@ -35,8 +35,8 @@ std::vector<NamedInput> InputsOf(const std::string& kind, const std::string& tar
   return inputs;
 }
 
-// One to four changes: a bit, a byte, a number at the end of its range, a piece of another input, a piece left out or
-// twice, the end cut off.
+// One to four changes: a bit, a byte, a number at the end of its range, a part of another input, a part left out or
+// doubled, the end cut off.
 Input Mutated(const std::vector<NamedInput>& seeds, std::uint64_t number) {
   const auto chance = [&](std::uint64_t i, std::size_t below) {
     return static_cast<std::size_t>(Hash(number, i) % std::max<std::size_t>(below, 1));
@@ -97,7 +97,7 @@ std::uint64_t RunsOf(const std::string& target) {
 class Fuzz : public testing::TestWithParam<Target> {
  protected:
   void SetUp() override { SetIoThreads(1); }
-  // What the target makes of the input: nothing but an exception can be told; the rest is the sanitizers'.
+  // Runs the target on the input: only exceptions are visible here; the sanitizers find other faults.
   static void Run(const Input& bytes, const std::string& what) {
     // A copy of the very size, so that a read behind its end is seen.
     const Input copy(bytes.begin(), bytes.end());

@@ -1,8 +1,7 @@
-// Targets for inputs that nobody made with care. A target is a function of any bytes: it may do nothing but return;
-// memory errors, undefined behaviour, exceptions that come out of it and broken promises (SCUMBLE_CHECK) are faults.
-// Each stands in a file of its own, tests/fuzz/NAME_fuzz.cpp. With libFuzzer (SCUMBLE_FUZZ) each file is a program;
-// without, all of them are in one table, which tests/fuzz/fuzz_regression_test.cpp runs over seeds, crashes and
-// mutations.
+// Targets for arbitrary inputs. A target is a function of any bytes: it must return; memory errors, undefined
+// behaviour, exceptions that come out of it and broken contracts (SCUMBLE_CHECK) are faults. Each stands in a file of
+// its own, tests/fuzz/NAME_fuzz.cpp. With libFuzzer (SCUMBLE_FUZZ) each file is a program; without, all of them are in
+// one table, which tests/fuzz/fuzz_regression_test.cpp runs over seeds, crashes and mutations.
 #pragma once
 
 #include <unistd.h>
@@ -61,7 +60,7 @@ inline std::filesystem::path InFile(const std::string& name, Bytes bytes) {
   return path;
 }
 
-// What every refusal must be: said in words, and no longer than a screen.
+// Every refusal must have a message, no longer than a screen.
 template <class T>
 void CheckRefusal(const Expected<T>& result, std::size_t longest = 4000) {
   if (result) return;
@@ -69,7 +68,7 @@ void CheckRefusal(const Expected<T>& result, std::size_t longest = 4000) {
   SCUMBLE_CHECK_LT(result.error().message.size(), longest);
 }
 
-// Pixels that a target has time for: what a header promises beyond is only inspected.
+// The most pixels that a target has time for: if a header declares more, only the header is inspected.
 constexpr std::int64_t kMostPixels = 1 << 20;
 
 }  // namespace scumble::fuzz

@@ -1,4 +1,4 @@
-// What the targets of guides share.
+// Checks that the targets of guides share.
 #pragma once
 
 #include "core/io/guide_file.h"
@@ -13,7 +13,7 @@ inline GuideReadOptions WhateverThereIs() {
   return options;
 }
 
-// What the reader says of itself: guides that are returned are valid, and as large as the header says.
+// The reader's contract: returned guides are valid, and as large as the header declares.
 inline void CheckGuides(const GuideSet& guides, const GuideFileInfo& info) {
   SCUMBLE_CHECK_EQ(guides.width(), info.width);
   SCUMBLE_CHECK_EQ(guides.height(), info.height);

@@ -27,7 +27,7 @@ void Run(Bytes input) {
   const auto names = internal::NamesFromText(text);
   SCUMBLE_CHECK(internal::NamesFromText(internal::NamesToText(names)) == names);
   static_cast<void>(internal::MatrixFromText(text));
-  // All else is refused at its first line, and to write a file takes as long as the rest together.
+  // All other texts are refused at their first line, and writing a file takes as long as all other checks together.
   if (text.find("FromView") != text.npos) CheckRefusal(ReadBlenderCamera(InFile("any.camera", input)));
   const auto matte = ParseMatteChannel(text);
   SCUMBLE_CHECK(!matte || (matte->index >= 0 && matte->index < 128));

@@ -38,7 +38,8 @@ def png(width, height, kind, bits, extra=b"", interlace=0):
     head = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, kind, 0, 0, interlace))
     text = chunk(b"tEXt", b"scumble:settings\0one two") if kind == 6 else b""
     if kind == 2:
-        text = chunk(b"gAMA", struct.pack(">I", 45455)) + chunk(b"sRGB", b"\0") + chunk(b"zTXt", b"Note\0\0" + zlib.compress(b"x" * 50))
+        text = chunk(b"gAMA", struct.pack(">I", 45455)) + chunk(b"sRGB", b"\0") + chunk(b"zTXt", b"Note\0\0"
+                                                                                        + zlib.compress(b"x" * 50))
     return b"\x89PNG\r\n\x1a\n" + head + extra + text + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
@@ -91,12 +92,15 @@ def make_exr():
                         {"compression": "none", "half": 1})])
     exr("tiled.exr", [(4, 4, guides[:4], {"compression": "none", "tile_width": 2, "tile_height": 2})])
     exr("window.exr", [(2, 2, guides[:4], {"compression": "none", "full_width": 5, "full_height": 4, "x": 1, "y": 1})])
-    exr("parts.exr", [(2, 2, guides[:4], {"compression": "none", "name": "a"}), (2, 2, ["depth.Z", "object.ID"], {"name": "b"})])
+    exr("parts.exr", [(2, 2, guides[:4], {"compression": "none", "name": "a"}), (2, 2, ["depth.Z", "object.ID"],
+                                                                                 {"name": "b"})])
     layer = "ViewLayer."
-    passes = [layer + c for c in ("Combined.R", "Combined.G", "Combined.B", "Combined.A", "Normal.X", "Normal.Y", "Normal.Z",
+    passes = [layer + c for c in ("Combined.R", "Combined.G", "Combined.B", "Combined.A", "Normal.X", "Normal.Y",
+                                  "Normal.Z",
                                   "Depth.Z", "Position.X", "Position.Y", "Position.Z", "IndexOB.X",
                                   "CryptoObject00.r", "CryptoObject00.g", "CryptoObject00.b", "CryptoObject00.a")]
-    exr("blender.exr", [(4, 3, passes, {"compression": "none", "Software": "Blender 3.4.1", "cryptomatte/9f/name": layer + "CryptoObject",
+    exr("blender.exr", [(4, 3, passes, {"compression": "none", "Software": "Blender 3.4.1",
+                                        "cryptomatte/9f/name": layer + "CryptoObject",
                                         "cryptomatte/9f/manifest": '{"Ball":"40600000","A \\"b":"1a2b3c4d"}',
                                         "cryptomatte/9f/hash": "MurmurHash3_32"})])
 
@@ -119,7 +123,8 @@ def make_gltf():
     attributes = {"POSITION": position, "NORMAL": accessor(floats(*(0, 0, 1) * 3), 3, "VEC3"),
                   "TEXCOORD_0": accessor(floats(0, 0, 1, 0, 0, 1), 3, "VEC2"),
                   "COLOR_0": accessor(bytes(range(12)), 3, "VEC4", 5121),
-                  "JOINTS_0": accessor(bytes(12), 3, "VEC4", 5121), "WEIGHTS_0": accessor(floats(*(1, 0, 0, 0) * 3), 3, "VEC4")}
+                  "JOINTS_0": accessor(bytes(12), 3, "VEC4", 5121),
+                  "WEIGHTS_0": accessor(floats(*(1, 0, 0, 0) * 3), 3, "VEC4")}
     accessors[attributes["COLOR_0"]]["normalized"] = True
     times = accessor(floats(0, 1), 2, "SCALAR")
     moves = accessor(floats(0, 0, 0, 1, 2, 3), 2, "VEC3")
@@ -130,20 +135,29 @@ def make_gltf():
     accessors.append({"componentType": 5126, "count": 3, "type": "VEC3", "sparse": {
         "count": 1, "indices": {"bufferView": accessors[index]["bufferView"], "componentType": 5123},
         "values": {"bufferView": accessors[position]["bufferView"]}}})
-    asset = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3], "extras": {"scumble": {"world": [1, 0.5, 1], "style": "oil"}}}], "accessors": accessors,
+    asset = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3],
+                                                                  "extras": {"scumble": {"world": [1, 0.5, 1],
+                                                                                         "style": "oil"}}}],
+             "accessors": accessors,
              "bufferViews": views}
     small = {**asset, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": "Tri"}],
              "meshes": [{"primitives": [{"attributes": {"POSITION": position}, "indices": index}]}]}
     large = {**asset, "extensionsUsed": ["KHR_lights_punctual", "KHR_texture_transform"],
-             "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 5, "spot": {"outerConeAngle": 0.5}},
-                                                               {"type": "directional"}, {"type": "point", "range": 3}]}},
-             "images": [{"bufferView": image_view, "mimeType": "image/png"}], "samplers": [{"wrapS": 33071, "magFilter": 9728}],
+             "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 5,
+                                                                "spot": {"outerConeAngle": 0.5}},
+                                                               {"type": "directional"},
+                                                               {"type": "point", "range": 3}]}},
+             "images": [{"bufferView": image_view, "mimeType": "image/png"}],
+             "samplers": [{"wrapS": 33071, "magFilter": 9728}],
              "textures": [{"source": 0, "sampler": 0}],
-             "materials": [{"name": "Paint", "alphaMode": "MASK", "alphaCutoff": 0.3, "doubleSided": True, "emissiveFactor": [1, 0, 0],
+             "materials": [{"name": "Paint", "alphaMode": "MASK", "alphaCutoff": 0.3, "doubleSided": True,
+                            "emissiveFactor": [1, 0, 0],
                             "extras": {"scumble": {"bsdf": {"type": "GLOSSY", "roughness": 0.2, "color": [1, 0.5, 0]}}},
-                            "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.5, "roughnessFactor": 0.1},
+                            "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.5,
+                                                     "roughnessFactor": 0.1},
                             "normalTexture": {"index": 0, "scale": 0.5,
-                                              "extensions": {"KHR_texture_transform": {"scale": [2, 2], "rotation": 1}}}}],
+                                              "extensions": {"KHR_texture_transform": {"scale": [2, 2],
+                                                                                       "rotation": 1}}}}],
              "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1, "aspectRatio": 1.5}},
                          {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 9}}],
              "meshes": [{"name": "M", "weights": [0.5], "primitives": [
@@ -151,12 +165,17 @@ def make_gltf():
                  {"attributes": {"POSITION": len(accessors) - 1}, "mode": 5, "targets": [{"POSITION": morph}]}]}],
              "skins": [{"joints": [1], "inverseBindMatrices": binds}],
              "nodes": [{"mesh": 0, "skin": 0, "name": "Leaf", "extras": {"scumble_style": "oil"}},
-                       {"camera": 0, "extras": {"scumble": {"camera": {"sensor_fit": "AUTO", "shift_x": 0.1, "shift_y": 0, "angle": 0.8}}}, "rotation": [0, 0, 0, 1], "children": [4]},
-                       {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], "extensions": {"KHR_lights_punctual": {"light": 0}},
-                        "extras": {"scumble": {"lamp": {"type": "AREA", "shape": "DISK", "size": 1, "size_y": 2, "energy": 10, "color": [1, 1, 1]}}}},
+                       {"camera": 0, "extras": {"scumble": {"camera": {"sensor_fit": "AUTO", "shift_x": 0.1,
+                                                                       "shift_y": 0, "angle": 0.8}}},
+                        "rotation": [0, 0, 0, 1], "children": [4]},
+                       {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+                        "extensions": {"KHR_lights_punctual": {"light": 0}},
+                        "extras": {"scumble": {"lamp": {"type": "AREA", "shape": "DISK", "size": 1, "size_y": 2,
+                                                        "energy": 10, "color": [1, 1, 1]}}}},
                        {"camera": 1, "scale": [1, 2, 3], "translation": [0, 1, 0]}, {"mesh": 0, "weights": [1]}],
              "animations": [{"name": "Go", "samplers": [{"input": times, "output": moves, "interpolation": "STEP"},
-                                                        {"input": times, "output": turns}, {"input": times, "output": weights}],
+                                                        {"input": times, "output": turns},
+                                                        {"input": times, "output": weights}],
                              "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}},
                                           {"sampler": 1, "target": {"node": 3, "path": "rotation"}},
                                           {"sampler": 2, "target": {"node": 4, "path": "weights"}}]}]}
@@ -170,34 +189,42 @@ def make_gltf():
     write("gltf", "everything.glb", glb(large))
     write("gltf", "text.gltf", json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "buffers": [{"byteLength": 36,
+                     "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
         "bufferViews": [{"buffer": 0, "byteLength": 36}],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]}))
 
 
 def make_text():
-    write("obj", "cube.obj", "mtllib scene.obj\no A\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 0\nvt 0 0\nvt 1 0\nvn 0 0 1\n"
+    write("obj", "cube.obj",
+          "mtllib scene.obj\no A\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 2 0\nvt 0 0\nvt 1 0\nvn 0 0 1\n"
           "s 1\nusemtl m\nf 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -5 -4 -3\ng B\ns off\nf 1//1 2//1 3//1\n"
           "newmtl m\nKd 0.5 1 0\nKe 1 1 1\nNs 50\nd 0.5\nillum 2\nmap_Kd -s 2 2 lit.png\nnorm n.png\n")
     write("obj", "lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\np 3\nf 1 2 3\n")
-    head = "ply\nformat %s 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n%selement face 1\n" \
-           "property list uchar int vertex_indices\nend_header\n"
+    head = "ply\nformat %s 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n" \
+           "%selement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     write("ply", "ascii.ply", head % ("ascii", "property uchar red\nproperty uchar green\nproperty uchar blue\n") +
           "0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n4 0 1 2 3\n")
     xyz = (0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0)
     for order, mark in (("little", "<"), ("big", ">")):
         write("ply", order + ".ply", (head % (f"binary_{order}_endian", "")).encode() +
               struct.pack(mark + "12fB4i", *xyz, 4, 0, 1, 2, 3))
-    write("ply", "normals.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+    write("ply", "normals.ply",
+          "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
           "property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n"
-          "element face 1\nproperty list uint8 uint32 vertex_index\nend_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 1\n3 0 1 2\n")
+          "element face 1\nproperty list uint8 uint32 vertex_index\nend_header\n0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n"
+          "0 1 0 0 0 1 0 1\n3 0 1 2\n")
     exemplar = '[[exemplar]]\nimage = "lit.png"\n'
     write("style", "small.toml", exemplar)
-    write("style", "more.toml", 'name = "oil"\nlicence = "CC0-1.0"\n[transfer]\nthreshold = 0.07\nvariety = 15\nlevels = 5\n'
-          'method = "styleblit"\ncolorize = 0.5\ncolorize_mode = "oklab"\nblend_radius = 2\nedge_aware = false\npaper = "#ffeedd"\n'
-          + exemplar + 'luminance = 0.8\n' + exemplar + "luminance = 0.1\n\0transfer.scale=0.5\nexemplar.2.luminance=0.3\n")
-    write("style", "tracks.toml", "[transfer]\nthreshold = [[1, 0.1], [24, 0.3]]\njitter = [[-5, 0], [5, 1.0]]\njitter_fps = 12\n"
+    write("style", "more.toml",
+          'name = "oil"\nlicence = "CC0-1.0"\n[transfer]\nthreshold = 0.07\nvariety = 15\nlevels = 5\n'
+          'method = "styleblit"\ncolorize = 0.5\ncolorize_mode = "oklab"\nblend_radius = 2\nedge_aware = false\n'
+          'paper = "#ffeedd"\n'
+          + exemplar + 'luminance = 0.8\n' + exemplar
+          + "luminance = 0.1\n\0transfer.scale=0.5\nexemplar.2.luminance=0.3\n")
+    write("style", "tracks.toml",
+          "[transfer]\nthreshold = [[1, 0.1], [24, 0.3]]\njitter = [[-5, 0], [5, 1.0]]\njitter_fps = 12\n"
           'edge = "exemplar"\nguide_weights = { normal = 2 }\nluminance_weight = inf\n' + exemplar)
     write("style", "sphere.toml", "[transfer]\nguide_weights = { lpe.LDE = 0.5, luminance = 1 }\n" +
           2 * (exemplar + 'guides = "sphere.exr"\n'))
@@ -206,9 +233,11 @@ def make_text():
     write("header", "camera", "camera Camera.001\nviewFromWorld 1 0 0 0 0 1 0 0 0 0 1 0 0 0 -5 1\n"
           "clipFromView 1.5 0 0 0 0 2 0 0 0 0 -1 -1 0 0 -0.2 0\n")
     scene = {"size": "640x360", "samples": 64, "max_bounces": 8, "limits": {"normal 99% within": 0.0007, "A": 0}}
-    write("baseline", "small.json", json.dumps({"scumble_baseline": 1, "blender": "3.4.1", "scenes": {"suzanne.glb": scene}}))
+    write("baseline", "small.json", json.dumps({"scumble_baseline": 1, "blender": "3.4.1",
+                                                "scenes": {"suzanne.glb": scene}}))
     write("baseline", "more.json", json.dumps({"scumble_baseline": 1, "scenes": {
-        "a.blend": {**scene, "camera": "Camera.001", "frame": -7}, "\u00e9 b.glb": {**scene, "limits": {"lpe.LDE mean difference": 1e300}}}}))
+        "a.blend": {**scene, "camera": "Camera.001", "frame": -7},
+        "\u00e9 b.glb": {**scene, "limits": {"lpe.LDE mean difference": 1e300}}}}))
     write("options", "sheet", "\ufeff# who is painted how\nTree* = charcoal\n\nGlass=rendered\r\n  Ball=a=b\n")
     write("header", "manifest", '{"Ball":"40600000","A \\"b\\u00e9":"1a2b3c4d","c"d":"00000001"}')
     write("header", "names", "3 Ball\n4 A\\nB\n5 back\\\\slash\n")
@@ -218,7 +247,8 @@ def make_text():
     for i, words in enumerate((
             "stylize a.glb --style oil --size 640x480 -o p.####.png --frames 1-24x2 --fps 24000/1001 --seed 7",
             "guidegen a.obj --layers normal,depth --view 35,20,4 --aa 4 --isa avx2 --half --explain -o g.exr",
-            "transfer g.exr --style oil --set transfer.threshold=0.2 --assign Tree*=charcoal --over o.png -o p.png --exposure auto",
+            "transfer g.exr --style oil --set transfer.threshold=0.2 --assign Tree*=charcoal --over o.png -o p.png "
+            "--exposure auto",
             "compare a.exr b.exr -fail 0.1 -failpercent 2 --json", "sphere --size 512 -o d --paper A4 --margin 12.5mm",
             "crosscheck a.glb --threads 2 -q", "info f.exr", "styles check d", "help stylize", "--version")):
         write("options", f"line{i}", words.replace(" ", "\n"))
@@ -231,7 +261,8 @@ def make_pictures():
     for name, method in (("stored.ora", zipfile.ZIP_STORED), ("deflated.ora", zipfile.ZIP_DEFLATED)):
         data = io.BytesIO()
         with zipfile.ZipFile(data, "w", method) as archive:
-            for entry, content in (("mimetype", b"image/openraster"), ("stack.xml", b"<image w='2' h='2'><stack/></image>"),
+            for entry, content in (("mimetype", b"image/openraster"),
+                                   ("stack.xml", b"<image w='2' h='2'><stack/></image>"),
                                    ("mergedimage.png", png(2, 2, 6, 8)), ("bomb", bytes(3000))):
                 archive.writestr(zipfile.ZipInfo(entry, (1980, 1, 1, 0, 0, 0)), content, method)
         write("raster", name, data.getvalue())
@@ -255,22 +286,28 @@ def packed_picture(ending, channels, kind=oiio.UINT8, **attributes):
 
 def make_other_pictures():
     for name, ending, channels, kind, attributes in (
-            ("plain.bmp", "bmp", 3, oiio.UINT8, {}), ("alpha.bmp", "bmp", 4, oiio.UINT8, {}), ("grey.bmp", "bmp", 1, oiio.UINT8, {}),
-            ("plain.tga", "tga", 4, oiio.UINT8, {"compression": "none"}), ("runs.tga", "tga", 3, oiio.UINT8, {"compression": "rle"}),
+            ("plain.bmp", "bmp", 3, oiio.UINT8, {}), ("alpha.bmp", "bmp", 4, oiio.UINT8, {}),
+            ("grey.bmp", "bmp", 1, oiio.UINT8, {}),
+            ("plain.tga", "tga", 4, oiio.UINT8, {"compression": "none"}),
+            ("runs.tga", "tga", 3, oiio.UINT8, {"compression": "rle"}),
             ("grey.tga", "tga", 1, oiio.UINT8, {"compression": "rle"}), ("plain.hdr", "hdr", 3, oiio.FLOAT, {}),
             ("plain.jpg", "jpg", 3, oiio.UINT8, {"Orientation": 6}), ("grey.jpg", "jpg", 1, oiio.UINT8, {}),
             ("plain.tif", "tif", 4, oiio.UINT8, {"compression": "none", "oiio:UnassociatedAlpha": 1}),
-            ("lzw.tif", "tif", 3, oiio.UINT16, {"compression": "lzw"}), ("zip.tif", "tif", 1, oiio.FLOAT, {"compression": "zip"}),
+            ("lzw.tif", "tif", 3, oiio.UINT16, {"compression": "lzw"}),
+            ("zip.tif", "tif", 1, oiio.FLOAT, {"compression": "zip"}),
             ("tiled.tif", "tif", 3, oiio.UINT8, {"compression": "packbits", "tile_width": 16})):
         write("picture", name, packed_picture(ending, channels, kind, **attributes))
     runs = b"".join(bytes([2, 2, 0, 9]) + bytes([128 + 9, 40 + y]) * 4 for y in range(6))
     write("picture", "runs.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 6 +X 9\n" + runs)
-    for kind, row in ((1, b"0 1 1\n"), (2, b"0 7 255\n"), (3, b"1 2 3 4 5 6 7 8 9\n"), (4, b"\xa0"), (5, b"\0\x07\xff"), (6, bytes(range(9)))):
-        write("picture", f"p{kind}.pnm", b"P%d\n# words\n3 2\n" % kind + (b"" if kind in (1, 4) else b"255\n") + row * 2)
+    for kind, row in ((1, b"0 1 1\n"), (2, b"0 7 255\n"), (3, b"1 2 3 4 5 6 7 8 9\n"), (4, b"\xa0"), (5, b"\0\x07\xff"),
+                      (6, bytes(range(9)))):
+        write("picture", f"p{kind}.pnm", b"P%d\n# words\n3 2\n" % kind + (b"" if kind in (1, 4) else b"255\n")
+              + row * 2)
     write("picture", "float.pfm", b"PF\n3 2\n-1.0\n" + struct.pack("<18f", *range(18)))
     write("picture", "grey.pfm", b"Pf\n3 2\n1.0\n" + struct.pack(">6f", *range(6)))
     # Targa with a palette, packed by runs.
-    write("picture", "palette.tga", struct.pack("<BBBHHBHHHHBB", 0, 1, 9, 0, 256, 24, 0, 0, 9, 6, 8, 0x20) + bytes(range(256)) * 3 +
+    write("picture", "palette.tga", struct.pack("<BBBHHBHHHHBB", 0, 1, 9, 0, 256, 24, 0, 0, 9, 6, 8, 0x20)
+          + bytes(range(256)) * 3 +
           bytes([0x88, 1]) * 3 + bytes([8, *range(4), *range(4), 0]) * 3)
     for bits, palette in ((1, 2), (4, 16), (8, 256)):  # BMP with a palette
         row = bytes([0x1b] * ((9 * bits + 31) // 32 * 4))
@@ -278,8 +315,10 @@ def make_other_pictures():
         write("picture", f"palette{bits}.bmp", struct.pack("<2sIHHI", b"BM", head + 6 * len(row), 0, 0, head) +
               struct.pack("<IiiHHIIiiII", 40, 9, 6, 1, bits, 0, 0, 2835, 2835, palette, 0) +
               bytes(v % 256 for v in range(4 * palette)) + row * 6)
-    write("picture", "old.bmp", struct.pack("<2sIHHI", b"BM", 14 + 12 + 6 * 28, 0, 0, 26) + struct.pack("<IHHHH", 12, 9, 6, 1, 24) + bytes(6 * 28))
-    for mode, channels, depth, packed in ((3, 3, 8, 0), (3, 4, 8, 1), (1, 1, 16, 0), (4, 4, 8, 0), (2, 1, 8, 0), (0, 1, 1, 0)):
+    write("picture", "old.bmp", struct.pack("<2sIHHI", b"BM", 14 + 12 + 6 * 28, 0, 0, 26)
+          + struct.pack("<IHHHH", 12, 9, 6, 1, 24) + bytes(6 * 28))
+    for mode, channels, depth, packed in ((3, 3, 8, 0), (3, 4, 8, 1), (1, 1, 16, 0), (4, 4, 8, 0), (2, 1, 8, 0),
+                                          (0, 1, 1, 0)):
         row = bytes((9 * depth + 7) // 8)
         palette = bytes(768) if mode == 2 else b""
         resources = b"8BIM" + struct.pack(">HHI", 1005, 0, 16) + struct.pack(">IHHIHH", 72 << 16, 1, 1, 72 << 16, 1, 1)
@@ -289,8 +328,10 @@ def make_other_pictures():
             data += struct.pack(">H", len(run)) * (6 * channels) + run * (6 * channels)
         else:
             data += row * (6 * channels)
-        write("picture", f"mode{mode}_{channels}_{depth}.psd", struct.pack(">4sH6xHIIHH", b"8BPS", 1, channels, 6, 9, depth, mode) +
-              struct.pack(">I", len(palette)) + palette + struct.pack(">I", len(resources)) + resources + struct.pack(">I", 0) + data)
+        write("picture", f"mode{mode}_{channels}_{depth}.psd",
+              struct.pack(">4sH6xHIIHH", b"8BPS", 1, channels, 6, 9, depth, mode) +
+              struct.pack(">I", len(palette)) + palette + struct.pack(">I", len(resources)) + resources
+              + struct.pack(">I", 0) + data)
     # Nothing but a palette: GIFs are refused by their first bytes.
     write("picture", "plain.gif", b"GIF89a" + struct.pack("<HHBBB", 9, 6, 0x80, 0, 0) + bytes(6) + b";")
 

@@ -1,5 +1,5 @@
-// The arguments of the command line, one a line: parsed as the program parses them; no verb is run. Every value is then
-// given to all that read text in options, and all of them are the lines of an @FILE of --assign.
+// The arguments of the command line, one a line: parsed as the program parses them; no command is run. Every value also
+// goes to each parser of option values, and all of them are the lines of an @FILE of --assign.
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/app/help_format.h"
@@ -26,7 +26,7 @@ struct Program {
   }
 };
 
-// A style of one small painting, for what --set is of.
+// A style of one small exemplar, as the target of --set.
 const std::string& SmallStyle() {
   static const std::string folder = [] {
     SCUMBLE_CHECK(WritePicture(Folder() / "lit.png", Picture(4, 4)).ok());

@@ -1,5 +1,5 @@
 // Pictures of every format but EXR, PNG and layers, which have targets of their own: from memory, as in a .glb, and
-// from a file. What counts their pixels beforehand must agree with what reading makes.
+// from a file. The pixel count from the header must agree with the picture that is read.
 #include "core/io/file/zip_archive.h"
 #include "core/io/picture/format_detection.h"
 #include "core/io/picture_file.h"

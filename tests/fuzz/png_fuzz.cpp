@@ -1,4 +1,5 @@
-// PNG files as they are, and once more with the sums of their chunks put right, so that what is behind those is tested.
+// PNG files as they are, and again with the sums of their chunks corrected, so that the code after those checks is
+// tested.
 #include <array>
 
 #include "core/io/picture_file.h"

@@ -1,4 +1,4 @@
-// Zip archives: pictures in layers (.ora, .kra), and every entry whatever it is called.
+// Zip archives: pictures in layers (.ora, .kra), and every entry under any name.
 #include "core/io/file/zip_archive.h"
 #include "core/io/picture/open_raster.h"
 #include "core/io/picture_file.h"

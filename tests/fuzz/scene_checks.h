@@ -1,4 +1,4 @@
-// What the targets of scenes share.
+// Checks that the targets of scenes share.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace scumble::fuzz {
 
-// What guidegen/scene/scene.h promises to those who read a scene.
+// The contract of guidegen/scene/scene.h for readers of a scene.
 inline void CheckScene(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     SCUMBLE_CHECK_EQ(mesh.normals.size(), mesh.positions.size());

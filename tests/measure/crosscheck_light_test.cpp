@@ -55,7 +55,7 @@ TEST(CrosscheckLight, OnePercentLessDirectLightBreaks) {
   EXPECT_NEAR(FigureOf(report, "lpe.LDE").error, 0.0, 1e-4);
   EXPECT_FALSE(report.passed());
   EXPECT_TRUE(Says(WhyCrosscheckFails(report), "lpe.LDE mean difference: 1 is above the limit of 0.5 %"));
-  // What is missing from LDE is taken for bounced light: 0.02 of 1.5.
+  // Light missing from LDE counts as bounced light: 0.02 of 1.5.
   EXPECT_NEAR(FigureOf(report, "indirect").value, 100.0 * 0.02 / 1.5, 1e-4);
 }
 
@@ -99,7 +99,7 @@ TEST(CrosscheckLight, AFigureIsKeptOnlyIfItsErrorLeavesNoDoubt) {
   EXPECT_FALSE(figure.kept());
 }
 
-// A lamp on the other side: the left half is brighter by a fifth and the right one darker, at every sample count.
+// A light on the other side: the left half is brighter by a fifth and the right one darker, at every sample count.
 TEST(CrosscheckLight, LightInTheWrongPlaceBreaksThoughTheMeanIsRight) {
   std::vector<CrosscheckLight> light{EqualLight(16), EqualLight(64)};
   for (CrosscheckLight& count : light) {
@@ -117,7 +117,7 @@ TEST(CrosscheckLight, LightInTheWrongPlaceBreaksThoughTheMeanIsRight) {
   EXPECT_FALSE(report.passed());
 }
 
-// Noise of the same size, of its own at every count, breaks nothing: it is told apart by what changes with the samples.
+// Noise of equal size, independent at every count, breaks no limit: it changes with the samples.
 TEST(CrosscheckLight, NoiseIsNotTakenForLightInTheWrongPlace) {
   std::vector<CrosscheckLight> light{EqualLight(16), EqualLight(64)};
   for (CrosscheckLight& count : light) {

@@ -1,4 +1,4 @@
-// The nearest patch that bounds and tiles find against one loop over everything.
+// The nearest patch by bounds and tiles against one loop over everything.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,7 +79,7 @@ EnergyScene Chance(std::uint64_t seed, int width, int height, double smooth, dou
   return scene;
 }
 
-// What is measured of one side is what may be shown of the other.
+// Exchanges both sides: measured pixels become usable ones.
 EnergyScene TurnedRound(EnergyScene scene) {
   for (std::size_t i = 0; i < scene.usable.size(); ++i) {
     const bool was_measured = scene.coverage[i] >= 0.999f;
@@ -171,7 +171,7 @@ TEST(EnergyExact, SeveralExemplarsOfSeveralSizesWithMoreGuides) {
               5);
 }
 
-// What is free of normals, of some pixels little and of some much: a half of them none, as on curved things.
+// The free distance of normals, small at some pixels and large at some: 0 for half of them, as on curved objects.
 EnergyScene WithFreedom(EnergyScene scene, std::uint64_t seed, double most) {
   scene.free.resize(scene.coverage.size());
   for (std::size_t i = 0; i < scene.free.size(); ++i) {
@@ -200,7 +200,7 @@ TEST(EnergyExact, WhatIsMissing) {
   ExpectMissing(Chance(8, 3, 9, 0.7, 0.0, 0), {Chance(9, 10, 11, 0.7, 0.0, 0)}, 1.0, 3);
 }
 
-// Light of a lamp near by: large guides make the slack of the bounds large, and still nothing may be missed.
+// Light of a near light source: large guides make the slack of the bounds large, and still no position may be missed.
 TEST(EnergyExact, LargeGuides) {
   EnergyScene target = Chance(5, 10, 10, 0.5, 0.0, 1), exemplar = Chance(6, 25, 25, 0.5, 0.0, 1);
   for (float& value : target.more[0]) value = 9e5f + 0.1f * value;

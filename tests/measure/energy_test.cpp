@@ -1,4 +1,4 @@
-// What the energy says, where it follows from the formula; and of pictures that the engine made.
+// Figures of the energy that follow from the formula, and of pictures that the engine made.
 #include "measure/energy/energy.h"
 
 #include <gtest/gtest.h>
@@ -104,8 +104,8 @@ TEST(Energy, OneWrongPixelCosts25TimesItsSquareOverAll) {
   EXPECT_NEAR(report.missing.mean, 25.0 * d * d / 900.0, 1e-12) << "the 25 patches of the exemplar that it spoils";
 }
 
-// Half of the exemplar is copied, and the other half of it is nowhere: what there is costs nothing, and what there is
-// not is what is missing.
+// Half of the exemplar is copied, and the other half is nowhere: the copied half costs nothing, and the other half is
+// missing.
 TEST(Energy, WhatThePictureLacksIsMissing) {
   EnergyScene exemplar(40, 20), target(20, 20);
   exemplar.Paint([](int x, int y) { return x < 20 ? NoiseColor(3, x, y) : std::array<int, 3>{65535, 65535, 65535}; });
@@ -296,14 +296,14 @@ TEST(Energy, LitSphereOnTheExemplarsOwnSphereScoresNothing) {
   const Measured measured = MeasureStyle(StrokesBy(Method::kLitSphere, 48, 0.0), SphereGuides(48));
   EXPECT_EQ(measured.report.both.mean, 0.0);
   EXPECT_EQ(measured.source_degrees, 0.0);
-  // On a larger one the same paint is stretched: single pixels under perfect guides are no strokes.
+  // On a larger one the paint is stretched: single pixels under perfect guides are no strokes.
   const Measured larger = MeasureStyle(StrokesBy(Method::kLitSphere, 48, 0.0), SphereGuides(80));
   EXPECT_GT(larger.report.both.mean, 0.1);
 }
 
-// Chunks keep strokes at the cost of guides, single pixels the other way round; and the one figure tells them apart
-// although the sources' own normals are further off in chunks. Noise is worse than both, and so is one colour, near as
-// it is to some patch of any paint: that is what the direction back is for.
+// Chunks keep strokes at the cost of guides, single pixels the reverse. One figure separates them although the sources'
+// own normals are farther off in chunks. Noise is worse than both, and so is one colour, near as it is to some patch of
+// any paint: this is why `missing` is part of the figure.
 TEST(Energy, ChunksBeatSinglePixelsAndBothBeatNoiseAndFlatness) {
   const GuideSet hills = HillGuides(160, 140);
   const auto single = [&](std::optional<Picture> instead = {}) {

@@ -1,4 +1,4 @@
-// The pictures that explain a result, on planes whose answer is known.
+// The pictures that explain a result, on planes with a known answer.
 #include "measure/mosaic/explain.h"
 
 #include <gtest/gtest.h>

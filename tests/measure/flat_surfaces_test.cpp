@@ -1,4 +1,4 @@
-// Where a picture shows flat surfaces, on a scene whose surfaces are known.
+// The flat surfaces of a picture, on a scene whose surfaces are known.
 #include "measure/energy/flat_surfaces.h"
 
 #include <gtest/gtest.h>
@@ -47,8 +47,8 @@ TEST(FlatSurfaces, OfACylinderAreNone) {
   for (const std::uint8_t is_flat : FlatSurfaces(guides, kReach)) EXPECT_EQ(is_flat, 0);
 }
 
-// Two walls that meet in a line, of one object or of two of one normal: both are flat up to it, since flat places lie a
-// reach away on either side. A strip as narrow as the reach is not: wherever a piece begins there, it ends beyond.
+// Two walls that meet in a line, of one object or of two with one normal: both are flat up to it, since flat places lie
+// a reach away on either side. A strip as narrow as the reach is not flat: any chunk that begins there ends beyond.
 TEST(FlatSurfaces, EndWhereTheNormalOrTheObjectChanges) {
   const glm::vec3 left(0.0f, 0.0f, 1.0f), right(0.0f, 0.6f, 0.8f);
   for (const bool by_object : {false, true}) {

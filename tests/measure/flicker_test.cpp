@@ -66,7 +66,7 @@ TEST(Flicker, StandingStillUnderAMotionScoresTheDifference) {
   EXPECT_NEAR(Must(stripes, lighter, Moving(40, 30, 0.0f, 0.0f)).mean, 12.0, 0.01);
 }
 
-// b = what a becomes by linear interpolation: the score is that of the resampling alone, which is the floor.
+// b is a by linear interpolation: the score is that of the resampling alone, which is the floor.
 TEST(Flicker, HalfPixelsScoreTheFloor) {
   const GuideSet half = Moving(40, 30, 0.5f, 0.0f);
   const Picture ramp = Painted(40, 30, [](int x, int) { return 5.0 * x; });
@@ -113,7 +113,7 @@ TEST(Flicker, WhatIsHiddenInTheNextFrameDoesNotCount) {
   EXPECT_EQ(Must(a, b, guides, &nearer).pixels, inside);
 }
 
-// Another side of the same object at the same depth: pref tells.
+// Another side of one object at equal depth: pref separates them.
 TEST(Flicker, PrefTellsAnotherPlaceOfTheSameObject) {
   const Picture a = Painted(40, 30, Noise), b = Painted(40, 30, [](int x, int y) { return Noise(x - 1, y); });
   GuideSet guides = Moving(40, 30, 1.0f, 0.0f);

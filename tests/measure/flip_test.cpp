@@ -1,4 +1,4 @@
-// LDR-FLIP against the formulas of its paper, carried out slowly, and against values that follow from them by hand.
+// LDR-FLIP against the formulas of its paper, in plain form, and against values that follow from them by hand.
 #include "measure/compare/flip.h"
 
 #include <gtest/gtest.h>
@@ -200,8 +200,8 @@ TEST(Flip, EqualPicturesScoreNothingAtAll) {
   EXPECT_EQ(report.rms, 0.0);
 }
 
-// Flat pictures have no features, and a blur does nothing to them: what is left is the colour metric. Published L*a*b*
-// of the primaries of sRGB under D65: green (87.735, −86.183, 83.179), blue (32.297, 79.188, −107.860). Hunt-adjusted:
+// Flat pictures have no features, and a blur does not change them: only the colour metric remains. Published L*a*b* of
+// the primaries of sRGB under D65: green (87.735, −86.183, 83.179), blue (32.297, 79.188, −107.860). Hunt-adjusted:
 // (87.735, −75.612, 72.977) and (32.297, 25.575, −34.836), so HyAB is 55.438 + √(101.187² + 107.813²) = 203.299 and
 // c_max = 203.299^0.7 = 41.275. Of black and white HyAB is 100.
 TEST(Flip, FlatColoursAsTheyFollowByHand) {
@@ -243,8 +243,7 @@ TEST(Flip, FiltersReachAsFarAsPublished) {
   }
 }
 
-// Nothing in the formula tells reference and test apart, nor left and right, nor rows and columns. The order of sums
-// does.
+// The formula is symmetric in reference and test, left and right, rows and columns. The order of sums is not.
 TEST(Flip, IsSymmetric) {
   const LinearColors a = Chance(5, 26, 19), b = Chance(6, 26, 19);
   const FlipReport report = Must(a, b);

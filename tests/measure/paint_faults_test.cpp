@@ -1,4 +1,4 @@
-// Each usual mistake, alone in an otherwise good painting, is found, and nothing else is.
+// Each usual mistake, alone in an otherwise good exemplar, is found, and no other is.
 #include "measure/painting/paint_faults.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::string Codes(const std::vector<PaintFault>& faults) {
 
 std::string Said(const std::vector<PaintFault>& faults) {
   std::string text;
-  for (const PaintFault& fault : faults) text += fault.what + "; " + fault.mend + "\n";
+  for (const PaintFault& fault : faults) text += fault.what + "; " + fault.remedy + "\n";
   return text;
 }
 
@@ -140,7 +140,7 @@ TEST(PaintFaults, SeeThroughPaint) {
   Picture picture = PaintSphere({});
   ForDisc(picture, 300, 200, 30, [&](int x, int y) { picture.At(x, y)[3] = 45000; });
   ExpectOne(Faults(picture), "see-through", {"half see-through", "around x=", "flatten"});
-  // All of it: said once, and the tones are those that white paper behind it gives.
+  // All of it: reported once, and the tone is that over white paper.
   Picture all = PaintSphere({});
   for (int i = 0; i < 512 * 512; ++i) all.At(i % 512, i / 512)[3] = 180 * 257;
   ExpectOne(Faults(all), "see-through", {"100% of the sphere is half see-through"});
@@ -184,8 +184,7 @@ TEST(PaintFaults, PercentagesAreNumbers) {
   }
 }
 
-// The page's sphere, scanned with some noise: whole, and between paint; its lights are paper and cannot be told from
-// it.
+// The page's sphere, scanned with some noise: whole, and between paint; its lights are paper and look like it.
 TEST(PaintFaults, BarePrintedTemplate) {
   PaintedSphere pale = Clean();
   pale.dark = 0.85, pale.light = 1.0, pale.paper = 1.0, pale.grain = 0.0;

@@ -1,4 +1,4 @@
-// What is measured of paintings, against what they were made with.
+// The measures of exemplars, against the parameters that they were made with.
 #include "measure/painting/paint_traits.h"
 
 #include <gtest/gtest.h>

@@ -66,7 +66,7 @@ TEST(Regularity, GridsOfAllKinds) {
     EXPECT_GT(report.peak, 0.5);
     EXPECT_EQ(report.windows, 4);
   }
-  // After many periods as much the same as after one.
+  // After many periods as similar as after one.
   const RegularityReport woven = Measure(weave);
   EXPECT_GT(woven.echo, 0.85 * woven.peak);
 }

@@ -1,4 +1,4 @@
-// Repetition and seams of pictures whose answer is known.
+// Repetition and seams of pictures with a known answer.
 #include "measure/mosaic/repetition.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(Autocorrelation, SubtractingABlurLeavesRepeatedStrokesAndDropsPatchesOfTone
   const Picture patches = Patches(128, 40, 0);
   EXPECT_GT(HighestAutocorrelation(patches, all).value, 0.6) << "patches alone look like repetition";
   EXPECT_LT(HighestAutocorrelation(patches, all, high).value, 0.25);
-  // White noise that comes back keeps its peak: both copies lose the same blur, but at the rim.
+  // Repeated white noise keeps its peak: both copies lose the same blur, but at the rim.
   const AutocorrelationPeak tiled = HighestAutocorrelation(Noise(128, 20, 300), all, high);
   EXPECT_GT(tiled.value, 0.99);
   EXPECT_EQ(std::abs(tiled.dx) % 20, 0);
@@ -90,7 +90,7 @@ TEST(ToneSpread, IsTheDeviationOfTheBlurredLightness) {
   EXPECT_EQ(ToneSpread(Picture(50, 50), {5, 5, 40, 40}, 4.0), 0.0);
 }
 
-// Chunks of `side` pixels; each takes its paint from where `from` says, an exemplar of noise.
+// Chunks of `side` pixels; the source of each is given by `from`, in an exemplar of noise.
 struct Wall {
   static constexpr int kSize = 64;
   std::vector<std::int16_t> x, y;

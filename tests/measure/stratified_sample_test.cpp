@@ -1,4 +1,4 @@
-// Stratified samples: what is drawn, and that mean and standard error are what the formula of the sampling says.
+// Stratified samples: the drawn places, and mean and standard error by the formula of the sampling.
 #include "measure/energy/stratified_sample.h"
 
 #include <gtest/gtest.h>
@@ -41,15 +41,15 @@ TEST(StratifiedSample, OfAsManyAsThereAreIsAllOfThem) {
   EXPECT_EQ(MeanOf(ChooseStratified(0, 4, 7), {}).mean, 0.0);
 }
 
-// By hand: pieces of 4 and 4 with values 0, 2 and 10, 14 drawn. Mean (1 + 12) / 2; variance of a piece's mean
-// (1 − 2/4) (a − b)² / 4 = 0.5 and 2, of their mean a quarter of the sum.
+// By hand: strata of 4 and 4 with values 0, 2 and 10, 14 drawn. Mean (1 + 12) / 2; variance of a stratum's mean (1 −
+// 2/4) (a − b)² / 4 = 0.5 and 2, of their mean a quarter of the sum.
 TEST(StratifiedSample, ByHand) {
   const Estimate estimate = MeanOf({{0, 1, 4, 5}, {4, 4}}, std::vector<double>{0, 2, 10, 14});
   EXPECT_EQ(estimate.mean, 6.5);
   EXPECT_DOUBLE_EQ(estimate.standard_error, std::sqrt((0.5 + 2.0) / 4.0));
 }
 
-// Squares of 0 … 99 in 10 pieces. Over many seeds the mean of the means is the true one, and the mean of the estimated
+// Squares of 0 … 99 in 10 strata. Over many seeds the mean of the means is the true one, and the mean of the estimated
 // variances the variance of the means: both within 5 of their own standard errors.
 TEST(StratifiedSample, IsUnbiased) {
   double truth = 0.0;

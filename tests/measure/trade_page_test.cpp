@@ -1,4 +1,4 @@
-// The trade-off as a page and as a chart: well-formed, whole, and nothing in them is taken for markup.
+// The trade-off as a page and as a chart: well-formed, complete, and no text is parsed as markup.
 #include <gtest/gtest.h>
 
 #include <algorithm>

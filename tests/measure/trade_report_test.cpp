@@ -1,4 +1,4 @@
-// The trade-off as a table, as CSV and as JSON: every form holds the figures it was given.
+// The trade-off as a table, as CSV and as JSON: every form holds the given figures.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -113,7 +113,7 @@ TEST(TradeReport, TheFrontIsWhatNothingDominates) {
   }
 }
 
-// Of one picture the first way is there, whatever the moment made of the times; a later one only where even the upper
+// Of equal pictures the first variant is on the front, whatever the timing noise; a later one only if even the upper
 // quartile of its total is below the first's lower one.
 TEST(TradeReport, TheFrontHasAPictureOnce) {
   TradeReport report;
@@ -131,7 +131,7 @@ TEST(TradeReport, TheFrontHasAPictureOnce) {
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1});
 }
 
-// A method that draws the same picture in half the time of the transfer, from the very same guides, is what to choose.
+// A method that draws an equal picture in half the time of the transfer, from equal guides, is the one to choose.
 TEST(TradeReport, AQuickerTransferOfTheSamePictureCounts) {
   TradeReport report;
   for (const char* name : {"slow", "quick", "quickest"})
@@ -148,8 +148,8 @@ TEST(TradeReport, AQuickerTransferOfTheSamePictureCounts) {
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{1}) << "too near to call: the first of the two";
 }
 
-// A table of 256 cells comes first and cannot be chosen, one of 512 has options and makes the same picture: that one is
-// on the front, though it is the slower of them.
+// A table of 256 cells comes first and cannot be chosen, one of 512 has options and makes an equal picture: that one is
+// on the front, though it is the slower one.
 TEST(TradeReport, APictureIsStoodForByAWayThatCanBeChosen) {
   TradeReport report;
   for (const char* name : {"style", "256", "512", "again"})
@@ -167,7 +167,7 @@ TEST(TradeReport, APictureIsStoodForByAWayThatCanBeChosen) {
   EXPECT_EQ(FrontOf(report), std::vector<std::size_t>{3}) << "nor what was not timed";
 }
 
-// Table, JSON and chart tell of one front: each ringed point is one of it, and of memory there is none.
+// Table, JSON and chart show one front: each ringed point is on it, and there is none for memory.
 TEST(TradeReport, TheChartRingsTheFront) {
   TradeReport report = MadeUpReport();
   report.variants.push_back(MadeUpVariant("levels", "9", 4.0, 0.5));

@@ -1,5 +1,5 @@
-// How Blender is run: in whose environment, what a signal leaves behind, and what a failure says. Scripts of a few
-// lines stand in for it.
+// Running Blender: its environment, cleaning up after a signal, and messages of failures. Scripts of a few lines
+// replace it.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -46,7 +46,7 @@ TEST_F(BlenderProcess, AVirtualEnvironmentIsNotItsOwn) {
   for (const char* gone : {"\nPYTHON", "\nVIRTUAL_ENV="}) EXPECT_EQ(seen.find(gone), std::string::npos) << gone;
 }
 
-// Whether a process still does anything: one that nobody waited for does not.
+// Whether a process still runs; a zombie does not.
 bool Runs(const std::string& pid) {
   std::ifstream stream("/proc/" + pid + "/stat");
   const std::string stat{std::istreambuf_iterator<char>(stream), {}};
@@ -64,7 +64,7 @@ TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
   fs::create_directory(At("tmp"));
   const ScopedVariable temporary("TMPDIR", At("tmp").string());
   for (const auto& [name, number] : {std::pair("TERM", SIGTERM), {"INT", SIGINT}, {"HUP", SIGHUP}}) {
-    // Its own temporary files, a child that sleeps, and then the user's signal to the program that waits for it.
+    // Its own temporary files, a child process that waits, and then the user's signal to the program that waits for it.
     WriteProgram("blender", "echo x > \"$TMPDIR/of_blender\"; sleep 50 & echo $! > sleeper; echo $$ > self; kill -" +
                                 std::string(name) + " $PPID; sleep 50");
     for (const Arguments& verb : {Arguments{"guidegen", "shot.blend", "-o", "g.exr"},
@@ -83,8 +83,8 @@ TEST_F(BlenderProcess, ASignalEndsItWithItsChildrenAndLeavesNothingBehind) {
   EXPECT_FALSE(Exists("g.exr"));
 }
 
-// While a frame of a range is cast, nobody waits for Blender, which may be at work or have ended. The casting alone
-// would take longer than the test has patience.
+// While a frame of a range is cast, the program does not wait for Blender, which may run or have ended. The casting
+// alone would take longer than the test's time limit.
 TEST_F(BlenderProcess, ASignalEndsARangeWithinAFrame) {
   fs::create_directory(At("tmp"));
   const ScopedVariable temporary("TMPDIR", At("tmp").string());

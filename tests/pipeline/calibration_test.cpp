@@ -1,4 +1,4 @@
-// Which way is picked by times that a fake clock tells: nothing here depends on the machine.
+// The variant chosen by the times of a fake clock: nothing here depends on the machine.
 #include "pipeline/quality/calibration.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class MemoryCache : public TableCache {
   int stores = 0;
 };
 
-// Variants whose runs take what is listed, over and over.
+// Variants whose runs take the listed times, repeatedly.
 struct FakeClock {
   std::vector<std::vector<double>> ms;
   std::vector<int> runs = std::vector<int>(ms.size(), 0);
@@ -62,7 +62,7 @@ PickedVariant MustPick(const Calibration& calibration, double budget_ms, FakeClo
   return picked.ok() ? *picked : PickedVariant();
 }
 
-// slowest + (slowest − median) + what a cold start adds, by hand.
+// slowest + (slowest − median) + the addition of a cold start, by hand.
 TEST(Calibration, WhatIsPredictedLiesAsFarBeyondTheSlowestAsThatIsBeyondTheMedian) {
   EXPECT_EQ(PredictedMs(std::vector<double>{7.0}, 0.0), 7.0);
   EXPECT_EQ(PredictedMs(std::vector<double>{4.0, 4.0, 4.0}, 0.0), 4.0) << "no spread, no margin";
@@ -73,7 +73,8 @@ TEST(Calibration, WhatIsPredictedLiesAsFarBeyondTheSlowestAsThatIsBeyondTheMedia
   EXPECT_EQ(PredictedMs({}, 1.0), std::numeric_limits<double>::infinity());
 }
 
-// The last variant's first run takes 35 ms, its later ones 10: 25 ms are the process's, and come to any way's time.
+// The last variant's first run takes 35 ms, its later ones 10: 25 ms belong to the process, and are added to any
+// variant's time.
 TEST(Calibration, AProcessThatHasJustBegunTakesLonger) {
   std::vector<double> last(30, 10.0);
   last.front() = 35.0;
@@ -129,7 +130,7 @@ TEST(Calibration, TheMostAccurateThatFitsIsTakenAndNothingBelowItIsMeasured) {
   EXPECT_EQ(clock.runs, (std::vector<int>{1, kCalibrationRuns, 0, 3})) << "the last one tells what a cold start costs";
 }
 
-// Times need not fall along the ladder: a variant further down that is slower is passed over like any other.
+// Times need not fall along the ladder: a variant farther down that is slower is passed over like any other.
 TEST(Calibration, ASlowerWayFurtherDownIsPassedOver) {
   FakeClock clock{{{50.0}, {70.0}, {20.0}}};
   EXPECT_EQ(MustPick(Ladder(3), 40.0, clock).variant, 2u);
@@ -157,8 +158,8 @@ TEST(Calibration, WhereNothingFitsTheQuickestIsTakenAndItsTimeNamed) {
   EXPECT_EQ(slow.runs[1], kHopelessRuns) << "over twice the budget: more runs would change nothing";
 }
 
-// What another process keeps while this one measures is not lost: it had a larger budget, and has measured the first
-// way.
+// Times that another process stores while this one measures are not lost: it had a larger budget, and has measured the
+// first variant.
 TEST(Calibration, TimesOfTwoProcessesAreJoined) {
   MemoryCache cache;
   FakeClock one{{{50.0}, {30.0}, {5.0}}}, other{one.ms};
@@ -178,8 +179,8 @@ TEST(Calibration, TimesOfTwoProcessesAreJoined) {
   EXPECT_EQ(later.Total(), 0);
 }
 
-// Times were kept on a busy machine. While one process measures one more way, another measures all of them anew: what
-// was known before, the cost of a first run too, does not come back.
+// Times were stored on a busy machine. While one process measures one more variant, another measures all of them anew:
+// the old values, the cost of a first run too, do not return.
 TEST(Calibration, WhatAnotherProcessMeasuresAnewStays) {
   MemoryCache cache;
   FakeClock busy{{{90.0}, {30.0}, {25.0, 5.0, 5.0}}}, quiet{{{40.0}, {10.0}, {4.0}}};
@@ -323,7 +324,7 @@ TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
   EXPECT_EQ(clock.Total(), before) << "times are the same";
 }
 
-// A way that the ladder has had and has no more does not matter.
+// A variant that the ladder no longer has does not matter.
 TEST(Calibration, TimesOfWaysThatThereAreNoMoreDoNotCount) {
   MemoryCache cache;
   FakeClock clock{{{50.0}, {30.0}, {5.0}}};

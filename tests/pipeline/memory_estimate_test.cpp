@@ -1,4 +1,4 @@
-// What a run says it takes at most, against what the system counted; and what is refused before anything is taken.
+// A run's estimate of its peak memory, against the system's count; and refusals before anything is allocated.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,9 +15,8 @@ namespace {
 
 class MemoryNeedTest : public CliTest {
  protected:
-  // The estimate is the most that there may be: pixels that are covered from edge to edge, paint and guides that do not
-  // pack at all, threads that are all at work. So what is counted is below it. It is no idle one either: above a
-  // quarter.
+  // The estimate is an upper bound: pixels covered from edge to edge, paint and guides that do not pack at all, all
+  // threads at work. So the count is below it. It is also tight: the count is above a quarter.
   void ExpectHonest(const Arguments& arguments) {
     const nlohmann::json json = RunOk(With(arguments, {"--json", "--threads", "2"})).Json()["memory"];
     ASSERT_TRUE(json.is_object()) << Joined(arguments);
@@ -107,7 +106,7 @@ TEST_F(MemoryNeedTest, EveryInstanceTakesItsTriangles) {
   ExpectHonest({"guidegen", "many.glb", "--size", "64", "-o", "g.exr"});
 }
 
-// A frame is written while the next one is made, and the one peak of the process is below what each says it takes.
+// A frame is written while the next one is made, and the one peak of the process is below each frame's estimate.
 TEST_F(MemoryNeedTest, SequencesTakeNoMoreThanTheirFramesSay) {
   WriteStyle("style");
   for (const Arguments& arguments :
@@ -142,8 +141,8 @@ TEST_F(MemoryNeedTest, ThePlanSaysHowMuchAndForWhat) {
 // The largest picture that there may be, under a gigabyte: 16384² pixels of guides alone are 7.5 GB. It is refused
 // before they are taken, which is why this test is quick, and nothing is written. Planes are taken without being
 // touched, so what is resident would not show that one was: but of 1 GiB of addresses, which is one plane of floats,
-// the program itself has some, and no plane has room. Told to try all the same, it does take one, and ends for want of
-// memory.
+// the program itself has some, and no plane has room. With a larger limit to try all the same, it does take one, and
+// ends for want of memory.
 TEST_F(MemoryNeedTest, TheLargestPictureIsRefusedUnderAGigabyte) {
   WriteStyle("style");
   WriteText("p.png", "old");
@@ -172,9 +171,8 @@ TEST_F(MemoryNeedTest, TheLargestPictureIsRefusedUnderAGigabyte) {
   EXPECT_FALSE(Exists("f.1.exr"));
 }
 
-// An exemplar of 2048² pixels, 8 bytes each, in a few kilobytes that are damaged at their end: whether it is refused
-// for its size or its damage tells whether it was read. Guides of 300² have four floats a pixel, their picture has 8
-// bytes.
+// An exemplar of 2048² pixels, 8 bytes each, in a few kilobytes that are damaged at their end: the error, size or
+// damage, shows whether it was read. Guides of 300² have four floats a pixel, their picture has 8 bytes.
 TEST_F(MemoryNeedTest, ExemplarsAreCountedBeforeTheyAreRead) {
   WriteStyle("style");
   std::vector<std::byte> png = *EncodePng(Picture(2048, 2048));

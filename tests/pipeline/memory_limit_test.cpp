@@ -1,4 +1,4 @@
-// How much memory there is, who says so, and what is refused.
+// The memory limit: its value, its source, and refusals.
 #include "pipeline/memory/memory_limit.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST_F(MemoryLimitTest, DamagedFilesTellNothing) {
   EXPECT_TRUE(CheckMemory(need, Limit(), ""));
 }
 
-// The peak is the largest sum of what stays and what is there for a while.
+// The peak is the largest sum of permanent and temporary memory.
 TEST(MemoryNeed, ThePeakIsTheLargestSum) {
   MemoryNeed need;
   need.Take("a", 100);
@@ -134,7 +134,7 @@ TEST(MemoryAmounts, AreSaidWithTwoDigits) {
   EXPECT_EQ(BytesToText(4 * kGiga + kGiga / 2), "4.5 GiB");
 }
 
-// What takes much says so before it takes it; frames that take the same do not say it again.
+// A large need is reported before it is allocated; frames with equal needs are not reported again.
 TEST(MuchMemory, IsSaidOnceBeforeItIsTaken) {
   std::string notes;
   RunContext loud;

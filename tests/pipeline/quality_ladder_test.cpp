@@ -1,4 +1,4 @@
-// The steps of --quality and --budget-ms, by style and by what the user has decided.
+// The steps of --quality and --budget-ms, by style and by the user's own settings.
 #include "pipeline/variant/quality_ladder.h"
 
 #include <gtest/gtest.h>
@@ -300,7 +300,7 @@ TEST(TrialPainter, StylesDisagreeWhichRivalIsNearer) {
   EXPECT_LT(MeasuredAs(woodcut, "the style", guides), MeasuredAs(woodcut, kCrisp, guides));
 }
 
-// What lies behind is no part of the painting, and judging is by the same patches each time.
+// The background is not measured, and the error uses equal patches each time.
 TEST(TrialPainter, JudgesThePaintAloneAndTheSameEachTime) {
   const GuideSet guides = GuidesOf("suzanne", 320, 180);
   StyleSet plain = Open("oil", {"transfer.paper="}), papered = Open("oil", {"transfer.paper=#204060"});

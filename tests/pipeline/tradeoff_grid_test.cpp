@@ -1,4 +1,4 @@
-// Which ways `scumble tradeoff` measures, and what it does to guides and pictures on the variant.
+// The variants that `scumble tradeoff` measures, and their guides and pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ const Variant& Named(const TradeGrid& grid, const std::string& name) {
   return found == grid.variants.end() ? none : *found;
 }
 
-// The table of a ball is no reference: its cells are wider than pixels.
+// The table of a sphere is no reference: its cells are wider than pixels.
 TEST(TradeGrid, TheExactWaySearchesByComparisonWhateverTheStyleDoes) {
   for (const NearestSearch nearest : {NearestSearch::kAnalytic, NearestSearch::kTable, NearestSearch::kTree}) {
     Style style = SphereStyle();
@@ -210,7 +210,7 @@ TEST(ChooseVariants, TakesAxesAndNamesAndAlwaysTheStyle) {
   ExpectRefusal(ChooseVariants(grid.variants, "levels,"), ErrorKind::kUsage, {"''"});
 }
 
-// ---- what ways do to guides and pictures ----
+// ---- the guides and pictures of variants ----
 
 GuideSet OnePixel(glm::vec3 normal, float luminance) {
   GuideSet guides(1, 1);

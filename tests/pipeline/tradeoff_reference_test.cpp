@@ -1,4 +1,4 @@
-// What pictures are measured against, where the figures are known.
+// The reference of pictures, where the figures are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -143,8 +143,8 @@ TEST(TradeReference, LargerGuidesAreComparedByTheirMeans) {
   EXPECT_EQ(small.Plane(Layer::kLuminance)[2], 0.0f);
 }
 
-// A ball of twice the size says the same: its mean normals are those at the pixels' centres but for the second order of
-// a quarter of a pixel, and for the rim, where pixels are partly beside the ball.
+// A sphere of twice the size gives equal figures: its mean normals are those at the pixels' centres but for the second
+// order of a quarter of a pixel, and for the rim, where pixels are partly beside the sphere.
 TEST(TradeReference, TwiceTheResolutionIsCloseToTheExactGuides) {
   const auto guides = SphereOf(kSize), large = SphereOf(2 * kSize);
   const Painted painted = Paint(LitSphereStyle(kSize), *guides);
@@ -209,8 +209,8 @@ TEST(TradeReference, PaintForOtherLightCosts) {
       << "noise of random colours has no nearer patch";
 }
 
-// A wall in paint that was copied from one place of a ball: noise has no nearer patch, so each pixel costs λ times the
-// square of what its source's normal is farther off than the chord of the variety.
+// A wall in paint that was copied from one place of a sphere: noise has no nearer patch, so each pixel costs λ times
+// the square of what its source's normal is farther off than the chord of the variety.
 TEST(TradeReference, WhatVarietyGrantsOnAWallIsFree) {
   constexpr int kWall = 20, kLeft = 14, kTop = 24;
   auto wall = std::make_shared<GuideSet>(kWall, kWall);
@@ -244,7 +244,7 @@ TEST(TradeReference, WhatVarietyGrantsOnAWallIsFree) {
   }
 }
 
-// Nothing on a ball is flat.
+// Nothing on a sphere is flat.
 TEST(TradeReference, VarietyGrantsNothingWhereSurfacesBend) {
   const auto guides = SphereOf(kSize);
   double energies[2];

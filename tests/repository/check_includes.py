@@ -3,9 +3,9 @@
 
 Usage: check_includes.py [SOURCE_FOLDER]     Prints each offender as file:line; exit code 1 if there are any.
 
-Libraries include only the libraries that the table names. Inside a library a folder's subfolders are stages of the data's way,
-listed in order: a stage includes itself, its parent folders' headers and the stages before it. Files in the root of a library
-conduct, and may include every stage.
+Libraries include only the libraries that the table names. Inside a library a folder's subfolders are stages of the data
+flow, listed in order: a stage includes itself, its parent folders' headers and the stages before it. Files in the root
+of a library conduct, and may include every stage.
 """
 import pathlib
 import re
@@ -58,19 +58,19 @@ THIRD_PARTY = {
     "CLI/": {"cli"},
 }
 
-# What C, C++ and POSIX bring along.
+# Headers of C, C++ and POSIX.
 STANDARD = re.compile(r"[a-z0-9_]+(\.h)?|sys/[a-z]+\.h")
 
 INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 
 
 def where(quoted):
-    """The path of an included file from the repository's root: the public headers are included as users include them."""
+    """The path of an included file from the repository's root: public headers are included by their installed names."""
     return "include/" + quoted if quoted.startswith("scumble/") else quoted
 
 
 def library_of(path):
-    """The library that a path from the repository's root lies in, and the rest of the path; (None, path) outside."""
+    """The library of a path from the repository's root, and the remaining path; (None, path) outside."""
     for library, (folder, _, _) in LIBRARIES.items():
         if path.startswith(folder + "/"):
             return library, path[len(folder) + 1:]
@@ -89,19 +89,21 @@ def rank(library, stage):
 
 
 def stage_offence(library, stage, included):
-    """What is wrong with an include from one stage of a library to another, or None."""
-    if not stage or stage == included or included == "" or stage.startswith(included + "/") or included.startswith(stage + "/"):
+    """The fault of an include from one stage of a library to another, or None."""
+    if (not stage or stage == included or included == "" or stage.startswith(included + "/")
+            or included.startswith(stage + "/")):
         return None
     for name in (stage, included):
         if rank(library, name) is None:
-            return f"joins the stages of {LIBRARIES[library][0]}/, of which {name}/ is none: add it to the table in its place"
+            return (f"joins the stages of {LIBRARIES[library][0]}/, of which {name}/ is none: "
+                    "add it to the table in its place")
     if rank(library, included) > rank(library, stage):
         return f"points upwards: {included}/ comes after {stage}/ in {LIBRARIES[library][0]}/"
     return None
 
 
 def offence(name, quoted, bracketed, root):
-    """What is wrong with one #include line of the file `name`, or None."""
+    """The fault of one #include line of the file `name`, or None."""
     library, inside = library_of(name)
     _, allowed, _ = LIBRARIES[library]
     if quoted:

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# .ci/fuzz tells fuzzers that ran from those that did not: in a folder of its own, with programs in the fuzzers' place.
+# .ci/fuzz separates fuzzers that ran from those that did not: in a folder of its own, with replacements for the
+# fuzzers.
 # Usage: fuzz_script.sh SOURCE
 set -eu
 source=$(cd "$1" && pwd)

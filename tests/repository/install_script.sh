@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# .ci/install without root: where sudo is missing or not allowed it prints the one line to run and stops; where
-# apt-get update fails once it is tried again. dpkg-query, id, sudo, apt-get and sleep are played by small scripts.
+# .ci/install without root: where sudo is missing or not allowed it prints the one line to run and stops; if apt-get
+# update fails once it is tried again. Small scripts replace dpkg-query, id, sudo, apt-get and sleep.
 # Usage: install_script.sh SOURCE_FOLDER
 set -eu
 source=$1

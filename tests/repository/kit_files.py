@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Reads what `scumble sphere` writes with other programs than its own: the layers with Python's zipfile and
-OpenImageIO, the page with poppler. All three files must show the same template, to the pixel.
+"""Reads the output of `scumble sphere` with other programs: the layers with Python's zipfile and OpenImageIO, the page
+with poppler. All three files must show the same template, to the pixel.
 
 Usage: kit_files.py PROGRAM
 """
@@ -55,21 +55,25 @@ def check_layers(path, template, dpi, work):
     with zipfile.ZipFile(path) as archive:
         check(archive.testzip() is None, "a wrong checksum")
         entries = archive.infolist()
-        check(entries[0].filename == "mimetype" and entries[0].compress_type == zipfile.ZIP_STORED, "mimetype is not first and stored")
+        check(entries[0].filename == "mimetype" and entries[0].compress_type == zipfile.ZIP_STORED,
+              "mimetype is not first and stored")
         check(archive.read("mimetype") == b"image/openraster", "mimetype")
         check(all(entry.date_time == (1980, 1, 1, 0, 0, 0) for entry in entries), "a date")
         archive.extractall(work)
     image = xml.etree.ElementTree.parse(work / "stack.xml").getroot()
     side = template.shape[0]
-    check(image.get("w") == image.get("h") == str(side) and image.get("xres") == str(dpi), "size or resolution in stack.xml")
+    check(image.get("w") == image.get("h") == str(side) and image.get("xres") == str(dpi),
+          "size or resolution in stack.xml")
     layers = image.find("stack").findall("layer")
     check([layer.get("name") for layer in layers if layer.get("selected")] == ["paint here"], "one layer is selected")
-    check([layer.get("name") for layer in layers if not layer.get("edit-locked")] == ["paint here"], "all others are locked")
+    check([layer.get("name") for layer in layers if not layer.get("edit-locked")] == ["paint here"],
+          "all others are locked")
     shown = numpy.zeros((side, side, 3))
     for layer in reversed(layers):
         picture = pixels(work / layer.get("src"))
         check(picture.shape == (side, side, 4), f"{layer.get('name')} has another size")
-        check((layer.get("visibility") == "hidden") == layer.get("name").startswith("guide"), "guides are hidden, others are shown")
+        check((layer.get("visibility") == "hidden") == layer.get("name").startswith("guide"),
+              "guides are hidden, others are shown")
         check(picture[..., 3].any() != (layer.get("name") == "paint here"), f"{layer.get('name')}: painted or not")
         if layer.get("visibility") == "visible":
             shown = over(picture, shown, float(layer.get("opacity")))
@@ -81,7 +85,8 @@ def check_layers(path, template, dpi, work):
 def check_page(path, template, size, dpi, work, paper):
     info = dict(line.split(":", 1) for line in run("pdfinfo", path).splitlines() if ":" in line)
     width, height = (float(part) for part in info["Page size"].split()[0:3:2])
-    check(abs(width / 72 * 25.4 - paper[0]) < 0.02 and abs(height / 72 * 25.4 - paper[1]) < 0.02, f"page of {info['Page size']}")
+    check(abs(width / 72 * 25.4 - paper[0]) < 0.02 and abs(height / 72 * 25.4 - paper[1]) < 0.02,
+          f"page of {info['Page size']}")
     check(info["Pages"].strip() == "1" and "CreationDate" not in info, "one page, no date")
     run("pdftoppm", "-r", dpi, "-gray", "-png", "-singlefile", path, work / "page")
     page = pixels(work / "page.png")[..., 0]
@@ -110,7 +115,8 @@ def check_page(path, template, size, dpi, work, paper):
     words = numpy.argwhere(page < 200)
     check(len(words) and words[:, 0].min() >= top + side, "only words, under the template")
     room = round(8 / 25.4 * dpi)
-    check(words[:, 1].max() < page.shape[1] - room and words[:, 1].min() >= room and words[:, 0].max() < page.shape[0] - room,
+    check(words[:, 1].max() < page.shape[1] - room and words[:, 1].min() >= room
+          and words[:, 0].max() < page.shape[0] - room,
           "words stay off the page's edge")
     lowest = page[words[:, 0].max() - round(3 / 25.4 * dpi):] < 128
     bar = lowest.sum(axis=1).max() / dpi * 25.4
@@ -122,7 +128,8 @@ def check_page(path, template, size, dpi, work, paper):
 
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
-    for size, dpi, page, paper in ((512, 150, "a4", (210, 297)), (640, 110, "letter", (215.9, 279.4)), (450, 72, "a3", (297, 420))):
+    for size, dpi, page, paper in ((512, 150, "a4", (210, 297)), (640, 110, "letter", (215.9, 279.4)),
+                                   (450, 72, "a3", (297, 420))):
         with tempfile.TemporaryDirectory() as folder:
             work = pathlib.Path(folder)
             kit = work / "kit"
@@ -135,7 +142,8 @@ def main():
             # The clock and the place leave no trace.
             run(*command, work / "again", env={**os.environ, "TZ": "XXX-11"})
             for name in ("template.png", "template.ora", "template.pdf"):
-                check((kit / name).read_bytes() == (work / "again" / name).read_bytes(), f"{name} differs from run to run")
+                check((kit / name).read_bytes() == (work / "again" / name).read_bytes(),
+                      f"{name} differs from run to run")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The loader takes an empty entry of a program's run path as the folder that it runs in, and would load what lies there.
+# The loader takes an empty entry of a program's run path as the folder that it runs in, and would load libraries from
+# there.
 # Usage: run_paths.sh READELF FILE...
 set -eu
 readelf=$1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # make tradeoff: a small sample is measured, and its front and chart stand in a copy of the page, between the marks and
-# nowhere else; showing it again changes nothing. What is not there is said.
+# nowhere else; showing it again changes nothing. Missing parts are reported.
 # Usage: tradeoff_script.sh SOURCE_FOLDER BUILD_FOLDER
 set -eu
 source=$1 build=$2
@@ -13,7 +13,8 @@ fails() {
   exit 1
 }
 tradeoff() {
-  /usr/bin/python3 "$source/bench/tradeoff.py" --build "$build" --output "$folder/made" --docs "$folder" --size 96x54 "$@" \
+  /usr/bin/python3 "$source/bench/tradeoff.py" --build "$build" --output "$folder/made" --docs "$folder" \
+      --size 96x54 "$@" \
     > "$folder/out" 2>&1
 }
 mkdir "$folder/gallery"
@@ -26,11 +27,14 @@ grep -q "toys-graphite/report.html" "$folder/out" || fails "where the report is 
 [ -s "$folder/made/toys-graphite/report.html" ] || fails "no report"
 grep -q "<svg" "$folder/gallery/tradeoff-toys-graphite.svg" || fails "no chart"
 grep -q '^| ★ | ' "$folder/tradeoff.md" || fails "no front"
-ways=$(/usr/bin/python3 -c 'import json, sys; print(len(json.load(open(sys.argv[1]))["ways"]))' "$folder/made/toys-graphite/tradeoff.json")
-# Twelve columns, a line of names and a line of dashes above the ways.
-lines=$(sed -n '/^<!-- toys-graphite: begin/,/^<!-- toys-graphite: end/p' "$folder/tradeoff.md" | sed '1,/All ways/d' | awk -F'|' 'NF == 14' | wc -l)
+ways=$(/usr/bin/python3 -c 'import json, sys; print(len(json.load(open(sys.argv[1]))["ways"]))' \
+    "$folder/made/toys-graphite/tradeoff.json")
+# Twelve columns, a line of names and a line of dashes above the variants.
+lines=$(sed -n '/^<!-- toys-graphite: begin/,/^<!-- toys-graphite: end/p' "$folder/tradeoff.md" \
+    | sed '1,/All ways/d' | awk -F'|' 'NF == 14' | wc -l)
 [ "$lines" = $((ways + 2)) ] || fails "$lines lines for $ways ways"
-sed '/^<!-- toys-graphite: begin/,/^<!-- toys-graphite: end/{/^<!--/!d}' "$folder/tradeoff.md" | cmp - "$folder/before.md" ||
+sed '/^<!-- toys-graphite: begin/,/^<!-- toys-graphite: end/{/^<!--/!d}' "$folder/tradeoff.md" |
+  cmp - "$folder/before.md" ||
   fails "something else was changed too"
 
 cp "$folder/tradeoff.md" "$folder/first.md"
@@ -40,7 +44,7 @@ cmp "$folder/tradeoff.md" "$folder/first.md" || fails "shown again, it differs"
 tradeoff --only ball && fails "there is no such sample"
 grep -q "there are suzanne-oil" "$folder/out" || fails "the samples are not said"
 tradeoff --only suzanne-oil --show && fails "nothing was measured"
-grep -q "run without --show first" "$folder/out" || fails "no mend"
+grep -q "run without --show first" "$folder/out" || fails "no remedy"
 sed -i '/toys-graphite: end/d' "$folder/tradeoff.md"
 tradeoff --only toys-graphite --write-docs --show && fails "the mark is missing"
-grep -q "put them back" "$folder/out" || fails "no mend for the mark"
+grep -q "put them back" "$folder/out" || fails "no remedy for the mark"

@@ -1,7 +1,8 @@
 // Counts what a program is given by its system's allocator, to be loaded into it by LD_PRELOAD: the bytes of malloc and
 // all that comes down to it, and of memory mapped without a file. When the program ends, their sum is written to the
-// file that SCUMBLE_ALLOCATED_TO names. What was given back is not taken off: bench/required.py asks what was paid for,
-// not what is held. Not seen: what the C library maps for itself, stacks of threads for one, and mapped files.
+// file that SCUMBLE_ALLOCATED_TO names. Freed memory is not subtracted: bench/required.py needs the total of
+// allocations, not the current one. Not seen: what the C library maps for itself, stacks of threads for one, and mapped
+// files.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
@@ -15,7 +16,7 @@
 
 extern "C" {
 
-// glibc's own, under the names that it keeps for those who stand before them.
+// glibc's own, under the names for replacements of malloc.
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);

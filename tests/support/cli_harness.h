@@ -1,4 +1,4 @@
-// Runs the program as its users do: with arguments, in a folder of its own, and looks at what comes out.
+// Runs the program as its users do: with arguments, in a folder of its own, and checks its results.
 #pragma once
 
 #include <fcntl.h>
@@ -141,7 +141,7 @@ class CliTest : public testing::Test {
   }
 
   std::string Bytes(const std::string& name) const { return ReadAll(At(name).string()); }
-  // What a picture or a guide file shows, without what its header tells of how it was made.
+  // The pixels of a picture or a guide file, without the header's record of how it was made.
   std::string Pixels(const std::string& name) const {
     const Expected<Picture> picture = ReadPicture(At(name));
     EXPECT_TRUE(picture.ok()) << name << (picture.ok() ? "" : ": " + picture.error().message);
@@ -192,7 +192,7 @@ class CliTest : public testing::Test {
               "name = \"test\"\n[transfer]\nreference_height = 0\nlevels = 4\n[[exemplar]]\nimage = \"lit.png\"\n");
   }
 
-  // The guides of a ball that touches the picture's sides, made without any renderer.
+  // The guides of a sphere that touches the picture's sides, made without any renderer.
   static GuideSet Ball(int size) {
     GuideSet guides(size, size);
     for (const LayerInfo& info : AllLayers()) {
@@ -226,12 +226,14 @@ class CliTest : public testing::Test {
     const std::string turn = looks_away ? R"("rotation":[0,1,0,0],)" : "";
     return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
 "nodes":[{"name":"Sheet","mesh":0},{"name":"Front","camera":0,)" +
-           turn + R"("translation":[0,0,4]}],
+           turn +
+           R"("translation":[0,0,4]}],
 "cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,-1,0],"max":[1,1,0]}],
 "bufferViews":[{"buffer":0,"byteLength":36}],
-"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+           R"(AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]})";
   }
   static std::string TriangleObj() { return "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n"; }
   static std::string TrianglePly() {

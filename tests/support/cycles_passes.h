@@ -1,4 +1,4 @@
-// Data passes that Cycles rendered, and what it takes to hold our guides against them.
+// Data passes that Cycles rendered, and the comparison of our guides with them.
 #pragma once
 
 #include <OpenImageIO/imageio.h>

@@ -1,4 +1,4 @@
-// Targets and exemplars of the energy's tests, which own what the measure only views.
+// Targets and exemplars of the energy's tests, which own the planes that the measure only views.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A slow and plain ray caster in double, that the real one is held against: every triangle is tried for every pixel.
-// Nothing in here is the engine's code; what it takes from a scene is its data.
+// A slow and plain ray caster in double, the reference of the real one: every triangle is tried for every pixel. It
+// shares no code with the engine; it only takes the data of a scene.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the ray caster's tests expect again and again.
+// Common expectations of the ray caster's tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace scumble::testing {
 
-// The guides, which must be there and must be what a transfer accepts.
+// The guides, which must exist and be valid for a transfer.
 inline GuidegenResult TakeValid(Expected<GuidegenResult> result) {
   if (!result) throw std::runtime_error(result.error().message);
   const Status valid = result->guides.Validate("guides");

@@ -1,4 +1,4 @@
-// A module of the same version whose types have other sizes: nothing but that is looked at.
+// A module of the same version whose types have other sizes: only that is checked.
 #include <cstdint>
 
 #define SCUMBLE_JOINED_INNER(a, b) a##b

@@ -1,4 +1,4 @@
-// Painted spheres for tests: one that nothing is wrong with, to which a test does one thing.
+// Painted spheres for tests: one without faults, which a test changes in one respect.
 #pragma once
 
 #include <algorithm>

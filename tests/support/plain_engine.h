@@ -1,4 +1,5 @@
-// The engine written down once more: without tables, regions, threads, vectors or tricks, to hold the fast one against.
+// The engine in plain form: without tables, regions, threads, vectors or other optimisations, as a reference for the
+// fast one.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ namespace scumble::testing {
 // Of TransferOptions, for what is compared with it.
 inline constexpr std::uint64_t kPlainSeed = 21;
 
-// The style's own test of the difference of two normals. Squares and sums are floats, as the style's manual says; the
+// The style's own test of the difference of two normals. Squares and sums are floats, as the style's manual has it; the
 // threshold's square is not rounded: double holds it.
 inline bool PlainAlike(const glm::vec3& d, const TransferSettings& settings) {
   const double threshold = settings.threshold;
@@ -60,7 +61,7 @@ inline PlainSource PlainSourceAt(const GuideSet& guides, const PreparedExemplar&
   return {own.x, own.y, 0};
 }
 
-// A random seed by which a level whose cells are larger than the picture offers its paint: the seed of its first cell,
+// A random seed with which a level whose cells are larger than the picture has a candidate: the seed of its first cell,
 // the only one that may stand in the picture, does, on a covered pixel with a finite normal. One in 4^level / pixels
 // does so; this is the first, on every machine.
 inline std::uint64_t SeedThatReaches(int level, const GuideSet& guides) {

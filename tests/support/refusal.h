@@ -1,4 +1,4 @@
-// What a refusal must be: the right kind of error, and words in its message.
+// The checks of a refusal: the right kind of error, and words in its message.
 #pragma once
 
 #include <gtest/gtest.h>

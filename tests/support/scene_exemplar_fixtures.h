@@ -1,4 +1,4 @@
-// Exemplars that are painted scenes, for the tests of how sources are found in them.
+// Exemplars that are painted scenes, for the tests of the search for sources in them.
 #pragma once
 
 #include <memory>

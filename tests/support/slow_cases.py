@@ -15,13 +15,15 @@ LIST = pathlib.Path(__file__).resolve().parent.parent / "slow_cases.txt"
 
 
 def tiers(build):
-    """The tier of each program whose cases share processes, by what CMake registered."""
-    shown = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], check=True, capture_output=True, text=True)
+    """The tier of each program whose cases share processes, from CMake's labels."""
+    shown = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], check=True, capture_output=True,
+                           text=True)
     found = {}
     for test in json.loads(shown.stdout)["tests"]:
         path = pathlib.Path(test.get("command", ["none"])[0])
         labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
-        tier = next((tier for tier in ("unit", "oracle", "paint", "cli") if tier in labels and "slow" not in labels), None)
+        tier = next((tier for tier in ("unit", "oracle", "paint", "cli") if tier in labels and "slow" not in labels),
+                    None)
         isolated = any("--gtest_also_run_disabled_tests" in word for word in test.get("command", []))
         if path.parent.name == "tests" and path.name.endswith("_test") and tier and not isolated:
             found[path] = tier

@@ -65,7 +65,7 @@ inline GuideSet HillGuides(int width, int height) {
   });
 }
 
-// Red tells the column and green the row, as 16-bit values that survive copying.
+// Red encodes the column and green the row, as 16-bit values that survive copying.
 inline Picture PositionPicture(int size) {
   Picture picture(size, size);
   for (int y = 0; y < size; ++y) {
@@ -114,7 +114,7 @@ inline Transferred MustTransfer(const Style& style, const GuideSet& guides, Tran
   const Status done = Transfer(*prepared, guides, options, scratch, result.picture);
   EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error().message);
   result.field = std::move(scratch.field);
-  // The other way to paint, which keeps no field, is held against this one in passing.
+  // The other form, which keeps no field, is compared with this one in passing.
   options.keep_field = false;
   Picture without;
   EXPECT_TRUE(Transfer(*prepared, guides, options, scratch, without).ok());

@@ -1,4 +1,4 @@
-// Cameras that are known, and what a renderer writes for them.
+// Known cameras, and a renderer's output for them.
 #pragma once
 
 #include <cmath>
@@ -45,7 +45,7 @@ inline glm::dmat3 RandomRotation(std::uint64_t seed) {
   return glm::dmat3(m);
 }
 
-// What a renderer would write for the camera: float positions and depths, a corner of background.
+// A renderer's output for the camera: float positions and depths, a corner of background.
 struct Render {
   explicit Render(const TrueCamera& camera) : width(camera.width), height(camera.height) {
     for (auto& plane : position) plane.assign(std::size_t(width) * height, 0.0f);

@@ -15,7 +15,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr int kGrid = 64;  // cells a side: the disc has π/4 of its square, so each cell is 8/64² sr, 2.53° across
 constexpr int kSamples = 128;  // directions a side
 
-// Whether any part of cell (i, j) is inside the disc.
+// Whether cell (i, j) overlaps the disc.
 bool TouchesDisc(int i, int j) {
   const auto nearest = [](int cell) { return std::max(0, std::max(cell - kGrid / 2, kGrid / 2 - 1 - cell)); };
   const int dx = nearest(i), dy = nearest(j);
@@ -69,8 +69,8 @@ AmbiguityReport MeasureAmbiguity(const PreparedExemplar& exemplar) {
       report.cells_shown += cells[std::size_t(j) * kGrid + i] > 0;
     }
   }
-  // A sphere shows a cell of solid angle 2π/cells that faces the viewer with 2/cells of its pixels, and no other with
-  // more.
+  // A sphere shows a cell of solid angle 2π/cells that faces the viewer with 2/cells of its pixels, and every other
+  // cell with fewer.
   const double fullest_of_a_sphere = 2.0 * static_cast<double>(report.usable_pixels) / report.cells;
   std::size_t flat = 0;
   for (const std::size_t pixels : cells) {

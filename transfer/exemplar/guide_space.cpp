@@ -17,7 +17,7 @@ namespace {
 constexpr Layer kExposedBy[] = {Layer::kLuminance, Layer::kLpeLDE,  Layer::kLpeLD12E,
                                 Layer::kLpeFull,   Layer::kLpeLDDE, Layer::kLpeLSE};
 
-// `factor` is that of radiance. NaN counts as 0.
+// `factor` applies to radiance. NaN counts as 0.
 float Coordinate(bool radiance, float value, float factor) {
   if (!(value > 0.0f)) return 0.0f;
   if (!radiance) return std::min(value, 1.0f);
@@ -25,8 +25,8 @@ float Coordinate(bool radiance, float value, float factor) {
   return light <= std::numeric_limits<float>::max() ? light / (1.0f + light) : 1.0f;
 }
 
-// The pixel of a sphere's guides that a pixel of the resized exemplar shows; on the rim, where the sphere covers no
-// pixel centre, the nearest on the way to the middle that is covered.
+// The pixel of a sphere's guides for a pixel of the resized exemplar. On the rim, where the sphere covers no pixel
+// centre, the nearest covered one on the line to the middle.
 std::size_t Sample(const GuideSet& guides, int x, int y, int width, int height) {
   const auto at = [](int i, int side, int guides_side) {
     return static_cast<int>((2 * std::int64_t(i) + 1) * guides_side / (2 * std::int64_t(side)));
@@ -36,7 +36,7 @@ std::size_t Sample(const GuideSet& guides, int x, int y, int width, int height) 
   while (!(coverage[guides.Index(u, v)] > 0.0f)) {
     const int dx = guides.width() / 2 - u, dy = guides.height() / 2 - v;
     if (dx == 0 && dy == 0) break;
-    // One step along the axis that is further off the middle.
+    // One step along the axis that is farther off the middle.
     if (std::abs(dx) >= std::abs(dy))
       u += dx > 0 ? 1 : -1;
     else
@@ -124,7 +124,7 @@ Source GuideSpace::Nearest(int k, glm::vec3 normal, const float* rest) const {
   }
   std::copy(rest, rest + rest_, query.begin() + static_cast<std::ptrdiff_t>(n));
   const Tree& tree = trees_[std::size_t(k)];
-  // Pixels come in rows, and neighbours resemble each other. Where a search begins does not change what it finds.
+  // Pixels come in rows, and neighbours resemble each other. The start of a search does not change its result.
   thread_local std::uint32_t place = 0;
   return tree.sources[tree.points.Nearest({query.data(), n + static_cast<std::size_t>(rest_)}, place, nearest_error_)];
 }

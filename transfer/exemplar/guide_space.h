@@ -1,15 +1,15 @@
-// The space that a style matches in where transfer.guide_weights asks for more than normals: every pixel, of the scene
-// as of the exemplar, is a point of it, and paint is taken from the nearest. Guides of light say what normals cannot:
-// which part of a flat wall is lit, and where a shadow ends (Fišer et al., "StyLit: Illumination-Guided Example-Based
+// The space in which a style matches if transfer.guide_weights names more layers than the normal. Every pixel of the
+// scene and of the exemplar is a point in it, and paint comes from the nearest point. Guides of light add what normals
+// lack: the lit part of a flat wall, and the end of a shadow (Fišer et al., "StyLit: Illumination-Guided Example-Based
 // Stylization of 3D Renderings", SIGGRAPH 2016).
 //
-// A point's coordinates are what each layer holds, times the layer's weight:
-//   normal        x, y, z. To be looked up, a normal that faces away is turned to the rim (FacingDirection), as in a
+// A point's coordinates are the values of each layer, times the layer's weight:
+//   normal        x, y, z. For a search, a normal that faces away is turned to the rim (FacingDirection), as in a
 //   tree
 //                 of normals alone.
 //   albedo        r, g, b, between 0 and 1; 1 above.
 //   shadow        between 0 and 1.
-//   luminance,    L / (1 + L) of each channel: 0 is darkness, 0.5 what is as bright as the exemplar's 90th percentile
+//   luminance,    L / (1 + L) of each channel: 0 is darkness, 0.5 the exemplar's 90th percentile
 //   (the lpe.*         `white`), and nothing is above 1. Radiance has no upper bound, and a highlight must not outweigh
 //   all the
 //                 rest. L is the exemplar's radiance / white; the scene's is exposed, · 2^stops / white. With the
@@ -36,38 +36,38 @@ namespace scumble {
 // Immutable; any number of threads may use it at once.
 class GuideSpace {
  public:
-  // The most coordinates beside the normal's.
+  // The most extra dimensions, beside the normal's.
   static constexpr int kMaxExtra = 20;
 
-  // Over the usable pixels of each exemplar, which must hold the layers that have a weight above 0: their guides are
-  // sampled at pixel centres. What Nearest finds may be (1 + nearest_error) times as far as the nearest. A kInput error
-  // names an exemplar whose guides lack one. One thread, O(pixels · log) an exemplar; 4 bytes a coordinate of each
+  // Over the usable pixels of each exemplar, which must hold the layers with a weight above 0: their guides are sampled
+  // at pixel centres. The result of Nearest may be (1 + nearest_error) times as far as the nearest. A kInput error
+  // names an exemplar whose guides lack a layer. One thread, O(pixels · log) an exemplar; 4 bytes a coordinate of each
   // pixel, and a PointTree.
   static Expected<GuideSpace> Build(const GuideWeights& weights, std::span<const Exemplar> exemplars,
                                     std::shared_ptr<const PreparedExemplar> prepared, double nearest_error = 0.0);
 
   float normal_weight() const { return normal_weight_; }
-  int rest() const { return rest_; }  // coordinates beside the normal's
+  int rest() const { return rest_; }  // extra dimensions, beside the normal's
   int dimensions() const { return rest_ + (normal_weight_ > 0.0f ? 3 : 0); }
-  std::span<const Layer> layers() const { return layers_; }  // those of `rest`, in the enum's order
+  std::span<const Layer> layers() const { return layers_; }  // those of the extra dimensions, in the enum's order
 
-  // Whether radiance has a weight, by which layer its exposure is measured (the first of luminance, lpe.LDE, lpe.LD12E,
-  // lpe.full, lpe.LDDE and lpe.LSE that has one), and that layer's 90th percentile in the brightest of the exemplars,
-  // above 0: 1 where nothing is lit.
+  // Radiance: whether it has a weight; the layer that measures its exposure (the first of luminance, lpe.LDE,
+  // lpe.LD12E, lpe.full, lpe.LDDE and lpe.LSE with a weight); and that layer's 90th percentile in the brightest of the
+  // exemplars, above 0: 1 where nothing is lit.
   bool has_radiance() const { return has_radiance_; }
   Layer radiance() const { return radiance_; }
   float white() const { return white_; }
 
-  // What is read from a scene's pixel: `rest` coordinates. `brightness` is 2^stops.
+  // Reads the extra dimensions of a scene's pixel. `brightness` is 2^stops.
   void Read(const GuideSet& scene, std::size_t pixel, float brightness, float* rest) const;
 
-  // The least and the largest coordinate of exemplar k's usable pixels in one of layers(), before it is weighed.
+  // The least and the largest coordinate of exemplar k's usable pixels in one of layers(), unweighted.
   struct Range {
     float least = 0.0f, largest = 0.0f;
   };
   Range RangeOf(int k, Layer layer) const;
 
-  // Coordinates beside the normal's: those of each layer's least for 0, of its largest for 1, and between in between.
+  // Extra dimensions between each layer's least value (share 0) and its largest (share 1).
   void Blend(int k, float share, float* rest) const;
 
   // Calls visit(value) for each coordinate of a usable pixel of exemplar k, the normal's first.
@@ -81,36 +81,36 @@ class GuideSpace {
     for (int d = 0; d < rest_; ++d) visit(rest[d]);
   }
 
-  // Those of a pixel of exemplar k.
+  // The extra dimensions of a pixel of exemplar k.
   const float* RestAt(int k, Source at) const { return values_[std::size_t(k)].data() + Offset(at); }
 
   // The usable pixel of exemplar k that is nearest, exactly unless an error is allowed; ties to the lowest (y, x).
-  // `normal` has no weight yet, `rest` has.
+  // `normal` is unweighted, `rest` is weighted.
   Source Nearest(int k, glm::vec3 normal, const float* rest) const;
 
-  // Whether the test accepts `at` for a pixel, as GuideTest does; `extra` is what light adds.
+  // Whether the test accepts `at` for a pixel, as GuideTest does; `extra` is the light's part.
   bool Alike(const GuideTest& test, int k, glm::vec3 normal, const float* rest, Source at, float extra) const {
     const float off = test.Rest(rest, RestAt(k, at), rest_);
     return test.Alike(normal_weight_ * normal, normal_weight_ * exemplar_->Normal(at.x, at.y), off, extra);
   }
-  // Whether two pixels of exemplar k are alike in all but their normals.
+  // Whether two pixels of exemplar k are alike in the extra dimensions.
   bool AlikeRest(const GuideTest& test, int k, Source a, Source b) const {
     return test.Alike(glm::vec3(0.0f), glm::vec3(0.0f), test.Rest(RestAt(k, a), RestAt(k, b), rest_), 0.0f);
   }
-  // What is compared there.
+  // The distance that is compared with the threshold there.
   float Distance(const GuideTest& test, int k, glm::vec3 normal, const float* rest, Source at) const {
     const float off = test.Rest(rest, RestAt(k, at), rest_);
     return test.Distance(normal_weight_ * normal, normal_weight_ * exemplar_->Normal(at.x, at.y), off);
   }
 
  private:
-  // A tree over what is different among the usable pixels, and where that is.
+  // A tree over the dimensions that differ among the usable pixels, and the places of those.
   struct Tree {
     PointTree points;
     std::vector<Source> sources;
   };
 
-  // One of the coordinates beside the normal's.
+  // One of the extra dimensions.
   struct Part {
     Layer layer;
     int component;
@@ -135,7 +135,7 @@ class GuideSpace {
   bool has_radiance_ = false;
   Layer radiance_ = Layer::kLuminance;
   float white_ = 1.0f;
-  std::vector<std::vector<float>> values_;  // by exemplar: `rest` coordinates of each pixel
+  std::vector<std::vector<float>> values_;  // by exemplar: extra dimensions of each pixel
   std::vector<Tree> trees_;                 // by exemplar
 };
 

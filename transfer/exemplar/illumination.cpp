@@ -74,8 +74,8 @@ class CoveredLight {
     is_color_ = ChannelCount(layer) == 3;
   }
 
-  // Calls what visit() returns with the bits of every covered pixel; from several threads, each of which asks for its
-  // own.
+  // Calls the function that visit() returns with the bits of every covered pixel; from several threads, each with a
+  // function of its own.
   template <class Visit>
   void ForEach(const Visit& visit) const {
     constexpr std::size_t kPixels = 1 << 15;
@@ -100,7 +100,7 @@ class CoveredLight {
 
 }  // namespace
 
-// First how many lights have which upper bits, then those alone that share them with the one that is looked for.
+// First a histogram of the upper bits, then one of the lower bits for those with the wanted upper bits.
 double BrightPercentile(const GuideSet& guides, Layer layer) {
   constexpr int kLowerBits = 20;
   const CoveredLight light(guides, layer);

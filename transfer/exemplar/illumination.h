@@ -1,4 +1,4 @@
-// The illuminated extension: exemplars painted for different light, and which of them a pixel wants.
+// The illuminated extension: exemplars painted for different light, and the choice between them at a pixel.
 #pragma once
 
 #include <algorithm>
@@ -15,22 +15,22 @@ namespace scumble {
 class Illumination {
  public:
   Illumination() = default;
-  // `luminances` in the exemplars' order, which need not be theirs; equal ones are legal, the first is taken.
+  // `luminances` in the order of the exemplars; any order is legal. Of equal ones the first is taken.
   Illumination(std::span<const double> luminances, float weight, LuminanceError form);
 
-  // With one exemplar light does not matter.
+  // With one exemplar light has no effect.
   bool active() const { return luminances_.size() > 1; }
   std::span<const float> luminances() const { return luminances_; }
   float weight() const { return weight_; }
   LuminanceError form() const { return form_; }
   float brightest() const { return brightest_; }
 
-  // The exemplar whose luminance is nearest; ties to the first. NaN and what is negative count as darkness, and all
-  // that is brighter than the brightest exemplar is as bright as it: far from all of them, differences to them would be
+  // The exemplar with the nearest luminance; ties to the first. NaN and negative values count as darkness. Values
+  // brighter than the brightest exemplar count as bright as that: far from all exemplars, the differences would be
   // rounded away.
   int Choose(float luminance) const;
 
-  // What painting a pixel of this luminance with exemplar `chosen` adds to its guide distance: 0 or more.
+  // The addition to a pixel's guide distance if exemplar `chosen` paints its luminance: 0 or more.
   float Error(float luminance, int chosen) const;
 
  private:
@@ -45,11 +45,11 @@ class Illumination {
 // Mean luminance, linear, of the paint inside the disc of a square picture, weighted by its alpha.
 double MeasuredLuminance(const Picture& picture, double rim);
 
-// The same over the pixels of a mask, which has one value for each, 1 for yes.
+// MeasuredLuminance over the pixels of a mask, which has one value for each, 1 for yes.
 double MeasuredLuminance(const Picture& picture, std::span<const std::uint8_t> mask);
 
-// The 90th percentile of a layer of light over the covered pixels, by the luminance of its colours; what is not above 0
-// counts as 0. 0 where nothing is covered. Runs on all threads of the caller's oneTBB arena; the result does not depend
+// The 90th percentile of a layer of light over the covered pixels, by the luminance of its colours; values not above 0
+// count as 0. 0 where nothing is covered. Runs on all threads of the caller's oneTBB arena; the result does not depend
 // on them.
 double BrightPercentile(const GuideSet& guides, Layer layer);
 

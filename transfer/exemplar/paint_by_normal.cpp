@@ -14,16 +14,16 @@ namespace {
 
 constexpr int kTries = 24;
 constexpr int kNormalCells = 64;  // a side
-// Root of the mean squared distance, as a share of the encoded range. Wider, patches begin to show; narrower, so few
-// places are left that they repeat.
+// Root of the mean squared distance, as a share of the encoded range. With a larger value chunks become visible; with a
+// smaller one so few places are left that they repeat.
 constexpr double kTolerance = 0.08;
 
 int NormalCell(float coordinate) {
   return std::clamp(static_cast<int>(std::floor((coordinate * 0.5f + 0.5f) * kNormalCells)), 0, kNormalCells - 1);
 }
 
-// 0 … count - 1 by the hash's upper half. Unlike the remainder it is the same share of any count, so a preview of half
-// the size draws where the final picture does.
+// 0 … count - 1 by the hash's upper half. Unlike the remainder it is an equal share of any count, so a preview of half
+// the size chooses as the final picture does.
 std::uint64_t ShareOf(std::uint64_t hash, std::uint64_t count) { return (hash >> 32) * count >> 32; }
 
 }  // namespace
@@ -136,7 +136,7 @@ std::int64_t SourceVariation::Unlikeness(Source source, const Wanted& wish, cons
   return quarters > 0 ? sum / quarters : std::numeric_limits<std::int64_t>::max();
 }
 
-// One pixel of those around the cone, evenly; nothing where it is outside.
+// One pixel of those around the cone, evenly distributed; empty where it is outside.
 std::optional<Source> SourceVariation::Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine,
                                             std::uint64_t a, std::uint64_t b) const {
   const glm::vec3 normal = exemplar.Normal(own.x, own.y);
@@ -154,7 +154,7 @@ std::optional<Source> SourceVariation::Draw(const PreparedExemplar& exemplar, So
     // The cells of one row lie side by side, so each row of the box is one range.
     const auto row = [&](int y, int x) { return begins_[std::size_t(y) * kNormalCells + std::size_t(x)]; };
     for (int y = y0; y <= y1; ++y) total += row(y, x1 + 1) - row(y, x0);
-    std::uint64_t index = ShareOf(a, total);  // own is among them
+    std::uint64_t index = ShareOf(a, total);  // `own` is among them
     for (int y = y0;; ++y) {
       const std::uint64_t count = row(y, x1 + 1) - row(y, x0);
       if (index >= count) {

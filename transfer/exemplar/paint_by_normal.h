@@ -1,4 +1,4 @@
-// Where else on an exemplar there is paint for a surface of one normal: by normal, and by tone.
+// Other places on an exemplar with paint for a surface of one normal: by normal, and by tone.
 #pragma once
 
 #include <array>
@@ -12,33 +12,33 @@ namespace scumble {
 
 class PreparedExemplar;
 
-// Immutable once made; concurrent reads are safe. It does not keep the exemplar, which is given to every call.
+// Immutable once made; concurrent reads are safe. It keeps no reference to the exemplar, which is an argument of every
+// call.
 class SourceVariation {
  public:
   // Sums over all usable pixels of all pictures. O(pixels · pictures).
   explicit SourceVariation(const PreparedExemplar& exemplar);
 
   struct Wanted {
-    Source own;          // what else would be taken; usable
+    Source own;          // the source that would be taken otherwise; usable
     int picture = 0;     // of the exemplar
     double degrees = 0;  // how far from own's normal, 0 … 90
-    int half_width = 1;  // of the square of paint around a source whose tone counts, in pixels
+    int half_width = 1;  // of the square of paint around a source whose tone is compared, in pixels
     std::uint64_t hash = 0;
   };
 
-  // A usable source whose normal is within the degrees of own's. Of up to 24 drawn by the hash, evenly among the
-  // exemplar's pixels, it is the first whose square has in its four quarters about the tone of the square around `own`;
-  // if none has, the one that comes nearest to it. (Quarters: paint that is light here and dark there would show its
-  // border although its mean is right.) `own` where chance finds nothing.
+  // A usable source whose normal is within the degrees of own's. Up to 24 are drawn by the hash, evenly among the
+  // exemplar's pixels. The first is taken whose square has in its four quarters about the tone of the square around
+  // `own`; if none has, the nearest one. (Quarters, because paint that is light on one side and dark on the other would
+  // show its border although its mean is right.) `own` if no draw succeeds.
   Source Choose(const PreparedExemplar& exemplar, const Wanted& wish) const;
 
   // The mean colour (times alpha) and alpha of the usable pixels in a square around a source, to whole cells: 0 … 65535
-  // each; nothing where no pixel there is usable. All arithmetic is of integers.
+  // each; empty where no pixel there is usable. All arithmetic is in integers.
   using Tone = std::array<std::int32_t, 4>;
   std::optional<Tone> ToneAround(Source source, int picture, int half_width) const;
 
-  // The same of what is near a usable source, some 1/64 of the exemplar wide and without steps: for each pixel,
-  // quickly.
+  // The tone near a usable source, some 1/64 of the exemplar wide and without steps: fast enough for each pixel.
   Tone ToneAt(Source source, int picture) const;
 
  private:
@@ -51,7 +51,7 @@ class SourceVariation {
   std::optional<Source> Draw(const PreparedExemplar& exemplar, Source own, double chord, float cosine, std::uint64_t a,
                              std::uint64_t b) const;
 
-  int shift_ = 0, cell_ = 1;    // pixels a side of what is summed at once: 2^shift
+  int shift_ = 0, cell_ = 1;    // pixels a side of a summed cell: 2^shift
   int columns_ = 0, rows_ = 0;  // cells
   std::vector<std::vector<Sums>>
       tables_;  // by picture: sums of everything above and to the left, (columns + 1) × (rows + 1)

@@ -22,7 +22,7 @@ class ExemplarSearch {
   std::optional<LookUpTable> table;
   std::vector<Source> sources;  // of the tree's points
   std::optional<PointTree> normals;
-  double error = 0.0;  // that is allowed to the tree
+  double error = 0.0;  // the error allowed to the tree
 
   Source Find(glm::vec3 direction) const {
     if (table) return table->Find(direction);
@@ -34,8 +34,8 @@ class ExemplarSearch {
 
 namespace {
 
-// The least integer not below a value of 0 or more. std::ceil is a call where the processor's oldest instructions must
-// do.
+// The least integer not below a value of 0 or more. With the processor's oldest instructions std::ceil is a function
+// call.
 int RoundedUp(float value) {
   const int down = static_cast<int>(value);
   return down + (static_cast<float>(down) < value);
@@ -47,8 +47,8 @@ std::int64_t UsableLimit(int size, double fraction) {
   return std::max<std::int64_t>(2, static_cast<std::int64_t>(std::floor(radius * radius)));
 }
 
-// Replaces everything beyond the usable disc by the nearest usable paint along the radius, so that a filter which
-// reaches over the rim meets paint and not what lies around the sphere.
+// Replaces everything beyond the usable disc by the nearest usable paint along the radius, so that a filter across the
+// rim reads paint, and not the surroundings of the sphere.
 Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
   Picture extended = picture;
   const int size = picture.width;
@@ -58,7 +58,7 @@ Picture ExtendPaint(const Picture& picture, std::int64_t limit) {
       const std::int64_t dx = 2 * x + 1 - size, dy = 2 * y + 1 - size;
       if (dx * dx + dy * dy <= limit) continue;
       const double length = std::sqrt(static_cast<double>(dx * dx + dy * dy));
-      // Steps inward until the pixel is usable: rounding to pixels may need one or two beyond the exact radius.
+      // Steps inward until the pixel is usable: rounding to pixels may need one or two steps beyond the exact radius.
       for (double r = radius;; r -= 1.0) {
         const int sx =
             std::clamp(static_cast<int>(std::floor((dx / length * std::max(r, 0.0) + size) / 2)), 0, size - 1);
@@ -181,7 +181,7 @@ std::vector<Source> PreparedExemplar::UsablePixels() const {
   return sources;
 }
 
-// Everything that a table depends on, in 128 bits: no two exemplars meet in them by chance.
+// Everything that a table depends on, in 128 bits: no two exemplars share a key by chance.
 std::string PreparedExemplar::TableKey(std::span<const Source> sources, int resolution) const {
   constexpr int kFormat = 1;
   std::uint64_t a = Hash(kFormat, resolution, width(), height()), b = ~a;
@@ -251,7 +251,7 @@ glm::vec2 PreparedExemplar::OnDisc(glm::vec3 normal) const {
   SCUMBLE_DCHECK(is_sphere());
   float nx = normal.x, ny = normal.y;
   float length = std::sqrt(nx * nx + ny * ny);
-  if (!(length <= 3.0e38f)) nx = 0.0f, ny = 0.0f, length = 0.0f;  // NaN and infinity look at the centre
+  if (!(length <= 3.0e38f)) nx = 0.0f, ny = 0.0f, length = 0.0f;  // NaN and infinity take the centre
   if (normal.z < 0.0f && !(length > 0.0f)) nx = 0.0f, ny = 1.0f, length = 1.0f;
   if (length > usable_radius_ || normal.z < 0.0f) {
     nx = nx / length * usable_radius_;

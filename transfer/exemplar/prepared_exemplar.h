@@ -1,5 +1,5 @@
-// An exemplar made ready: resized, its paint extended past the rim, with the guides of what is painted on it, and the
-// way to find the nearest of them.
+// A prepared exemplar: resized, its paint extended past the rim, with the guides of the painted object and the search
+// for the nearest of them.
 #pragma once
 
 #include <cmath>
@@ -22,8 +22,8 @@ namespace scumble {
 class SourceVariation;
 class ExemplarSearch;
 
-// An exemplar's guides by rows, for code that looks at sixteen pixels at once: kPad values before the first and after
-// the last of each array may be read too, and mean nothing. Valid as long as the exemplar.
+// An exemplar's guides by rows, for code that reads sixteen pixels at once. kPad values before the first and after the
+// last of each array may be read too; they are undefined. Valid as long as the exemplar.
 struct ExemplarRows {
   static constexpr int kPad = 16;
   int width = 0, height = 0;
@@ -39,27 +39,27 @@ struct ExemplarRows {
 };
 
 // Either the sphere that fills the N × N picture (centre N/2, radius N/2), whose positions inside radius 1 - rim are
-// usable; or any scene with guides of its own, in a picture of any shape, where the guides' coverage less the rim is.
-// All other positions are never shown. Immutable once made; concurrent reads are safe.
+// usable. Or any scene with its own guides, in a picture of any shape, whose usable part is the guides' coverage less
+// the rim. All other positions are never shown. Immutable once made; concurrent reads are safe.
 class PreparedExemplar {
  public:
   // A sphere. One picture or several, the same sphere under different light; all are resized to N = `size`, 1 … 32767.
   // `rim` is in pixels of each picture; all must be square. Paint is extended outward from the rim before resizing, so
-  // nothing from outside the painted disc reaches a usable texel.
+  // that no colour from outside the painted disc reaches a usable texel.
   PreparedExemplar(std::span<const Picture* const> pictures, double rim, int size);
   PreparedExemplar(const Picture& picture, double rim, int size)
       : PreparedExemplar(std::vector<const Picture*>{&picture}, rim, size) {}
 
   // A painted scene: pictures of the size of its guides, resized to width × height, 1 … 32767 each. Guides are sampled
   // at pixel centres, never averaged. The guides must pass Validate. SearchBy must be called before NearestNeighbour.
-  // Fails where no pixel is left that is usable; `name` is the exemplar's in that message.
+  // Fails if no pixel is usable; `name` is the exemplar's in that message.
   static Expected<PreparedExemplar> OfScene(std::span<const Picture* const> pictures, const GuideSet& guides,
                                             double rim, int width, int height, const std::string& name);
 
-  // How NearestNeighbour searches from now on, before the exemplar is shared: kAuto is the formula for a sphere and a
-  // table for a scene. kAnalytic is a kUsage error for a scene. Tables have `resolution`² cells and are looked for in
-  // `cache` first, which may be null. Sources of a tree may be (1 + error) times as far as the nearest. O(usable pixels
-  // · log) where something is built.
+  // The search of NearestNeighbour from now on; call it before the exemplar is shared. kAuto is the formula for a
+  // sphere and a table for a scene. kAnalytic is a kUsage error for a scene. Tables have `resolution`² cells and are
+  // searched for in `cache` first, which may be null. Sources of a tree may be (1 + error) times as far as the nearest.
+  // O(usable pixels · log) if something is built.
   Status SearchBy(NearestSearch search, int resolution, TableCache* cache, double error = 0.0);
 
   bool is_sphere() const { return !scene_; }
@@ -90,17 +90,17 @@ class PreparedExemplar {
   // The nearest neighbour u* = argmin ‖normal - Normal(u)‖ over usable pixels, by the search that was chosen:
   // - analytic: within one pixel of the exact one; ties to the lowest (y, x). A normal beyond the rim, or with z < 0,
   //   takes the usable pixel nearest to the point of the rim along its (x, y), and (0, 0, -1) that at +Y. (The exact
-  //   argmin would jump along the rim's staircase of pixels there, by many at once, for no gain that anyone can see.)
+  //   argmin would jump along the rim's pixel steps there, by many at once, for no visible gain.)
   // - tree: exact for FacingDirection(normal), unless an error was allowed; ties to the lowest (y, x).
-  // - table: at most LookUpTable::Quantisation further away than the tree's.
+  // - table: at most LookUpTable::Quantisation farther away than the tree's.
   // Any finite or NaN input gives a usable pixel.
   Source NearestNeighbour(glm::vec3 normal) const { return search_ ? Searched(normal) : Analytic(normal); }
 
-  // Where on the sphere a normal lies, x and y of the unit disc, y up: as the analytic search has it before it goes to
-  // pixels, so never beyond the usable disc. For spheres only.
+  // The place of a normal on the sphere, x and y of the unit disc, y up, before the analytic search rounds it to
+  // pixels: never beyond the usable disc. For spheres only.
   glm::vec2 OnDisc(glm::vec3 normal) const;
 
-  // Where else there is paint for a normal; made at the first call, by whichever thread is first.
+  // Other sources for a normal; computed by the first call, on whichever thread.
   const SourceVariation& alternatives() const;
 
   ExemplarRows Rows() const;

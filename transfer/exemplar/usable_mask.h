@@ -1,4 +1,4 @@
-// Which pixels of an exemplar may be shown, where its guides and not a circle say what is painted.
+// The usable pixels of an exemplar whose guides, and not a circle, mark the painted part.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace scumble::internal {
 
-// 1 on covered pixels whose centre is `rim` pixels or more from the centre of every uncovered one. The picture's own
-// edge is no painted edge: where the scene runs on beyond it, pixels are usable up to it. O(pixels).
+// 1 on covered pixels whose centre is at least `rim` pixels from the centre of every uncovered one. The picture's own
+// edge is no painted edge: where the scene continues beyond it, pixels are usable up to it. O(pixels).
 std::vector<std::uint8_t> UsableMask(const GuideSet& guides, double rim);
 
-// Replaces the paint of every pixel outside the mask by that of the nearest one inside, so that a filter which reaches
-// over the rim meets paint and not what lies around the object. The mask holds at least one pixel.
+// Replaces the paint of every pixel outside the mask by that of the nearest one inside, so that a filter across the rim
+// reads paint, and not the surroundings of the object. The mask holds at least one pixel.
 Picture ExtendPaint(const Picture& picture, std::span<const std::uint8_t> mask);
 
 }  // namespace scumble::internal

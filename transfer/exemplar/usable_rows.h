@@ -1,4 +1,4 @@
-// Which texels of an exemplar may be shown, row by row.
+// The usable texels of an exemplar, row by row.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@ class UsableRows {
     return {spans_.data() + first_[y], spans_.data() + first_[y + 1]};
   }
 
-  // Whether all texels of a rectangle are surely usable: of a sphere, whose disc bulges nowhere inwards, its first and
-  // its last row tell; of a scene it is not found out.
+  // Whether all texels of a rectangle are known to be usable. A sphere's disc is convex, so the rectangle's first and
+  // last row decide. For a scene the answer is always false.
   bool AllOf(const Region& texels) const {
     const auto holds = [&](int y) {
       const std::span<const Span> row = Row(y);

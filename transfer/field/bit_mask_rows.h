@@ -1,4 +1,4 @@
-// Rows of marks, one bit a pixel: 64 pixels are looked at in one operation.
+// Bitmask rows, one bit a pixel: one operation reads 64 pixels.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@ struct MaskedTile {
   int first_word = 0, words = 0;
 };
 
-// Marks of rows [first_row, first_row + rows) and of `words` words from `first_word` on, which may be -1: bit i of word
-// w is column 64·w + i of the picture. One word more stands on either side, so that every word has neighbours.
+// The bits of rows [first_row, first_row + rows) and of `words` words from `first_word` on, which may be -1: bit i of
+// word w is column 64·w + i of the picture. One more word on either side gives every word neighbours.
 class BitMaskRows {
  public:
   static constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-  // Every mark becomes `fill`, 0 or kAll.
+  // Sets every bit to `fill`, 0 or kAll.
   void Reset(int first_row, int rows, int first_word, int words, std::uint64_t fill) {
     first_row_ = first_row, first_word_ = first_word - 1, stride_ = words + 2;
     bits_.assign(std::size_t(rows) * stride_, fill);
@@ -32,13 +32,13 @@ class BitMaskRows {
   const std::uint64_t* Row(int row) const { return bits_.data() + Offset(row) + 1; }
   std::uint64_t& At(int row, int word) { return bits_[Offset(row) + (word - first_word_)]; }
   std::uint64_t At(int row, int word) const { return bits_[Offset(row) + (word - first_word_)]; }
-  // Bit i: the mark of column 64·word + i + dx, |dx| < 64.
+  // Bit i: the bit of column 64·word + i + dx, |dx| < 64.
   std::uint64_t Shifted(int row, int word, int dx) const {
     const std::uint64_t* at = bits_.data() + Offset(row) + (word - first_word_);
     if (dx == 0) return *at;
     return dx > 0 ? at[0] >> dx | at[1] << (64 - dx) : at[0] << -dx | at[-1] >> (64 + dx);
   }
-  // Bit i: the mark of column `column` + i. The columns must be within the words, and one word more on either side.
+  // Bit i: the bit of column `column` + i. The columns must be within the words, and one word more on either side.
   std::uint64_t From(int row, int column) const { return Shifted(row, column >> 6, column & 63); }
 
  private:

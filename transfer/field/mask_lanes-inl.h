@@ -1,4 +1,4 @@
-// Marks from vectors of floats. Included once for each set of vector instructions, after <hwy/highway.h>.
+// Bitmasks from vectors of floats. Included once for each set of vector instructions, after <hwy/highway.h>.
 #if defined(SCUMBLE_FLOAT_MARKS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCUMBLE_FLOAT_MARKS_INL_H_
 #undef SCUMBLE_FLOAT_MARKS_INL_H_

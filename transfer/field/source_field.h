@@ -1,4 +1,4 @@
-// The middle product of every method: where each pixel takes its paint from.
+// The intermediate result of every method: the source of each pixel's paint.
 #pragma once
 
 #include <cstddef>
@@ -8,24 +8,24 @@
 
 namespace scumble {
 
-// Per pixel the source position in the resized exemplar, which of the style's exemplars it is, and the level that
-// settled it (0: the pixel's own nearest neighbour). Rows from the top. Uncovered pixels have level kNoSource, position
-// and exemplar 0.
+// Per pixel: the source position in the resized exemplar, the index of the style's exemplar, and the level that settled
+// it (0: the pixel's own nearest neighbour). Rows from the top. Uncovered pixels have level kNoSource, position and
+// exemplar 0.
 struct SourceField {
   static constexpr std::int8_t kNoSource = -1;
 
   int width = 0;
   int height = 0;     // of the picture
-  int first_row = 0;  // that is held; a field that is never there as a whole (band_transfer.h) holds some rows only
+  int first_row = 0;  // the first row in memory; a field of a band (band_pipeline.h) holds some rows only
   std::vector<std::int16_t> x;
   std::vector<std::int16_t> y;
   std::vector<std::int8_t> level;
   std::vector<std::uint8_t> exemplar;
-  std::vector<glm::vec3> moved;  // by what each seed moved its source's guide (variety); empty where nobody asks
+  std::vector<glm::vec3> moved;  // guide offset of each seed's source (variety); empty where it is not needed
 
-  // The size alone: values are what they were or anything, and nothing is moved.
+  // Sets the size alone: values stay or are undefined, and guide offsets are 0.
   void Resize(int new_width, int new_height) { ResizeRows(new_width, new_height, new_height); }
-  // The same with room for some rows only, from row 0 on.
+  // Resize with room for some rows only, from row 0 on.
   void ResizeRows(int new_width, int new_height, int rows) {
     width = new_width, height = new_height, first_row = 0;
     const std::size_t count = std::size_t(width) * rows;

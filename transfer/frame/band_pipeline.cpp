@@ -13,15 +13,15 @@ namespace scumble::internal {
 namespace {
 
 constexpr int kStep =
-    24;  // rows that are started, matched and voted on together; what they need stays in the second cache
-constexpr int kLeastShare = 16;  // rows of a stretch that another thread may take over
+    24;  // 24; // rows of a step, which are started, matched and voted on together; their data stay in the second cache
+constexpr int kLeastRange = 16;  // rows of a range that another thread may take over
 
-// The rows that are left, shared out over workers. Each goes down its own stretch; who is done takes the lower half of
-// the longest that is left, so stretches are as long as can be: each begins with seeds that must be made, and ends with
-// rows that are matched twice.
-class RowShares {
+// The remaining rows, distributed over workers. Each worker goes down its own range of rows; a worker that is done
+// takes the lower half of the longest remaining range. So ranges are as long as possible: each begins with seeds that
+// must be made, and ends with rows that are matched twice.
+class RowRanges {
  public:
-  RowShares(int y0, int y1, int workers) {
+  RowRanges(int y0, int y1, int workers) {
     for (int w = 0; w < workers; ++w) {
       const auto part = [&](int k) { return y0 + static_cast<int>(std::int64_t(y1 - y0) * k / workers); };
       left_.push_back({part(w), part(w + 1)});
@@ -30,24 +30,24 @@ class RowShares {
 
   struct Rows {
     int begin, end;
-    int sure;  // rows from `end` to here are not taken yet, but will be by nobody else
+    int unclaimed_end;  // rows from `end` to here are not taken yet, and only this worker will take them
     int size() const { return end - begin; }
   };
-  // The next rows for a worker, at most `most`, straight below its last ones unless these were the end of its stretch.
-  // None: empty.
+  // The next rows for a worker, at most `most`, directly below its last ones unless its range has ended. Empty if there
+  // are none.
   Rows Take(int worker, int most) {
     const std::lock_guard lock(mutex_);
     Stretch& own = left_[static_cast<std::size_t>(worker)];
     if (own.size() == 0) {
       Stretch& longest = *std::ranges::max_element(left_, {}, &Stretch::size);
-      if (longest.size() < 2 * kLeastShare) return {0, 0, 0};
+      if (longest.size() < 2 * kLeastRange) return {0, 0, 0};
       const int middle = longest.begin + longest.size() / 2;
       own = {middle, longest.end};
       longest.end = middle;
     }
     const int begin = own.begin;
     own.begin = std::min(own.end, begin + most);
-    return {begin, own.begin, std::min(own.end, own.begin + kLeastShare)};
+    return {begin, own.begin, std::min(own.end, own.begin + kLeastRange)};
   }
 
  private:
@@ -59,7 +59,7 @@ class RowShares {
   std::vector<Stretch> left_;  // by worker
 };
 
-// What is made once for all threads.
+// Data that is made once for all threads.
 struct SharedStyle {
   const BandStyle& style;
   ExemplarRows exemplar;
@@ -67,7 +67,7 @@ struct SharedStyle {
   std::optional<WideVotes> wide_votes;  // for radii above kSmallRadius
 };
 
-// One thread's share.
+// One thread's part of the frame.
 class Band {
  public:
   Band(const FrameInput& frame, std::span<const SharedStyle> styles, BandMemory& memory, Picture& out)
@@ -84,18 +84,18 @@ class Band {
     memory.covered.resize(std::size_t(rows) * width);
     if (frame.map) memory.active.assign(std::size_t(rows) * width, 0);
     memory.words.assign(std::size_t(width + 63) / 64, 0);
-    memory.pieces.resize(styles_.size());
+    memory.regions.resize(styles_.size());
     if (memory.seeds.size() < styles_.size() * columns_) memory.seeds.resize(styles_.size() * columns_);
   }
 
-  // Rows of the region, as long as there are any for this worker.
-  void Paint(RowShares& shares, int worker, RowProgress& progress) {
+  // Paints rows of the region, as long as this worker gets any.
+  void Paint(RowRanges& row_ranges, int worker, RowProgress& progress) {
     watch_.Lap();
     int last = -1;
-    for (RowShares::Rows rows; !progress.cancelled() && (rows = shares.Take(worker, kStep)).size() > 0;
+    for (RowRanges::Rows rows; !progress.cancelled() && (rows = row_ranges.Take(worker, kStep)).size() > 0;
          last = rows.end) {
       if (rows.begin != last) Begin(rows.begin);
-      own_.y1 = rows.sure;
+      own_.y1 = rows.unclaimed_end;
       Paint(rows.begin, rows.end);
       progress.Finished(rows.size());
     }
@@ -105,9 +105,9 @@ class Band {
   const BandShares& shares() const { return shares_; }
 
  private:
-  // A stretch of rows.
+  // Begins a range of rows.
   void Begin(int y) {
-    for (std::vector<Region>& pieces : memory_.pieces) pieces.clear();
+    for (std::vector<Region>& regions : memory_.regions) regions.clear();
     for (TileScratch& seeds : memory_.seeds) seeds.begun = false;
     field_.first_row = end_ = std::max(0, y - radius_);
     own_ = {frame_.region.x0, y, frame_.region.x1, y};
@@ -119,13 +119,13 @@ class Band {
     end_ = std::min(field_.height, y1 + radius_);
     Start(begin);
     for (std::size_t s = 0; s < styles_.size(); ++s) {
-      if (!memory_.pieces[s].empty()) PaintStyle(static_cast<int>(s), begin, {own_.x0, y0, own_.x1, y1});
+      if (!memory_.regions[s].empty()) PaintStyle(static_cast<int>(s), begin, {own_.x0, y0, own_.x1, y1});
     }
   }
 
   ActiveRows Covered() const { return {memory_.covered.data(), field_.width, field_.first_row}; }
   ActiveRows Active() const { return {memory_.active.data(), field_.width, field_.first_row}; }
-  const std::vector<Region>& PiecesOf(int s) const { return memory_.pieces[static_cast<std::size_t>(s)]; }
+  const std::vector<Region>& RegionsOf(int s) const { return memory_.regions[static_cast<std::size_t>(s)]; }
 
   // Rows above y are not needed any more.
   void Forget(int y) {
@@ -135,46 +135,46 @@ class Band {
       move(field_.x), move(field_.y), move(field_.level), move(field_.exemplar), move(memory_.covered);
     }
     field_.first_row = y;
-    for (std::vector<Region>& pieces : memory_.pieces) {
-      std::erase_if(pieces, [&](const Region& piece) { return piece.y1 <= y; });
-      for (Region& piece : pieces) piece.y0 = std::max(piece.y0, y);
+    for (std::vector<Region>& regions : memory_.regions) {
+      std::erase_if(regions, [&](const Region& region) { return region.y1 <= y; });
+      for (Region& region : regions) region.y0 = std::max(region.y0, y);
     }
   }
 
-  // Rows from `begin` on.
+  // Sets up rows from `begin` on.
   void Start(int begin) {
     StartedRows& rows = memory_.rows;
     rows.tiles.clear(), rows.soft = false;
-    const FrameInput cleared{frame_.guides, frame_.map, frame_.styles, own_};  // other rows are other threads'
+    const FrameInput cleared{frame_.guides, frame_.map, frame_.styles, own_};  // other threads clear the other rows
     StartRows(cleared, begin, end_, Covered(), out_, rows);
     soft_ = soft_ || rows.soft;
-    for (const auto& [style, tile] : rows.tiles) memory_.pieces[style].push_back(tile);
+    for (const auto& [style, tile] : rows.tiles) memory_.regions[style].push_back(tile);
     shares_.start += watch_.Lap();
   }
 
   // Matches a style's pixels from row `begin` on, and votes on those of `painted`.
   void PaintStyle(int s, int begin, const Region& painted) {
     if (frame_.map) {
-      for (const Region& piece : PiecesOf(s)) ActivateTile(frame_, s, piece, Covered(), Active());
+      for (const Region& region : RegionsOf(s)) ActivateTile(frame_, s, region, Covered(), Active());
     }
     const std::span<const std::uint8_t> active = frame_.map ? memory_.active : memory_.covered;
     Match(s, begin, active);
     shares_.match += watch_.Lap();
     Vote(s, painted, active);
     if (frame_.map) {
-      for (const Region& piece : PiecesOf(s)) DeactivateTile(piece, Active());
+      for (const Region& region : RegionsOf(s)) DeactivateTile(region, Active());
     }
     shares_.vote += watch_.Lap();
   }
 
   void Match(int s, int begin, std::span<const std::uint8_t> active) {
-    const std::vector<Region>& pieces = PiecesOf(s);
-    // New ones come last, from the left to the right.
-    auto piece = std::ranges::find_if(pieces, [&](const Region& one) { return one.y1 > begin; });
-    while (piece != pieces.end()) {
-      const int x0 = piece->x0, end = (x0 / kTileWidth + 1) * kTileWidth;
+    const std::vector<Region>& regions = RegionsOf(s);
+    // New ones come last, from left to right.
+    auto region = std::ranges::find_if(regions, [&](const Region& one) { return one.y1 > begin; });
+    while (region != regions.end()) {
+      const int x0 = region->x0, end = (x0 / kTileWidth + 1) * kTileWidth;
       int x1 = x0;
-      for (; piece != pieces.end() && piece->x0 < end; ++piece) x1 = piece->x1;
+      for (; region != regions.end() && region->x0 < end; ++region) x1 = region->x1;
       MatchRows(s, {x0, begin, x1, end_}, active);
     }
   }
@@ -198,8 +198,8 @@ class Band {
     const ColorizeInput tint{frame_.guides, active, shared.style.tint, field_.first_row};
     if (tint.tint.active()) votes.finished = [&](int y, int x0, int x1) { ColorizeRow(tint, y, x0, x1, out_); };
     std::vector<std::uint8_t>& words = memory_.words;  // that have pixels of the style
-    for (const Region& piece : PiecesOf(s)) words[static_cast<std::size_t>(piece.x0 / 64)] = 1;
-    constexpr std::ptrdiff_t kGap = 2;  // so few words between two others are looked at too
+    for (const Region& region : RegionsOf(s)) words[static_cast<std::size_t>(region.x0 / 64)] = 1;
+    constexpr std::ptrdiff_t kGap = 2;  // gaps of so few words between two others are processed too
     for (auto from = std::ranges::find(words, 1); from != words.end();) {
       auto to = from + 1, next = std::find(to, words.end(), 1);
       while (next != words.end() && next - to <= kGap) to = next + 1, next = std::find(to, words.end(), 1);
@@ -244,13 +244,13 @@ BandResult PaintByBands(const FrameInput& frame, std::span<const BandStyle> styl
     if (style.radius > kSmallRadius) shared.back().wide_votes.emplace(style.match.exemplar);
   }
   const int workers = tbb::this_task_arena::max_concurrency();
-  RowShares shares(frame.region.y0, std::max(frame.region.y0, frame.region.y1), workers);
+  RowRanges row_ranges(frame.region.y0, std::max(frame.region.y0, frame.region.y1), workers);
   std::vector<std::optional<Band>> bands(static_cast<std::size_t>(workers));
   if (memory.size() < bands.size()) memory.resize(bands.size());
   const auto paint = [&](int worker) {
     std::optional<Band>& band = bands[static_cast<std::size_t>(worker)];
     band.emplace(frame, shared, memory[static_cast<std::size_t>(worker)], out);
-    band->Paint(shares, worker, progress);
+    band->Paint(row_ranges, worker, progress);
   };
   tbb::parallel_for(0, workers, paint, tbb::simple_partitioner());
   BandResult result;

@@ -7,7 +7,7 @@
 namespace scumble::internal {
 namespace {
 
-// A row of what stands behind.
+// A row of the background.
 class Backdrop {
  public:
   Backdrop(const Background& background, int y) {

@@ -10,7 +10,7 @@
 
 namespace scumble::internal {
 
-// What stands behind the objects.
+// The background of the objects.
 struct Background {
   const Paper& paper;
   const Picture* over = nullptr;  // instead of the paper; the guides' size
@@ -18,12 +18,11 @@ struct Background {
 };
 
 // Porter and Duff's "over" with straight alpha, colours blended in linear light: `front` becomes it laid over `back`.
-// Where front is opaque, or only one of them is there, colours pass through untouched.
+// Where front is opaque, or only one of them is there, colours are unchanged.
 void BlendOver(std::uint16_t* front, const std::uint16_t* back);
 
 // Multiplies `coverage`, 0 … 1 by pixel of the picture, into the alpha of `picture`, then blends it over the background
-// in linear light. Where the result is opaque or nothing is behind, colours pass through untouched. False: asked to
-// stop.
+// in linear light. Where the result is opaque or the background is empty, colours are unchanged. False: cancelled.
 bool Compose(std::span<const float> coverage, const Background& background, const Region& region, Picture& picture,
              RowProgress& progress);
 

@@ -27,7 +27,7 @@ bool FourAre(const std::uint16_t* styles, std::uint16_t style) {
 
 class Starter {
  public:
-  // `field`: null where no field is kept. `covered` becomes 1 where coverage is above 0; null: nobody asks.
+  // `field`: null where no field is kept. `covered` becomes 1 where coverage is above 0; null: not needed.
   Starter(const FrameInput& input, SourceField* field, const ActiveRows* covered, Picture& out)
       : input_(input),
         width_(input.guides.width()),
@@ -59,7 +59,7 @@ class Starter {
   }
 
  private:
-  // How many pixels are covered; marks them.
+  // Marks the covered pixels and returns their number.
   int Cover(int x0, int x1, int y, std::uint8_t* covered) const {
     const float* coverage = coverage_.data() + input_.guides.Index(x0, y);
     int count = 0;
@@ -80,7 +80,7 @@ class Starter {
     return soft != 0;
   }
 
-  // Finds the pixels that some style paints, notes which and where.
+  // Finds the pixels that some style paints, and records their styles and regions.
   void ReadMap(int y, std::size_t known, const Region& tile, StartedRows& rows) {
     const int x0 = tile.x0, x1 = tile.x1;
     std::uint8_t here_covered[kSetupTileWidth];
@@ -121,7 +121,7 @@ class Starter {
     return count;
   }
 
-  // Where all pixels are going to be painted nothing need be cleared.
+  // If all pixels will be painted, nothing need be cleared.
   void Clear(int x0, int x1, int y, int painted) {
     const Region& region = input_.region;
     const bool row_inside = y >= region.y0 && y < region.y1;

@@ -1,4 +1,4 @@
-// How a frame begins: who paints what, and nothing left over from the frame before.
+// Frame setup: the style mask, and clearing of the previous frame.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@ struct FrameInput {
 struct FrameSetup {
   std::vector<Region> extents;             // the rectangle around each style's covered pixels
   std::vector<std::vector<Region>> tiles;  // by style, with a map only: small rectangles that hold all its pixels
-  bool softly_covered = false;             // somewhere that is painted coverage is between 0 and 1
+  bool softly_covered = false;             // some painted pixel has coverage between 0 and 1
 };
 
-// A plane of bytes by pixel that says who is painted, of all rows of the picture or of some.
+// The style mask: a plane of bytes by pixel, of all rows of the picture or of some.
 struct ActiveRows {
   std::uint8_t* first;  // of row first_row
   int width;
@@ -36,27 +36,27 @@ struct ActiveRows {
 // One pass over coverage and map. The field and `active` become as large as the guides, `out` too, unless it is
 // already.
 // - `active`: without a map 1 where coverage is above 0; with one 0 everywhere, see Activate.
-// - The field says kNoSource wherever no style paints and outside the region, and may say anything elsewhere.
-// - `out` is 0 wherever in the region no style paints, and may hold anything where one does; outside the region it is
+// - The field has kNoSource wherever no style paints and outside the region, and is undefined elsewhere.
+// - `out` is 0 wherever in the region no style paints, and undefined where one does; outside the region it is
 // left
 //   alone if it had its size.
 // Runs in the caller's arena.
 FrameSetup StartFrame(const FrameInput& input, SourceField& field, std::vector<std::uint8_t>& active, Picture& out);
 
-// `active` tells the covered pixels of a style in these tiles, or none any more.
+// Sets `active` to 1 on the covered pixels of a style in these tiles, or clears it.
 void Activate(const FrameInput& input, int style, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
 void Deactivate(const FrameInput& input, const std::vector<Region>& tiles, std::vector<std::uint8_t>& active);
 
-// The same of some rows alone, by one thread, without a field: what StartFrame says of `out` holds for these rows,
-// `out` having its size, and `covered` is 1 where coverage is above 0. Adds to `rows`.
+// StartFrame for some rows alone, on one thread, without a field: its rules for `out` hold for these rows, `out` has
+// its size already, and `covered` is 1 where coverage is above 0. Adds to `rows`.
 struct StartedRows {
-  std::vector<Region> extents;  // by style, as many as the caller made room for, who asks for none by leaving it empty
-  std::vector<std::pair<std::uint16_t, Region>> tiles;  // styles, without a map 0, and where in these rows they are
-  bool soft = false;                                    // somewhere that is painted coverage is between 0 and 1
+  std::vector<Region> extents;  // by style, as many as the caller made room for; empty: not needed
+  std::vector<std::pair<std::uint16_t, Region>> tiles;  // styles, without a map 0, and their regions in these rows
+  bool soft = false;                                    // some painted pixel has coverage between 0 and 1
 };
 void StartRows(const FrameInput& input, int y0, int y1, const ActiveRows& covered, Picture& out, StartedRows& rows);
 
-// With a map: `active` tells the covered pixels of a style in a tile, or none any more.
+// With a map: sets `active` to 1 on the covered pixels of a style in a tile, or clears it.
 void ActivateTile(const FrameInput& input, int style, const Region& tile, const ActiveRows& covered,
                   const ActiveRows& active);
 void DeactivateTile(const Region& tile, const ActiveRows& active);

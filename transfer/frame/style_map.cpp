@@ -9,7 +9,7 @@
 namespace scumble {
 namespace {
 
-// What ids are assigned; null: nothing. Neighbours mostly have one id, so the last answer is kept.
+// The assignment of an id; null: none. Neighbours mostly have one id, so the last result is kept.
 template <class Assigned>
 class Finder {
  public:
@@ -30,14 +30,14 @@ class Finder {
   const Assigned* found_;
 };
 
-// A layer that nothing is assigned by need not be there.
+// A layer without assignments need not be there.
 template <class Assigned>
 std::span<const float> Ids(const GuideSet& guides, Layer layer, const std::map<std::uint32_t, Assigned>& assigned) {
   return assigned.empty() ? std::span<const float>() : guides.Plane(layer);
 }
 
-// Calls visit(pixel, object's, material's), null where nothing is assigned, for stretches of pixels on all threads;
-// `begin` makes a visitor for a stretch.
+// Calls visit(pixel, object's, material's), null without an assignment, for ranges of pixels on all threads; `begin`
+// makes a visitor for a range.
 template <class Assignment, class Begin>
 void ForEachPixel(const GuideSet& guides, const Assignment& assignment, const Begin& begin) {
   constexpr std::size_t kStretch = 1 << 16;
@@ -71,7 +71,7 @@ StyleMap MapStyles(const GuideSet& guides, const StyleAssignment& assignment) {
 
 namespace {
 
-// Adds what one stretch of pixels counted when it is done with.
+// Adds the counts of one range of pixels when the range is done.
 class Counts {
  public:
   Counts(std::span<std::size_t> sums, std::mutex& mutex) : sums_(sums), mutex_(mutex), counts_(sums.size()) {}

@@ -1,4 +1,4 @@
-// Which of several styles paints which pixel.
+// Assigns one of several styles to each pixel.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@ namespace scumble {
 
 // Per pixel the index of its style, rows from the top.
 struct StyleMap {
-  static constexpr std::uint16_t kPassThrough = 0xffff;  // left as it is: the picture underneath shows, or nothing
-  // Not painted either, but catches shadows: see transfer.shadow of the first style.
+  static constexpr std::uint16_t kPassThrough = 0xffff;  // unchanged: the picture underneath shows, or nothing
+  // Not painted, but receives shadows: see transfer.shadow of the first style.
   static constexpr std::uint16_t kShadowCatcher = 0xfffe;
   static constexpr int kMaxStyles = 0xfffe;
   std::vector<std::uint16_t> style;
 };
 
-// Styles by the ids of objects and of materials; an object's own goes before its material's, and both before the
-// default.
+// Styles by the ids of objects and of materials. An object's style takes precedence over its material's, and both over
+// the default.
 struct StyleAssignment {
   std::map<std::uint32_t, std::uint16_t> of_object;
   std::map<std::uint32_t, std::uint16_t> of_material;
@@ -42,9 +42,9 @@ struct RankedAssignment {
   std::map<std::uint32_t, RankedStyle> of_material;
 };
 
-// On top of a map, where what is not named keeps its style: of a pixel's object and its material the one of higher rank
-// wins, the object's if they are of one rank. Adds to `pixels`, which has a place for each rank, how many each one got.
-// Otherwise as MapStyles.
+// Adds assignments to a map; pixels without one keep their style. Of a pixel's object and its material the one of
+// higher rank wins, the object's at equal rank. Adds the number of pixels of each rank to `pixels`, which has a place
+// for each. Otherwise as MapStyles.
 void AssignStyles(const GuideSet& guides, const RankedAssignment& assignment, StyleMap& map,
                   std::span<std::size_t> pixels);
 

@@ -4,7 +4,7 @@
 namespace scumble::internal {
 namespace {
 
-// Candidates the anchor's source to every free pixel near enough to land inside the exemplar.
+// Tries the anchor's source on every free pixel whose place lands inside the exemplar.
 void GrowChunk(const MatchInput& input, int anchor_x, int anchor_y, const Candidate& offer, SourceField& field) {
   const Source anchor = offer.source;
   PixelGuide of_anchor;
@@ -35,8 +35,7 @@ bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& p
   for (int y = input.region.y0; y < input.region.y1; ++y) {
     for (int x = input.region.x0; x < input.region.x1; ++x) {
       const std::size_t i = field.Index(x, y);
-      if (input.Wants(i))
-        field.level[i] = SourceField::kNoSource;  // free; what the field held before counts for nothing
+      if (input.Wants(i)) field.level[i] = SourceField::kNoSource;  // free; earlier values of the field do not count
     }
   }
   for (int y = input.region.y0; y < input.region.y1; ++y) {

@@ -8,7 +8,7 @@
 namespace scumble::internal {
 namespace {
 
-// What the pixel of a block was matched to.
+// The match of a block's pixel.
 struct Matched {
   PixelPosition pixel;
   Source source;
@@ -29,7 +29,7 @@ int FloorDivide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 // The block before the one whose centre a pixel has reached, along one axis.
 int BlockBefore(int position, int step) { return FloorDivide(2 * position + 1 - step, 2 * step); }
 
-// The field at the pixels of a grid: it is overwritten while it is upsampled.
+// The field at the pixels of a grid: a copy, because the field is overwritten by upsampling.
 class MatchedGrid {
  public:
   MatchedGrid(const MatchInput& input, const CoarseGrid& grid, const SourceField& field)
@@ -56,7 +56,7 @@ class MatchedGrid {
       in_one_piece_[b] = first && agrees(b + 1) && agrees(b + columns_) && agrees(b + columns_ + 1);
     }
   }
-  // Whether a block, the one right of it and the two below them were matched to one piece of paint.
+  // Whether a block, the one on its right and the two below them belong to one chunk.
   bool InOnePiece(int column, int row) const {
     return in_one_piece_[std::size_t(row - first_row_) * columns_ + (column - first_column_)] != 0;
   }
@@ -82,7 +82,7 @@ std::array<PixelPosition, 4> BlocksAround(int x, int y, int column, int row, int
   return blocks;
 }
 
-// What p takes from a block, if its guide is like p's there.
+// The candidate that p takes from a block, if its guide is like p's there.
 std::optional<Candidate> Accept(const MatchInput& input, const Matched& matched, int x, int y,
                                 const PixelGuide& guide) {
   const Source candidate{matched.source.x + (x - matched.pixel.x), matched.source.y + (y - matched.pixel.y)};
@@ -99,7 +99,7 @@ std::optional<Candidate> Accept(const MatchInput& input, const Matched& matched,
   return Candidate{candidate, matched.exemplar, matched.moved};
 }
 
-// What p takes from the blocks around it, and the level of that.
+// The candidate that p takes from the blocks around it, and its level.
 std::optional<Candidate> Best(const MatchInput& input, const MatchedGrid& matched,
                               const std::array<PixelPosition, 4>& blocks, int x, int y, const PixelGuide& guide,
                               int& level) {

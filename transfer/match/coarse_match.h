@@ -1,4 +1,5 @@
-// The source field matched at some pixels and taken on by those between: positions are upsampled, paint is not blurred.
+// Matches the source field at some pixels and upsamples it to those between: positions are upsampled, paint is not
+// blurred.
 #pragma once
 
 #include <bit>
@@ -29,19 +30,19 @@ class CoarseGrid {
   std::vector<PixelPosition> pixels_;  // x kNone: none
 };
 
-// How far from a pixel the pixels of its blocks may be; a match that covers so many pixels around a region has them.
+// The largest distance between a pixel and the pixels of its blocks; a match with this margin around a region has them
+// all.
 constexpr int CoarseReach(int step) { return 2 * step; }
 
-// The finest grid of seeds worth a look: one whose cells are larger than a block. On finer ones every block is its own
-// seed, or nearly so, which is what taking its own nearest neighbour means.
+// The finest useful grid of seeds: one whose cells are larger than a block. On finer grids nearly every block is its
+// own seed, which equals taking its own nearest neighbour.
 constexpr int CoarseLeastLevel(int step) { return std::bit_width(static_cast<unsigned>(step)); }
 
-// Fills the active pixels of input.region. `field` holds what the pixels of `grid` were matched to. A pixel p looks at
-// the four blocks whose centres are nearest, at the picture's edge fewer: each with its pixel q offers S(q) + (p - q),
-// and where that is usable and its guide is like p's, light included, p may take it. It takes the one of the coarsest
-// level, as the match itself does; of these the one whose guide is nearest to its own; of equal ones the first, its own
-// block's before the others' in row order. Where none is like it, p takes its own nearest neighbour.
-// False: asked to stop.
+// Fills the active pixels of input.region. `field` holds the matches of the pixels of `grid`. A pixel p tries the four
+// blocks whose centres are nearest, at the picture's edge fewer. A block with pixel q has the candidate S(q) + (p - q);
+// p may take it if it is usable and its guide is like p's, light included. It takes the one of the coarsest level, as
+// the match itself does; of these the one with the nearest guide; of equal ones the first, its own block's before the
+// others' in row order. If none is like it, p takes its own nearest neighbour. False: cancelled.
 bool UpsampleField(const MatchInput& input, const CoarseGrid& grid, SourceField& field, RowProgress& progress);
 
 }  // namespace scumble::internal

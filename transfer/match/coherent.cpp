@@ -1,14 +1,12 @@
-// StyleBlit (Sýkora et al. 2019, section 3.2) with seeds on surfaces instead of the screen; surface_seeds.h tells where
-// they are. Two things differ from styleblit.cpp:
+// StyleBlit (Sýkora et al. 2019, section 3.2) with seeds on surfaces instead of the screen; surface_seeds.h defines
+// their places. Two things differ from styleblit.cpp:
 //
-//   - A pixel belongs to one piece of each level by its place on the surface, and the piece's seed is found by all of
-//   its
-//     pixels together: the nearest to the piece's point, whatever the order in which threads come by.
-//   - The nearest neighbour of a seed that turns with its object wanders over the painting, and the paint would slide
-//   over
-//     the surface. So the seed's normal is rounded to a grid, and the paint stands still until the seed has turned by a
-//     cell of it; then this one piece changes. The grid of each piece is moved by a hash, so that they do not all
-//     change at once. Acceptance is the usual one, so no pixel is less like its paint than in StyleBlit.
+//   - A pixel belongs to one surface cell of each level by its place on the surface. The cell's seed is the pixel
+//     nearest to the cell's point, whatever the order of the threads.
+//   - If an object turns, the nearest neighbour of a seed moves over the exemplar, and the paint would slide over the
+//     surface. So the seed's normal is rounded to a grid, and the paint is static until the seed has turned by one grid
+//     cell; then this one chunk changes. A hash shifts the grid of each surface cell, so that they do not all change at
+//     once. Acceptance is the usual one, so no pixel is less like its paint than in StyleBlit.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -23,13 +21,13 @@
 namespace scumble::internal {
 namespace {
 
-// The cell's side as a share of the threshold. Without rounding, a figure that turns flickers nearly as much as with
-// seeds that are frozen to the screen (bench/flicker_bench.cpp); with 1, small highlights get lost.
+// The grid cell's side as a share of the threshold. Without rounding, a figure that turns flickers nearly as much as
+// with seeds that are frozen to the screen (bench/flicker_bench.cpp); with 1, small highlights get lost.
 constexpr float kSteadiness = 0.5f;
 constexpr float kLargestCell = 0.25f;
 
-// A normal rounded to the middle of a cell of side `cell`, on the map of the hemisphere that keeps areas (Lambert's
-// azimuthal one), whose grid is moved by a hash.
+// A normal rounded to the middle of a grid cell of side `cell`, on the equal-area map of the hemisphere (Lambert's
+// azimuthal one), whose grid a hash shifts.
 glm::vec3 Steady(const glm::vec3& normal, float cell, std::uint64_t key) {
   if (!(cell > 0.0f)) return normal;
   glm::vec3 facing = normal;
@@ -40,7 +38,7 @@ glm::vec3 Steady(const glm::vec3& normal, float cell, std::uint64_t key) {
   }
   const float to_map = std::sqrt(2.0f / (1.0f + facing.z));
   const auto round = [&](float value, int purpose) {
-    const float shift = PieceChance(key, purpose);
+    const float shift = CellChance(key, purpose);
     return (std::floor(value / cell + shift) - shift + 0.5f) * cell;
   };
   float x = round(facing.x * to_map, 1), y = round(facing.y * to_map, 2);
@@ -53,17 +51,18 @@ glm::vec3 Steady(const glm::vec3& normal, float cell, std::uint64_t key) {
   return {x * from_map, y * from_map, 1.0f - squared / 2.0f};
 }
 
-// The seeds of the pieces of one exponent: from a piece's key to the pixel nearest to its point. Any thread may add;
-// what is found does not depend on the order.
+// The seeds of the surface cells of one exponent: from a cell's key to the pixel nearest to its point. Any thread may
+// add; the result does not depend on the order.
 class SeedTable {
  public:
-  // For at most `pieces` different keys.
-  explicit SeedTable(std::size_t pieces)
-      : mask_(std::bit_ceil(2 * pieces + 2) - 1), slots_(std::make_unique<Slot[]>(mask_ + 1)) {}
+  // For at most `cells` different keys.
+  explicit SeedTable(std::size_t cells)
+      : mask_(std::bit_ceil(2 * cells + 2) - 1), slots_(std::make_unique<Slot[]>(mask_ + 1)) {}
 
   void Add(std::uint64_t key, float squared, std::uint32_t pixel) {
     std::atomic<std::uint64_t>& nearest = slots_[SlotOf(key)].nearest;
-    // Distances that are not negative rise with their bits; equal ones leave the choice to the lower pixel.
+    // The bits of distances that are not negative have the order of the values; among equal distances the lower pixel
+    // wins.
     const std::uint64_t mine = std::uint64_t(std::bit_cast<std::uint32_t>(squared)) << 32 | pixel;
     std::uint64_t other = nearest.load(std::memory_order_relaxed);
     while (mine < other && !nearest.compare_exchange_weak(other, mine, std::memory_order_relaxed)) {
@@ -92,7 +91,7 @@ class SeedTable {
   std::unique_ptr<Slot[]> slots_;
 };
 
-// How far a normal may be off where all else is right.
+// The largest distance of a normal if all other guides are equal.
 float NormalThreshold(const MatchInput& input) {
   return input.test.EuclideanThreshold() / (input.space ? input.space->normal_weight() : 1.0f);
 }
@@ -106,7 +105,7 @@ class CoherentMatch {
         octaves_(SurfaceOctaves(input.guides, input.active)),
         cell_(kSteadiness * std::min(kLargestCell, NormalThreshold(input))),
         settled_(input.guides.pixel_count(), 0) {
-    // Pixels that are not wanted belong to pieces as all do, but take nothing.
+    // Unwanted pixels belong to cells as all do, but take no paint.
     for (std::size_t i = 0; i < input.wanted.size(); ++i) settled_[i] = !input.wanted[i];
   }
 
@@ -114,7 +113,7 @@ class CoherentMatch {
     const Region& region = input_.region;
     const auto [low, high] = Exponents();
     for (int exponent = high; exponent >= low && !progress.cancelled(); --exponent) Settle(exponent);
-    // What no piece suited.
+    // Pixels that no seed suited.
     return ForEachRow(region, progress, [&](int y) {
       for (int x = region.x0; x < region.x1; ++x) {
         const std::size_t i = field_.Index(x, y);
@@ -127,14 +126,14 @@ class CoherentMatch {
   }
 
  private:
-  // The pieces that a pixel may lie in: e from floor(κ) + 1 on, for `levels` of them.
+  // The exponents at which a pixel may have a seed: e from floor(κ) + 1 on, for `levels` of them.
   bool Takes(std::size_t i, int exponent) const {
     if (octaves_[i] == kNoOctave) return false;
     const int above = exponent - static_cast<int>(std::floor(octaves_[i]));
     return above >= 1 && above <= input_.levels;
   }
 
-  // The smallest and the largest exponent that pixels of the region may lie in.
+  // The smallest and the largest such exponent of the region's pixels.
   std::pair<int, int> Exponents() const {
     float low = std::numeric_limits<float>::infinity(), high = -low;
     for (int y = input_.region.y0; y < input_.region.y1; ++y) {
@@ -154,14 +153,14 @@ class CoherentMatch {
     });
   }
 
-  // Finds the pieces and their seeds, then offers them to the pixels that have none yet.
+  // Finds the cells and their seeds, then tries the seeds on the pixels that have none yet.
   void Settle(int exponent) {
     if (!IsWanted(exponent)) return;
     const int width = input_.guides.width();
     const Region whole{0, 0, width, input_.guides.height()};
     key_.resize(input_.guides.pixel_count()), squared_.resize(key_.size());
     std::atomic<std::size_t> runs = 0;
-    Rows(whole, [&](int y) { runs.fetch_add(FindPieces(exponent, y), std::memory_order_relaxed); });
+    Rows(whole, [&](int y) { runs.fetch_add(FindCells(exponent, y), std::memory_order_relaxed); });
     SeedTable seeds(runs);
     Rows(whole, [&](int y) { AddSeeds(y, seeds); });
     Rows(input_.region, [&](int y) { CandidateRow(exponent, y, seeds); });
@@ -178,8 +177,8 @@ class CoherentMatch {
     return wanted;
   }
 
-  // Key 0 where there is none. Returns how often it changes in the row.
-  std::size_t FindPieces(int exponent, int y) {
+  // Key 0 where there is none. Returns the number of changes in the row.
+  std::size_t FindCells(int exponent, int y) {
     SurfaceGrid grid;
     std::size_t runs = 0;
     std::uint64_t last = 0;
@@ -189,9 +188,9 @@ class CoherentMatch {
       if (!Takes(i, exponent)) continue;
       const auto object = std::bit_cast<std::uint32_t>(object_[i]);  // any float will do
       if (!grid.Is(object, exponent)) grid = SurfaceGrid(input_.seeds, object, exponent);
-      const SurfacePiece piece = grid.Nearest(input_.guides.Vec3(Layer::kPref, i));
-      key_[i] = piece.key, squared_[i] = piece.squared;
-      if (piece.key != last) ++runs, last = piece.key;
+      const SurfaceCell cell = grid.Nearest(input_.guides.Vec3(Layer::kPref, i));
+      key_[i] = cell.key, squared_[i] = cell.squared;
+      if (cell.key != last) ++runs, last = cell.key;
     }
     return runs;
   }
@@ -232,9 +231,9 @@ class CoherentMatch {
     int level = 0;
   };
 
-  // Nothing where the piece is too small or too large to take part.
+  // Empty where the cell is too small or too large to take part.
   std::optional<Seed> MakeSeed(int exponent, std::uint64_t key, std::size_t pixel) const {
-    const int level = exponent - static_cast<int>(std::floor(octaves_[pixel] + PieceChance(key, 0)));
+    const int level = exponent - static_cast<int>(std::floor(octaves_[pixel] + CellChance(key, 0)));
     if (level < input_.least_level || level >= input_.levels) return std::nullopt;
     const int width = input_.guides.width();
     PixelGuide guide;
@@ -254,7 +253,7 @@ class CoherentMatch {
   std::vector<float> octaves_;
   float cell_;
   std::vector<std::uint8_t> settled_;
-  std::vector<std::uint64_t> key_;  // of each pixel's piece, at the exponent at work
+  std::vector<std::uint64_t> key_;  // of each pixel's cell, at the current exponent
   std::vector<float> squared_;
 };
 

@@ -1,5 +1,5 @@
-// Variants to fill a SourceField. All run inside the caller's oneTBB arena, write only active pixels of `region` that
-// are wanted, and leave the others as they are. False: the progress callback asked to stop.
+// Matchers: each fills a SourceField. All run inside the caller's oneTBB arena, write only wanted active pixels of
+// `region`, and leave the others unchanged. False: the progress callback cancelled.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +16,18 @@
 
 namespace scumble::internal {
 
-// What is compared of one pixel of the scene.
+// The guide values of one pixel of the scene.
 struct PixelGuide {
   glm::vec3 normal;
   float light;                        // exposed luminance, for the choice of exemplars
-  float rest[GuideSpace::kMaxExtra];  // only where a GuideSpace is matched in
+  float rest[GuideSpace::kMaxExtra];  // the extra dimensions of a GuideSpace; only with one
 };
 
-// What a match looks at. `field` has the picture's size already.
+// The input of a match. `field` has the picture's size already.
 struct MatchInput {
   const GuideSet& guides;
-  // 1: a pixel that this style paints. Empty where there is no such plane: then `covered` says it, and Paints alone
-  // must be asked.
+  // 1: a pixel that this style paints. Empty where there is no such plane: then `covered` replaces it, and only Paints
+  // reads it.
   std::span<const std::uint8_t> active;
   const PreparedExemplar& exemplar;
   const Illumination& illumination;
@@ -38,9 +38,9 @@ struct MatchInput {
   double variety_degrees = 0.0;
   int flat_reach = 16;  // pixels around a seed that must be flat for `variety`
   Region region;
-  std::span<const std::uint8_t> wanted = {};  // 1: active pixels that are to be matched; empty: all of them are
+  std::span<const std::uint8_t> wanted = {};  // 1: active pixels to match; empty: all of them
   int least_level = 1;                        // finer grids of seeds are left out
-  const GuideSpace* space = nullptr;          // null: normals alone are matched by, each counting 1
+  const GuideSpace* space = nullptr;          // null: matches by normals alone, with weight 1
   float brightness = 1.0f;                    // of the scene's radiance in that space
   // Pixels of coverage above 0 that this style paints; without painters it paints all.
   struct Covered {
@@ -67,16 +67,17 @@ struct MatchInput {
     return space ? space->Nearest(k, guide.normal, guide.rest) : exemplar.NearestNeighbour(guide.normal);
   }
 
-  // Whether a pixel may show `at` of exemplar k, its light included. Its normal is compared as if it were `moved`.
+  // Whether a pixel may show `at` of exemplar k, its light included. Its normal is compared after the guide offset
+  // `moved` is added.
   bool Alike(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
     const float extra = illumination.Error(guide.light, k);
     if (space) return space->Alike(test, k, guide.normal + moved, guide.rest, at, extra);
     return test.Alike(guide.normal + moved, exemplar.Normal(at.x, at.y), extra);
   }
-  // Whether nothing in the exemplar is like a seed within the threshold, `best` being the nearest: a shadow on what
-  // faces the lamp, where the exemplar shows all that faces it lit. Its pieces would end where they begin; instead the
-  // pixels around it are compared as if their guides were off by as much as the seed's (MoveAs). Normals alone are
-  // always compared as they are.
+  // Whether no source in the exemplar is within the threshold of a seed, `best` being the nearest: for example a shadow
+  // on a surface towards the light, where the exemplar shows all such surfaces lit. Its chunk would contain no pixel.
+  // Instead the pixels around it are compared with the seed's own difference as a guide offset. Normals alone are
+  // always compared directly.
   bool IsOff(const PixelGuide& seed, Source best, int k) const {
     return space && space->rest() > 0 && !space->Alike(test, k, seed.normal, seed.rest, best, 0.0f);
   }
@@ -86,7 +87,7 @@ struct MatchInput {
     for (int d = 0; d < space->rest(); ++d) guide.rest[d] += there[d] - seed.rest[d];
   }
 
-  // What is compared with the threshold there.
+  // The distance that is compared with the threshold there.
   float Distance(const PixelGuide& guide, glm::vec3 moved, Source at, int k) const {
     const float extra = illumination.Error(guide.light, k);
     if (space) return space->Distance(test, k, guide.normal + moved, guide.rest, at) + extra;
@@ -94,34 +95,34 @@ struct MatchInput {
   }
 };
 
-// A piece of an exemplar: its nearest neighbour to a pixel's guide, and the exemplar that suits the pixel's light.
+// A candidate source for a pixel: the nearest neighbour to its guide, in the exemplar that suits its light.
 struct Candidate {
   Source source;
   int exemplar = 0;
-  glm::vec3 moved{0.0f};  // by what the seed moved the source's guide: a pixel's own counts as if moved by the same
+  glm::vec3 moved{0.0f};  // guide offset of the seed's source: the pixel's own guide is shifted equally
 };
 Candidate OwnCandidate(const MatchInput& input, std::size_t pixel);
-Candidate OwnCandidate(const MatchInput& input, const PixelGuide& guide);  // the same for what was read of the pixel
+Candidate OwnCandidate(const MatchInput& input, const PixelGuide& guide);  // for a pixel whose guide has been read
 
 // Every pixel takes its own nearest neighbour.
 bool MatchLitSphere(const MatchInput& input, SourceField& field, RowProgress& progress);
 
-// Parallel StyleBlit: from coarse to fine, the nearest seed q offers its u*; pixel p takes u* + (p - q) where that is
-// usable and its guide is like p's, light included. A seed outside the picture or on a pixel that is not active fails
-// its level. If no level accepts, p takes its own u*. The plain form is written for reading and does everything; the
-// other looks at sixteen pixels at once, cannot match in a GuideSpace, and gives the same bytes.
+// Parallel StyleBlit, from coarse to fine: the nearest seed q has the source u*; pixel p takes u* + (p - q) if that is
+// usable and its guide is like p's, light included. A seed outside the picture or on an inactive pixel fails its level.
+// If no level accepts, p takes its own u*. The plain form is written for reading and does everything. The SIMD form
+// does sixteen pixels at once, cannot match in a GuideSpace, and gives equal bytes.
 bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgress& progress);
 bool MatchStyleBlitTiles(const MatchInput& input, SourceField& field, RowProgress& progress);
 inline bool MatchStyleBlit(const MatchInput& input, SourceField& field, RowProgress& progress) {
   return input.space ? MatchStyleBlitPlain(input, field, progress) : MatchStyleBlitTiles(input, field, progress);
 }
 
-// The same with seeds that live on the surface (transfer/seeds/surface_seeds.h): guides need pref, depth and object
-// ids. Seeds depend on all active pixels of the picture, whatever the region.
+// StyleBlit with seeds on the surface (transfer/seeds/surface_seeds.h): guides need pref, depth and object ids. Seeds
+// depend on all active pixels of the picture, whatever the region.
 bool MatchCoherent(const MatchInput& input, SourceField& field, RowProgress& progress);
 
-// Sýkora's algorithm 1: the first free pixel in row order is the next anchor; its u* is offered to every free pixel of
-// the picture by the same rule. One thread, O(chunks × pixels).
+// Sýkora's algorithm 1: the first free pixel in row order is the next anchor; its u* is tried on every free pixel of
+// the picture by the rule above. One thread, O(chunks × pixels).
 bool MatchBruteForce(const MatchInput& input, SourceField& field, RowProgress& progress);
 
 }  // namespace scumble::internal

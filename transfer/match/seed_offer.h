@@ -1,5 +1,5 @@
-// What a seed of StyleBlit offers to the pixels around it, and who takes it: the part that is the same wherever seeds
-// live, on the screen or on the surface.
+// The candidate of a StyleBlit seed for the pixels around it, and its acceptance. Shared by seeds on the screen and on
+// the surface.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@ namespace scumble::internal {
 
 struct SeedCandidate {
   Candidate offer;
-  // What `variety` moved the source's guide by: a pixel is compared as if its own guide were moved by the same.
+  // The guide offset of `variety`: a pixel's own guide is shifted equally before it is compared.
   glm::vec3 moved{0.0f};
   bool off = false;  // MatchInput::IsOff, by `best`
-  Source best{};     // the nearest neighbour, whatever `variety` took instead
+  Source best{};     // the nearest neighbour, whatever source `variety` took
 };
 
-// The seed of a pixel whose guide was read, before `variety`.
+// The seed at a pixel whose guide has been read, before `variety`.
 SeedCandidate SeedOf(const MatchInput& input, const PixelGuide& guide, const Candidate& offer);
 
-// `variety` may choose another source by the hash, where the surface around q is flat; whether it is.
+// If the surface around q is flat, `variety` may choose another source by the hash. Returns whether it is flat.
 bool VarySource(const MatchInput& input, int level, PixelPosition q, std::uint64_t hash, SeedCandidate& made);
 
-// What p may take of the seed at q, if anything: u + (p - q), where that is usable and its guide like p's, light
-// included.
+// The candidate of the seed at q for p: u + (p - q), if that is usable and its guide is like p's, light included;
+// otherwise empty.
 std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandidate& seed, PixelPosition q,
                                       PixelPosition p, const PixelGuide& guide);
 

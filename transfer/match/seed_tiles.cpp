@@ -137,7 +137,7 @@ TileSeeds::Run TileSeeds::RunFrom(int x, int y) const {
   const int column = (x - left_) >> level_, row = y >> level_;
   const int cell_x = left_ + (column << level_);
   const std::int64_t at = x - cell_x;
-  // By candidate in row order: x from the cell's left, and what is left of its squared distance when x² is taken out.
+  // By candidate in row order: x from the cell's left, and its squared distance without the part x².
   std::int64_t place[9], constant[9];
   int best = 0;
   std::int64_t best_distance = std::numeric_limits<std::int64_t>::max();

@@ -1,6 +1,6 @@
-// Seeds for the fast form of StyleBlit (styleblit_tiles.cpp): those that the pixels of one column of tiles can be near
-// to, on one level. Rows of cells are made when a pixel first asks for them and are forgotten when others need the
-// room; a seed's offer is made when a pixel first asks for it. Most seeds of fine levels are never asked.
+// Seeds for the SIMD form of StyleBlit (styleblit_simd.cpp): those near the pixels of one column of tiles, on one
+// level. Rows of cells are made on demand and dropped when others need the room; so is a seed's candidate. Most seeds
+// of fine levels are never needed.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +12,35 @@
 
 namespace scumble::internal {
 
-// Tiles that the fast match works by (styleblit_tiles.h); the first begins at the picture's corner. Wide enough that
-// seeds of coarse levels are shared by many pixels, small enough that threads have enough to share.
+// Tiles of the SIMD match (styleblit_simd.h); the first begins at the picture's corner. Wide enough that many pixels
+// share the seeds of coarse levels, small enough that there are tiles for all threads.
 inline constexpr int kTileWidth = 512, kTileHeight = 128;
 inline constexpr int kBlock = 16;  // pixels of a row that are matched at once
 static_assert(kTileWidth % kBlock == 0);
-// Up to this level, where a row has many seeds, nearest ones are found pixel by pixel.
+// Up to this level, where a row has many seeds, the nearest ones are found pixel by pixel.
 inline constexpr int kMaxSpreadLevel = 6;
 
-// What a seed at q offers: a pixel p may take `offset` + p of an exemplar.
+// The candidate of a seed at q: a pixel p may take `offset` + p of an exemplar.
 struct TileCandidate {
   enum State : std::uint8_t { kUnknown, kNone, kCandidates };
   std::int32_t offset_x = 0, offset_y = 0;  // u* - q
   State state = kUnknown;
   std::uint8_t exemplar = 0;
-  bool is_free = false;  // `variety` gave it freedom: the rest is in Freedom
+  bool is_free = false;  // `variety` may change its source: see SeedFreedom
 };
 
-// What belongs to a seed on a flat surface.
+// The variation of a seed on a flat surface.
 struct SeedFreedom {
-  glm::vec3 moved{0.0f};       // by what the source's guide was moved
-  SourceVariation::Tone tone;  // what is wanted here
+  glm::vec3 moved{0.0f};       // guide offset of the source
+  SourceVariation::Tone tone;  // the wanted tone here
 };
 
-// One level's seeds of one tile. A seed has an index, below kSlots · columns, that holds as long as its row of cells.
-// For one thread; rows must be asked for from the top down. On levels up to kMaxSpreadLevel their places are also laid
-// out pixel by pixel, for vector code.
+// One level's seeds of one tile. A seed's index, below kSlots · columns, is valid as long as its row of cells. For one
+// thread; rows must be requested from the top down. On levels up to kMaxSpreadLevel their places are also laid out
+// pixel by pixel, for vector code.
 class TileSeeds {
  public:
-  // Rows of cells that are kept at once: the three around a pixel, to a power of two.
+  // Rows of cells in memory at once: the three around a pixel, rounded up to a power of two.
   static constexpr int kSlots = 4;
   // For the pixels [x0, x0 + kTileWidth) of the rows of a tile. Keeps `input`.
   void Reset(const MatchInput& input, int level, int x0);
@@ -49,8 +49,8 @@ class TileSeeds {
   int columns() const { return columns_; }
   int left() const { return left_; }  // x of the first column's cells
 
-  // Makes the cells in the row `cell_row` and those above and below, as far as pixels [x, x + width) can be near to
-  // them: so that they can be asked for offers, and with Need for their places too.
+  // Makes the cells in row `cell_row` and those above and below that are near pixels [x, x + width). Their candidates
+  // are available then, and with Need their places too.
   void NeedCandidates(int cell_row, int x, int width) {
     NeedIn(offered_, cell_row, x, width, &TileSeeds::MakeCandidates);
   }
@@ -61,19 +61,19 @@ class TileSeeds {
   static int Slot(int cell_row) { return cell_row & (kSlots - 1); }
   int FirstOf(int cell_row) const { return Slot(cell_row) * columns_; }
 
-  // By pixel from left(), of a row that was needed: the seed of the pixel's cell, x from left(), and y from the top of
+  // By pixel from left(), for a row passed to Need: the seed of the pixel's cell, x from left(), and y from the top of
   // the cell. Only for levels up to kMaxSpreadLevel.
   const std::uint16_t* SpreadX(int cell_row) const { return spread_x_.data() + std::size_t(Slot(cell_row)) * spread_; }
   const std::uint16_t* SpreadY(int cell_row) const { return spread_y_.data() + std::size_t(Slot(cell_row)) * spread_; }
 
-  // Where a seed stands in the picture.
+  // A seed's place in the picture.
   PixelPosition Position(int index) const {
     const int slot = index / columns_, column = index - slot * columns_, row = offered_.row[slot];
     const PixelPosition in_cell = SeedInCell(input_->seeds, level_, column_hashes_[std::size_t(column)], row);
     return {left_ + (column << level_) + in_cell.x, (row << level_) + in_cell.y};
   }
 
-  // What a seed offers; made now if nobody asked before.
+  // A seed's candidate, made on the first call.
   const TileCandidate& Candidate(int index) {
     TileCandidate& offer = offers_[static_cast<std::size_t>(index)];
     if (offer.state == TileCandidate::kUnknown) Fill(index, offer);
@@ -89,7 +89,7 @@ class TileSeeds {
   };
   Two NearestTwo(int x, int y) const;
 
-  // From x on, the nearest seed along row y, and the first x beyond where it is another: at most the cell's end. The
+  // From x on, the nearest seed along row y, and the first x beyond with another seed: at most the cell's end. The
   // nearest seeds of a row are the lower envelope of parabolas, all of one curvature, so each has one interval.
   struct Run {
     int seed, end;
@@ -97,11 +97,11 @@ class TileSeeds {
   Run RunFrom(int x, int y) const;
 
  private:
-  // Which parts of which rows of cells are there, by slot. A part is 2^part_ columns: some 64 pixels.
+  // The parts of rows of cells in memory, by slot. A part is 2^part_ columns: some 64 pixels.
   struct Made {
     int row[kSlots];
     std::uint64_t parts[kSlots];
-    // What was asked for last is there, for a row and those beside it: nearly always the next question too.
+    // The last request is in memory, for a row and its neighbours: the next request is nearly always equal.
     int last_row;
     std::uint64_t last_parts;
   };

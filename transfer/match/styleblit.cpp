@@ -14,7 +14,7 @@ namespace scumble::internal {
 
 namespace {
 
-// Variety is freedom of direction: paint that is lit otherwise does not do.
+// Variety changes only the direction: the source must have equal light.
 Source ChooseInSpace(const MatchInput& input, const Candidate& own, int level, std::uint64_t hash) {
   if (!input.space) return ChooseAlike(input, own, level, hash);
   constexpr int kTries = 16;
@@ -59,17 +59,17 @@ std::optional<Candidate> TryCandidate(const MatchInput& input, const SeedCandida
 
 namespace {
 
-// What a seed on the screen offers.
+// The candidate of a seed on the screen.
 struct GridCandidate : SeedCandidate {
-  int flat = -1;  // which of the level's tones is wanted here; -1: the surface is not flat, or variety is 0
+  int flat = -1;  // index of the wanted tone in the level's tones; -1: the surface is not flat, or variety is 0
 };
 
-// The seeds of one level with what they offer; thousands of pixels share each.
+// The seeds of one level with their candidates; thousands of pixels share each.
 struct Level {
   SeedGrid grid;
   std::vector<std::optional<GridCandidate>> offers;  // empty: outside the picture, or not to be painted
-  std::vector<SourceVariation::Tone> tones;  // of the seeds on flat surfaces: that of the paint which fits them best
-  // Searches in many dimensions are slow, and most seeds of fine levels are never asked: theirs are made when they are.
+  std::vector<SourceVariation::Tone> tones;          // of the seeds on flat surfaces: that of their best-fitting paint
+  // Searches in many dimensions are slow, and most seeds of fine levels are never needed: theirs are made on demand.
   std::unique_ptr<std::once_flag[]> asked;
 
   Level(const MatchInput& input, int level) : grid(input.seeds, level, input.region), offers(grid.size()) {
@@ -104,7 +104,7 @@ struct Level {
   }
 };
 
-// What p may take from seed s of this level, if anything.
+// The candidate of seed s of this level that p accepts, or none.
 std::optional<Candidate> AcceptFrom(const MatchInput& input, Level& level, std::size_t s, int x, int y,
                                     const PixelGuide& guide) {
   const std::optional<GridCandidate>& offer = level.CandidateOf(input, s);
@@ -112,8 +112,8 @@ std::optional<Candidate> AcceptFrom(const MatchInput& input, Level& level, std::
   return TryCandidate(input, *offer, level.grid.Position(s), {x, y}, guide);
 }
 
-// What p may take from its nearest seed; near the border of two seeds of a flat surface, from the one that suits it
-// better.
+// The candidate that p accepts from its nearest seed; near the border of two seeds of a flat surface, from the one that
+// suits it better.
 std::optional<Candidate> Accept(const MatchInput& input, Level& level, int x, int y, const PixelGuide& guide) {
   if (level.tones.empty()) return AcceptFrom(input, level, level.grid.Nearest(x, y), x, y, guide);
   const auto [s, t, excess] = level.grid.NearestTwo(x, y);
@@ -130,7 +130,7 @@ std::optional<Candidate> Accept(const MatchInput& input, Level& level, int x, in
 }  // namespace
 
 bool MatchStyleBlitPlain(const MatchInput& input, SourceField& field, RowProgress& progress) {
-  // Level 0 has a seed on every pixel, so its offer is the pixel's own nearest neighbour, accepted or not.
+  // Level 0 has a seed on every pixel, so its candidate is the pixel's own nearest neighbour, accepted or not.
   std::vector<Level> levels;
   for (int level = input.levels - 1; level >= input.least_level; --level) levels.emplace_back(input, level);
   return ForEachRow(input.region, progress, [&](int y) {

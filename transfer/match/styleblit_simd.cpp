@@ -1,17 +1,14 @@
-// StyleBlit (Sýkora et al. 2019, section 3.2), sixteen pixels at a time. The same decisions as styleblit.cpp, and the
-// same bytes; that file says what is decided, this one how it is done fast:
+// StyleBlit (Sýkora et al. 2019, section 3.2), sixteen pixels at a time. The decisions and the bytes equal those of
+// styleblit.cpp. That file defines the decisions, this one makes them fast:
 //
-//   - The picture is cut into columns of tiles. A thread goes down its rows of one, or of all of them
-//   (band_transfer.h), with seeds
-//     of its own (tile_seeds.h).
+//   - The picture is cut into columns of tiles. A thread goes down its rows of one column, or of all of them
+//     (band_pipeline.h), with its own seeds (seed_tiles.h).
 //   - A block of sixteen pixels of one row goes through the levels from coarse to fine, until all of them are settled.
-//   Its
-//     nearest seeds are found by vector code that compares the nine candidates of each pixel (fine levels), or come
-//     from the runs of pixels that share one (coarse levels).
-//   - Each of these seeds, one or two on coarse levels, is offered to its pixels at once: their sources stand side by
-//   side
-//     in the exemplar, so both guides are read from sixteen places in a row.
-//   - What nothing accepts takes its own nearest neighbour.
+//     Its nearest seeds are found by vector code that compares the nine cells of each pixel (fine levels), or come from
+//     the runs of pixels that share one (coarse levels).
+//   - Each of these seeds, one or two on coarse levels, is tried on its pixels at once. Their sources stand side by
+//     side in the exemplar, so both guides are read from sixteen places in a row.
+//   - Pixels that accept none take their own nearest neighbour.
 #include "transfer/match/styleblit_simd.h"
 
 #include <tbb/blocked_range.h>
@@ -68,8 +65,8 @@ HWY_INLINE hn::Mask<Tag> MaskFrom(Tag tag, std::uint32_t bits) {
   return hn::LoadMaskBits(tag, bytes);
 }
 
-// Writes the lanes of the mask. (Highway's BlendedStore of 16 bits goes lane by lane before AVX-512; here the others
-// may be written too, with what they hold.)
+// Writes the lanes of the mask. (Highway's BlendedStore of 16 bits goes lane by lane before AVX-512; here the other
+// lanes may be rewritten with their own values.)
 template <class Tag>
 HWY_INLINE void StoreSome(Tag tag, hn::Mask<Tag> mask, hn::Vec<Tag> value, hn::TFromD<Tag>* to) {
   hn::StoreU(hn::IfThenElse(mask, value, hn::LoadU(tag, to)), tag, to);
@@ -81,20 +78,20 @@ HWY_INLINE std::uint32_t LanesBetween(int first, int last) {
   return (0xffffu << std::max(first, 0)) & (0xffffu >> (kBlock - 1 - std::min(last, kBlock - 1)));
 }
 
-// One row of a tile: what is known of its pixels, and what is found. Blocks count from the tile's left.
+// One row of a tile: its pixels' input and results. Blocks count from the tile's left.
 struct Row {
   static constexpr int kBlocks = kTileWidth / kBlock;
 
   int x, y;
   const float* normal[3];
-  const float* light;  // null: light does not matter
+  const float* light;  // null: light has no effect
   std::uint16_t wanted[kBlocks];
   std::uint16_t unsettled[kBlocks];
   std::int16_t source_x[kTileWidth], source_y[kTileWidth];
   std::uint16_t how[kTileWidth];          // level, and the exemplar times 256
-  std::uint16_t nearest[kTileWidth + 1];  // seeds of the level at work
-  glm::vec3 moved[kTileWidth];            // only where the field asks for it
-  float copy[4][kTileWidth];              // of a row whose last block is not whole: nothing is read beyond the picture
+  std::uint16_t nearest[kTileWidth + 1];  // seeds of the current level
+  glm::vec3 moved[kTileWidth];            // guide offsets; only where the field has them
+  float copy[4][kTileWidth];              // of a row whose last block is not whole: no read beyond the picture
 };
 
 class TileMatcher {
@@ -157,7 +154,7 @@ class TileMatcher {
     for (int block = first_block_; block < end_block_; ++block) Store(block, i + std::size_t(block) * kBlock);
   }
 
-  // In a tile where nothing is wanted there is nothing to make ready.
+  // A tile without wanted pixels needs no preparation.
   void Begin() {
     scratch_.begun = true;
     levels_.resize(static_cast<std::size_t>(std::max(0, input_.levels - input_.least_level)));
@@ -165,7 +162,7 @@ class TileMatcher {
     for (TileSeeds& seeds : levels_) seeds.Reset(input_, --level, tile_.x0);
   }
 
-  // How many blocks have pixels that are wanted; open_ lists them.
+  // Returns the number of blocks with wanted pixels; open_ lists them.
   int ReadRow(int y, std::size_t i) {
     Row& row = row_;
     row.x = tile_.x0, row.y = y;
@@ -211,7 +208,7 @@ class TileMatcher {
   }
 
   // The nearest seeds of as many pixels as the vectors have lanes: by squared distance among the nine cells around each
-  // pixel's own; ties to the first in row order. On the levels that are spread, squares stay below 2^15.
+  // pixel's own; ties to the first in row order. On levels up to kMaxSpreadLevel, squares stay below 2^15.
   template <class Tag>
   HWY_INLINE void FindNearest(Tag tag, const TileSeeds& seeds, int x, std::uint16_t* nearest) const {
     const int level = seeds.level(), h = 1 << level, row = row_.y >> level;
@@ -261,7 +258,7 @@ class TileMatcher {
     }
   }
 
-  // Bit i: pixel i + 1 is near to another seed than pixel i, or there is none.
+  // Bit i: pixel i + 1 has another nearest seed than pixel i, or there is none.
   HWY_INLINE std::uint32_t EndsOf(int block) const {
     const std::uint16_t* const nearest = row_.nearest + block * kBlock;
     std::uint32_t ends = 0;
@@ -300,7 +297,7 @@ class TileMatcher {
     group_[groups_++] = {static_cast<std::uint16_t>(block), static_cast<std::uint16_t>(lanes), seed};
   }
 
-  // Candidates a seed to a group, and lets those take it that are like it.
+  // Tries a seed on a group: the pixels that are like it take its candidate.
   HWY_INLINE void CandidateFor(TileSeeds& seeds, const Group& group) {
     const TileCandidate& offer = seeds.Candidate(group.seed);
     if (offer.state != TileCandidate::kCandidates) return;
@@ -324,8 +321,8 @@ class TileMatcher {
     }
   }
 
-  // Of the lanes, those whose source is usable and whose guide, moved, is like it: GuideTest's and Illumination's
-  // rules. `from` is the first lane's place in the row.
+  // The lanes whose source is usable and whose guide, after the offset, is like it: the rules of GuideTest and
+  // Illumination. `from` is the first lane's place in the row.
   HWY_INLINE std::uint32_t Alike(int from, const TileCandidate& offer, const glm::vec3* moved,
                                  std::uint32_t lanes) const {
     const int x = row_.x + from + offer.offset_x, y = row_.y + offer.offset_y;
@@ -357,7 +354,7 @@ class TileMatcher {
            });
   }
 
-  // `read` gives the exemplar's normals from lane i on. `moved`: null for nothing.
+  // `read` loads the exemplar's normals from lane i on. `moved`: null for no offset.
   template <class Read>
   HWY_INLINE std::uint32_t Compare(int from, int exemplar, const glm::vec3* moved, const Read& read) const {
     const auto bound = hn::Set(kFloats, input_.test.bound());
@@ -421,7 +418,7 @@ class TileMatcher {
     return guide;
   }
 
-  // Lanes that took what a seed on a flat surface offers: near its border they choose between two.
+  // For lanes that accepted a seed on a flat surface: near its border they choose between two seeds.
   HWY_NOINLINE void TakeFreely(TileSeeds& seeds, int seed, int from, std::uint32_t lanes) {
     const TileCandidate& offer = seeds.Candidate(seed);
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -475,7 +472,7 @@ class TileMatcher {
     }
   }
 
-  // The same of some lanes; the others are of this tile too.
+  // Store for some lanes; the other lanes belong to this tile too.
   HWY_INLINE void StoreLanes(int from, std::uint32_t lanes, std::size_t i) const {
     std::int8_t level[kBlock];
     std::uint8_t exemplar[kBlock];
@@ -496,12 +493,12 @@ class TileMatcher {
   const ExemplarRows rows_;
   const std::uint8_t* const wanted_;
   const int tile_x_;
-  Region tile_;  // what of it is matched
+  Region tile_;  // the part of it that is matched
   TileScratch& scratch_;
   std::vector<TileSeeds>& levels_;
   SourceField& field_;
   const bool squares_, light_counts_;
-  int blocks_, first_block_, end_block_;  // all of a row, and those that are looked at
+  int blocks_, first_block_, end_block_;  // all of a row, and the processed ones
   Row row_;
   int open_[Row::kBlocks + 1];  // blocks with pixels that are not settled
   int groups_ = 0;
@@ -523,7 +520,7 @@ void MatchTile(const TileJob& job) { HWY_DYNAMIC_DISPATCH(MatchTileRows)(job); }
 
 void ChooseAtBorder(const MatchInput& input, TileSeeds& seeds, const FreeChoice& choice, Candidate& taken) {
   const PixelPosition p = choice.p;
-  seeds.Need(p.y >> seeds.level(), p.x, 1);  // where a map told the nearest, places were not
+  seeds.Need(p.y >> seeds.level(), p.x, 1);  // if a map gave the nearest, places are not made yet
   const auto [s, t, excess] = seeds.NearestTwo(p.x, p.y);
   if (!InBorderBand(seeds.level(), excess)) return;
   const TileCandidate& second = seeds.Candidate(t);

@@ -7,11 +7,10 @@ namespace scumble::internal {
 namespace {
 
 constexpr float kFlatCosine = 0.99996192f;  // half a degree
-// Where a surface is flat for the 16 pixels that IsFlat looks at, a seed of this level has been taken already, so
-// choosing for the many seeds of finer levels would be for nothing. Small pictures have no level as coarse: their
-// coarsest counts.
+// Where a surface is flat for the 16 pixels that IsFlat reads, a seed of this level has been taken already, so choosing
+// for the many seeds of finer levels would be wasted. Small pictures have no level this coarse: their coarsest counts.
 constexpr int kLeastLevel = 4;
-// So much less error of tone (summed over channels of 0 … 65535) is worth the whole band, which is a quarter of the
+// This much less error of tone (summed over channels of 0 … 65535) is worth the whole band, which is a quarter of the
 // level's grid on either side of a border between seeds one grid step apart.
 constexpr std::int64_t kToneRange = 19661;
 
@@ -47,7 +46,7 @@ Source ChooseAlike(const MatchInput& input, const Candidate& own, int level, std
 
 SourceVariation::Tone WantedTone(const MatchInput& input, const Candidate& own, int level) {
   const SourceVariation& alternatives = input.exemplar.alternatives();
-  // The square rounds to whole cells, so that of a source at the rim may hold none that is usable.
+  // The square rounds to whole cells, so that the one around a source at the rim may hold no usable pixel.
   return alternatives.ToneAround(own.source, own.exemplar, 1 << (level - 1))
       .value_or(alternatives.ToneAt(own.source, own.exemplar));
 }

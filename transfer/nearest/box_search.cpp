@@ -15,7 +15,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, BoxTree::kWide>;
 
-// Sixteen squared distances in floats, off by the tree's slack at most, and which of them are within a bound.
+// Sixteen squared distances in floats, wrong by the tree's slack at most, and those that are within a bound.
 struct Sixteen {
   HWY_ALIGN float distance[BoxTree::kWide];
   std::uint32_t within = 0;  // a bit for each
@@ -27,8 +27,8 @@ HWY_INLINE std::uint32_t BitsOf(hn::Mask<Floats> mask) {
   return bits[0] | std::uint32_t(bits[1]) << 8;
 }
 
-// `off` gives, for a dimension and a lane, how far the query is from 16 things. Where the last bits may matter to the
-// answer, products are not fused with sums, so that all machines have the same.
+// `off` returns, for a dimension and a lane, the distance of the query from 16 boxes or points. Where the last bits may
+// change the result, products are not fused with sums, so that all machines agree.
 template <bool kFused, class Off>
 HWY_INLINE void Measure(int dimensions, float bound, const Off& off, Sixteen& found) {
   const Floats d;
@@ -44,8 +44,7 @@ HWY_INLINE void Measure(int dimensions, float bound, const Off& off, Sixteen& fo
   }
 }
 
-// `nearer`: boxes count where they may hold something at less than this share of the distance found; 1 unless
-// kApproximate.
+// `nearer`: a box counts if it may hold a point at less than this share of the distance found; 1 unless kApproximate.
 template <bool kApproximate>
 class Search {
  public:
@@ -64,7 +63,7 @@ class Search {
   }
 
  private:
-  // Squares summed as BoxTree::Nearest promises.
+  // Squares summed in the order that BoxTree::Nearest documents.
   HWY_INLINE double Distance(std::size_t place) const {
     const float* point = tree_.Leaf(place / BoxTree::kWide) + place % BoxTree::kWide;
     double sum = 0.0;
@@ -77,7 +76,7 @@ class Search {
 
   void Take(std::size_t place, double distance) {
     best_ = static_cast<std::uint32_t>(place), distance_ = distance;
-    // Whatever is farther in floats is farther; the least summand is for squares that underflow.
+    // A distance that is larger in floats by this bound is larger; the least summand is for squares that underflow.
     const double bound = distance * tree_.slack() * tree_.slack() + 1e-40;
     bound_ = InFloats(bound);
     box_bound_ = kApproximate ? InFloats(bound * nearer_squared_) : bound_;
@@ -107,7 +106,7 @@ class Search {
     }
   }
 
-  // Nearest boxes first, as long as they can hold what is wanted.
+  // Nearest boxes first, as long as they can hold a nearer point.
   void VisitNode(std::size_t level, std::size_t node) {
     const Floats d;
     const BoxTree::Level& boxes = tree_.levels()[level];

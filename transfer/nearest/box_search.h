@@ -7,10 +7,10 @@
 
 namespace scumble::internal {
 
-// The place of the point that BoxTree::Nearest asks for; `first` is a place to begin with.
+// The place of BoxTree::Nearest's point; the search begins at place `first`.
 std::uint32_t SearchBoxes(const BoxTree& tree, const float* query, std::uint32_t first);
 
-// The same of BoxTree::ApproximateNearest.
+// The search of BoxTree::ApproximateNearest.
 std::uint32_t SearchBoxesRoughly(const BoxTree& tree, const float* query, double error);
 
 }  // namespace scumble::internal

@@ -85,7 +85,7 @@ BoxTree::BoxTree(int dimensions, std::span<const float> points)
   points_.resize(leaves * kWide * size), index_.resize(leaves * kWide);
   tbb::parallel_for(std::size_t(0), leaves, [&](std::size_t leaf) {
     for (std::size_t lane = 0; lane < kWide; ++lane) {
-      // What fills the last leaf up is its last point once more, which changes no answer.
+      // Repeats the last point to fill the last leaf; this changes no result.
       const std::uint32_t index = sorted[std::min(leaf * kWide + lane, count - 1)];
       index_[leaf * kWide + lane] = index;
       for (std::size_t d = 0; d < size; ++d) points_[(leaf * size + d) * kWide + lane] = points[index * size + d];

@@ -1,4 +1,4 @@
-// The one place that decides whether two guides are alike.
+// The one test of whether two guides are alike.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < bound_;
   }
 
-  // `extra` is 0 or more; with 0 this is the same test.
+  // `extra` is 0 or more; with 0 this equals Alike(a, b).
   bool Alike(glm::vec3 a, glm::vec3 b, float extra) const {
     if (!(extra > 0.0f)) return Alike(a, b);
     const float left = threshold_ - extra;
@@ -37,7 +37,7 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) < left;
   }
 
-  // The same with more dimensions than the three: `rest` is their Rest, 0 or more.
+  // Alike with extra dimensions: `rest` is their Rest, 0 or more.
   bool Alike(glm::vec3 a, glm::vec3 b, float rest, float extra) const {
     const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
     const float left = threshold_ - extra;
@@ -48,7 +48,7 @@ class GuideTest {
     return std::fabs(dx) + std::fabs(dy) + std::fabs(dz) + rest < (extra > 0.0f ? left : bound_);
   }
 
-  // What further dimensions add: squares for kL2, absolute differences for kL1.
+  // The part of the extra dimensions: squares for kL2, absolute differences for kL1.
   float Rest(const float* a, const float* b, int dimensions) const {
     float sum = 0.0f;
     for (int d = 0; d < dimensions; ++d) {
@@ -58,19 +58,20 @@ class GuideTest {
     return sum;
   }
 
-  // Of what light leaves of the threshold, which is above 0: so is its square, where rounding would make it 0.
+  // The square of the threshold less the light's part, which is above 0: so is the square, where rounding would make it
+  // 0.
   static float SquareOf(float left) { return std::max(left * left, kLeastSquare); }
   static constexpr float kLeastSquare = std::numeric_limits<float>::denorm_min();
 
   float threshold() const { return threshold_; }
   ThresholdMetric metric() const { return metric_; }
-  // What a sum of squares (kL2) or of absolute differences is compared with where nothing is added.
+  // The bound for a sum of squares (kL2) or of absolute differences, without extra parts.
   float bound() const { return bound_; }
 
-  // About what the threshold is between unit normals, by the Euclidean metric.
+  // The approximate threshold between unit normals, by the Euclidean metric.
   float EuclideanThreshold() const { return metric_ == ThresholdMetric::kL2 ? threshold_ : threshold_ * (2.0f / 3.0f); }
 
-  // ‖a - b‖ as the test takes it.
+  // ‖a - b‖ in the test's metric.
   float Distance(glm::vec3 a, glm::vec3 b) const {
     const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
     if (metric_ == ThresholdMetric::kL2) return std::sqrt(dx * dx + dy * dy + dz * dz);

@@ -10,14 +10,14 @@
 namespace scumble {
 namespace {
 
-// Keeps the first of equal points, in order; returns which they were.
+// Keeps the first of equal points, in order; returns their indices.
 std::vector<std::uint32_t> RemoveRepeats(std::vector<float>& coordinates, std::size_t dimensions) {
   const std::size_t count = coordinates.size() / dimensions;
   for (float& value : coordinates) value += 0.0f;  // -0 and +0 are the same place
   std::size_t slots = 16;
   while (slots < 2 * count) slots *= 2;
   constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> table(slots, kFree);  // open addressing, of indices into what is kept
+  std::vector<std::uint32_t> table(slots, kFree);  // open addressing, of indices into the kept points
   std::vector<std::uint32_t> first;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {

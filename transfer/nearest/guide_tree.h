@@ -1,6 +1,6 @@
-// Nearest neighbours among guides of any number of dimensions (transfer/exemplar/guide_space.h makes them), in the
-// spirit of Friedman, Bentley, Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected Time", ACM TOMS
-// 1977. The tree is our own, transfer/nearest/box_tree.h says why.
+// Nearest neighbours among guides of any number of dimensions (made by transfer/exemplar/guide_space.h), after
+// Friedman, Bentley, Finkel, "An Algorithm for Finding Best Matches in Logarithmic Expected Time", ACM TOMS 1977. The
+// tree is our own; transfer/nearest/box_tree.h gives the reason.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ class BoxTree;
 }
 
 // Points of `dimensions` finite floats each. Equal points count once, as the first of them, so that a flat face of ten
-// thousand pixels costs what one pixel does. Building is O(n log n), on all threads of the caller's oneTBB arena; about
-// 5 bytes a coordinate and 8 a distinct point. Immutable; any number of threads may ask at once.
+// thousand pixels costs as much as one pixel. Building is O(n log n), on all threads of the caller's oneTBB arena;
+// about 5 bytes a coordinate and 8 a distinct point. Immutable; any number of threads may search at once.
 class PointTree {
  public:
   // `coordinates` holds the points one after the other; at least one.
@@ -34,16 +34,16 @@ class PointTree {
   // dimensions.
   std::uint32_t Nearest(std::span<const float> query) const;
 
-  // The same, quicker where the query resembles the one that left `place` as it is; any number will do to begin with.
+  // Nearest with a start: faster if the query resembles the one that set `place`; any number will do at first.
   std::uint32_t Nearest(std::span<const float> query, std::uint32_t& place) const;
 
-  // A point at most (1 + error) times as far as the nearest, error above 0; or for error 0 what Nearest has. Which one
+  // A point at most (1 + error) times as far as the nearest, error above 0; for error 0 the nearest itself. The choice
   // depends on points, query and error alone.
   std::uint32_t Nearest(std::span<const float> query, std::uint32_t& place, double error) const;
 
  private:
   int dimensions_;
-  std::vector<std::uint32_t> first_;  // of each distinct point, among all that were given
+  std::vector<std::uint32_t> first_;  // of each distinct point, among all points
   std::unique_ptr<internal::BoxTree> tree_;
 };
 

@@ -1,4 +1,4 @@
-// Nearest neighbours of directions by a table: what one lookup costs does not depend on the exemplar.
+// Nearest neighbours of directions by a table: the cost of one lookup does not depend on the exemplar.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace scumble {
 
-// The direction that a normal is looked up by, always of length 1 and facing the viewer: one that faces away looks at
-// the rim along its (x, y), (0, 0, -1) at the rim at +Y; NaN, infinity and the zero vector look straight at the viewer.
+// The direction for a lookup, always of length 1 and facing the viewer. A normal that faces away takes the rim along
+// its (x, y), (0, 0, -1) the rim at +Y; NaN, infinity and the zero vector take the direction of the viewer.
 inline glm::vec3 FacingDirection(glm::vec3 normal) {
   float length = std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
   if (!(length > 0.0f && length <= 3.0e38f)) return {0.0f, 0.0f, 1.0f};
@@ -37,9 +37,9 @@ inline glm::vec2 ProjectDirection(glm::vec3 facing) {
 // Its inverse; a point outside the disc is taken to its edge.
 glm::vec3 DirectionAt(double px, double py);
 
-// The hemisphere of directions that face the viewer, laid out on [-1, 1]² by ProjectDirection and cut into R × R cells;
-// each holds the source nearest to the direction at its centre. Equal areas, because a table over plain (x, y) is ten
-// times as coarse at the rim as in the middle. Immutable; any thread may ask.
+// The hemisphere of directions that face the viewer, mapped to [-1, 1]² by ProjectDirection and cut into R × R cells.
+// Each cell holds the source nearest to the direction at its centre. Equal areas, because a table over plain (x, y) is
+// ten times as coarse at the rim as in the middle. Immutable and thread-safe.
 class LookUpTable {
  public:
   static constexpr int kResolution = 512;
@@ -50,15 +50,16 @@ class LookUpTable {
 
   int resolution() const { return resolution_; }
 
-  // The source for a FacingDirection: at most Quantisation() further from it, in Euclidean distance, than the nearest.
+  // The source for a FacingDirection: at most Quantisation() farther from it, in Euclidean distance, than the nearest.
   Source Find(glm::vec3 direction) const { return cells_[CellOf(direction)]; }
 
-  // 4√2 / R. Two directions whose projections are d apart are at most 2d apart, a cell's corner is √2 / R from its
-  // centre, and the nearest source of the centre can be off by that distance going and coming.
+  // 4√2 / R. Two directions whose projections are d apart are at most 2d apart, and a cell's corner is √2 / R from its
+  // centre. By the triangle inequality, the centre's nearest source exceeds a direction's own by at most twice that
+  // distance.
   static double Quantisation(int resolution);
 
-  // For keeping: 4 bytes a cell, x before y, little endian. What was kept is taken only if it has the size that
-  // belongs to the resolution; whether its sources are usable is for the caller to see.
+  // For storage: 4 bytes a cell, x before y, little endian. Stored bytes are accepted only if their size fits the
+  // resolution; the caller checks whether the sources are usable.
   std::vector<std::byte> ToBytes() const;
   static std::optional<LookUpTable> FromBytes(std::span<const std::byte> bytes, int resolution);
 

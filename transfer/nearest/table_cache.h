@@ -1,4 +1,4 @@
-// Where look-up tables are kept between runs. This library knows no folders: the program says where.
+// Storage of look-up tables between runs. This library uses no folders: the program provides them.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace scumble {
 class TableCache {
  public:
   virtual ~TableCache() = default;
-  // What was stored under the key, a word of hexadecimal digits; nothing where there is none or it is damaged.
+  // The bytes stored under the key, a word of hexadecimal digits; empty where there are none or they are damaged.
   virtual std::optional<std::vector<std::byte>> Load(const std::string& key) = 0;
-  // A store that fails is the cache's own affair: the next run does the work again.
+  // A failed store is no error: the next run does the work again.
   virtual void Store(const std::string& key, std::span<const std::byte> bytes) = 0;
 };
 

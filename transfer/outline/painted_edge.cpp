@@ -11,10 +11,10 @@
 namespace scumble::internal {
 namespace {
 
-// Inside, shares of the band: how deep rim paint lies over an object's own, and how deep gaps in it may cut.
+// Inside, shares of the band: the depth of rim paint over an object's own, and the depth of gaps in it.
 constexpr float kInkDepth = 0.5f, kCutDepth = 0.2f;
 constexpr float kFadeFrom = 0.6f;  // of the depth, on either side
-constexpr float kFirm = 0.2f;      // of the full width: narrower edges grow faint
+constexpr float kFirm = 0.2f;      // of the full width: narrower edges fade
 
 using Texel = std::array<std::uint16_t, 4>;
 
@@ -23,7 +23,7 @@ float SmoothStep(float from, float to, float value) {
   return t * t * (3.0f - 2.0f * t);
 }
 
-// Everything that an edge needs to know of the picture, for the pixels of the region.
+// The edge's input from the picture, for the pixels of the region.
 class EdgePainter {
  public:
   explicit EdgePainter(const PaintedEdgeInput& input)
@@ -31,7 +31,7 @@ class EdgePainter {
         coverage_(input.guides.Plane(Layer::kCoverage)),
         bands_(Bands(input)),
         silhouettes_({input.guides, input.style, bands_, input.region, Margin(input)}),
-        pieces_(Pieces()) {}
+        segments_(Segments()) {}
 
   void Paint(int x, int y, float& coverage, std::uint16_t* pixel) const {
     const std::int32_t nearest = silhouettes_.Nearest(x, y);
@@ -44,16 +44,16 @@ class EdgePainter {
     const std::size_t exemplar = std::min<std::size_t>(input_.field.exemplar[owner], paint.rims.size() - 1);
     const RimPaint& rim = paint.rims[exemplar];
 
-    const float distance = Distance(outline, x, y, inside) / outline.width;  // where it would be at the full width
+    const float distance = Distance(outline, x, y, inside) / outline.width;  // the distance at full width
     const float depth = distance / static_cast<float>(rim.band()), share = depth > 0.0f ? depth / kInkDepth : -depth;
     if (share >= 1.0f) return;
     const float firm = SmoothStep(Silhouettes::kNarrowest, kFirm, outline.width);
-    Texel texel = RimAt(rim, pieces_[std::size_t(nearest)], {x + 0.5f, y + 0.5f}, distance, outline.width);
+    Texel texel = RimAt(rim, segments_[std::size_t(nearest)], {x + 0.5f, y + 0.5f}, distance, outline.width);
     if (paint.tint.active() && texel[3] > 0) {
       paint.tint.Apply(input_.guides.Vec3(Layer::kAlbedo, owner), texel.data());
     }
     const float opacity = static_cast<float>(texel[3]) / 65535.0f * (1.0f - SmoothStep(kFadeFrom, 1.0f, share)) * firm;
-    // What the silhouette itself leaves of the pixel, and rim paint over it.
+    // The part of the pixel inside the silhouette, with rim paint over it.
     float below = coverage_[p] > 0.0f ? static_cast<float>(pixel[3]) / 65535.0f * std::min(coverage_[p], 1.0f) : 0.0f;
     if (depth > 0.0f && outline.open) {
       const float cut = std::max(0.0f, 1.0f - depth / kCutDepth) * firm;
@@ -82,7 +82,7 @@ class EdgePainter {
     return margin;
   }
 
-  std::vector<RimSegments> Pieces() const {
+  std::vector<RimSegments> Segments() const {
     std::vector<float> radii;
     std::vector<SeedRules> seeds;
     int widest = 0;
@@ -95,8 +95,8 @@ class EdgePainter {
     return ChooseRimSegments({silhouettes_, radii, seeds, near});
   }
 
-  // Of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is that from the line through it,
-  // which has no steps as the pixels have.
+  // The distance of a pixel's centre from the outline, above 0 inside. Beside the outline pixel it is the distance from
+  // the line through it, which has no steps as the pixels have.
   static float Distance(const OutlinePixel& outline, int x, int y, bool inside) {
     const glm::vec2 to = outline.point - glm::vec2(x + 0.5f, y + 0.5f);
     const float across = to.x * outline.outward.x + to.y * outline.outward.y;
@@ -106,18 +106,18 @@ class EdgePainter {
     return inside ? length : -length;
   }
 
-  // The rim as the pieces show it at a point of the picture, so far inside its edge. A line that is drawn narrower is
-  // the mean of what it is drawn together from. Sums are of integers, like a vote's.
-  static Texel RimAt(const RimPaint& rim, const RimSegments& pieces, glm::vec2 at, float distance, float width) {
+  // The rim segments' paint at a point of the picture, this far inside its edge. A narrower line is the mean of the
+  // texels that it is shrunk from. Sums are of integers, like a vote's.
+  static Texel RimAt(const RimPaint& rim, const RimSegments& segments, glm::vec2 at, float distance, float width) {
     const int samples = std::clamp(static_cast<int>(std::ceil(1.0f / width - 0.01f)), 1, 8);
     std::uint64_t sum[4] = {0, 0, 0, 0}, total = 0;
-    for (std::size_t n = 0; n < pieces.piece.size() && pieces.weight[n] > 0.0f; ++n) {
-      const glm::vec2 way = pieces.piece[n].DirectionAt(at, rim.radius());
-      const auto weight = static_cast<std::uint64_t>(pieces.weight[n] * 256.0f + 0.5f);
+    for (std::size_t n = 0; n < segments.segment.size() && segments.weight[n] > 0.0f; ++n) {
+      const glm::vec2 direction = segments.segment[n].DirectionAt(at, rim.radius());
+      const auto weight = static_cast<std::uint64_t>(segments.weight[n] * 256.0f + 0.5f);
       for (int s = 0; s < samples; ++s) {
         const float off = (static_cast<float>(2 * s + 1 - samples) / static_cast<float>(2 * samples)) / width;
         const float radius = rim.radius() - distance + (samples > 1 ? off : 0.0f);
-        const std::uint16_t* texel = rim.At(way.x * radius, way.y * radius);
+        const std::uint16_t* texel = rim.At(direction.x * radius, direction.y * radius);
         for (int c = 0; c < 3; ++c) sum[c] += weight * texel[3] * texel[c];
         sum[3] += weight * texel[3], total += weight;
       }
@@ -133,7 +133,7 @@ class EdgePainter {
   std::span<const float> coverage_;
   std::vector<int> bands_;
   Silhouettes silhouettes_;
-  std::vector<RimSegments> pieces_;  // by outline pixel
+  std::vector<RimSegments> segments_;  // by outline pixel
 };
 
 }  // namespace

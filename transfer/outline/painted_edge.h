@@ -1,5 +1,5 @@
-// The painting's own silhouette as the picture's: where the brush ends raggedly round the sphere, it does so round
-// objects.
+// Continues the exemplar's own silhouette in the picture: where the brush ends raggedly around the sphere, it does so
+// around objects.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@
 
 namespace scumble::internal {
 
-// A style as the painted edge sees it.
+// A style's data for the painted edge.
 struct EdgePaint {
   std::span<const RimPaint> rims;  // by exemplar, all of one size; empty: this style's silhouettes stay exact
   SeedRules seeds;
-  Tint tint;  // an edge has its object's colour as the paint inside it has
+  Tint tint;  // an edge takes its object's colour, like the paint inside it
 };
 
 struct PaintedEdgeInput {
@@ -32,14 +32,14 @@ struct PaintedEdgeInput {
   Region region;
 };
 
-// How far from a pixel the object may be that its edge belongs to, for a rim with that band.
+// The largest distance of a pixel from the object whose edge it shows, for a rim with that band.
 constexpr int EdgeReach(int band) { return band + 2; }
 
-// Lays rim paint over both sides of silhouettes and borders with things further away, and thins `coverage` where the
-// painting thins out before nothing. What the rim shows at a distance from the sphere's edge goes to the same distance
-// from the silhouette, in the direction that rim_pieces.h chooses; on thin things (silhouettes.h) all distances shrink,
-// and the line with them. Reads coverage from the guides, changes `coverage` and `picture` inside the region. Colours
-// meet in linear light. O(pixels of the region + outline pixels · band²). False: asked to stop.
+// Lays rim paint over both sides of silhouettes and borders with objects farther away, and reduces `coverage` where the
+// exemplar's paint thins out before an empty background. Rim paint at a distance from the sphere's edge goes to an
+// equal distance from the silhouette, in the direction that rim_segments.h chooses. On thin objects (silhouettes.h) all
+// distances shrink, and the line with them. Reads coverage from the guides, changes `coverage` and `picture` inside the
+// region. Colours are blended in linear light. O(pixels of the region + outline pixels · band²). False: cancelled.
 bool PaintEdges(const PaintedEdgeInput& input, std::vector<float>& coverage, Picture& picture, RowProgress& progress);
 
 }  // namespace scumble::internal

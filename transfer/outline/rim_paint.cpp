@@ -12,8 +12,8 @@ namespace {
 
 // The band around the rim, as a share of the radius.
 constexpr double kBand = 0.035;
-// Where the sphere touches the picture's sides, the paint outside it is that of 30 degrees on: cosine and sine. It
-// melts into what the picture shows over a share of the band.
+// Where the sphere touches the picture's sides, the paint outside it is taken from 30 degrees farther on: cosine and
+// sine. It is blended into the picture's own paint over a share of the band.
 constexpr double kOnCosine = 0.8660254037844386, kOnSine = 0.5, kBlendWidth = 0.25;
 // The ring inside the rim that must be painted, and how much.
 constexpr double kRingFrom = 0.93, kLeastPaintOnRing = 0.05;
@@ -45,7 +45,7 @@ RimPaint::RimPaint(const Picture& picture, int size)
     const int v = std::clamp(static_cast<int>(std::floor(y + half)), 0, size - 1);
     return lifted.At(u, v);
   };
-  // Nothing deeper inside is ever looked at.
+  // Paint deeper inside is never used.
   const double from = half - 2.0 * band_ - 2.0;
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {

@@ -1,4 +1,4 @@
-// What an exemplar shows round its rim.
+// The paint around an exemplar's rim.
 #pragma once
 
 #include "scumble/picture.h"
@@ -8,19 +8,19 @@ namespace scumble {
 // Paint without its paper, on either side of the sphere's edge. Immutable.
 class RimPaint {
  public:
-  // `picture` is square and its sphere fills it; resized to `size`. The sphere touches the picture's sides, so four
-  // times round the rim what is outside it is not in the picture: there it is the paint outside the rim 30 degrees on.
+  // `picture` is square and its sphere fills it; resized to `size`. The sphere touches the picture's sides, so at four
+  // places of the rim the paint outside it is not in the picture: there the paint 30 degrees farther on is used.
   RimPaint(const Picture& picture, int size);
 
-  // Whether paint ends near the rim, on bare paper or on nothing. A sheet that is painted all over has no edge that
-  // could continue, nor has one without paint at the rim.
+  // Whether paint ends near the rim, on bare paper or on transparency. A sheet that is painted all over has no edge to
+  // continue, nor has one without paint at the rim.
   bool HasEdge() const { return has_edge_; }
   int size() const { return size_; }  // of the sphere, pixels
   float radius() const { return 0.5f * static_cast<float>(size_); }
-  // How far from the rim the edge is looked for, pixels on either side; at least 1.
+  // The distance from the rim within which the edge is searched, pixels on either side; at least 1.
   int band() const { return band_; }
-  // Colour and, as alpha, opacity, at a position from the sphere's centre in pixels, y down. Transparent further out
-  // than the band, and deeper inside than two.
+  // Colour and, as alpha, opacity, at a position from the sphere's centre in pixels, y down. Transparent farther out
+  // than the band, and deeper inside than two bands.
   const std::uint16_t* At(float x, float y) const;
 
  private:

@@ -14,12 +14,12 @@ namespace {
 constexpr int kCoarsest = 6, kFinest = 3;  // levels at the reference height
 constexpr float kLeastAlike = 0.955336f;   // cos of 0.3 rad
 constexpr float kFreedom = 0.5f;           // radians
-// Of the turn that the rim itself makes over half a cell: from there on a seed's direction is the outline's.
+// As a share of the rim's own turn over half a cell: from there on a seed's direction is the outline's.
 constexpr float kTurnOfNoFreedom = 0.75f;
 
 int Level(int level, int level_offset) { return std::clamp(level - level_offset, 0, 14); }
 
-// Rotates by 2 atan(half_tangent), with nothing but what is the same on every machine.
+// Rotates by 2 atan(half_tangent), with operations that are exact on every machine.
 glm::vec2 Turned(glm::vec2 v, float half_tangent) {
   const float square = half_tangent * half_tangent;
   const float cosine = (1.0f - square) / (1.0f + square), sine = 2.0f * half_tangent / (1.0f + square);
@@ -46,10 +46,11 @@ class OutlineSeeds {
     };
     seeds_.erase(std::unique(seeds_.begin(), seeds_.end(), same), seeds_.end());
     tbb::parallel_for(std::size_t(0), seeds_.size(),
-                      [&](std::size_t s) { seeds_[s].piece = PieceOf(seeds_[s].outline); });
+                      [&](std::size_t s) { seeds_[s].segment = SegmentOf(seeds_[s].outline); });
   }
 
-  // The piece of the seed nearest to outline pixel k, among those of its object in the 3 × 3 cells around; null: none.
+  // The segment of the seed nearest to outline pixel k, among those of its object in the 3 × 3 cells around; null:
+  // none.
   const RimSegment* Nearest(std::size_t k) const {
     const OutlinePixel& own = input_.silhouettes.outline()[k];
     const int h = LevelAt(k), row = own.y >> h, column = own.x >> h;
@@ -58,11 +59,11 @@ class OutlineSeeds {
     std::int64_t least = 0;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        const RimSegment* piece = Find(row + dy, column + dx, object);
-        if (!piece) continue;
-        const OutlinePixel& at = input_.silhouettes.outline()[std::size_t(piece->seed)];
+        const RimSegment* segment = Find(row + dy, column + dx, object);
+        if (!segment) continue;
+        const OutlinePixel& at = input_.silhouettes.outline()[std::size_t(segment->seed)];
         const std::int64_t ex = at.x - own.x, ey = at.y - own.y, distance = ex * ex + ey * ey;
-        if (!best || distance < least) best = piece, least = distance;
+        if (!best || distance < least) best = segment, least = distance;
       }
     }
     return best;
@@ -74,7 +75,7 @@ class OutlineSeeds {
     std::uint32_t object;
     std::int32_t outline;
     std::int64_t distance;  // squared, to the cell's own seed
-    RimSegment piece = {};
+    RimSegment segment = {};
   };
 
   int LevelAt(std::size_t k) const { return Level(level_, input_.seeds[styles_[k]].level_offset); }
@@ -86,7 +87,7 @@ class OutlineSeeds {
     return ex * ex + ey * ey;
   }
 
-  RimSegment PieceOf(std::int32_t seed) const {
+  RimSegment SegmentOf(std::int32_t seed) const {
     const OutlinePixel& at = input_.silhouettes.outline()[std::size_t(seed)];
     const std::size_t style = styles_[std::size_t(seed)];
     const SeedRules& rules = input_.seeds[style];
@@ -103,10 +104,10 @@ class OutlineSeeds {
                          [](const Seed& a, const auto& b) { return std::tie(a.row, a.column, a.object) < b; });
     if (found == seeds_.end() || found->row != row || found->column != column || found->object != object)
       return nullptr;
-    return &found->piece;
+    return &found->segment;
   }
 
-  // 1 where the outline is straight over half a cell to either side, 0 where it turns as the rim does.
+  // 1 where the outline is straight over half a cell to either side, 0 where it turns as strongly as the rim.
   float FreedomAt(std::size_t k, int h) const {
     const auto outline = input_.silhouettes.outline();
     const OutlinePixel& own = outline[k];
@@ -148,23 +149,23 @@ std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
     return pixel.x >= region.x0 - grown && pixel.y >= region.y0 - grown && pixel.x < region.x1 + grown &&
            pixel.y < region.y1 + grown;
   };
-  // Each outline pixel's own piece …
+  // Each outline pixel's own segment …
   std::vector<RimSegment> own(outline.size());
   tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
     const OutlinePixel& pixel = outline[k];
     if (!within(pixel, widest)) return;
     own[k] = {pixel.point, pixel.outward, static_cast<std::int32_t>(k)};
     for (const OutlineSeeds& seeds : levels) {
-      const RimSegment* piece = seeds.Nearest(k);
-      if (!piece) continue;
-      const OutlinePixel& at = outline[std::size_t(piece->seed)];
-      const RimSegment straight{at.point, at.outward, piece->seed};
+      const RimSegment* segment = seeds.Nearest(k);
+      if (!segment) continue;
+      const OutlinePixel& at = outline[std::size_t(segment->seed)];
+      const RimSegment straight{at.point, at.outward, segment->seed};
       if (glm::dot(straight.DirectionAt(pixel.point, input.radii[styles[k]]), pixel.outward) < kLeastAlike) continue;
-      own[k] = *piece;
+      own[k] = *segment;
       return;
     }
   });
-  // … and those of the pixels beside it, by how many have them.
+  // … and those of the pixels beside it, weighted by their number.
   std::vector<RimSegments> chosen(outline.size());
   tbb::parallel_for(std::size_t(0), outline.size(), [&](std::size_t k) {
     const OutlinePixel& pixel = outline[k];
@@ -174,17 +175,18 @@ std::vector<RimSegments> ChooseRimSegments(const RimSegmentInput& input) {
     silhouettes.ForNear(pixel.x, pixel.y, melt(k), [&](std::size_t other) {
       if (silhouettes.ObjectOf(outline[other]) != object || glm::dot(outline[other].outward, pixel.outward) < 0.5f)
         return;
-      for (auto& [piece, count] : votes) {
-        if (piece.seed == own[other].seed && piece.outward == own[other].outward) return void(count += 1.0f);
+      for (auto& [segment, count] : votes) {
+        if (segment.seed == own[other].seed && segment.outward == own[other].outward) return void(count += 1.0f);
       }
       votes.emplace_back(own[other], 1.0f);
     });
     std::stable_sort(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-    RimSegments& pieces = chosen[k];
-    const std::size_t kept = std::min(votes.size(), pieces.piece.size());
+    RimSegments& segments = chosen[k];
+    const std::size_t kept = std::min(votes.size(), segments.segment.size());
     float sum = 0.0f;
     for (std::size_t n = 0; n < kept; ++n) sum += votes[n].second;
-    for (std::size_t n = 0; n < kept; ++n) pieces.piece[n] = votes[n].first, pieces.weight[n] = votes[n].second / sum;
+    for (std::size_t n = 0; n < kept; ++n)
+      segments.segment[n] = votes[n].first, segments.weight[n] = votes[n].second / sum;
   });
   return chosen;
 }

@@ -12,16 +12,16 @@
 namespace scumble::internal {
 namespace {
 
-// Of the distance: what is nearer by more than the first stands before, and fully so from the second on.
+// Shares of the distance: an object nearer by more than the first is in front, and fully so from the second on.
 constexpr float kLeastStep = 0.01f, kFullStep = 0.03f;
-// The step back from which on an object that is behind at the outline is not so beside it.
+// The step back from which on an object behind the outline is not behind the pixels beside it.
 constexpr float kMostBefore = 0.1f;
-// In bands: thinner than the first an object has no painted edge, thicker than the second it has the whole; and the
-// same of the gap to what it stands beside.
+// In bands: an object thinner than the first has no painted edge, one thicker than the second has the whole. The other
+// two are for the gap to the next object.
 constexpr float kThin = 1.0f, kThick = 8.0f, kNarrow = 0.5f, kWide = 3.0f;
-// How far around an outline pixel its direction is taken from, in bands.
+// The distance around an outline pixel over which its direction is measured, in bands.
 constexpr float kDirectionReach = 0.5f;
-constexpr int kPointReach = 2;  // pixels around, for where between pixels the outline runs
+constexpr int kPointReach = 2;  // pixels around, to place the outline between pixels
 
 }  // namespace
 
@@ -54,7 +54,7 @@ std::uint32_t Silhouettes::ObjectOf(const OutlinePixel& pixel) const {
   return IdOf(object_[input_.guides.Index(pixel.x, pixel.y)]);
 }
 
-// How clearly pixel `front` of an object stands before what pixel `behind` shows, 0 … 1.
+// How clearly pixel `front` of an object is in front of the surface at pixel `behind`, 0 … 1.
 float Silhouettes::Step(std::size_t front, std::size_t behind) const {
   if (!(coverage_[behind] > 0.0f)) return 1.0f;
   if (object_[front] == object_[behind]) return 0.0f;
@@ -68,7 +68,7 @@ bool Silhouettes::Inside(const OutlinePixel& outline, std::size_t pixel) const {
   return coverage_[pixel] > 0.0f && object_[pixel] == object_[own] && StyleOf(pixel) == StyleOf(own);
 }
 
-// An object that is behind at the outline is so beside it: ground comes nearer below what stands on it.
+// An object that is behind at the outline is behind beside it too: ground comes nearer below the objects on it.
 bool Silhouettes::Behind(const OutlinePixel& outline, std::size_t pixel) const {
   const std::size_t own = input_.guides.Index(outline.x, outline.y);
   if (Step(own, pixel) > 0.0f) return true;
@@ -113,8 +113,8 @@ void Silhouettes::Find() {
   row_.push_back(static_cast<std::uint32_t>(outline_.size()));
 }
 
-// Outward and the point of the outline, from how the object and what is behind it share the pixels around. What stands
-// before either counts for neither.
+// Sets the outward direction and the point of the outline, from the shares of the object and of its background in the
+// pixels around. Surfaces in front of both count for neither.
 void Silhouettes::Straighten(OutlinePixel& pixel) const {
   const GuideSet& guides = input_.guides;
   const int reach = std::max(kPointReach, static_cast<int>(kDirectionReach * static_cast<float>(BandOf(pixel)) + 0.5f));
@@ -137,14 +137,14 @@ void Silhouettes::Straighten(OutlinePixel& pixel) const {
   }
   const float length = std::sqrt(toward_x * toward_x + toward_y * toward_y);
   if (length > 0.5f) pixel.outward = {toward_x / length, toward_y / length};
-  // A line through the square's centre has this much of itself inside; moving it by t moves t times that over.
+  // A line through the square's centre has this length inside; moving it by t moves t times that area over.
   const float inside = (2 * kPointReach + 1) / std::max(std::fabs(pixel.outward.x), std::fabs(pixel.outward.y));
   const float beyond = std::clamp(0.5f * near / inside, -0.5f, 1.0f);
   pixel.point = glm::vec2(pixel.x + 0.5f, pixel.y + 0.5f) + beyond * pixel.outward;
 }
 
-// How much of the full width there is room for, 0 … 1: inside to the opposite outline, outside to the next thing that
-// is not behind. Both are walked to in steps of a pixel. Under what stands before it an object is taken to go on.
+// The share of the full width that has room, 0 … 1: inside up to the opposite outline, outside up to the next object
+// that is not behind. Both are searched in steps of a pixel. Behind an occluder an object is assumed to continue.
 float Silhouettes::Room(const OutlinePixel& pixel) const {
   const GuideSet& guides = input_.guides;
   const float band = static_cast<float>(BandOf(pixel)), own_depth = depth_[guides.Index(pixel.x, pixel.y)];
@@ -167,7 +167,7 @@ float Silhouettes::Room(const OutlinePixel& pixel) const {
   return std::clamp(std::min(by_thickness, by_gap), 0.0f, 1.0f);
 }
 
-// Directions and widths, by those of the same side of the object nearby.
+// Averages directions and widths with those of the object's same side nearby.
 void Silhouettes::Smooth() {
   struct Smoothed {
     glm::vec2 outward;
@@ -222,7 +222,7 @@ void Silhouettes::FindNearest() {
       });
 }
 
-// The same where the nearest of all does not concern the pixel: ties to the lowest (x, y), too.
+// Nearest where the nearest of all does not concern the pixel: ties to the lowest (x, y), too.
 std::int32_t Silhouettes::Search(int x, int y) const {
   std::int32_t best = kNone;
   int least = 0;

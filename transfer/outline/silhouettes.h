@@ -1,4 +1,4 @@
-// Where the outlines of objects are in a picture: the distance field that painted edges follow.
+// The outlines of objects in a picture: the distance field that painted edges follow.
 #pragma once
 
 #include <cstdint>
@@ -11,31 +11,33 @@
 
 namespace scumble::internal {
 
-// A pixel of an object that has another, further away, or nothing beside it.
+// A pixel of an object beside a farther object or the background.
 struct OutlinePixel {
   int x = 0, y = 0;
   glm::vec2 point{0.0f};     // of the outline, picture coordinates, y down
   glm::vec2 outward{0.0f};   // unit
-  float width = 1.0f;        // 0 … 1: how wide an edge may be here, as a share of its full width; see below
+  float width = 1.0f;        // 0 … 1: the possible width of an edge here, as a share of its full width; see below
   std::uint32_t beyond = 0;  // index of a pixel on the other side
-  bool open = false;         // nothing is on the other side
+  bool open = false;         // the background is on the other side
 };
 
 struct SilhouetteInput {
   const GuideSet& guides;                // with object and depth
   std::span<const std::uint16_t> style;  // per pixel; empty: style 0 everywhere
-  std::span<const int> bands;            // by style: pixels on either side of the outline; 0: not looked for
-  Region region;                         // whose pixels Nearest answers for
-  int margin = 0;                        // pixels around it in which outlines are found too
+  std::span<const int> bands;            // by style: pixels on either side of the outline; 0: no outline
+  Region region;                         // whose pixels Nearest serves
+  int margin = 0;                        // pixels around it whose outlines are found too
 };
 
-// The outlines of objects in front of something else. Object a stands before b where they meet if b is further from the
+// The outlines of objects in front of others or of the background. Object a is in front of b where they meet if b is
+// farther from the
 // camera by more than 1% of its distance; the outline tapers off below 3%. Pixels that no style paints
-// (StyleMap::kPassThrough and kShadowCatcher) count as nothing, unless they stand before the object. Self-occlusion
+// (StyleMap::kPassThrough and kShadowCatcher) count as background, unless they are in front of the object.
+// Self-occlusion
 // makes no outline.
 //
 // `width` falls with the thickness of the object there, full from 8 bands on and 0 below one band, where the outline
-// stays exact; and with the gap to the next thing that is not behind, full from 3 bands on and 0 below half a band. It
+// stays exact; and with the gap to the next object that is not behind, full from 3 bands on and 0 below half a band. It
 // is averaged over a band along the outline. Below kNarrowest nothing is painted.
 class Silhouettes {
  public:
@@ -48,14 +50,14 @@ class Silhouettes {
   template <class Visit>
   void ForNear(int x, int y, int reach, const Visit& visit) const;
 
-  static constexpr float kNarrowest = 0.06f;  // what is narrower is no edge
+  static constexpr float kNarrowest = 0.06f;  // narrower edges are left out
   static constexpr std::int32_t kNone = -1;
-  // The nearest outline pixel that concerns pixel (x, y) of the region: one of its own object, or one of an object that
-  // stands before it, no further off than its width of its band and a pixel; kNone if there is none.
+  // The nearest outline pixel that concerns pixel (x, y) of the region, of its own object or of one in front of it. Its
+  // distance is at most its width times its band plus a pixel. kNone if there is none.
   std::int32_t Nearest(int x, int y) const;
-  // Whether an edge along the outline reaches the pixel, and nothing stands before it there.
+  // Whether an edge along the outline reaches the pixel, and no object is in front of it there.
   bool Concerns(const OutlinePixel& outline, int x, int y) const;
-  // Whether the pixel shows the object that the outline belongs to, so is inside of it.
+  // Whether the pixel shows the outline's own object, so is inside of it.
   bool Inside(const OutlinePixel& outline, std::size_t pixel) const;
   int BandOf(const OutlinePixel& outline) const { return Band(input_.guides.Index(outline.x, outline.y)); }
   std::size_t StyleOf(const OutlinePixel& outline) const { return StyleOf(input_.guides.Index(outline.x, outline.y)); }
@@ -80,7 +82,7 @@ class Silhouettes {
   Region around_;
   std::vector<OutlinePixel> outline_;
   std::vector<std::uint32_t> row_;     // of the first outline pixel of each row of around_, and one more
-  std::vector<int> row_reach_;         // by row of around_: the furthest that an edge in it reaches
+  std::vector<int> row_reach_;         // by row of around_: the largest reach of an edge in it
   std::vector<std::int32_t> nearest_;  // by pixel of the region
   int widest_ = 0;
 };

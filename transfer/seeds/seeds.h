@@ -14,7 +14,7 @@ struct SeedRules {
   std::int64_t time_step = 0;
   float jitter = 1.0f;
   int level_offset = 0;  // added to the level that is hashed: a preview of half the size, which has one level less,
-                         // then strews its seeds where the final picture does
+                         // then places its seeds as the final picture does
 
   bool operator==(const SeedRules&) const = default;
 };
@@ -28,9 +28,9 @@ struct PixelPosition {
 // (seed, time step, level, cell) and scaled by the jitter. Cells outside the picture have seeds too.
 PixelPosition SeedOfCell(const SeedRules& rules, int level, int cell_x, int cell_y);
 
-// The same in steps, for those who walk along rows or columns of cells. What (seed, time step, level) hash to; HashOn
-// with the cell's column makes `column` of it, and with that comes how far a seed stands from its cell's corner, in [0,
-// 2^level) each way.
+// SeedOfCell in steps, for loops along rows or columns of cells. SeedLevel hashes (seed, time step, level); HashOn with
+// the cell's column makes `column` of it. From that follows the seed's offset from its cell's corner, in [0, 2^level)
+// each way.
 inline std::uint64_t SeedLevel(const SeedRules& rules, int level) {
   return Hash(rules.seed, rules.time_step, level + rules.level_offset);
 }
@@ -42,7 +42,7 @@ inline PixelPosition SeedInCell(const SeedRules& rules, int level, std::uint64_t
   return {static_cast<int>(h * jitter_x), static_cast<int>(h * jitter_y)};  // rounded down, as neither is negative
 }
 
-// All seeds that pixels of a region can be near to, on one level.
+// All seeds near pixels of a region, on one level.
 class SeedGrid {
  public:
   SeedGrid(const SeedRules& rules, int level, const Region& region);
@@ -50,7 +50,7 @@ class SeedGrid {
   int level() const { return level_; }
   std::size_t size() const { return seeds_.size(); }
   PixelPosition Position(std::size_t index) const { return seeds_[index]; }
-  // Column and row of the cell that a seed belongs to: the same in a preview of half the size, on the level below.
+  // Column and row of a seed's cell: equal in a preview of half the size, on the level below.
   PixelPosition Cell(std::size_t index) const {
     return {first_column_ + static_cast<int>(index % columns_), first_row_ + static_cast<int>(index / columns_)};
   }
@@ -59,7 +59,7 @@ class SeedGrid {
   // distance; ties to the first in row order.
   std::size_t Nearest(int x, int y) const;
 
-  // The same and the nearest of the others among those cells, by the same rule.
+  // The nearest seed and the second nearest among those cells, by the same rule.
   struct Two {
     std::size_t nearest;
     std::size_t second;

@@ -26,7 +26,7 @@ double Distance(const glm::vec3& a, const glm::vec3& b) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-// The objects of a picture, numbered as they are met.
+// The objects of a picture, numbered in order of appearance.
 class ObjectNumbers {
  public:
   std::uint32_t Of(float id) {
@@ -57,7 +57,7 @@ std::vector<float> SurfaceOctaves(const GuideSet& guides, std::span<const std::u
   const auto distance_of = [&](std::size_t i) {
     return !flat && depth[i] > 0.0f && std::isfinite(depth[i]) ? double(depth[i]) : 1.0;
   };
-  // The shorter of the steps to the right and down: surfaces that are seen at an angle stretch in one direction.
+  // The shorter of the steps to the right and down: surfaces seen at an angle stretch in one direction.
   const auto step_of = [&](int x, int y, std::size_t i) {
     double step = std::numeric_limits<double>::infinity();
     const auto look = [&](std::size_t j) {
@@ -132,7 +132,7 @@ void SurfaceGrid::Fill(int neighbour) {
   filled_ |= 1u << neighbour;
 }
 
-SurfacePiece SurfaceGrid::Nearest(const glm::vec3& place) {
+SurfaceCell SurfaceGrid::Nearest(const glm::vec3& place) {
   std::int64_t cube[3];
   float local[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -143,7 +143,7 @@ SurfacePiece SurfaceGrid::Nearest(const glm::vec3& place) {
     local[axis] = static_cast<float>(at - low);
   }
   MoveTo(cube);
-  // How far away a cube is at the least, by axis and side.
+  // The least distance of a cube, by axis and side.
   const float apart[3][3] = {{local[0] * local[0], 0.0f, (1.0f - local[0]) * (1.0f - local[0])},
                              {local[1] * local[1], 0.0f, (1.0f - local[1]) * (1.0f - local[1])},
                              {local[2] * local[2], 0.0f, (1.0f - local[2]) * (1.0f - local[2])}};
@@ -157,7 +157,7 @@ SurfacePiece SurfaceGrid::Nearest(const glm::vec3& place) {
   };
   look(13);
   constexpr float kSlack = 1.0001f;  // a bound that was rounded up must not hide the nearest
-  // The nearer side first: it leaves the least to look at.
+  // The nearer side first: then the fewest cubes are visited.
   const auto side = [&](int axis, int step) { return step == 0 ? 1 : (local[axis] < 0.5f) == (step == 1) ? 0 : 2; };
   for (int k = 0; k < 3; ++k) {
     const int z = side(2, k);
@@ -174,6 +174,6 @@ SurfacePiece SurfaceGrid::Nearest(const glm::vec3& place) {
   return {key_[best], squared};
 }
 
-float PieceChance(std::uint64_t key, int purpose) { return UnitFloat(Hash(key, purpose)); }
+float CellChance(std::uint64_t key, int purpose) { return UnitFloat(Hash(key, purpose)); }
 
 }  // namespace scumble::internal

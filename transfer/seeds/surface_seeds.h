@@ -1,20 +1,22 @@
-// Seeds that live on surfaces: those of StyleBlit's hierarchy (transfer/seeds/seeds.h), strewn through an object's rest
-// space (layer `pref`) instead of over the screen, so that pieces of paint move with what they are painted on, and a
-// frame needs no other frame.
+// Seeds that live on surfaces: those of StyleBlit's hierarchy (transfer/seeds/seeds.h), spread through an object's rest
+// space (layer `pref`) instead of over the screen. So chunks of paint move with their surface, and a frame needs no
+// other frame.
 //
 //   - Rest space has a grid of cubes for every power of two, its edge 2^e, and one point hashed into each cube from
-//     (seed, time step, object, e, cube). A pixel belongs to the nearest point of the 27 cubes around it: the pieces'
-//     borders are places on the surface, wherever the camera stands. Each grid is moved by a hash of (seed, object, e),
+//     (seed, time step, object, e, cube). A pixel belongs to the nearest point of the 27 cubes around it, its surface
+//     cell: the cells' borders are fixed on the surface, for any camera. Each grid is moved by a hash of (seed, object,
+//     e),
 //     or a floor at height 0 would lie exactly between two layers of cubes.
-//   - A piece's seed q is the pixel of it that lies nearest to the point, ties to the lowest (y, x). It follows the
+//   - A cell's seed q is its pixel nearest to the point, ties to the lowest (y, x). It follows the
 //     surface as closely as pixels can.
-//   - How large 2^e is on the screen is the pixel's footprint, as an octave κ = log2(pref units a pixel): the median
+//   - The size of 2^e on the screen follows from the pixel's footprint, as an octave κ = log2(pref units a pixel): the
+//     median
 //   over
-//     the object of (distance of pref to the next pixel / depth), times the pixel's own depth. So a floor has pieces of
+//     the object of (distance of pref to the next pixel / depth), times the pixel's own depth. So a floor has chunks of
 //     one size near and far, and a zoom moves κ without any step.
-//   - The piece's place in StyleBlit's hierarchy is level = e - floor(κ(q) + h), h in [0, 1) hashed from its cube; it
-//     takes part where 1 <= level < levels. Since cubes do not know κ, a zoom leaves all pieces alone but the largest
-//     and the smallest, and those change one by one, as h says.
+//   - The cell's place in StyleBlit's hierarchy is level = e - floor(κ(q) + h), h in [0, 1) hashed from its cube; it
+//     takes part where 1 <= level < levels. Cubes do not depend on κ, so a zoom changes only the largest and the
+//     smallest cells, one by one in the order of h.
 #pragma once
 
 #include <cstdint>
@@ -26,23 +28,23 @@
 
 namespace scumble::internal {
 
-// κ of each pixel that is not a number: it has no seed, nor any use for one.
+// κ of a pixel without an octave: it has no seed.
 inline constexpr float kNoOctave = -1e9f;
 
-// κ per pixel, kNoOctave where it is not active, where pref is not finite, or where the object shows no two
-// neighbouring pixels at different places. log2 is linear between powers of two, so that it is the same on every
-// machine. Guides must hold pref, depth and object ids; those without a depth above 0, or seen by a camera that they
-// say is orthographic, count as all at one distance. O(active pixels), in the caller's oneTBB arena.
+// κ per pixel. kNoOctave where it is inactive, where pref is not finite, or where the object has no two neighbouring
+// pixels at different places. log2 is linear between powers of two, so that it is equal on every machine. Guides must
+// hold pref, depth and object ids. Guides without a depth above 0, or of an orthographic camera, count as all at one
+// distance. O(active pixels), in the caller's oneTBB arena.
 std::vector<float> SurfaceOctaves(const GuideSet& guides, std::span<const std::uint8_t> active);
 
-// The piece that a place belongs to.
-struct SurfacePiece {
+// The surface cell of a place.
+struct SurfaceCell {
   std::uint64_t key = 0;  // of (seed, time step, object, e, cube), as good as unique; never 0
   float squared = 0.0f;   // distance from its point, in edges
 };
 
-// The pieces of one object and one e. Holds the cubes around the last place that was asked for, which is most likely
-// near the next: one for each thread.
+// The surface cells of one object and one e. Caches the cubes around the last place, which is most likely near the
+// next: one for each thread.
 class SurfaceGrid {
  public:
   SurfaceGrid() = default;
@@ -50,8 +52,8 @@ class SurfaceGrid {
 
   bool Is(std::uint32_t object, int exponent) const { return object_ == object && exponent_ == exponent; }
 
-  // Ties to the first cube, x before y before z. Places further than 2^50 edges from the origin have none: key 0.
-  SurfacePiece Nearest(const glm::vec3& place);
+  // Ties to the first cube, x before y before z. Places farther than 2^50 edges from the origin have none: key 0.
+  SurfaceCell Nearest(const glm::vec3& place);
 
  private:
   void MoveTo(const std::int64_t (&cube)[3]);
@@ -70,7 +72,7 @@ class SurfaceGrid {
   float point_[27][3] = {};  // from the middle cube's lowest corner, in edges
 };
 
-// [0, 1), for what is decided once for a piece; `purpose` makes such numbers independent.
-float PieceChance(std::uint64_t key, int purpose);
+// [0, 1), for a decision that is made once a cell; `purpose` makes such numbers independent.
+float CellChance(std::uint64_t key, int purpose);
 
 }  // namespace scumble::internal

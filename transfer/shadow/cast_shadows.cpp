@@ -49,7 +49,7 @@ bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress)
       const Strength strength = StrengthAt(input, x, y);
       if (!(strength.strongest > 0.0f)) continue;
       const PixelPosition q = seeds.Position(seeds.Nearest(x, y));
-      // The cell and not the position: a preview of half the size has the same.
+      // The cell and not the position: a preview of half the size has equal cells.
       const std::uint64_t hash = Hash(input.seeds.seed, input.seeds.time_step, level + input.seeds.level_offset,
                                       q.x >> level, q.y >> level, 0x5d);
       const int step =

@@ -1,4 +1,4 @@
-// Stylised ground shadows: what `catcher` objects catch, laid over the background in the style's own strokes.
+// Stylised ground shadows: the shadows on `catcher` objects, laid over the background in the style's own strokes.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ struct ShadowInput {
   Region region;
 };
 
-// Writes shadow paint into the catching pixels of the region. It is copied in pieces around seeds, each of a place
-// whose tone suits the strength, in steps (ShadowPaint::kSteps) to which every piece rounds in its own way, so that no
-// contour shows.
+// Writes shadow paint into the catching pixels of the region. It is copied in chunks around seeds. Each comes from a
+// place whose tone suits the strength, in steps (ShadowPaint::kSteps); every chunk rounds to them by its own hash, so
+// that no contour shows.
 //
 // The layer is sampled once a pixel, so its outlines have steps. The tone is that of the strongest shadow in the 5 × 5
-// pixels around, and alpha carries what their binomial mean is less: over some four pixels a hard outline fades evenly
-// in the same paint, and the mean strength stays. Only pixels that catch count. False: asked to stop.
+// pixels around, and alpha carries the ratio to their binomial mean: over some four pixels a hard outline fades evenly
+// in one paint, and the mean strength stays. Only pixels that catch count. False: cancelled.
 bool PaintShadows(const ShadowInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -13,13 +13,14 @@
 namespace scumble {
 namespace {
 
-// Places this near to a strength are as good as the nearest, and at least so many are to choose from.
+// Places within this of a strength are as good as the nearest, and the choice has at least this many.
 constexpr float kSameTone = 0.03f;
 constexpr std::size_t kLeastChoice = 12;
-constexpr int kSquares = 16;     // a side of the picture that is divided by chance
-constexpr float kByRank = 0.6f;  // how much of the opacity is a texel's own, by its rank; the rest is the same for all
+constexpr int kSquares = 16;  // a side of the picture that is divided by chance
+constexpr float kByRank =
+    0.6f;  // the part of the opacity that depends on a texel's own rank; the other part is equal for all
 
-// How much a texel of that rank, 0 … 1, shows. Over all ranks the mean is the strength.
+// The opacity of a texel of that rank, 0 … 1. Over all ranks the mean is the strength.
 float Shown(float rank, float strength) {
   const float none = strength < 0.5f ? std::sqrt(2.0f * strength) : 2.0f - std::sqrt(2.0f * (1.0f - strength));
   return (1.0f - kByRank) * strength + kByRank * std::clamp(none - rank, 0.0f, 1.0f);
@@ -53,7 +54,7 @@ DarkPlace DarkestPlace(const PreparedExemplar& exemplar) {
     }
   }
   if (darkest) return *darkest;
-  // Nowhere room for the square: one dark pixel.
+  // The square fits nowhere: one dark pixel.
   const std::vector<Source> usable = exemplar.UsablePixels();
   DarkPlace pixel{usable.front(), 0, 0};
   for (int e = 0; e < exemplar.count(); ++e) {
@@ -83,7 +84,8 @@ ShadowPaint::ShadowPaint(std::shared_ptr<const PreparedExemplar> exemplar, std::
   FindTones(papers);
 }
 
-// The mean luminance that paint leaves of white light over its paper, in a square. Negative: part of it is not usable.
+// The mean luminance of white light reflected by the paint over its paper, in a square. Negative: part of it is not
+// usable.
 float ShadowPaint::ToneAt(int e, int x, int y, int reach, float paper) const {
   const int step = std::max(1, reach / 6);
   float sum = 0.0f, count = 0.0f;
@@ -123,8 +125,8 @@ void ShadowPaint::FindTones(std::span<const BarePaper> papers) {
     FindPlaces();
 }
 
-// The share of the texels around each that are darker: the order in which they appear as a shadow grows stronger.
-// Around the texel, and not of the whole place, so that strokes decide it and not the tone that they are in.
+// The share of the texels around each that are darker: the order in which they appear as a shadow grows stronger. It
+// compares with the surroundings, and not with the whole place, so that strokes decide and not their tone.
 void ShadowPaint::RankDarkPaint() {
   pictures_.clear();
   const int reach = 2 * dark_.reach + 1, around = std::max(2, dark_.reach / 3), step = std::max(1, around / 4);
@@ -149,8 +151,9 @@ void ShadowPaint::RankDarkPaint() {
   }
 }
 
-// By step and by square of the sphere's picture the suitable place nearest to the square's middle: chance chooses a
-// square and not a place, because an exemplar of half the size has other places, and a preview must show the same ones.
+// By step and by square of the sphere's picture: the suitable place nearest to the square's middle. The hash chooses a
+// square and not a place, because an exemplar of half the size has other places, and a preview must show the same
+// paint.
 void ShadowPaint::FindPlaces() {
   const auto below = [](const Tone& tone, float value) { return tone.strength < value; };
   const auto at = [&](float value) {

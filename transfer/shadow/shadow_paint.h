@@ -1,4 +1,4 @@
-// What of an exemplar shadows are painted with.
+// The parts of an exemplar that paint shadows.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,25 @@
 
 namespace scumble {
 
-// The darkest piece of an exemplar.
+// The darkest place of an exemplar.
 struct DarkPlace {
   Source center;
   int exemplar = 0;
   int reach = 0;  // pixels around the centre that count as dark
 };
 
-// The square of usable paint, an eighth of the exemplar's shorter side wide, whose mean luminance is lowest, in any
-// lighting condition; ties to the first in (exemplar, y, x). A painting too broken up for that gives its darkest pixel.
+// The square of usable paint, an eighth of the exemplar's shorter side wide, with the lowest mean luminance, in any
+// lighting condition; ties to the first in (exemplar, y, x). If an exemplar is too fragmented for that, its darkest
+// pixel.
 DarkPlace DarkestPlace(const PreparedExemplar& exemplar);
 
 // Paint for shadows of every strength, 0 none … 1 full. Full shadow is the darkest place's paint.
 //
-// Where the exemplars are spheres painted on bare paper (bare_paper.h), a strength between is painted as the artist
-// painted that tone: with paint, lifted off its paper, from places of the sphere whose mean luminance over the paper is
-// that share of the way from bare paper to the darkest place, in linear light. Where paint covers everything there is
-// no such scale: then the darkest place's paint is laid on as thinly as the shadow is weak, and thinner yet where the
-// texels around are darker, so that its strokes show; the mean opacity is the strength. Immutable.
+// Where the exemplars are spheres painted on bare paper (bare_paper.h), an intermediate strength uses the artist's own
+// paint of that tone, lifted off its paper. It comes from places of the sphere whose mean luminance over the paper is
+// that share of the way from bare paper to the darkest place, in linear light. Where paint covers everything, there is
+// no such scale. Then the darkest place's paint gets the strength as its mean opacity, with less where the texels
+// around are darker, so that its strokes show. Immutable.
 class ShadowPaint {
  public:
   // `originals` are the pictures that the exemplar was prepared from, in its order.
@@ -37,7 +38,7 @@ class ShadowPaint {
 
   const DarkPlace& dark() const { return dark_; }
   bool has_tones() const { return !tones_.empty(); }
-  int level() const { return level_; }  // pieces come from a grid of 2^level pixels
+  int level() const { return level_; }  // chunks come from a grid of 2^level pixels
 
   struct Place {
     Source center;

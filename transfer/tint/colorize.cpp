@@ -55,7 +55,7 @@ void Tint::Apply(glm::vec3 albedo, std::uint16_t* texel) const {
 
 namespace {
 
-// Calls run(begin, end) for each longest stretch of a row's pixels that are active, counted from `active`.
+// Calls run(begin, end) for each maximal run of a row's active pixels, counted from `active`.
 template <class Run>
 void ForEachRun(std::span<const std::uint8_t> active, const Run& run) {
   const std::uint8_t *begin = active.data(), *end = begin + active.size();

@@ -1,9 +1,8 @@
-// What a tint does to paint, for one pixel or for a vector of them; transfer/tint/colorize.h says which formulas these
-// are.
+// The effect of a tint on paint, for one pixel or for a vector of them, by the formulas in transfer/tint/colorize.h.
 //
-// Text to be included behind core/image/color_math-inl.h in a namespace of Lanes. A tint is told the albedo first,
-// which neighbouring pixels mostly share, then asked what becomes of paint. Paint comes in 16-bit sRGB codes and leaves
-// in codes that are not rounded yet, of 0 … 65535.
+// Text to be included after core/image/color_math-inl.h in a namespace of Lanes. A tint first takes the albedo, which
+// neighbouring pixels mostly share, then any number of paints. Paint comes in 16-bit sRGB codes and leaves in unrounded
+// codes of 0 … 65535.
 
 // 0 … top; NaN becomes 0.
 inline Lane ClampTo(Lane x, float top) { return Select(Less(0.0f, x), Min(x, top), 0.0f); }
@@ -43,8 +42,8 @@ class MultiplyingTint {
 
 // Oklab's lightness from the paint, hue and chroma from the albedo.
 //
-// Colours are kept as the three cube roots that Oklab is made of, taken apart into lightness and what each root differs
-// from it by: scaling the differences scales the chroma.
+// Colours are stored as Oklab's three cube roots, split into lightness and the difference of each root from it: scaling
+// the differences scales the chroma.
 class OklabTint {
  public:
   explicit OklabTint(const Tint& tint)
@@ -57,7 +56,7 @@ class OklabTint {
     top_ = Max(Max(Max(base.r, base.g), base.b), kBrightest);
   }
 
-  // Three steps. Each waits long for its own results: whoever tints many pixels takes each step for all of them.
+  // Three steps. Each depends on its own results for long: code that tints many pixels does each step for all of them.
   static LaneColor RootsOfPaint(LaneColor codes) {
     return Each(CubeRoot, ConesFromLinear(Each(LinearFromCode, codes)));
   }
@@ -78,7 +77,8 @@ class OklabTint {
 
  private:
   static constexpr float kLeast = 1e-6f;
-  static constexpr float kBrightest = 0.98f;  // of a channel that lighter paint leads to, so that none is clipped
+  static constexpr float kBrightest =
+      0.98f;  // of a channel of the white that lighter paint approaches, so that none is clipped
 
   struct Parts {
     Lane lightness;
@@ -102,7 +102,7 @@ class OklabTint {
     return Both(Less(Max(Max(c.r, c.g), c.b), top + kSlack), Less(-kSlack, Min(Min(c.r, c.g), c.b)));
   }
 
-  // Scales the chroma down where that brings all channels within 0 … top; returns the linear colour.
+  // Reduces the chroma if that brings all channels within 0 … top; returns the linear colour.
   static LaneColor FitIn(Parts& color, Lane top) {
     const LaneColor linear = LinearFromRoots(RootsOf(color));
     const Choice fits = InGamut(linear, top);

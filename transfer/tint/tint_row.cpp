@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE {
 using Words = hn::RebindToUnsigned<Floats>;
 
 constexpr std::size_t kMostLanes = 16;
-constexpr std::size_t kVectors = 16;  // of pixels of a row that are tinted at once
+constexpr std::size_t kVectors = 16;  // pixels of a row that are tinted together
 
 // Texels are two words each: red and green, blue and alpha, the lower half first.
 HWY_INLINE LaneColor Load(const std::uint16_t* HWY_RESTRICT texels) {
@@ -37,7 +37,7 @@ HWY_INLINE void Store(LaneColor codes, std::uint16_t* HWY_RESTRICT texels) {
   hn::Vec<Words> red_green, blue_alpha;
   hn::LoadInterleaved2(du, words, red_green, blue_alpha);
   const auto low = hn::Set(du, 0xffff);
-  // Of a sum above 2^23 the lowest bits are the nearest whole number.
+  // The lowest bits of a sum above 2^23 are the nearest whole number.
   const auto rounded = [&](Lane code) HWY_ATTR { return hn::BitCast(du, (code + 8388608.0f).v); };
   const auto red = hn::And(rounded(codes.r), low), blue = hn::And(rounded(codes.b), low);
   hn::StoreInterleaved2(hn::Or(red, hn::ShiftLeft<16>(rounded(codes.g))), hn::Or(blue, hn::AndNot(low, blue_alpha)), du,
@@ -53,7 +53,7 @@ HWY_INLINE bool Same(LaneColor a, LaneColor b) {
   return All(hn::And(hn::And(hn::Eq(a.r.v, b.r.v), hn::Eq(a.g.v, b.g.v)), hn::Eq(a.b.v, b.b.v)));
 }
 
-// Tells a tint the albedo where it is another than before.
+// Sets a tint's albedo where it differs from the last one.
 template <class AnyTint>
 class Scene {
  public:
@@ -88,7 +88,7 @@ void TintBlock(Scene<OklabTint>& scene, const float* const* albedo, std::size_t 
   for (LaneColor* color = colors; color < end; ++color, i += lanes) Store(OklabTint::Encoded(*color), texels + 4 * i);
 }
 
-// Blocks of whole vectors; what is left at the end is tinted in a copy.
+// Blocks of whole vectors; the rest of a row is tinted in a copy.
 template <class AnyTint>
 void TintBlocks(const Tint& tint, const float* const* albedo, std::size_t count, std::uint16_t* texels) {
   Scene<AnyTint> scene(tint);

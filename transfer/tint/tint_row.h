@@ -1,4 +1,4 @@
-// Many pixels at once are tinted: Tint::Apply, bit for bit, as both are transfer/tint/tint-inl.h.
+// Tints many pixels at once: Tint::Apply, bit for bit, as both use transfer/tint/tint-inl.h.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,7 @@ struct ChunkRow {
   int width;
   bool last;              // no row below
   std::int64_t readable;  // values from column 0 to the end of the plane
-  int size;               // of the exemplar; 0: nothing is deep
+  int size;               // of the exemplar; 0: no pixel is interior
   int radius;
   std::int64_t limit;  // (|2x + 1 - size| + 2·radius)² + the same of y must not be beyond it
 };
@@ -55,7 +55,7 @@ HWY_INLINE std::uint64_t Bits(D d, const Mask& mask) {
   return hn::Lanes(d) < 64 ? bits & ((std::uint64_t{1} << (hn::Lanes(d) & 63)) - 1) : bits;
 }
 
-// A vector's worth of columns is only looked at where this many lanes make whole vectors of a word.
+// A vector of columns is only loaded where this many lanes make whole vectors of a word.
 HWY_INLINE bool Fits(const ChunkRow& row, int begin) {
   return hn::Lanes(kByte) <= 64 && hn::Lanes(kByte) > 1 && row.width - begin >= 64 && row.readable - begin >= 65;
 }
@@ -86,7 +86,7 @@ HWY_INLINE std::uint64_t OneExemplar(const ChunkRow& row, int begin, std::ptrdif
   return bits;
 }
 
-HWY_INLINE std::uint64_t Deep(const ChunkRow& row, int begin) {
+HWY_INLINE std::uint64_t Interior(const ChunkRow& row, int begin) {
   const hn::ScalableTag<std::int32_t> wide;
   const hn::Rebind<std::int16_t, decltype(wide)> narrow;
   const auto size = hn::Set(wide, row.size - 1), reach = hn::Set(wide, 2 * row.radius);
@@ -105,12 +105,12 @@ HWY_INLINE std::uint64_t Deep(const ChunkRow& row, int begin) {
 }
 
 void LinkRow(const ChunkRow& row, int first_word, int words, const std::uint64_t* active,
-             const std::uint64_t* active_below, std::uint64_t* right, std::uint64_t* below, std::uint64_t* deep) {
+             const std::uint64_t* active_below, std::uint64_t* right, std::uint64_t* below, std::uint64_t* interior) {
   for (int w = 0; w < words; ++w) {
     const int begin = 64 * (first_word + w);
     if (begin < 0 || begin >= row.width) continue;
     const std::uint64_t beyond = ~BitRange(0, row.width - begin), at_end = ~BitRange(0, row.width - 1 - begin);
-    right[w] = at_end, below[w] = row.last ? BitMaskRows::kAll : beyond, deep[w] = 0;
+    right[w] = at_end, below[w] = row.last ? BitMaskRows::kAll : beyond, interior[w] = 0;
     if (!active[w]) continue;
     if (!Fits(row, begin)) {
       const auto one = [&](int x, std::ptrdiff_t step, int dx, int dy) {
@@ -120,11 +120,11 @@ void LinkRow(const ChunkRow& row, int first_word, int words, const std::uint64_t
       right[w] |= MarksOneByOne(row, begin, [&](int x) { return x + 1 < row.width && one(x, 1, 1, 0); });
       if (!row.last) below[w] |= MarksOneByOne(row, begin, [&](int x) { return one(x, row.width, 0, 1); });
       if (row.size == 0) continue;
-      deep[w] = active[w] & MarksOneByOne(row, begin, [&](int x) {
-                  const std::int64_t dx = std::abs(2 * row.x[x] + 1 - row.size) + 2 * row.radius;
-                  const std::int64_t dy = std::abs(2 * row.y[x] + 1 - row.size) + 2 * row.radius;
-                  return dx * dx + dy * dy <= row.limit;
-                });
+      interior[w] = active[w] & MarksOneByOne(row, begin, [&](int x) {
+                      const std::int64_t dx = std::abs(2 * row.x[x] + 1 - row.size) + 2 * row.radius;
+                      const std::int64_t dy = std::abs(2 * row.y[x] + 1 - row.size) + 2 * row.radius;
+                      return dx * dx + dy * dy <= row.limit;
+                    });
       continue;
     }
     const auto one = hn::Set(kShort, 1);
@@ -141,7 +141,7 @@ void LinkRow(const ChunkRow& row, int first_word, int words, const std::uint64_t
     const std::uint64_t active_right = active[w] >> 1 | active[w + 1] << 63;
     right[w] |= same_right & active[w] & active_right & OneExemplar(row, begin, 1);
     if (!row.last) below[w] |= same_below & active[w] & active_below[w] & OneExemplar(row, begin, row.width);
-    if (row.size > 0) deep[w] = active[w] & Deep(row, begin);
+    if (row.size > 0) interior[w] = active[w] & Interior(row, begin);
   }
 }
 
@@ -156,7 +156,7 @@ HWY_EXPORT(LinkRow);
 
 namespace {
 
-// Without an exemplar what LinkRow reads of it is not there.
+// Without an exemplar, LinkRow's values of it are unset.
 ChunkRow RowAt(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar* exemplar,
                int radius, int y) {
   const std::size_t begin = field.Index(0, y);
@@ -201,18 +201,18 @@ bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, 
   if (!some) return false;
   marks.right.Reset(tile, BitMaskRows::kAll);
   marks.below.Reset(tile, BitMaskRows::kAll);
-  marks.deep.Reset(tile, 0);
+  marks.interior.Reset(tile, 0);
   for (int y = first; y <= last; ++y) {
     ChunkRow row = RowAt(field, active, &exemplar, radius, y);
     const std::uint64_t* below = nullptr;
     if (y < last) {
       below = marks.active.Row(y + 1);
     } else if (!row.last) {
-      row.last = true;  // links to what is below the tile are not asked for
+      row.last = true;  // links to rows below the tile are not needed
     }
     HWY_DYNAMIC_DISPATCH(LinkRow)
     (row, tile.first_word, tile.words, marks.active.Row(y), below, marks.right.Row(y), marks.below.Row(y),
-     marks.deep.Row(y));
+     marks.interior.Row(y));
   }
   return true;
 }

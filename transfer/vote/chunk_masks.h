@@ -1,4 +1,4 @@
-// Which neighbours are of one chunk, 64 pixels at a time.
+// Chunk masks: which neighbours are of one chunk, 64 pixels at a time.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace scumble::internal {
 
-// Two active pixels are of one chunk where they have one exemplar and sources that differ as they do. Beyond the
-// picture nothing is active, and all links stand, so that a window which reaches out is judged by what is inside.
+// Two active pixels are of one chunk if they have one exemplar and their sources differ as they do. Beyond the picture
+// no pixel is active, and all links are set, so that only pixels inside decide about a window that reaches out.
 struct ChunkMasks {
   BitMaskRows active;
-  BitMaskRows right;  // with the pixel to the right, both active
-  BitMaskRows below;  // with the pixel below, both active
-  BitMaskRows
-      deep;  // active, and every texel within `radius` (in x and y) of its source is usable; in scenes none is told
+  BitMaskRows right;     // with the pixel to the right, both active
+  BitMaskRows below;     // with the pixel below, both active
+  BitMaskRows interior;  // active, and every texel within `radius` (in x and y) of its source is usable; never
+                         // set in scenes
 };
 
 // Resets `marks` to the tile and fills it with the active pixels. O(pixels of the tile).
 void MaskActive(const SourceField& field, std::span<const std::uint8_t> active, const MaskedTile& tile,
                 BitMaskRows& marks);
 
-// Fills the marks of a tile. False: nothing is active there, and no marks are made. O(pixels of the
-// tile). Touches the field only where pixels are active.
+// Fills the chunk masks of a tile. False: no pixel is active there, and no masks are made. O(pixels of the tile). Reads
+// the field only where pixels are active.
 bool MarkChunks(const SourceField& field, std::span<const std::uint8_t> active, const PreparedExemplar& exemplar,
                 int radius, const MaskedTile& tile, ChunkMasks& marks);
 

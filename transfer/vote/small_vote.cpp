@@ -11,11 +11,12 @@
 namespace scumble::internal {
 namespace {
 
-constexpr int kTileRows = 32;    // so that what a tile's neighbours make once more is little
-constexpr int kStripWords = 16;  // of a tile are voted on together, so that their texels stay in the nearer caches
-constexpr int kTileWords = 32;   // so that all marks of a tile stay in the caches
+constexpr int kTileRows = 32;  // so that neighbouring tiles repeat little work
+constexpr int kStripWords =
+    16;  // words of a tile that are voted on together, so that their texels stay in the nearer caches
+constexpr int kTileWords = 32;  // so that all masks of a tile stay in the caches
 
-// One part of the picture: masks of its chunks, then of its open steps, then its votes row by row.
+// One part of the picture: its chunk masks, then its open steps, then its votes row by row.
 class VoteTile {
  public:
   VoteTile(const VoteInput& input, const TexelPlanes& texels, const Region& region)
@@ -30,7 +31,7 @@ class VoteTile {
 
   void Run(Picture& out) {
     if (!MarkChunks(input_.field, input_.active, input_.exemplar, input_.radius, tile_, marks_) || !Split()) return;
-    const bool edges = input_.edges && input_.radius > 0 && mixed_any_;
+    const bool edges = input_.edges && input_.radius > 0 && multi_chunk_any_;
     if (edges) MarkSteps();
     for (int word = first_word_; word < first_word_ + words_; word += kStripWords) {
       VoteStrip(word, std::min(kStripWords, first_word_ + words_ - word), edges, out);
@@ -52,22 +53,22 @@ class VoteTile {
       std::uint64_t any_whole = 0, any_parts = 0, any_mixed = 0;
       for (int w = 0; w < words; ++w) {
         const int word = first_word + w;
-        const std::uint64_t mixed = mixed_.At(y, word);
-        copied[w] = marks_.active.At(y, word) & Inside(word) & ~mixed;
+        const std::uint64_t multi_chunk = multi_chunk_.At(y, word);
+        copied[w] = marks_.active.At(y, word) & Inside(word) & ~multi_chunk;
         linked[w] = marks_.right.At(y, word);
-        whole[w] = mixed ? mixed & WholeWindows(y, word) : 0;
-        if (edges && mixed) {
+        whole[w] = multi_chunk ? multi_chunk & WholeWindows(y, word) : 0;
+        if (edges && multi_chunk) {
           Join(y, word, JoinedAt(w));
           for (const std::uint64_t bits : JoinedAt(w)) whole[w] &= bits;
         }
-        parts[w] = mixed & ~whole[w];
-        if (parts[w]) parts[w] = SureParts(y, word, parts[w], w);
-        any_mixed |= mixed, any_whole |= whole[w], any_parts |= parts[w];
+        parts[w] = multi_chunk & ~whole[w];
+        if (parts[w]) parts[w] = KnownParts(y, word, parts[w], w);
+        any_mixed |= multi_chunk, any_whole |= whole[w], any_parts |= parts[w];
       }
       CopyMarked(row, copied, linked);
       if (any_mixed) {
         for (int w = 0; w < words; ++w) {
-          copied[w] = mixed_.At(y, first_word + w) & ~whole[w] & ~parts[w];  // one by one
+          copied[w] = multi_chunk_.At(y, first_word + w) & ~whole[w] & ~parts[w];  // pixel by pixel
         }
         if (any_whole) MeanOfMarked(row, sources, whole);
         if (any_parts) MeanOfParts(row, sources, votes_, parts);
@@ -86,18 +87,18 @@ class VoteTile {
     return {joined_.data() + std::size_t(w) * kNeighbourCount, std::size_t(kNeighbourCount)};
   }
 
-  // Marks the pixels of the region whose windows are not of one chunk. False: nothing is active.
+  // Marks the pixels of the region whose windows have several chunks. False: no pixel is active.
   bool Split() {
-    mixed_.Reset(tile_.first_row, tile_.rows, tile_.first_word, tile_.words, 0);
+    multi_chunk_.Reset(tile_.first_row, tile_.rows, tile_.first_word, tile_.words, 0);
     bool any = false;
     for (int y = region_.y0; y < region_.y1; ++y) {
       for (int w = first_word_; w < first_word_ + words_; ++w) {
         const std::uint64_t active = marks_.active.At(y, w) & Inside(w);
         if (!active) continue;
         any = true;
-        const std::uint64_t mixed = active & ~OneChunk(y, w);
-        mixed_.At(y, w) = mixed;
-        if (mixed) mixed_any_ = true;
+        const std::uint64_t multi_chunk = active & ~OneChunk(y, w);
+        multi_chunk_.At(y, w) = multi_chunk;
+        if (multi_chunk) multi_chunk_any_ = true;
       }
     }
     return any;
@@ -113,22 +114,22 @@ class VoteTile {
     return one;
   }
 
-  // Whether all of the window is active, and all texels that it votes for are usable.
+  // Whether all of the window is active, and all texels of its votes are usable.
   std::uint64_t WholeWindows(int y, int word) const {
     const int r = input_.radius;
     std::uint64_t whole = BitMaskRows::kAll;
     for (int v = y - r; v <= y + r; ++v) {
-      for (int dx = -r; dx <= r; ++dx) whole &= marks_.deep.Shifted(v, word, dx);
+      for (int dx = -r; dx <= r; ++dx) whole &= marks_.interior.Shifted(v, word, dx);
     }
     return whole;
   }
 
-  // The steps that the support regions of the mixed pixels depend on: of three rows, from the pixel on the left.
+  // The steps that the support regions of multi-chunk pixels depend on: of three rows, from the pixel on the left.
   void MarkSteps() {
     BitMaskRows wanted;
     wanted.Reset(tile_, 0);
     for (int y = region_.y0; y < region_.y1; ++y) {
-      const std::uint64_t* row = mixed_.Row(y);
+      const std::uint64_t* row = multi_chunk_.Row(y);
       for (int w = 0; w < tile_.words; ++w) {
         const std::uint64_t bits = row[w] | row[w] >> 1 | row[w + 1] << 63;
         for (int v = y - 1; v <= y + 1; ++v) wanted.Row(v)[w] |= bits;
@@ -150,17 +151,17 @@ class VoteTile {
     }
   }
 
-  // Those of the pixels of which it is sure who votes: everyone joined and active has usable texels only. Notes the
-  // votes.
-  std::uint64_t SureParts(int y, int word, std::uint64_t pixels, int w) {
+  // The pixels whose votes are all known to be usable: every joined active neighbour has usable texels only. Records
+  // the votes.
+  std::uint64_t KnownParts(int y, int word, std::uint64_t pixels, int w) {
     const std::span<const std::uint64_t> joined = JoinedAt(w);
     std::uint64_t* votes = votes_.data() + std::size_t(w) * joined.size();
-    pixels &= marks_.deep.At(y, word);
+    pixels &= marks_.interior.At(y, word);
     for (std::size_t k = 0; k < joined.size(); ++k) {
-      const PixelStep way = kNeighbours[k];
-      const std::uint64_t deep = marks_.deep.Shifted(y + way.dy, word, way.dx);
-      pixels &= ~(joined[k] & marks_.active.Shifted(y + way.dy, word, way.dx) & ~deep);
-      votes[k] = joined[k] & deep;
+      const PixelStep step = kNeighbours[k];
+      const std::uint64_t interior = marks_.interior.Shifted(y + step.dy, word, step.dx);
+      pixels &= ~(joined[k] & marks_.active.Shifted(y + step.dy, word, step.dx) & ~interior);
+      votes[k] = joined[k] & interior;
     }
     return pixels;
   }
@@ -193,8 +194,8 @@ class VoteTile {
   int first_word_, words_;
   MaskedTile tile_;
   ChunkMasks marks_;
-  BitMaskRows mixed_;
-  bool mixed_any_ = false;
+  BitMaskRows multi_chunk_;
+  bool multi_chunk_any_ = false;
   OpenSteps steps_;
   std::vector<std::uint64_t> joined_, votes_;  // by word and neighbour
 };

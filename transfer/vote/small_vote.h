@@ -6,10 +6,10 @@
 
 namespace scumble::internal {
 
-// Larger windows are counted chunk by chunk in less time (wide_vote.h).
+// For larger windows, votes chunk by chunk take less time (wide_vote.h).
 inline constexpr int kSmallRadius = 1;
 
-// What all threads share that vote with one exemplar, which must outlive it.
+// Data shared by all threads that vote with one exemplar, which must outlive it.
 class SmallVotes {
  public:
   explicit SmallVotes(const PreparedExemplar& exemplar) : texels_(exemplar) {}

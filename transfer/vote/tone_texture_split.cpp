@@ -32,8 +32,8 @@ Color TexelAt(const Picture& tone, Source at) {
   return {texel[0], texel[1], texel[2], texel[3]};
 }
 
-// The tone for a normal. Neighbours across a texel's border would otherwise differ by a whole step, which a small
-// exemplar on a large round form shows as bands.
+// The base layer for a normal, interpolated. Otherwise neighbours across a texel's border would differ by a whole step,
+// which a small exemplar on a large round form shows as bands.
 Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 normal) {
   if (!exemplar.is_sphere()) return TexelAt(tone, exemplar.NearestNeighbour(normal));
   constexpr int kOne = 256;
@@ -57,7 +57,7 @@ Color ToneFor(const PreparedExemplar& exemplar, const Picture& tone, glm::vec3 n
   return sum;
 }
 
-// The tone at a pixel's own nearest neighbour in exemplar k.
+// The base layer at a pixel's own nearest neighbour in exemplar k.
 Color ToneAt(const HybridInput& input, std::size_t pixel, int k) {
   const glm::vec3 normal = input.guides.Vec3(Layer::kNormal, pixel);
   const Picture& tone = input.tones[std::size_t(k)];

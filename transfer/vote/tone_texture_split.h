@@ -1,5 +1,5 @@
-// The hybrid of both methods, for exemplars that have a smooth tone and a fine texture at once: tone as the Lit Sphere
-// lays it, without a seam, and texture as StyleBlit copies it, unblurred (Sýkora et al. 2019 suggest it).
+// The hybrid of both methods, for exemplars with smooth tone and fine texture: a base layer laid as by the Lit Sphere,
+// without a seam, and a detail layer copied as by StyleBlit, unblurred (Sýkora et al. 2019 suggest it).
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@
 
 namespace scumble {
 
-// The tone of each picture of an exemplar: MaskedBlur over its usable pixels, premultiplied. Texture is what the
-// picture differs from it by.
+// The base layer of each picture of an exemplar: MaskedBlur over its usable pixels, premultiplied. The detail layer is
+// the picture minus its base layer.
 std::vector<Picture> MakeBaseLayers(const PreparedExemplar& exemplar, double sigma);
 
 }  // namespace scumble
@@ -29,17 +29,17 @@ struct HybridInput {
   const GuideSet& guides;
   const Illumination& illumination;
   std::span<const float> luminance;   // exposed; empty where the illumination is not active
-  std::span<const Picture> tones;     // by exemplar
-  const GuideSpace* space = nullptr;  // where neighbours are looked for; null: normals alone
+  std::span<const Picture> tones;     // base layers, by exemplar
+  const GuideSpace* space = nullptr;  // the space of the search; null: normals alone
   float brightness = 1.0f;            // of the scene's radiance in that space
 };
 
-// Every active pixel of the region becomes the tone at its own nearest neighbour, in the exemplar that suits its own
-// light, plus the mean of the textures that the chunks around it vote for: the same votes as Vote's. On a sphere the
-// tone is read between texels (bilinearly, in 1/256 of a texel), elsewhere, and where more than normals count, at the
-// nearest neighbour itself. Sums are integers with premultiplied colours; nothing is clamped before the end. Where the
-// tone is the same everywhere and the paint opaque, this is Vote to the bit. Writes straight alpha into `out`; other
-// pixels are left alone. False: asked to stop.
+// Every active pixel of the region becomes the base layer at its own nearest neighbour, in the exemplar that suits its
+// own light, plus the mean of the detail layers that the chunks around it vote for: with Vote's votes. On a sphere the
+// base layer is read between texels (bilinearly, in 1/256 of a texel). On scenes, and with weights on other guides than
+// normals, it is read at the nearest neighbour itself. Sums are integers with premultiplied colours; nothing is clamped
+// before the end. If the base layer is constant and the paint opaque, this equals Vote to the bit. Writes straight
+// alpha into `out`; other pixels stay. False: cancelled.
 bool VoteHybrid(const HybridInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

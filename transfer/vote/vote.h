@@ -23,13 +23,13 @@ struct VoteInput {
   int radius = 0;
   const EdgeRules* edges = nullptr;  // null: plain voting
   Region region;
-  // Called from any thread for pieces x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once
+  // Called from any thread for parts x0 … x1 - 1 of rows whose votes are counted, while they are in the caches: once
   // for each active pixel of the region, and maybe for others. It may change those pixels of the picture.
   std::function<void(int y, int x0, int x1)> finished = {};
 };
 
-// Calls visit(exemplar, source) for each vote on what an active pixel (x, y) shows: of every active pixel q of the
-// (2·radius + 1)² window, or of its support region if `regions` is given, the texel S(q) + (p - q) where that is
+// Calls visit(exemplar, source) for each vote on the colour of an active pixel (x, y). Each active pixel q of the
+// (2·radius + 1)² window, or of its support region if `regions` is given, votes for the texel S(q) + (p - q) if that is
 // usable. `regions` must be of the input's radius and hold (x, y). The pixel's own vote is always among them.
 template <class Visit>
 void ForEachVote(const VoteInput& input, const SupportRegions* regions, int x, int y, const Visit& visit) {
@@ -50,12 +50,12 @@ void ForEachVote(const VoteInput& input, const SupportRegions* regions, int x, i
   }
 }
 
-// Every active pixel of the region becomes the mean of its votes: of what the chunks around it would put there. Inside
-// a chunk all votes agree and it is a plain copy. Sums are integers, weighted by the texels' alpha. Writes straight
-// alpha into `out` (the picture's size); other pixels are left alone. False: asked to stop.
+// Every active pixel of the region becomes the mean of its votes: of the texels that the chunks around it would put
+// there. Inside a chunk all votes agree, so the result is a plain copy. Sums are integers, weighted by the texels'
+// alpha. Writes straight alpha into `out` (the picture's size); other pixels stay. False: cancelled.
 bool Vote(const VoteInput& input, Picture& out, RowProgress& progress);
 
-// The same, pixel by pixel: what all faster ways are held against.
+// Vote pixel by pixel: the reference of all faster forms.
 bool VotePlainly(const VoteInput& input, Picture& out, RowProgress& progress);
 
 }  // namespace scumble::internal

@@ -98,8 +98,8 @@ void PlaceRow(const std::int16_t* x, const std::int16_t* y, int width, int count
   for (; i < count; ++i) places[i] = y[i] * width + x[i];
 }
 
-// The sum of the texels that the window around pixel p votes for: texels[dy] is the first picture moved up by dy rows,
-// places[dy] the sources of the row dy further down, from p on.
+// The sum of the texels that the window around pixel p votes for. texels[dy] is the first picture moved up by dy rows,
+// places[dy] the sources of the row dy farther down, from p on.
 template <bool kOne, class D>
 HWY_INLINE hn::Vec<D> SumOfWindow(D d, const VoteRow& row, const std::uint16_t* const* texels,
                                   const std::int32_t* const* places, std::size_t p) {
@@ -124,8 +124,8 @@ HWY_INLINE hn::Vec<D> SumOfWindow(D d, const VoteRow& row, const std::uint16_t* 
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// The mean of n votes, n at most 9. floor(v / 2n) = floor(v·m / 2^32) with m = floor(2^32 / 2n) + 1: off by v / 2^32
-// at most, which is less than 1 / 2n. `rounding` is n in all lanes, `reciprocal` is m.
+// The mean of n votes, n at most 9, by a reciprocal (docs/numerics.md, "Derivations"). `rounding` is n in all lanes,
+// `reciprocal` is floor(2^32 / 2n) + 1.
 template <class V>
 HWY_INLINE void MeanTexel(V sum, V rounding, V reciprocal, std::uint16_t* out) {
   const hn::FixedTag<std::uint32_t, 4> d;
@@ -161,7 +161,7 @@ void MeanRowOf(const VoteRow& row, const SourceRows& sources, std::uint64_t* mar
       for (int k = 0; k < 3; ++k) places[k] = rows[k] + (p - sources.begin());
       const auto sum = SumOfWindow<kOne>(d, row, texels + 1, places + 1, row.field.Index(p, row.y));
       MeanTexel(sum, rounding, reciprocal, row.out + 4 * std::size_t(p));
-      // All are opaque only where the mean of the alphas is and nothing was rounded away.
+      // All are opaque only if the mean of the alphas is, and no rounding was lost.
       refused |= hn::ExtractLane(sum, 3) == kVotes * 65535 ? 0 : left & (0 - left);
     }
     marked[w] = refused;

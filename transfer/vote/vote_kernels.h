@@ -1,4 +1,4 @@
-// The two ways in which most pixels get their colour: copies of whole runs, and means of whole windows.
+// The two kernels for most pixels: copies of whole runs, and means of whole windows.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct PixelStep {
   int dx = 0, dy = 0;
 };
 
-// Where a row's votes come from and go to.
+// The sources and the output of a row's votes.
 struct VoteRow {
   const TexelPlanes& texels;
   const SourceField& field;
@@ -32,14 +32,14 @@ struct VoteRow {
   int first_word = 0, words = 0;
 };
 
-// Where in its picture each pixel's source stands, y·width + x, for the rows of the windows that are voted on. Rows
-// come in order; each takes the place of the one that no window needs any more.
+// The place of each pixel's source in its picture, y·width + x, for the rows of the current windows. Rows come in
+// order; each replaces one that no window needs any more.
 class SourceRows {
  public:
   // For windows of `radius`, and columns [begin, end) of the picture.
   SourceRows(int radius, int begin, int end)
       : radius_(radius), begin_(begin), end_(end), places_(std::size_t(2 * radius + 1) * (end - begin)) {}
-  // Rows outside the picture are nothing.
+  // A row outside the picture adds nothing.
   void Add(const SourceField& field, const TexelPlanes& texels, int y);
   int radius() const { return radius_; }
   // At column `begin`.
@@ -52,26 +52,22 @@ class SourceRows {
   std::vector<std::int32_t> places_;
 };
 
-// Copies to each marked pixel its own texel, transparent ones without colour. Bit i of linked[w] tells that pixel
-// 64·(first_word + w) + i and the one to its right are of one chunk.
+// Copies its own texel to each marked pixel; transparent texels get no colour. Bit i of linked[w]: pixel 64·(first_word
+// + w) + i and the one to its right are of one chunk.
 void CopyMarked(const VoteRow& row, std::span<const std::uint64_t> marked, std::span<const std::uint64_t> linked);
 
 // Every marked pixel becomes the mean of the nine votes of its whole window: the window is in the picture and active,
-// and all texels that it votes for are usable. Only where all of these are opaque; the marks of other pixels are left,
-// those of pixels that are done are cleared. `sources` has the rows of the windows, of radius 1.
-//
-// With opaque paint the mean weighted by alpha is the plain one, rounded alike. VoteSum has floor((aS + floor(an/2)) /
-// (an)), a = 65535, for n votes of sum S. Without the inner floor that is floor((2S + n) / (2n)). Where an is odd, aS +
-// an/2 lies half-way between two integers, so no multiple of an lies between it and the lower one, and both quotients
-// have one floor.
+// and all texels that it votes for are usable. Only pixels whose texels are all opaque are done and their marks
+// cleared; the marks of other pixels stay. `sources` has the rows of the windows, of radius 1. The plain mean of opaque
+// texels equals VoteSum's (docs/numerics.md, "Derivations").
 void MeanOfMarked(const VoteRow& row, const SourceRows& sources, std::span<std::uint64_t> marked);
 
 // The pixels beside another, row by row.
 inline constexpr PixelStep kNeighbours[] = {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 inline constexpr int kNeighbourCount = 8;
 
-// The same for windows of which a part votes: the pixel itself, and kNeighbours[k] where its bit of votes[w ·
-// kNeighbourCount + k] is set; such pixels are in the picture, and the texels that they vote for are usable.
+// MeanOfMarked for windows of which a part votes: the pixel itself, and kNeighbours[k] where its bit of votes[w ·
+// kNeighbourCount + k] is set. Such pixels are in the picture, and the texels that they vote for are usable.
 void MeanOfParts(const VoteRow& row, const SourceRows& sources, std::span<const std::uint64_t> votes,
                  std::span<std::uint64_t> marked);
 

@@ -17,7 +17,7 @@ struct VoteSum {
     alpha += weight;
     ++votes;
   }
-  // The mean, colours weighted by alpha; halves are rounded up. What is transparent has colour 0.
+  // The mean, colours weighted by alpha; halves are rounded up. Transparent results have colour 0.
   void Count(std::uint16_t* out) const {
     for (int c = 0; c < 3; ++c) out[c] = alpha ? static_cast<std::uint16_t>((color[c] + alpha / 2) / alpha) : 0;
     out[3] = static_cast<std::uint16_t>((alpha + votes / 2) / votes);

@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// $XDG_CACHE_HOME/scumble, or ~/.cache/scumble; empty where neither is known. Relative paths in XDG_CACHE_HOME are
+// $XDG_CACHE_HOME/scumble, or ~/.cache/scumble; empty if neither is known. Relative paths in XDG_CACHE_HOME are
 // ignored, as its specification says.
 fs::path CacheFolder() {
   if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && fs::path(folder).is_absolute()) {
@@ -41,7 +41,7 @@ fs::path CacheFolder() {
   return {};
 }
 
-// Beside the build, and where `install` puts the program's files.
+// Beside the build, and the place of `install` for the program's files.
 std::vector<fs::path> DataRoots() {
   std::error_code failed;
   const fs::path program = fs::read_symlink("/proc/self/exe", failed);

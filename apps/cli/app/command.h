@@ -1,4 +1,4 @@
-// What all commands share: exit codes, global options, how results and messages are printed.
+// Shared by all commands: exit codes, global options, printing of results and messages.
 #pragma once
 
 #include <functional>
@@ -30,14 +30,14 @@ struct Globals : RunContext {
   bool json = false;
 };
 
-// Fills in where this program keeps and finds its files, and prints messages and progress to stderr. `globals` must
-// outlive what it is passed to.
+// Sets the folders of this program's files, and prints messages and progress to stderr. `globals` must outlive every
+// user of it.
 void ConnectToTerminal(Globals& globals);
 
-// A verb's work: returns the exit code, or the error that decides it.
+// A command's work: returns the exit code, or the error that decides it.
 using Action = std::function<Expected<ExitCode>()>;
 
-// Each verb adds itself to the parser; when it is chosen, `chosen` becomes its work.
+// Each command adds itself to the parser; when it is chosen, `chosen` becomes its work.
 void AddSphereVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddGuidegenVerb(CLI::App& app, Globals& globals, Action& chosen);
 void AddTransferVerb(CLI::App& app, Globals& globals, Action& chosen);
@@ -50,7 +50,7 @@ void AddTradeoffVerb(CLI::App& app, Globals& globals, Action& chosen);
 
 ExitCode ExitCodeFor(ErrorKind kind);
 
-// Results, to stdout; the error of a closed or full stdout is looked at once, when the program ends.
+// Prints results to stdout; a closed or full stdout is checked once, at the end of the program.
 void Print(const std::string& text);
 
 }  // namespace scumble

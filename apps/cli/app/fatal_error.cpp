@@ -14,7 +14,7 @@
 namespace scumble {
 namespace {
 
-// oneTBB says only in words that the system gave it no thread.
+// oneTBB has no error code for a refused thread, only a text.
 bool IsForWantOfThreads(const std::exception& error) {
   const auto* const known = dynamic_cast<const std::system_error*>(&error);
   if (known) return known->code() == std::errc::resource_unavailable_try_again;
@@ -24,7 +24,7 @@ bool IsForWantOfThreads(const std::exception& error) {
 [[noreturn]] void TellAndEnd() {
   const int code = ReportException(std::current_exception());
   RemovePendingTemporaries();
-  ::_exit(code);  // other threads still run: nothing that they use may be taken down
+  ::_exit(code);  // other threads still run: nothing that they use may be destroyed
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ bool IsForWantOfThreads(const std::exception& error) {
 int ReportException(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
-    // So it is where a thread could not be started while others of the same library ran.
+    // This happens if a thread could not be started while others of the same library ran.
     std::fputs(
         "scumble: error: a library gave up, as they do where memory or threads run out; allow more of both, or take "
         "fewer threads, as --threads 1\n",

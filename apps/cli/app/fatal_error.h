@@ -1,15 +1,15 @@
-// What the program says where it has to end, and how it ends then: by a sentence and an exit code, not by a signal.
+// The message and the exit code of a program that must end early, instead of a signal.
 #pragma once
 
 #include <exception>
 
 namespace scumble {
 
-// Says on stderr what was thrown and how to mend it; returns the exit code. Takes no memory, as there may be none.
+// Prints the exception and the remedy on stderr; returns the exit code. Allocates no memory, as there may be none.
 int ReportException(std::exception_ptr thrown);
 
-// From now on what is thrown where nothing can catch it, as on a library's own thread, ends the program with that
-// sentence and code instead of a core dump, and removes the temporary files of outputs. To be called once, early.
+// From now on an exception that no code can catch, as on a library's own thread, ends the program with that message and
+// code instead of a core dump, and removes the temporary files of outputs. Call it once, early.
 void ReportUncaughtExceptions();
 
 }  // namespace scumble

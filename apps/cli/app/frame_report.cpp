@@ -37,7 +37,7 @@ Json StyleToJson(const StyleInReport& style) {
   return json;
 }
 
-// Facts outside "styles" about a style are the default one's.
+// Facts about a style outside "styles" are the default style's.
 void PictureToJson(const PictureReport& picture, const std::vector<PlanItem>& plan, Json& json) {
   const StyleInReport& first = picture.styles.front();
   json["output"] = picture.output;
@@ -107,7 +107,7 @@ Json ChoiceToJson(const BudgetChoice& choice) {
   return {{"budget", json}};
 }
 
-// Of a whole run, whatever it made.
+// Facts of a whole run.
 void AddRun(const RunReport& report, const Globals& globals, Json& json) {
   if (!report.warnings.empty() || report.paints) json["warnings"] = report.warnings;
   if (report.choice) json.update(ChoiceToJson(*report.choice));
@@ -169,7 +169,7 @@ SequenceListener SequencePrinter::Listener() {
   };
   const auto tell = [this](const std::string& text) {
     Print(text);
-    std::fflush(stdout);  // a farm's log shows the progress; a failed write is found when the program ends
+    std::fflush(stdout);  // a farm's log shows the progress; a failed write is found at the end of the program
   };
   SequenceListener listener;
   listener.made = [=, this](int frame, const std::string& output, const FrameReport& report) {

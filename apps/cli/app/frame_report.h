@@ -17,7 +17,7 @@ namespace scumble {
 std::string FrameToText(const FrameReport& report);
 nlohmann::ordered_json FrameToJson(const FrameReport& report);
 
-// Prints each frame of a sequence as it is settled; under --json the frames are collected for one object.
+// Prints each frame of a sequence when it is done; under --json the frames are collected for one object.
 class SequencePrinter {
  public:
   explicit SequencePrinter(const Globals& globals);

@@ -48,12 +48,12 @@ std::string ExplainUnknown(const CLI::App& app, const std::string& word) {
   const CLI::App& verb = Innermost(app);
   const bool is_option = word.size() > 1 && word.front() == '-';
   if (&verb == &app) {
-    if (is_option) return "unknown option " + word + ": options follow the verb, which is one of " + VerbNames(app);
-    return "unknown verb '" + word + "': expected one of " + VerbNames(app);
+    if (is_option) return "unknown option " + word + ": options follow the command, which is one of " + VerbNames(app);
+    return "unknown command '" + word + "': expected one of " + VerbNames(app);
   }
   const bool before_verb = !app.remaining().empty() && app.remaining().front() == word;
   if (is_option && before_verb) {
-    return "unknown option " + word + " before the verb: options follow it, as in " + CommandName(verb) + " " + word;
+    return "unknown option " + word + " before the command: options follow it, as in " + CommandName(verb) + " " + word;
   }
   if (is_option) return CommandName(verb) + " has no option " + word;
   return CommandName(verb) + " does not take the argument '" + word + "'";
@@ -64,7 +64,7 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
     return ExplainUnknown(app, unknown.front());
   }
   const CLI::App& verb = Innermost(app);
-  if (&verb == &app) return "no verb given: expected one of " + VerbNames(app);
+  if (&verb == &app) return "no command given: expected one of " + VerbNames(app);
   std::string reason = error.what();
   // Every option that is converted is a number.
   const std::string unreadable = "Could not convert: ";
@@ -76,7 +76,7 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
 
 HelpFormat::HelpFormat() {
   column_width(kNameColumns);
-  label("SUBCOMMAND", "VERB");
+  label("SUBCOMMAND", "COMMAND");
   label("Positionals", "Arguments");
 }
 
@@ -88,7 +88,7 @@ std::string HelpFormat::make_option_name(const CLI::Option* option, bool is_posi
 std::string HelpFormat::make_option_opts(const CLI::Option* option) const {
   std::string text;
   if (option->get_type_size() != 0) {
-    const std::string type = option->get_type_name();  // what checks its values stands behind a colon
+    const std::string type = option->get_type_name();  // the check of its values follows a colon
     text = " " + type.substr(0, type.find(':', type.starts_with('[') ? type.find(']') : 0));
     if (!option->get_default_str().empty()) text += " = " + option->get_default_str();
   }

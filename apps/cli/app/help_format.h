@@ -1,4 +1,4 @@
-// How the help of the command line looks, and what is said about arguments that cannot be understood.
+// The form of the command line's help, and the messages about wrong arguments.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,8 +15,8 @@ class HelpFormat : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override;
 };
 
-// One sentence about what is wrong with the arguments, and where the right ones are listed. The parser reports a
-// missing option before an unknown one; the unknown one is what the user mistyped, so it is named first here.
+// One sentence about the wrong argument, and where the right ones are listed. The parser reports a missing option
+// before an unknown one. The unknown one is the user's typing error, so it comes first here.
 std::string ExplainUsage(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// JSON as it is printed.
+// JSON for printing.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,7 +6,7 @@
 
 namespace scumble {
 
-// Names of files and objects may hold any bytes; JSON may not, so what is not UTF-8 becomes U+FFFD.
+// Names of files and objects may hold any bytes; JSON may not, so bytes outside UTF-8 become U+FFFD.
 template <class Json>
 std::string JsonText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -1,4 +1,4 @@
-// Groups of options that several commands share, and the requests that their text becomes. Text is read here, once.
+// Groups of options that several commands share, and their conversion from text to requests, which happens only here.
 #pragma once
 
 #include <cstddef>
@@ -27,12 +27,12 @@ void AddFpsOption(CLI::App& verb, std::string& fps, const std::string& help);
 // --fast-io, of commands that write EXR.
 CLI::Option* AddFastIoOption(CLI::App& verb, bool& fast_io);
 
-// For counts: the parser would take -1 for the largest number there is. Returns what is wrong, or nothing.
+// For counts: the parser would turn -1 into the largest number. Returns the error, or an empty text.
 std::string RefuseNegative(const std::string& text);
-// For amounts that may be fractions: what is not a finite number above 0. `example` says what is meant: "milliseconds,
-// as 40".
+// For amounts that may be fractions: refuses all but finite numbers above 0. `example` gives the meaning:
+// "milliseconds, as 40".
 std::function<std::string(const std::string&)> RefuseNoAmount(const std::string& example);
-// For names, which a shell's empty variable would leave out unseen.
+// For names, which a shell's empty variable would silently remove.
 std::string RefuseEmpty(const std::string& text);
 
 // "1280x720" or "512": width and height in pixels.
@@ -42,10 +42,10 @@ Expected<Size> ParseSize(const std::string& text);
 Expected<std::vector<double>> ParseNumbers(const std::string& text, std::size_t least, std::size_t most,
                                            const std::string& what);
 
-// Stops of --exposure; nothing for auto. A usage error says what was expected.
+// Stops of --exposure; empty for auto. A usage error gives the expected form.
 Expected<std::optional<double>> ParseExposure(const std::string& text);
 
-// The options of a scene: a request, and the text that becomes the rest of it.
+// The options of a scene: a request, and the texts that complete it.
 struct SceneOptions {
   SceneRequest request;
   std::string size = "1280x720";
@@ -56,23 +56,22 @@ struct SceneOptions {
 };
 Expected<SceneRequest> ToRequest(const SceneOptions& options);
 
-// How many paths a pixel of light takes, and how long they are.
+// The number of paths for a pixel of light, and their length.
 void AddSampleOptions(CLI::App& verb, SceneOptions& options);
-// The same with all else that guides with light paths need.
+// AddSampleOptions and all other options of guides with light paths.
 void AddLightPathOptions(CLI::App& verb, SceneOptions& options);
-// A scene, the picture's size and whence it is seen.
+// A scene, the picture's size and its view.
 void AddViewOptions(CLI::App& verb, SceneOptions& options);
-// Which of its animations plays.
+// The animation to play.
 void AddAnimationOption(CLI::App& verb, SceneOptions& options);
-// How its rays are cast.
+// Options of ray casting.
 void AddCastOptions(CLI::App& verb, SceneOptions& options);
-// With everything else but blender.frame, because commands that make pictures have a frame already.
+// With all other options but blender.frame, because commands that make pictures have a frame already.
 void AddSceneOptions(CLI::App& verb, SceneOptions& options);
 
 // --style and --set alone, for one style.
 void AddOneStyleOptions(CLI::App& verb, StyleRequest& request, bool required);
-// One group for commands that paint and for those that make what is painted on, so that the two steps take what the one
-// takes.
+// One group for commands that paint and for those that make their guides, so that two steps have the options of one.
 void AddStyleOptions(CLI::App& verb, StyleRequest& request, bool required);
 
 }  // namespace scumble

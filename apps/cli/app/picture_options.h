@@ -1,4 +1,4 @@
-// Options of commands that paint: the picture, its frames, and how much time it may take.
+// Options of commands that paint: the picture, its frames, and its time limit.
 #pragma once
 
 #include <optional>
@@ -16,9 +16,9 @@ struct PictureOptions {
   std::string exposure = "auto";
   std::string show;
 };
-// `needed`: the command does nothing without an output.
+// `needed`: the command requires an output.
 void AddPictureOptions(CLI::App& verb, PictureOptions& options, bool needed);
-// Chunks are measured where the report is JSON, which has room for them.
+// Chunks are measured if the report is JSON, which has room for them.
 Expected<PictureRequest> ToRequest(const PictureOptions& options, const Globals& globals);
 
 struct SequenceOptions {
@@ -32,9 +32,9 @@ struct BudgetOptions {
   BudgetRequest request;
   std::string quality;
 };
-// `casts`: the command makes its guides itself. To be called after AddPictureOptions.
+// `casts`: the command makes its guides itself. Call it after AddPictureOptions.
 void AddBudgetOptions(CLI::App& verb, BudgetOptions& options, bool casts);
-// Looks at which options were given; a usage error where they exclude each other.
+// Checks the given options; a usage error where they exclude each other.
 Expected<BudgetRequest> ToRequest(const CLI::App& verb, const BudgetOptions& options);
 
 }  // namespace scumble

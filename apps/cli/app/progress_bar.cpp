@@ -31,7 +31,7 @@ class Bar {
   std::chrono::steady_clock::time_point start_, last_draw_ = start_;
 };
 
-std::mutex mutex;        // of what follows, and of the terminal's line
+std::mutex mutex;        // of the following members, and of the terminal's line
 Bar* current = nullptr;  // the bar that was begun last
 
 Bar::~Bar() {

@@ -1,4 +1,4 @@
-// A progress bar with the time left, on terminals, for what takes more than two seconds.
+// A progress bar with the remaining time, on terminals, for work of more than two seconds.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace scumble {
 
-// "  1:05 left", or nothing in the first second and before 2%, when it would be a guess. `share` in [0, 1].
+// "  1:05 left"; empty in the first second and before 2%, when it would be a guess. `share` in [0, 1].
 std::string TimeLeft(double elapsed_seconds, double share);
 
 // Shows a bar of this label until the returned callback and its copies are gone. An empty callback, which costs

@@ -12,10 +12,10 @@
 
 namespace scumble {
 
-// Adds "rays" and "work": rays cast by kind, how often materials, textures and lights were evaluated, what was decoded
-// and allocated, and whether OpenImageIO had to be loaded so far. docs/required.md explains each counter.
+// Adds "rays" and "work": rays by kind, evaluations of materials, textures and lights, decoded and allocated data, and
+// whether OpenImageIO was loaded so far. docs/required.md explains each counter.
 void CostToJson(const SceneCost& cost, nlohmann::ordered_json& json);
-// The same in one line.
+// CostToJson's numbers in one line.
 std::string CostToText(const SceneCost& cost);
 
 // A table: layer, why, cost.

@@ -25,7 +25,7 @@ void Handle(int signal, void (*handler)(int)) {
 
 void CleanUpOnSignals() {
   for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGPIPE, SIGTERM, SIGXCPU}) Handle(signal, CleanUpAndEnd);
-  // A handler, unlike ignoring it, is not handed on to programs that this one starts.
+  // A handler is not inherited by programs that this one starts, while an ignored signal is.
   Handle(SIGXFSZ, [](int) {});
 }
 

@@ -1,12 +1,12 @@
-// What a signal that ends the program leaves behind: nothing that is half written.
+// Cleans up when a signal ends the program: no unfinished file is left.
 #pragma once
 
 namespace scumble {
 
 // From now on the signals of a user, a terminal, a batch system or a closed pipe remove the temporary files of outputs
-// first, and then end the program as they would have. A signal that is ignored, as under nohup, stays ignored. A file
-// that would grow past a limit (ulimit -f) is an error of writing, as on a full disk, instead of the program's end. To
-// be called once, early.
+// first, and then end the program by their default action. An ignored signal, as under nohup, stays ignored. A file
+// beyond a size limit (ulimit -f) becomes a write error, as on a full disk, instead of the program's end. Call it once,
+// early.
 void CleanUpOnSignals();
 
 }  // namespace scumble

@@ -9,12 +9,12 @@
 namespace scumble {
 namespace {
 
-// Prints the help of the verb of that name, or of the whole program.
+// Prints the help of the command of that name, or of the whole program.
 Expected<ExitCode> RunHelpVerb(const CLI::App& app, const std::string& name) {
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (verb->get_name() == name) return Print(verb->help(app.get_name())), ExitCode::kOk;
   }
-  if (!name.empty()) return UsageError("there is no verb '" + name + "'; scumble help lists them");
+  if (!name.empty()) return UsageError("there is no command '" + name + "'; scumble help lists them");
   return Print(app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal)), ExitCode::kOk;
 }
 
@@ -31,10 +31,10 @@ void AddVerbs(CLI::App& app, Globals& globals, Action& chosen) {
   AddInfoVerb(app, globals, chosen);
   AddStylesVerb(app, globals, chosen);
   auto topic = std::make_shared<std::string>();
-  CLI::App* help = app.add_subcommand("help", "this text, or a verb's: scumble help stylize");
-  help->add_option("verb", *topic, "the verb to explain")->type_name("VERB");
+  CLI::App* help = app.add_subcommand("help", "this text, or a command's: scumble help stylize");
+  help->add_option("command", *topic, "the command to explain")->type_name("COMMAND");
   help->callback([&app, &chosen, topic] { chosen = [&app, topic] { return RunHelpVerb(app, *topic); }; });
-  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) verb->group("Verbs");
+  for (CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) verb->group("Commands");
 }
 
 std::vector<std::string> ArgumentsLastFirst(std::vector<std::string> arguments) {

@@ -1,4 +1,4 @@
-// All verbs, and the arguments as their parser takes them.
+// All commands, and the arguments in the form that their parser takes.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,11 +9,11 @@
 
 namespace scumble {
 
-// Adds every verb to the parser, `help` included. `app`, `globals` and `chosen` must outlive what is parsed.
+// Adds every command to the parser, `help` included. `app`, `globals` and `chosen` must outlive the parser.
 void AddVerbs(CLI::App& app, Globals& globals, Action& chosen);
 
-// The arguments behind the program's name, in the order in which CLI11 takes them. idiff writes its long options with
-// one dash, and people paste them: they get their second one.
+// The arguments after the program's name, in CLI11's order. idiff writes its long options with one dash, and people
+// paste them: they get a second dash.
 std::vector<std::string> ArgumentsLastFirst(std::vector<std::string> arguments);
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// scumble compare --motion: how what stays in sight changes from one frame to the next.
+// scumble compare --motion: the change of visible surfaces from one frame to the next.
 #include <fmt/format.h>
 
 #include "apps/cli/app/json_text.h"
@@ -11,7 +11,7 @@
 namespace scumble {
 namespace {
 
-// The guides that flicker is measured along; what is not there is not looked at.
+// The guides for measuring flicker; missing layers are skipped.
 Expected<GuideSet> ReadMotionGuides(const std::string& path, LayerSet required) {
   GuideReadOptions options;
   options.required = required.Add(Layer::kCoverage).Add(Layer::kNormal);
@@ -19,7 +19,7 @@ Expected<GuideSet> ReadMotionGuides(const std::string& path, LayerSet required) 
   return ReadGuides(path, options);
 }
 
-// Steps of 255 that a map of flicker shows in full yellow: always the same, so that maps can be laid side by side.
+// Steps of 255 that a map of flicker shows in full yellow: constant, so that maps can be laid side by side.
 constexpr double kMostFlicker = 64.0;
 
 }  // namespace

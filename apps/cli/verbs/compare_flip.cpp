@@ -1,4 +1,4 @@
-// scumble compare --flip: how visible the difference is.
+// scumble compare --flip: the visibility of the difference.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace scumble {
 namespace {
 
-// The layers of light that a file holds, those of R, G and B or of Y, as a list; "" where there are none or no file.
+// A file's layers of light, those of R, G and B or of Y, as a list; "" where there are none or no file.
 std::string LightLayers(const ChannelImage& image) {
   std::string list;
   for (const std::string& channel : image.names) {
@@ -25,7 +25,7 @@ std::string LightLayers(const ChannelImage& image) {
   return list;
 }
 
-// A file of layers is no picture; one of its layers may be what was meant.
+// A file of layers is no picture; the user may have meant one of its layers.
 Expected<Picture> ReadSeen(const std::string& path) {
   auto picture = ReadPicture(path);
   if (picture) return picture;
@@ -36,7 +36,7 @@ Expected<Picture> ReadSeen(const std::string& path) {
   return error;
 }
 
-// What is outside of 0 … 1, NaN included, is counted in `clamped`.
+// Values outside of 0 … 1, NaN included, are counted in `clamped`.
 Expected<LinearColors> LightOf(const ChannelImage& image, const std::string& layer, std::size_t& clamped) {
   LinearColors colors{image.width, image.height, {}};
   const char* const kNames[] = {".R", ".G", ".B"};

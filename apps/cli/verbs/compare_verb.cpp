@@ -57,8 +57,8 @@ void AddThresholds(CLI::App& sub, const std::string& name, DifferenceThresholds&
   add("hard" + name, thresholds.hard, "no value may differ by more than this, whatever the percentage");
 }
 
-// Another measure looks at none of the options that thresholds and layers are set by, nor at those of a third one; save
-// those in `shared`.
+// Excludes the options of thresholds and layers, and those of a third measure, which this measure ignores; except those
+// in `shared`.
 void ExcludeOthers(CLI::App& sub, CLI::Option* measure, const std::string& own, const std::set<std::string>& shared) {
   for (const CLI::Option* option : sub.get_options()) {
     const std::string name = option->get_name();

@@ -72,7 +72,7 @@ Status CheckScenes(const CrosscheckVerb& verb) {
   return Ok();
 }
 
-// Told before minutes of rendering, not after.
+// Checked before minutes of rendering, not after.
 Status CheckTargets(const CrosscheckVerb& verb) {
   RunInputs files;
   for (const std::string& scene : verb.scenes) files.ReadsScene(scene);
@@ -103,7 +103,7 @@ CrosscheckSetup SetupOf(const CrosscheckVerb& verb) {
           verb.request.camera,     verb.request.frame};
 }
 
-// A scene that the baseline cannot judge is an error, unless this run is about to measure it anew.
+// A scene that the baseline does not apply to is an error, unless this run measures it anew.
 Status CheckBaselineFits(const CrosscheckVerb& verb, const Baseline& baseline, const Globals& globals) {
   const CrosscheckSetup setup = SetupOf(verb);
   std::set<std::string> unchecked;
@@ -136,7 +136,7 @@ std::string RepeatCommand(const CrosscheckVerb& verb) {
   return command;
 }
 
-// Entries of scenes that this run did not check stay as they are.
+// Entries of scenes outside this run stay.
 Status WriteBaseline(const CrosscheckVerb& verb, const std::vector<CrosscheckReport>& reports, Baseline baseline,
                      const Globals& globals) {
   for (const CrosscheckReport& report : reports) {
@@ -171,7 +171,7 @@ void JudgeByBaseline(const std::string& file, const Baseline& baseline, const Gl
   for (const std::string& note : ApplyBaseline(baseline, name, report)) globals.Warn(file + ": " + note);
 }
 
-// An error is what would stop every other scene too: no Blender.
+// An error stops every other scene too: Blender is missing.
 Expected<CheckedScenes> CheckAllScenes(const CrosscheckVerb& verb, const Baseline& baseline, const Globals& globals) {
   CheckedScenes checked;
   for (const std::string& scene : verb.scenes) {
@@ -193,7 +193,7 @@ Expected<CheckedScenes> CheckAllScenes(const CrosscheckVerb& verb, const Baselin
   return checked;
 }
 
-// The failure decides the exit code; limits that broke elsewhere are not to be lost in it.
+// The failure decides the exit code; limits that other scenes broke are reported as well.
 Error FailureOf(const CheckedScenes& checked) {
   Error error = *checked.first_failure;
   int failed = 0, other = 0;

@@ -1,4 +1,4 @@
-// scumble info: what is in a guide file, a scene or a style.
+// scumble info: the contents of a guide file, a scene or a style.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Whether transfer can read a Blender render as it is.
+// Whether transfer can read a Blender render directly.
 std::string BlenderNote(const GuideFileInfo& info) {
   std::string missing;
   for (const auto& [layer, pass] : {std::pair{Layer::kPosition, "Position"}, {Layer::kDepth, "Z"}}) {
@@ -81,7 +81,7 @@ Json DescribeScene(const Scene& scene) {
 
 Expected<Json> DescribeSceneFile(const std::string& path) {
   Expected<AnimatedScene> animated = AnimatedScene::Load(path);
-  // An animation that cannot be played hides nothing of the scene at rest.
+  // If the animation is invalid, the scene at rest is shown all the same.
   SCUMBLE_ASSIGN(const Scene scene, animated ? Expected<Scene>(animated->rest()) : LoadScene(path));
   Json json = DescribeScene(scene);
   if (animated && !animated->animations().empty()) {
@@ -131,7 +131,7 @@ std::string ToText(const Json& json) {
   for (const auto& [key, value] : json.items()) {
     std::string shown;
     if (value.is_array()) {
-      // Exemplars say more than their names: one a line.
+      // Exemplars have more than names: one a line.
       const std::string between = key == "exemplars" ? "\n" + std::string(widest + 2, ' ') : ", ";
       for (const Json& item : value) shown += (shown.empty() ? "" : between) + item.get<std::string>();
       if (shown.empty()) shown = "none";

@@ -84,13 +84,13 @@ nlohmann::ordered_json FaultToJson(const std::string& image, const PaintFault& f
                               {"weight", fault.weight == PaintFault::Weight::kMistake ? "mistake" : "remark"},
                               {"image", image},
                               {"what", fault.what},
-                              {"mend", fault.mend}};
+                              {"mend", fault.remedy}};
   if (fault.place) json["x"] = fault.place->first, json["y"] = fault.place->second;
   return json;
 }
 
 std::string FaultToText(const std::string& image, const PaintFault& fault) {
-  return fmt::format("{}: {}; {}", image, fault.what, fault.mend);
+  return fmt::format("{}: {}; {}", image, fault.what, fault.remedy);
 }
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// What `scumble styles check` says of one painting, in words and as JSON.
+// The report of `scumble styles check` on one exemplar, in words and as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,15 +10,15 @@
 
 namespace scumble {
 
-// All figures. Lengths and places are pixels of the file, `margin` being what was cut off it; shares are percent.
+// All figures. Lengths and places are pixels of the file, `margin` being the part that was cut off; shares are percent.
 nlohmann::ordered_json TraitsToJson(const PaintTraits& traits, int margin);
 
-// The figures that a painter looks for, one indented line each.
+// The figures for painters, one indented line each.
 std::string TraitsToText(const PaintTraits& traits);
 
 nlohmann::ordered_json FaultToJson(const std::string& image, const PaintFault& fault);
 
-// "lit.png: what is wrong; how to mend it"
+// "lit.png: the fault; the remedy"
 std::string FaultToText(const std::string& image, const PaintFault& fault);
 
 }  // namespace scumble

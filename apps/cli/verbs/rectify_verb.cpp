@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Options of `scumble sphere` that mean something here; the others draw templates.
+// Options of `scumble sphere` that apply here; the others draw templates.
 constexpr std::array<std::string_view, 8> kOptionsHere{
     "--rectify", "--square", "--no-white-balance", "--size", "--output", "--threads", "--json", "--quiet"};
 
@@ -37,7 +37,7 @@ Status CheckOptions(const CLI::App& verb) {
   return Ok();
 }
 
-// The output is a painting: neither a folder nor what was to be painted over.
+// The output is a painting: neither a folder nor the template itself.
 Status CheckIsPainting(const std::string& output) {
   const fs::path path(output);
   std::error_code failed;
@@ -57,7 +57,7 @@ std::optional<int> KitSize(const fs::path& guides) {
   return info && info->width == info->height && SphereMargin(info->header) ? std::optional(info->width) : std::nullopt;
 }
 
-// What colour white paper has, in words.
+// The colour of the white paper, in words.
 std::string Cast(const double (&paper)[3]) {
   const auto [least, most] = std::minmax({paper[0], paper[1], paper[2]});
   if (most - least < 0.03) return "none";
@@ -87,7 +87,7 @@ std::string ReportText(const RectifyReport& report, int size) {
   out(text, "held",
       fmt::format("turned {:.1f}° clockwise, tilted about {:.0f}°{}", Tidy(report.rotation, 0.1), report.tilt, lens));
   out(text, "cast", Cast(report.paper));
-  // Scanners often have it so on purpose, which is why this is no warning.
+  // Scanners often clip deliberately, so this is no warning.
   const std::string limit =
       report.clipped > 0.5 ? "; the paper is at the file's limit, lighter paint is not told from it" : "";
   out(text, "light",

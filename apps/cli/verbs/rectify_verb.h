@@ -11,14 +11,14 @@ struct RectifyRequest {
   std::string scan;
   bool square = false;
   bool no_white_balance = false;
-  int size = 0;  // from the verb's own options
+  int size = 0;  // from the command's own options
   std::string output;
 };
 
 void AddRectifyOptions(CLI::App& verb, RectifyRequest& request);
 
-// `verb` tells which options were given: those that say how a template is drawn are refused. Where --size is not among
-// them the kit's guides beside the output say it.
+// `verb` has the given options: those of drawing a template are refused. Without --size the kit's guides beside the
+// output set it.
 Expected<ExitCode> RunRectify(const CLI::App& verb, const RectifyRequest& request, const Globals& globals);
 
 }  // namespace scumble

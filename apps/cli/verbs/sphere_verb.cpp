@@ -89,7 +89,7 @@ Status CheckNames(const SphereVerb& verb, std::size_t lights) {
   return Ok();
 }
 
-// Pixels of a sphere that is so long on paper.
+// Pixels of a sphere of that length on paper.
 Expected<int> PrintedSize(const std::string& length, int dpi) {
   const auto millimetres = ParseLengthMm(length);
   if (!millimetres) return UsageError("--print-size " + millimetres.error().message);
@@ -121,7 +121,7 @@ Expected<KitOptions> ReadKitOptions(const SphereVerb& verb) {
   return options;
 }
 
-// Paper asked for that cannot be had, and paper that is of little use.
+// Refuses unavailable paper, and warns of unsuitable paper.
 Status CheckPaper(const SphereVerb& verb, const KitOptions& options, const Globals& globals) {
   if (!options.pdf) {
     if (verb.page_given) globals.Warn("--page is the paper of the PDF, which --only leaves out: it changes nothing");
@@ -144,9 +144,9 @@ Status CheckPaper(const SphereVerb& verb, const KitOptions& options, const Globa
   return Ok();
 }
 
-// Which file to paint on, and what to do with it then.
-void SayWhatNext(const SphereVerb& verb, const KitOptions& options, const std::optional<PrintPage>& page,
-                 const Globals& globals) {
+// Prints the file to paint on, and the next step.
+void PrintNextStep(const SphereVerb& verb, const KitOptions& options, const std::optional<PrintPage>& page,
+                   const Globals& globals) {
   const std::string stem = verb.names.empty() ? "template" : verb.names[0] + "-template";
   const std::string painting = verb.names.empty() ? "lit.png" : verb.names[0] + ".png";
   std::string files;
@@ -169,7 +169,7 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
   SCUMBLE_ASSIGN(const KitOptions options, ReadKitOptions(verb));
   SCUMBLE_RETURN_IF_ERROR(CheckPaper(verb, options, globals));
   std::optional<PrintPage> page;
-  // A large sphere takes a while to render: what does not fit the paper is said before.
+  // A large sphere takes a while to render: paper sizes are checked before.
   if (options.pdf) {
     SCUMBLE_ASSIGN(page, PlacePage(options.page, verb.size, verb.dpi));
   }
@@ -199,7 +199,7 @@ Expected<ExitCode> RunSphereVerb(SphereVerb verb, const Globals& globals) {
     Print(JsonText(json));
   } else {
     for (const auto& file : files) Print(file.string() + "\n");
-    SayWhatNext(verb, options, page, globals);
+    PrintNextStep(verb, options, page, globals);
   }
   return ExitCode::kOk;
 }

@@ -26,7 +26,7 @@ namespace {
 using Weight = PaintFault::Weight;
 
 std::vector<PaintFault> AmbiguityFaults(const AmbiguityReport& report) {
-  // A floor and a wall are flat too, and do no harm where rounder things stand between them.
+  // A floor and a wall are flat too, and do no harm beside rounder objects.
   constexpr double kLeastCovered = 50.0, kMostFlat = 50.0, kRound = 80.0;
   if (report.flat_percent > kMostFlat && report.covered_percent < kRound) {
     return {
@@ -47,14 +47,14 @@ std::vector<PaintFault> AmbiguityFaults(const AmbiguityReport& report) {
   return {};
 }
 
-// A painting for more light that is darker than one for less is legal, and most often a slip.
+// An exemplar for more light that is darker than one for less is legal, and most often a mistake.
 std::vector<PaintFault> OppositeLights(const Style& style, std::span<const float> luminances,
                                        const std::vector<PaintTraits>& traits, std::size_t a) {
   constexpr double kClearly = 2.0;  // L*
   std::vector<PaintFault> faults;
   for (std::size_t b = 0; b < luminances.size(); ++b) {
     const ToneReport &more = traits[a].tone, &less = traits[b].tone;
-    // A strong light makes deep shades too, so the lightest paint must be darker as well.
+    // Strong light makes deep shades too, so the lightest paint must be darker as well.
     const bool darker = more.mean + kClearly < less.mean && more.brightest < less.brightest;
     if (!(luminances[a] > luminances[b] && darker)) continue;
     faults.push_back({"opposite-light", Weight::kMistake,
@@ -70,7 +70,7 @@ std::string SizeText(const Picture& picture) {
                                          : fmt::format("{}×{}", picture.width, picture.height);
 }
 
-// Of the first exemplar, as the rest of the report.
+// Of the first exemplar, like the other parts of the report.
 nlohmann::ordered_json SpaceToJson(const GuideSpace& space, const SpaceAmbiguity& report) {
   nlohmann::ordered_json json{{"dimensions", space.dimensions()},    {"covered_percent", report.covered_percent},
                               {"mean_error", report.mean_error},     {"cells_shown", report.cells_shown},
@@ -148,7 +148,7 @@ void FindFaults(CheckedStyle& checked) {
     checked.faults.push_back({style.exemplars.front().name, std::move(fault)});
 }
 
-// Loads and prepares the style as a transfer would, and looks for what a painter overlooks.
+// Loads and prepares the style as a transfer would, and finds the mistakes that painters overlook.
 Expected<CheckedStyle> Check(const std::string& path, const Globals& globals) {
   CheckedStyle checked;
   SCUMBLE_ASSIGN(checked.style, OpenStyle({path, {}, {}}, globals));

@@ -1,4 +1,4 @@
-// scumble styles check: reads styles as a transfer would and tells the usual mistakes.
+// scumble styles check: reads styles as a transfer would and reports the usual mistakes.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct StylesCheck {
   bool strict = false;              // mistakes are exit code 1
 };
 
-// Prints a report for each style, and for several a summary; warns of mistakes. A style that cannot be read does not
-// hide the others: it is told as an error, and the last one decides the exit code.
+// Prints a report for each style, and for several a summary; warns of mistakes. An unreadable style does not stop the
+// others: it is reported as an error, and the last one decides the exit code.
 Expected<ExitCode> CheckStyles(const StylesCheck& check, const Globals& globals);
 
 }  // namespace scumble

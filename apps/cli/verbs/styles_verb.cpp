@@ -81,7 +81,7 @@ void AddStylesVerb(CLI::App& app, Globals& globals, Action& chosen) {
   auto checked = std::make_shared<StylesCheck>();
   sub->add_flag("--keys", *keys, "list every key of style.toml with its default");
   CLI::App* check = sub->add_subcommand(
-      "check", "read styles as a transfer would and say what is wrong with their paint, where, and how to mend it");
+      "check", "read styles as a transfer would and say what is wrong with their paint, where, and how to fix it");
   check
       ->add_option("style", checked->styles,
                    "style folders, style.toml files, pictures of painted spheres, or bundled styles' names")

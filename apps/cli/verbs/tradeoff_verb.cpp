@@ -1,4 +1,4 @@
-// scumble tradeoff: what every way to stylise a scene costs, and how far off it is.
+// scumble tradeoff: the cost and the error of every variant of a stylised scene.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -45,7 +45,7 @@ struct TradeoffVerb {
 
 constexpr const char *kPictures = "pictures", *kJson = "tradeoff.json", *kPage = "report.html";
 
-// Folders that a run makes, with those above them, and that go again where nothing comes to stand in them.
+// Folders that a run makes, with those above them; those that stay empty are removed.
 class MadeFolders {
  public:
   explicit MadeFolders(const fs::path& deepest) {
@@ -68,8 +68,7 @@ class MadeFolders {
   std::vector<fs::path> made_;
 };
 
-// Told before minutes of work: whether the folder is there and can be written to, and takes the place of nothing that
-// is read.
+// Checked before minutes of work: whether the folder exists and is writable, and no input file is overwritten.
 Status CheckFolder(const TradeoffVerb& verb, const Globals& globals) {
   const fs::path pictures = fs::path(verb.folder) / kPictures;
   std::error_code failed;
@@ -86,14 +85,14 @@ Status CheckFolder(const TradeoffVerb& verb, const Globals& globals) {
   for (const char* name : {kPage, "tradeoff.csv", kJson, "chart.svg"}) {
     SCUMBLE_RETURN_IF_ERROR(files.CheckOutput((fs::path(verb.folder) / name).string()));
   }
-  // How pictures will be called is known only later: none of those that are there may be one that is read.
+  // The pictures' names are not known yet: so no picture in the folder may be an input file.
   for (const fs::directory_entry& entry : fs::directory_iterator(pictures, failed)) {
     if (entry.path().extension() == ".png") SCUMBLE_RETURN_IF_ERROR(files.CheckOutput(entry.path().string()));
   }
   return files.CheckOutput((pictures / "00.png").string());
 }
 
-// Pictures that an earlier report in the folder names and this one does not; nobody else's.
+// Pictures that an earlier report in the folder lists and this one does not; no other files.
 std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& report) {
   std::vector<fs::path> old;
   const auto bytes = ReadWholeFile(fs::path(folder) / kJson);
@@ -113,8 +112,8 @@ std::vector<fs::path> OldPictures(const std::string& folder, const TradeReport& 
   return old;
 }
 
-// Whether a report of so many bytes, its largest file of `largest`, finds room in the page's folder: they are taken,
-// and given back at once. Some file systems tell of a full disk only when the file is flushed or closed.
+// Whether the page's folder has room for a report of that many bytes, its largest file of `largest`: allocates and
+// frees them at once. Some file systems report a full disk only when the file is flushed or closed.
 Status CheckRoom(const fs::path& page, std::size_t bytes, std::size_t largest) {
   const internal::PendingTemporary taken(page);
   int failure = errno;
@@ -126,12 +125,12 @@ Status CheckRoom(const fs::path& page, std::size_t bytes, std::size_t largest) {
     if (::close(file) != 0 && failure == 0) failure = errno;
     if (failure != ENOSPC && failure != EDQUOT && failure != EFBIG) return Ok();
   }
-  const std::string mend = file < 0 ? "name another folder" : "make room, or name another folder";
+  const std::string remedy = file < 0 ? "name another folder" : "make room, or name another folder";
   return OutputError(fmt::format("cannot write {}: {}; the report takes {:.1f} MB: {}", page.string(),
-                                 std::strerror(failure), 1e-6 * static_cast<double>(bytes), mend));
+                                 std::strerror(failure), 1e-6 * static_cast<double>(bytes), remedy));
 }
 
-// Takes a file away, links followed as where it is written; what is not there, a device and a pipe are no matter.
+// Removes a file, following links as the writing does. A missing file, a device or a pipe is skipped.
 Status Remove(const fs::path& file) {
   std::error_code failed;
   const fs::path target = fs::canonical(file, failed);
@@ -140,16 +139,16 @@ Status Remove(const fs::path& file) {
   return failed ? Status(OutputError("cannot write " + file.string() + ": " + failed.message())) : Ok();
 }
 
-// All is encoded first and has room, so that a full disk leaves an older report as it was. Then that goes, its page
-// first, as pictures of other variants get the names of its own; and the new page comes last. So where a page is, all
-// that it tells of is there, whenever a run ends.
+// Everything is encoded first and has room, so that a full disk leaves an older report unchanged. Then the older report
+// is removed, its page first, because other variants' pictures reuse its names. The new page is written last. So if
+// there is a page, all of its files exist, whenever a run ends.
 Status WriteFolder(const std::string& folder, const TradeReport& report) {
   const fs::path place(folder);
   const std::array<std::pair<const char*, std::string>, 4> texts = {{{"tradeoff.csv", TradeCsv(report)},
                                                                      {kJson, TradeJson(report)},
                                                                      {"chart.svg", TradeChart(report)},
                                                                      {kPage, TradeHtml(report)}}};
-  constexpr std::size_t kBlock = 4096;  // what a file takes beside its bytes: the rest of its last block
+  constexpr std::size_t kBlock = 4096;  // a file's size beside its bytes: the rest of its last block
   std::size_t bytes = 0, largest = 0;
   const auto add = [&](std::size_t size) { bytes += size + kBlock, largest = std::max(largest, size); };
   for (const auto& [name, text] : texts) add(text.size());
@@ -184,7 +183,7 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
   }
   if (!verb.folder.empty()) {
     const MadeFolders folders(fs::path(verb.folder) /
-                              kPictures);  // gone again while minutes of work may be interrupted
+                              kPictures);  // removed again, because minutes of work may be interrupted
     SCUMBLE_RETURN_IF_ERROR(CheckFolder(verb, globals));
   }
   SCUMBLE_ASSIGN(const TradeReport report, MeasureTradeoff(verb.setup, globals));
@@ -194,7 +193,7 @@ Expected<ExitCode> RunTradeoffVerb(TradeoffVerb verb, const Globals& globals) {
     written = WriteFolder(verb.folder, report);
   }
   Print(globals.json ? TradeJson(report)
-                     : TradeTable(report));  // in any case: minutes of work are not lost where writing fails
+                     : TradeTable(report));  // always printed: minutes of work are not lost if writing fails
   SCUMBLE_RETURN_IF_ERROR(written);
   if (!verb.folder.empty()) {
     globals.Note((fs::path(verb.folder) / "report.html").string() + ": the report, with a chart and all pictures");

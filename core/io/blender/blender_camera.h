@@ -1,4 +1,4 @@
-// The text file that says how a Blender render was seen, which its header lacks.
+// The text file with the camera of a Blender render, which the render's header lacks.
 #pragma once
 
 #include <filesystem>

@@ -12,7 +12,7 @@ namespace scumble {
 namespace {
 
 constexpr float kBackgroundDepth = 1e9f;  // Blender writes 1e10
-constexpr float kShortestNormal = 1e-3f;  // an average shorter than this is of nothing
+constexpr float kShortestNormal = 1e-3f;  // a shorter average has no direction
 
 glm::dvec3 GltfFromBlender(glm::dvec3 v) { return {v.x, v.z, -v.y}; }
 
@@ -22,7 +22,7 @@ void Set(GuideSet& guides, Layer layer, std::size_t i, glm::vec3 value) {
 
 float SquaredLength(glm::vec3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 
-// NaN counts as one, for Validate to refuse.
+// NaN counts as a normal, so that Validate refuses it.
 bool HasNormal(const GuideSet& guides, std::size_t i) {
   return !(SquaredLength(guides.Vec3(Layer::kNormal, i)) <= kShortestNormal * kShortestNormal);
 }
@@ -119,7 +119,7 @@ constexpr std::array<std::pair<int, int>, 24> kNearby = {
     {{0, -1},  {-1, 0}, {1, 0},   {0, 1},  {-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, -2},  {-2, 0}, {2, 0},  {0, 2},
      {-1, -2}, {1, -2}, {-2, -1}, {2, -1}, {-2, 1},  {2, 1},  {-1, 2}, {1, 2}, {-2, -2}, {2, -2}, {-2, 2}, {2, 2}}};
 
-// The nearest pixel that has something, of the same object if there is one; the pixel itself where there is none.
+// The nearest pixel that has a value, of the same object if there is one. Without any such pixel, the pixel itself.
 std::size_t Nearest(const GuideSet& guides, std::size_t i, const std::vector<char>& has) {
   const int x = static_cast<int>(i % guides.width()), y = static_cast<int>(i / guides.width());
   std::size_t other = i;
@@ -133,7 +133,7 @@ std::size_t Nearest(const GuideSet& guides, std::size_t i, const std::vector<cha
   return other;
 }
 
-// Completes the pixels that are covered in part.
+// Completes the partly covered pixels.
 void FillEdges(GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
   std::vector<char> has_normal(guides.pixel_count()), has_depth(guides.pixel_count());
@@ -157,7 +157,7 @@ void FillEdges(GuideSet& guides) {
   }
 }
 
-// The background holds nothing, whatever the passes say.
+// Clears the background, whatever the passes hold there.
 void ClearBackground(GuideSet& guides) {
   const auto coverage = guides.Plane(Layer::kCoverage);
   for (const Layer layer : {Layer::kNormal, Layer::kPosition, Layer::kDepth, Layer::kObject, Layer::kMaterial}) {

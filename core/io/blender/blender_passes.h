@@ -1,4 +1,4 @@
-// What Blender's passes mean, as guides: a multilayer EXR that Cycles wrote, whoever set up the render.
+// The meaning of Blender's passes as guides: multilayer EXRs that Cycles wrote, from any render setup.
 #pragma once
 
 #include <map>

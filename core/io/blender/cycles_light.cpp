@@ -22,7 +22,7 @@ std::string ChannelsOf(const ChannelImage& image) {
   return list;
 }
 
-// The three channels of a pass, "ViewLayer.DiffDir.R" and its sisters.
+// The three channels of a pass: "ViewLayer.DiffDir.R", .G and .B.
 Expected<ColorPlanes> FindPass(const ChannelImage& image, const std::string& pass) {
   ColorPlanes planes{};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -43,7 +43,7 @@ Expected<ColorPlanes> FindPass(const ChannelImage& image, const std::string& pas
   return planes;
 }
 
-// What one of the three files says. Moving it keeps the planes where they are; a copy would not.
+// The content of one of the three files. A move leaves the planes in place; a copy would not.
 struct LightFile {
   LightFile() = default;
   LightFile(LightFile&&) = default;
@@ -76,7 +76,7 @@ Status CheckSameSize(const ChannelImage& a, const ChannelImage& b) {
                     ": render them in one run");
 }
 
-// The layer's value is color · (direct + indirect); null passes count as nothing, a null color as 1.
+// The layer's value is color · (direct + indirect). A null pass counts as 0, a null color as 1.
 void Fill(GuideSet& guides, Layer layer, const ColorPlanes* color, const ColorPlanes& first,
           const ColorPlanes* second) {
   guides.Add(layer);

@@ -12,7 +12,7 @@ namespace scumble {
 
 struct CyclesLight {
   GuideSet guides;                  // lpe.full, lpe.LDE, lpe.LSE, lpe.LDDE and lpe.LD12E, nothing else
-  std::vector<std::uint8_t> emits;  // by pixel: 1 where the surface itself shines, so that `full` holds its own light
+  std::vector<std::uint8_t> emits;  // by pixel: 1 where the surface itself emits, so that `full` holds its own light
   bool glossy = false;              // the eye sees a surface with a specular lobe
 };
 
@@ -26,10 +26,9 @@ struct CyclesLight {
 // file or a pass is missing, two view layers hold it, the files differ in size.
 Expected<CyclesLight> ReadCyclesLight(const std::filesystem::path& stem, int samples);
 
-// Adds the GlossCol pass of the data file to the albedo of `guides`, which was read from it: for us the base colour of
-// a specular surface is albedo too, while DiffCol is black there. Returns, by pixel, 1 where the surface only shines:
-// its Emit is not black and its albedo is, so that there is nothing to compare. Errors: a pass is missing, another
-// size.
+// Adds the GlossCol pass of the data file to the albedo of `guides`, which was read from that file. Our albedo includes
+// the base colour of a specular surface, where DiffCol is black. Returns, by pixel, 1 where the surface only emits: its
+// Emit is not black and its albedo is, so there is nothing to compare. Errors: a pass is missing or has another size.
 Expected<std::vector<std::uint8_t>> CompleteAlbedo(const std::filesystem::path& file, GuideSet& guides);
 
 }  // namespace scumble

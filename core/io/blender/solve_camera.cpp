@@ -21,7 +21,7 @@ constexpr double kFloatRounding = 0x1.0p-22;  // relative; a renderer's last ste
 constexpr const char* kMend =
     "; give the .camera file that blender_scripts/render_guides.py writes, with --camera FILE";
 
-// One covered pixel: where it is, from the picture's middle, and what it saw.
+// One covered pixel: its place from the picture's middle, and its position and depth.
 struct Sample {
   double u, v;  // pixels, right and down
   glm::dvec3 p;
@@ -39,7 +39,7 @@ class LeastSquares {
     }
   }
 
-  // Cholesky; false where the equations leave something open. Columns are first scaled to length 1.
+  // Cholesky; false where the equations are singular. Columns are first scaled to length 1.
   bool Solve(std::array<double, N>& x) const {
     std::array<std::array<double, N>, N> l{};
     std::array<double, N> scale{};
@@ -100,7 +100,7 @@ Error Refusal(const std::string& name, const std::string& why) {
   return InputError(name + " is a Blender render whose camera cannot be found from its Position pass: " + why + kMend);
 }
 
-// How the view was found to be: z = Z_c + b·(p − centre), and u, v linear as the file's head says.
+// The solved view: z = Z_c + b·(p − centre), and u, v linear as the head of the header says.
 struct View {
   glm::dvec3 right, up, back;  // rows of the rotation; the camera looks along −back
   glm::dvec3 centre;           // of the samples, in the world
@@ -153,8 +153,8 @@ class Solver {
             in_.depth[i]};
   }
 
-  // Which pixels count. Beside the background a scattered sample that counts is one that came to lie inside, which
-  // would make the picture look larger than it is: two pixels' distance is kept where there are enough others.
+  // Selects the pixels that count. Beside the background, a scattered sample counts only if it came to lie inside,
+  // which would make the picture look larger than it is. So two pixels' distance is kept where enough others are left.
   Status TakeSamples() {
     const int width = in_.width, height = in_.height;
     std::vector<char> covered(std::size_t(width) * height);
@@ -182,7 +182,7 @@ class Solver {
     }
     constexpr std::size_t kEnoughInside = 1000;
     if (inside.size() >= kEnoughInside) covered_ = std::move(inside);
-    // One pixel of each stretch, at a place of its own: a fixed step could fall on one column again and again.
+    // One pixel of each stretch, at a hashed place in it: a fixed step could hit one column again and again.
     const std::size_t count = std::min(covered_.size(), kMaxSamples);
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t begin = covered_.size() * k / count, end = covered_.size() * (k + 1) / count;
@@ -191,7 +191,7 @@ class Solver {
     return Ok();
   }
 
-  // Finds b and the depth of the samples' centre; refuses what leaves them open.
+  // Finds b and the depth of the samples' centre; refuses samples that leave them undetermined.
   Status FitDepth() {
     glm::dvec3 sum(0.0);
     double largest = 0.0;
@@ -247,8 +247,8 @@ class Solver {
     return Ok();
   }
 
-  // u·z = p·X + q·Y + a + cu·z and v·z = q·X − p·Y + b + cv·z, where X, Y run along two directions across the view; in
-  // an orthographic one without the z. Divided by z, so that errors are pixels.
+  // u·z = p·X + q·Y + a + cu·z and v·z = q·X − p·Y + b + cv·z. X and Y run along two directions across the view. An
+  // orthographic view has no factor z. Divided by z, so that errors are pixels.
   View FitView(bool orthographic) const {
     const glm::dvec3 least = std::fabs(back_.y) < 0.7 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
     const glm::dvec3 e1 = glm::normalize(glm::cross(least, back_)), e2 = glm::cross(back_, e1);
@@ -296,8 +296,8 @@ class Solver {
     return view;
   }
 
-  // What a camera with pixels of any shape would make of it: tells why the right one, with an error of `rms`, does not
-  // fit. Nothing where no such camera fits either.
+  // Fits a camera with pixels of any shape, to explain why the right one fails with an error of `rms`. Empty where such
+  // a camera fails too.
   std::string ShapeFault(bool orthographic, double rms) const {
     LeastSquares<4> along_u, along_v;
     const auto row = [&](const Sample& s) {
@@ -333,7 +333,7 @@ class Solver {
     return "";
   }
 
-  // Reprojects all covered pixels.
+  // Checks the view by reprojecting all covered pixels.
   Status Prove(const View& view, SolvedCamera& result) const {
     constexpr int kBlocks = 8;
     struct Block {

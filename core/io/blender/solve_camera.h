@@ -1,9 +1,9 @@
-// The camera of a render, found from what it saw.
+// The camera of a render, solved from its passes.
 //
-// Blender's header holds no camera, but its Position and Depth passes do: planar depth is linear in world position,
-// z = b·P + d with |b| = 1, and so are x·z and y·z of a perspective view, or x and y of an orthographic one. Given the
-// direction b, what is left (roll, focal length, lens shift, place) is one linear least-squares problem in which square
-// pixels and a right-handed view are built in.
+// Blender's header holds no camera, but its Position and Depth passes determine one. Planar depth is linear in world
+// position, z = b·P + d with |b| = 1. So are x·z and y·z of a perspective view, and x and y of an orthographic one.
+// With the direction b known, the unknowns (roll, focal length, lens shift, place) are one linear least-squares problem
+// that has square pixels and a right-handed view built in.
 #pragma once
 
 #include <span>
@@ -31,13 +31,12 @@ struct SolvedCamera {
   double error_pixels = 0.0;  // root mean square of the reprojection, per axis
 };
 
-// Solves, then proves by reprojection: 99.9% of the pixels within 0.02 px, beyond what rounding positions to float
-// explains. Cycles of Blender 3.4 keeps the first sample's position, which lies at the pixel's centre whatever the
-// filter; slight depth of field, or a renderer whose filter moves that sample, scatters it: positions may be up to 3 px
-// off, as long as no part of the picture is off on average. Refuses with ErrorKind::kInput: fewer than 64 pixels, all
-// in one plane, depth that is not planar, pixels that are not square, a mirrored picture, and whatever no camera
-// explains. `name` stands for the file in messages. O(pixels), the fit itself on some 100,000 of them; deterministic;
-// thread-safe.
+// Solves, then checks by reprojection: 99.9% of the pixels within 0.02 px, beyond the rounding of positions to float.
+// Cycles of Blender 3.4 keeps the first sample's position, which lies at the pixel's centre for any filter. Slight
+// depth of field, or a renderer whose filter moves that sample, scatters positions: they may be up to 3 px off if no
+// part of the picture is off on average. Refuses with ErrorKind::kInput: fewer than 64 pixels, all in one plane, depth
+// that is not planar, pixels that are not square, a mirrored picture, and passes that no camera explains. `name` stands
+// for the file in messages. O(pixels), the fit itself on some 100,000 of them; deterministic; thread-safe.
 Expected<SolvedCamera> SolveCamera(const SolveCameraInput& input, const std::string& name);
 
 }  // namespace scumble

@@ -19,14 +19,14 @@ constexpr std::array<char, 4> kMagic = {0x76, 0x2f, 0x31, 0x01};
 constexpr std::uint32_t kNotOnlyImages = 0x800, kManyParts = 0x1000;
 constexpr std::size_t kLongestName = 255;
 
-// By the number in the header: none; rle, 64 to 1; zips, zip; piz, whose Huffman code of 510 bytes in 9 bits is below
-// Deflate's bound; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32 bytes in 3; dwaa and dwab, which leave
-// at least 4 bytes of a block of 8 × 8 floats to it.
+// The largest packing ratio, by the number in the header: none; rle, 64 to 1; zips, zip; piz, whose Huffman code of 510
+// bytes in 9 bits is below Deflate's bound; pxr24, which leaves 3 bytes of 4 to Deflate; b44 and b44a, 32 bytes in 3;
+// dwaa and dwab, which leave at least 4 bytes of a block of 8 × 8 floats to it.
 constexpr std::uint64_t kMostPacked[] = {
     1,  64, kMostDeflated,      kMostDeflated,     kMostDeflated, kMostDeflated * 4 / 3,
     11, 11, 64 * kMostDeflated, 64 * kMostDeflated};
 
-// Bytes in memory as a stream that knows where it stands; nothing is copied, and none goes elsewhere.
+// A seekable stream over bytes in memory; nothing is copied.
 class SpanBuffer : public std::streambuf {
  public:
   explicit SpanBuffer(std::span<const std::byte> bytes) {
@@ -59,7 +59,7 @@ std::optional<std::uint32_t> ReadNumber(std::istream& file) {
   return Number(bytes);
 }
 
-// Up to a NUL; nothing where it is longer than any name.
+// Reads up to a NUL. Empty if the name is longer than any name may be.
 std::optional<std::string> ReadName(std::istream& file) {
   std::string name;
   for (char c; file.get(c);) {
@@ -70,9 +70,9 @@ std::optional<std::string> ReadName(std::istream& file) {
   return std::nullopt;
 }
 
-// Of one pixel, in a list of channels: name, NUL, type, 4 bytes, sampling in x and y; an empty name ends it. Channels
-// with fewer samples than pixels, which no guides have, count as nothing: less is declared. Nothing where the list ends
-// elsewhere than its attribute, or a type is none: OpenImageIO would end the whole process.
+// Bytes of one pixel, from a list of channels: name, NUL, type, 4 bytes, sampling in x and y; an empty name ends the
+// list. Subsampled channels, which no guides have, count as 0: the bound stays valid. Empty if the list and its
+// attribute end at different places, or a type is unknown: OpenImageIO would end the whole process.
 std::optional<std::uint64_t> PixelBytes(const std::string& list) {
   constexpr std::size_t kBehindName = 16;
   constexpr std::uint32_t kHalf = 1, kFloat = 2;  // 0: whole numbers of 32 bits
@@ -90,9 +90,8 @@ std::optional<std::uint64_t> PixelBytes(const std::string& list) {
   return std::nullopt;
 }
 
-// Whether an attribute is what its type says, above all as long. The library reads as much as the type says, whatever
-// the attribute does, and takes what follows for the next one. Texts, and types that nobody knows, are as long as they
-// say.
+// Whether an attribute is as long as its type requires. The library reads as many bytes as the type requires, and takes
+// whatever follows for the next attribute. Texts and unknown types have the length that they state.
 bool IsOfType(const std::string& type, const std::string& value) {
   static const std::map<std::string_view, std::size_t> kLengths = {{"box2f", 16},
                                                                    {"box2i", 16},
@@ -126,7 +125,7 @@ bool IsOfType(const std::string& type, const std::string& value) {
   return value.size() >= 8 && pixels == (value.size() - 8) / 4 && value.size() % 4 == 0;
 }
 
-// In 64 bits: a damaged header may hold any numbers.
+// In 64 bits, because a damaged header may hold any numbers.
 std::uint64_t Side(const char* least, const char* most) {
   const std::int64_t side = std::int64_t(std::int32_t(Number(most))) - std::int32_t(Number(least)) + 1;
   return static_cast<std::uint64_t>(std::max<std::int64_t>(side, 0));
@@ -158,7 +157,7 @@ Status CheckPart(const Part& part, std::uint64_t file_bytes, const std::string& 
     return InputError("cannot read " + name + ": its tiles of " + std::to_string(part.tile_pixels) +
                       " pixels are larger than its picture of " + size + "; it is damaged, copy or save it again");
   }
-  if (part.compression >= std::size(kMostPacked)) return Ok();  // none of ours, and said so later
+  if (part.compression >= std::size(kMostPacked)) return Ok();  // unknown here; reported later
   const std::uint64_t pixel_bytes = std::max<std::uint64_t>(part.pixel_bytes, 1);
   // Divided, because the product may not fit: the sides are below 2³².
   if (part.width * part.height / kMostPacked[part.compression] <= file_bytes / pixel_bytes) return Ok();
@@ -172,7 +171,7 @@ Status Check(std::istream& file, std::uint64_t file_bytes, const std::string& na
   if (!file.read(magic.data(), magic.size()) || magic != kMagic) return Ok();
   const auto version = ReadNumber(file);
   if (!version) return Ok();
-  // Without either flag the library takes an image for what it reads, whatever an attribute calls it.
+  // If neither flag is set, the library takes a part for an image, whatever an attribute calls it.
   const bool may_be_deep = *version & (kNotOnlyImages | kManyParts);
   bool is_first = true;
   for (Part part;;) {

@@ -10,10 +10,10 @@
 
 namespace scumble::internal {
 
-// Follows the attributes of all parts (OpenEXR's "File Layout"): none is larger than what is left of the file, and the
-// pixels of no part are more than its compression can make of the whole file. No part is deep, of which no reader here
-// makes anything and whose pixels nothing bounds. Nothing is wrong with what is no EXR file, or whose header ends too
-// early: the library says what is. `name` is for the message. Thread-safe.
+// Follows the attributes of all parts (OpenEXR's "File Layout"). No attribute may exceed the rest of the file, and no
+// part may declare more pixels than its compression can make of the whole file. Deep parts are refused: no reader here
+// uses them, and nothing bounds their pixels. A file that is no EXR, or whose header ends too early, passes: the
+// library reports it. `name` is for the message. Thread-safe.
 Status CheckExrIntegrity(const std::filesystem::path& path);
 Status CheckExrIntegrity(std::span<const std::byte> bytes, const std::string& name);
 

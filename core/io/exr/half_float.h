@@ -5,7 +5,7 @@
 
 namespace scumble::internal {
 
-// The nearest half float. Brighter values than half floats reach become the brightest one: infinity is no radiance.
+// The nearest half float. Values beyond the range become the largest half float, because infinity is no radiance.
 Imath::half ToHalf(float value);
 
 }  // namespace scumble::internal

@@ -34,7 +34,7 @@ namespace {
 // A file in memory.
 class MemoryOutput : public Imf::OStream {
  public:
-  // Room for a file that does not pack: one that grew would be there twice while it is copied.
+  // Reserves the size of an incompressible file: a growing file would be in memory twice while it is copied.
   MemoryOutput(const std::string& name, std::size_t room) : Imf::OStream(name.c_str()) { bytes_.reserve(room); }
 
   void write(const char bytes[], int count) override {
@@ -53,8 +53,8 @@ class MemoryOutput : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
-// OpenEXR's threads, which OpenImageIO shares and sets in the same way: none beside the caller's where one is asked
-// for.
+// Sets OpenEXR's threads, which OpenImageIO shares and sets in the same manner. With one thread there is none beside
+// the caller's.
 void SetThreads() {
   static std::mutex mutex;
   static int last = -1;
@@ -63,11 +63,11 @@ void SetThreads() {
   if (threads == last) return;
   last = threads;
   try {
-    // One first: where the system refuses any, the library's pool may be left alone, but not while others run in it.
+    // One thread first: if the system refuses it, the library's pool is still unused and may be left alone.
     Imf::setGlobalThreadCount(threads == 1 ? 0 : 1);
     if (threads > 1) Imf::setGlobalThreadCount(threads);
   } catch (const std::system_error&) {
-    // Its pool takes work all the same, and forgets it where it has no thread: a file without pixels, and no error.
+    // The pool accepts work without a thread and drops it: the file has no pixels, and no error is reported.
     throw;
   }
 }
@@ -79,9 +79,9 @@ Imf::Compression CompressionOf(const std::string& name) {
   return name == "piz" ? Imf::PIZ_COMPRESSION : Imf::ZIP_COMPRESSION;
 }
 
-// Of the file if nothing packs.
+// The file's size if nothing packs.
 std::size_t RoomFor(const ExrImage& image) {
-  constexpr std::size_t kHeader = 1 << 16, kOfRow = 32;  // their places and sizes
+  constexpr std::size_t kHeader = 1 << 16, kOfRow = 32;  // their offsets and sizes
   std::size_t room = kHeader + kOfRow * static_cast<std::size_t>(image.height);
   for (const ExrChannel& channel : image.channels) room += channel.values.size() * (channel.half ? 2 : 4);
   return room;
@@ -103,12 +103,12 @@ Imf::Header HeaderOf(const ExrImage& image) {
   return header;
 }
 
-// Nothing where the file is not plain.
+// Empty if the file is not plain.
 std::optional<ExrHeader> PlainHeader(const Imf::Header& header) {
   const Imath::Box2i window = header.dataWindow();
   if (window != header.displayWindow() || header.hasTileDescription()) return std::nullopt;
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE) return std::nullopt;
-  // In 64 bits: a damaged header may hold any numbers.
+  // In 64 bits, because a damaged header may hold any numbers.
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
   const bool fits = width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
@@ -122,13 +122,13 @@ std::optional<ExrHeader> PlainHeader(const Imf::Header& header) {
   for (auto attribute = header.begin(); attribute != header.end(); ++attribute) {
     const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute());
     const std::string value =
-        text ? text->value().c_str() : "";  // up to a NUL, and empty ones left out, as by the module
+        text ? text->value().c_str() : "";  // up to a NUL; empty texts are left out, as the module does
     if (!value.empty()) plain.texts[attribute.name()] = value;
   }
   return plain;
 }
 
-// Of rows of that many values, which the library only reads here.
+// A frame buffer over rows of that many values. The library only reads them here.
 template <class T>
 Imf::Slice SliceOf(Imf::PixelType type, const T* values, std::size_t width) {
   return Imf::Slice(type, reinterpret_cast<char*>(const_cast<T*>(values)), sizeof(T), sizeof(T) * width);
@@ -162,7 +162,8 @@ Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrIma
       file.setFrameBuffer(buffer);
       file.writePixels(image.height);
     }
-    // The library is silent about rows that its threads had no memory for: their places, before the first chunk, are 0.
+    // The library reports no error for rows that its threads had no memory for. Their offsets, before the first chunk,
+    // are 0.
     std::vector<std::byte> encoded = bytes.Take();
     const std::size_t rows = image.compression == "zip" ? 16 : image.compression == "piz" ? 32 : 1;
     const std::size_t chunks = (static_cast<std::size_t>(image.height) + rows - 1) / rows;
@@ -182,7 +183,7 @@ Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrIma
 std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
                                       const std::function<std::optional<PlaneFor>(const ExrHeader&)>& look) {
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;  // a pipe would be waited for without end
+  if (!std::filesystem::is_regular_file(path, failed)) return std::nullopt;  // reading a pipe would wait without end
   if (!CheckExrIntegrity(path)) return std::nullopt;
   SetThreads();
   try {

@@ -1,6 +1,6 @@
 // The plain EXR files that Scumble itself writes, by OpenEXR alone: one part of scan lines, flat, whose data fills its
-// window. It starts without OpenImageIO's libraries, which take a fifth of a second to load; whatever else there is in
-// EXR is for the module of core/io/format_dispatch.h. Not for other folders.
+// window. This code works without OpenImageIO's libraries, which take a fifth of a second to load. Other kinds of EXR
+// are read by the module of core/io/format_dispatch.h. Private to core/io.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@
 
 namespace scumble::internal {
 
-// A channel to be written: width · height values in rows, stored as floats or, if `half`, rounded by ToHalf. The values
-// are the caller's.
+// A channel to write: width · height values in rows, stored as floats or, if `half`, rounded by ToHalf. The caller owns
+// the values.
 struct ExrChannel {
   std::string name;
   bool half = false;
@@ -28,27 +28,27 @@ struct ExrChannel {
 struct ExrImage {
   int width = 0, height = 0;
   std::vector<ExrChannel> channels;            // with different names, in any order
-  std::string compression = "zip";             // as IsLossless knows it
+  std::string compression = "zip";             // a name that IsLossless accepts
   std::map<std::string, std::string> texts;    // attributes
   std::map<std::string, glm::dmat4> matrices;  // attributes, rounded to float; for row vectors, as OpenEXR has them
 };
 
-// The bytes of the file; the same for any number of threads. The library's failures become errors that name the file.
+// The bytes of the file, the same for any number of threads. The library's failures become errors that name the file.
 Expected<std::vector<std::byte>> EncodeExr(const std::string& name, const ExrImage& image);
 
-// What a plain file's header holds.
+// The header of a plain file.
 struct ExrHeader {
   int width = 0, height = 0;
   std::map<std::string, bool> channels;      // by name, in the file's order: whether it is stored in half floats
   std::map<std::string, std::string> texts;  // attributes
 };
 
-// A plane of width · height floats for a channel; empty: it is not read.
+// Returns a plane of width · height floats for a channel; empty: the channel is not read.
 using PlaneFor = std::function<std::span<float>(const std::string& channel)>;
 
-// Reads the header, shows it to `look`, and goes on with the pixels if `look` returns planes to read them into. Nothing
-// where the file is not plain, is damaged or is none, or where `look` returns nothing: the module knows more, and says
-// what is wrong.
+// Reads the header and passes it to `look`. If `look` returns planes, reads the pixels into them. Empty if the file is
+// not plain, is damaged or is no EXR, or if `look` returns nothing: then the module reads the file or reports what is
+// wrong.
 std::optional<ExrHeader> ReadPlainExr(const std::filesystem::path& path,
                                       const std::function<std::optional<PlaneFor>(const ExrHeader&)>& look);
 

@@ -22,8 +22,8 @@ Error WriteFailure(const fs::path& path, int error_number) {
   return OutputError("cannot write " + path.string() + ": " + std::strerror(error_number));
 }
 
-// Writes everything and closes; 0 or the errno of what failed. Some file systems report a full disk only when the
-// data is flushed or the file closed, so both are looked at.
+// Writes everything and closes; 0 or the errno of what failed. Some file systems report a full disk only when the data
+// is flushed or the file closed, so both are checked.
 int WriteAllAndClose(int descriptor, std::span<const std::byte> bytes, bool flush) {
   int failure = 0;
   while (!bytes.empty() && failure == 0) {
@@ -39,8 +39,8 @@ int WriteAllAndClose(int descriptor, std::span<const std::byte> bytes, bool flus
   return failure;
 }
 
-// What the name stands for once all links are followed, also where the last of them points to nothing yet: renaming
-// onto a link would replace the link. A circle of links is a failure.
+// The target of the name once all links are followed, also where the last link points to nothing yet: renaming onto a
+// link would replace the link. A circle of links is a failure.
 Expected<fs::path> FollowLinks(const fs::path& path) {
   constexpr int kMaxLinks = 40;  // the kernel's own limit
   std::error_code failed;
@@ -55,8 +55,8 @@ Expected<fs::path> FollowLinks(const fs::path& path) {
   return failed || canonical.empty() ? target : canonical;
 }
 
-// The process's umask, which the system tells only by setting another; Linux has it in proc(5) as well (4.7 and later),
-// so that files that other threads make meanwhile get none of it. Elsewhere it is asked once.
+// The process's umask. The system call that reads it also sets it. Linux has the value in proc(5) too (4.7 and later),
+// so that other threads' files are not affected. Elsewhere it is read once.
 mode_t FileModeMask() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -71,13 +71,13 @@ mode_t FileModeMask() {
   return kMask;
 }
 
-// mkostemp makes private files; a new file gets what the user's umask allows, a replaced one keeps what it had.
+// mkostemp makes private files. A new file gets the mode that the umask allows; a replaced file keeps its mode.
 mode_t ModeFor(const fs::file_status& replaced) {
   if (fs::exists(replaced)) return static_cast<mode_t>(replaced.permissions());
   return 0666 & ~FileModeMask();
 }
 
-// A target with its links followed, and whether it is a device or a pipe, which is written to directly.
+// A target with its links followed, and whether it is a device or a pipe, which is written directly.
 struct Target {
   fs::path path;
   fs::file_status status;
@@ -121,7 +121,7 @@ Status WriteFileAtomically(const fs::path& path, std::span<const std::byte> byte
   internal::PendingTemporary temporary(target);
   const int descriptor = temporary.descriptor();
   if (descriptor < 0) return WriteFailure(path, errno);
-  // Where the file system has no permissions, that is no failure to write.
+  // On file systems without permissions this fails, and that is no failure to write.
   [[maybe_unused]] const int kept = ::fchmod(descriptor, ModeFor(checked.status));
   int failure = WriteAllAndClose(descriptor, bytes, true);
   if (failure == 0) failure = temporary.Finish(target);
@@ -145,7 +145,7 @@ Expected<std::vector<std::byte>> ReadWholeFile(const fs::path& path, std::size_t
   std::vector<std::byte> bytes;
   char block[1 << 16];
   while (stream) {
-    // One byte more than there may be tells that there are more.
+    // One byte beyond the limit shows that the file is larger.
     const std::size_t room = limit - bytes.size();
     stream.read(block, static_cast<std::streamsize>(room < sizeof block ? room + 1 : sizeof block));
     const auto* begin = reinterpret_cast<const std::byte*>(block);

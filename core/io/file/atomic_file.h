@@ -12,18 +12,17 @@
 
 namespace scumble {
 
-// Writes to a temporary name in the same folder, flushes it to disk, then renames: an interrupted run leaves the old
-// file or none. Links are followed, and a target that is no regular file (a device, a pipe) is written to directly.
-// A missing folder is an error: on a farm it is a share that is not mounted. A replaced file keeps its permissions.
-// Every failure is an error with the file's name and the system's reason.
+// Writes to a temporary name in the same folder, flushes it to disk, then renames. An interrupted run leaves the old
+// file or none. Links are followed. A target that is no regular file (a device, a pipe) is written directly. A missing
+// folder is an error: on a farm it is an unmounted share. A replaced file keeps its permissions. Every error gives the
+// file's name and the system's reason.
 Status WriteFileAtomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 Status WriteFileAtomically(const std::filesystem::path& path, std::string_view text);
 
-// Bytes that this thread has brought to the system by WriteFileAtomically, in files that were finished.
+// Bytes that this thread has written by WriteFileAtomically, in finished files.
 std::uint64_t BytesWrittenByThisThread();
 
-// Whether WriteFileAtomically could write there, found out by making its temporary file and taking it away: to be asked
-// before long work.
+// Whether WriteFileAtomically can write there. Makes and removes its temporary file; call it before long work.
 Status CheckWritable(const std::filesystem::path& path);
 
 // The whole file, `limit` bytes at most. If it is larger, that is an error, and `remedy` ends the message.

@@ -1,5 +1,4 @@
-// How little a packed picture can take: a file that declares more is refused
-// before memory is taken for it.
+// The smallest size a packed picture can have. A file that declares more is refused before memory is allocated for it.
 #pragma once
 
 #include <cstdint>

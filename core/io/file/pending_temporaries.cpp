@@ -19,9 +19,9 @@
 namespace scumble {
 namespace {
 
-// What a signal handler may touch. Each place holds the name of a file, or null; whoever takes the name out of its
-// place, the writer or the handler, is the one that has it.
-constexpr std::size_t kMostFiles = 64;  // written at a time; any beyond are not known here
+// State that a signal handler may touch. Each slot holds a file's name, or null. Whoever takes the name out of its
+// slot, the writer or the handler, owns the file.
+constexpr std::size_t kMostFiles = 64;  // written at once; any beyond are not registered here
 std::array<std::atomic<const char*>, kMostFiles> names{};
 std::atomic<int> being_made{0};
 std::atomic<bool> is_ending{false};
@@ -40,7 +40,7 @@ std::atomic<const char*>* TakePlace(const char* name) {
   return nullptr;
 }
 
-// While it lives, no handler runs on this thread: it would wait for what the thread itself is doing.
+// While it lives, no handler runs on this thread: the handler would wait for this very thread.
 class NoSignals {
  public:
   NoSignals() {
@@ -76,7 +76,7 @@ PendingTemporary::PendingTemporary(const std::filesystem::path& target) {
   const std::string stem = target.filename().string().substr(0, kMaxStem);
   const std::string wanted =
       (target.parent_path() / ("." + stem + "." + KernelMark() + "-XXXXXX" + std::string(kTemporarySuffix))).string();
-  // If another run took it for stale before it was locked, that run has it, and a new one is made.
+  // If another run took the file for stale before it was locked, that run removes it, and a new one is made.
   constexpr int kMostTries = 100;
   for (int i = 0; i < kMostTries && !Make(wanted); ++i) {
   }
@@ -88,7 +88,7 @@ bool PendingTemporary::Make(const std::string& wanted) {
   bool must_wait = false;
   {
     const NoSignals masked;
-    ++being_made;  // before the flag is looked at, as the handler sets the flag before it looks at the count
+    ++being_made;  // incremented before the flag is read, as the handler sets the flag before it reads the count
     must_wait = is_ending;
     if (!must_wait) {
       descriptor_ = ::mkostemps(name_.data(), static_cast<int>(kTemporarySuffix.size()), O_CLOEXEC);
@@ -135,7 +135,7 @@ int PendingTemporary::Finish(const std::filesystem::path& target) {
     return 0;
   }
   const int failure = errno;
-  if (is_ending) WaitForTheEnd();  // the handler took it away, which is no failure of the disk's
+  if (is_ending) WaitForTheEnd();  // the handler removed the file, which is no failure of the disk
   return failure;
 }
 

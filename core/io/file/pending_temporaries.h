@@ -7,21 +7,21 @@
 
 namespace scumble {
 
-// Removes the temporary files of all writes under way. Nothing is begun from then on: a thread that would make another
-// temporary file waits for the end of the process instead, and one that would give a file its name does so whole or not
-// at all. For handlers of signals that end it: calls nothing but what is safe there, and waits no longer than a second
-// for a file that another thread is just making.
+// Removes the temporary files of all writes under way. From then on nothing is begun: a thread that would make another
+// temporary file waits for the end of the process. A thread that would rename a file does so completely or not at all.
+// For handlers of signals that end the process: calls only async-signal-safe functions, and waits at most a second for
+// a file that another thread is creating.
 void RemovePendingTemporaries();
 
 namespace internal {
 
-// A temporary file that RemovePendingTemporaries knows of as long as this lives. If it was not renamed by then, the
-// destructor removes it.
+// A temporary file that RemovePendingTemporaries can remove while this object lives. If the file was not renamed by
+// then, the destructor removes it.
 class PendingTemporary {
  public:
-  // Makes a new file beside `target`: hidden, with a random name, short enough where the target's own name is as long
-  // as a name may be, and locked as long as this lives. The caller closes descriptor(). If no file can be made (it
-  // takes two descriptors), descriptor() is -1 and errno says why. The first one in a folder removes stale temporaries
+  // Makes a new file beside `target`: hidden, with a random name, shortened where the target's name has the greatest
+  // length, and locked while this object lives. The caller closes descriptor(). If no file can be made (it takes two
+  // descriptors), descriptor() is -1 and errno has the reason. The first one in a folder removes stale temporaries
   // there.
   explicit PendingTemporary(const std::filesystem::path& target);
   ~PendingTemporary();
@@ -34,15 +34,15 @@ class PendingTemporary {
   int Finish(const std::filesystem::path& target);
 
  private:
-  bool Make(const std::string& wanted);  // false: once more
+  bool Make(const std::string& wanted);  // false: try again
   bool Hold();                           // locks it; false: another run has it
   void Forget();
 
   std::string name_;
   int descriptor_ = -1;
-  int lock_ = -1;  // the same file: its lock lasts when the caller has closed the other
+  int lock_ = -1;  // the same file: this lock lasts after the caller has closed the other descriptor
   std::atomic<const char*>* place_ =
-      nullptr;  // where RemovePendingTemporaries finds the name; null where all are taken
+      nullptr;  // nullptr; // the slot in which RemovePendingTemporaries finds the name; null where all are taken
   bool is_there_ = false;
 };
 

@@ -21,7 +21,7 @@ Status CheckReadable(const std::filesystem::path& path) {
   if (status.type() == std::filesystem::file_type::none) return refuse(failed.message());
   if (!std::filesystem::exists(status)) return refuse("there is no such file");
   if (std::filesystem::is_directory(status)) return refuse("it is a folder");
-  // A pipe would be waited for without end, and the readers seek.
+  // Reading a pipe would wait without end, and the readers seek.
   if (!std::filesystem::is_regular_file(status)) return refuse("it is no regular file");
   if (::access(path.c_str(), R_OK) != 0) return refuse(std::strerror(errno));
   if (std::filesystem::file_size(path, failed) == 0) return refuse("the file is empty");

@@ -1,4 +1,4 @@
-// Whether a file can be read at all, before a library is asked to.
+// Whether a file can be read at all, checked before a library opens it.
 #pragma once
 
 #include <filesystem>

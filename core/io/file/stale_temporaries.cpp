@@ -30,13 +30,14 @@ std::string MarkIn(const std::string& name) {
 }
 
 void RemoveIfLeft(const fs::path& path, bool lock_is_seen) {
-  // Without following links or waiting for a pipe: a name proves nothing.
+  // Does not follow links or wait for a pipe, because a name proves nothing.
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return;
   struct stat found;
   const bool is_plain = ::fstat(file, &found) == 0 && S_ISREG(found.st_mode);
   const bool is_old = is_plain && std::time(nullptr) - found.st_mtime > kDay;
-  // Its lock is held until it is gone: who has just made it under this name finds that out when he takes the lock.
+  // The lock is held until the file is gone. A writer that has just created it under this name finds out when it takes
+  // the lock.
   if (is_plain && (lock_is_seen || is_old) && ::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
   ::close(file);
 }

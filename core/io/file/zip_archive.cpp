@@ -28,10 +28,11 @@ struct CloseEntry {
   void operator()(zip_file_t* entry) const { zip_fclose(entry); }
 };
 
-// 1 January 1980, midnight, in MS-DOS's bits: year - 1980, month, day. The other way to set a date knows time zones.
+// 1 January 1980, midnight, in MS-DOS's bits: year - 1980, month, day. The other function that sets a date depends on
+// time zones.
 constexpr std::uint16_t kFirstDay = 0 << 9 | 1 << 5 | 1, kMidnight = 0;
 
-// libzip adds what the system or zlib says after a colon.
+// libzip adds the reason of the system or of zlib after a colon.
 Error WriteFailure(const std::string& name, zip_error_t* error) {
   return OutputError("cannot write " + name + ": " + zip_error_strerror(error));
 }
@@ -74,7 +75,7 @@ Expected<std::vector<std::byte>> EncodeZip(std::span<const ZipEntry> entries, co
   zip_source_keep(buffer.get());  // closing the archive would free it, and the bytes are in it
   for (const ZipEntry& entry : entries) SCUMBLE_RETURN_IF_ERROR(AddEntry(archive.get(), entry, name));
   if (zip_close(archive.get()) != 0) return WriteFailure(name, zip_get_error(archive.get()));
-  static_cast<void>(archive.release());  // closed
+  static_cast<void>(archive.release());  // closed already
   return BytesOf(buffer.get(), name);
 }
 

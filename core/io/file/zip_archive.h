@@ -37,17 +37,17 @@ class ZipReader {
   const std::vector<std::string>& names() const { return names_; }
   bool Has(const std::string& name) const;
 
-  // An entry's bytes, `limit` at most: what an archive says of its sizes is not believed, so a small file that unpacks
-  // to something huge is an error. So are a missing entry, a wrong checksum and encryption.
+  // An entry's bytes, `limit` at most. The sizes in an archive are not trusted, so a small file that unpacks to
+  // something huge is an error. So are a missing entry, a wrong checksum and encryption.
   Expected<std::vector<std::byte>> Read(const std::string& name, std::size_t limit) const;
-  // Its first `count` bytes, or all where it has fewer: what they are is known before the rest is unpacked.
+  // The entry's first `count` bytes, or all where it has fewer: these are checked before the rest is unpacked.
   Expected<std::vector<std::byte>> ReadStart(const std::string& name, std::size_t count) const;
 
  private:
   struct Archive;
   ZipReader(std::unique_ptr<Archive> archive, std::string file, std::vector<std::string> names);
 
-  // A longer entry is an error where the `whole` of it is asked for, else cut.
+  // Where `whole` is set, a longer entry is an error; otherwise it is cut.
   Expected<std::vector<std::byte>> ReadAtMost(const std::string& name, std::size_t limit, bool whole) const;
 
   std::unique_ptr<Archive> archive_;

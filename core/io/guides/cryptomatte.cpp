@@ -45,7 +45,7 @@ std::optional<std::uint32_t> Hex(std::string_view digits) {
   return value;
 }
 
-// With JSON's escapes resolved; nothing where there is one that JSON does not know.
+// Resolves JSON's escapes. Empty if an escape is unknown to JSON.
 std::optional<std::string> Unescape(std::string_view raw) {
   constexpr std::string_view kFrom = "\"\\/bfnrt", kTo = "\"\\/\b\f\n\r\t";
   std::string text;
@@ -81,10 +81,10 @@ std::optional<std::string> Unescape(std::string_view raw) {
 struct Entry {
   std::string name;
   std::uint32_t hash = 0;
-  std::size_t end = 0;  // behind the hash's closing quotation mark
+  std::size_t end = 0;  // after the hash's closing quotation mark
 };
 
-// The hash behind a quotation mark that may close a name: `" : "1a2b3c4d"` and a comma or the closing brace.
+// The hash after a quotation mark that may close a name: `" : "1a2b3c4d"` and a comma or the closing brace.
 std::optional<Entry> HashAt(std::string_view text, std::size_t quote) {
   std::size_t at = SkipSpace(text, quote + 1);
   if (at >= text.size() || text[at] != ':') return std::nullopt;
@@ -96,8 +96,8 @@ std::optional<Entry> HashAt(std::string_view text, std::size_t quote) {
   return Entry{"", *hash, at + 10};
 }
 
-// The entry whose name begins at `start`. Names may hold quotation marks that are not escaped, so every mark is tried.
-// Where no reading gives the hash (another hash, or a damaged name) the first one stands.
+// The entry whose name begins at `start`. Names may hold unescaped quotation marks, so every mark is tried. Where no
+// reading gives the hash (another hash, or a damaged name), the first reading counts.
 std::optional<Entry> NextEntry(std::string_view text, std::size_t start) {
   constexpr std::size_t kLongestName = 256;  // Blender's names have 63 bytes; bounds the search in hostile text
   std::optional<Entry> first;
@@ -116,7 +116,7 @@ std::optional<Entry> NextEntry(std::string_view text, std::size_t start) {
   return first;
 }
 
-// The rank that covers most of a pixel: they should be sorted, and not every program does so.
+// The rank with the largest coverage. Ranks should be sorted, but not every program sorts them.
 std::uint32_t LargestId(std::span<const std::vector<float>> ranks, std::size_t i) {
   std::uint32_t id = 0;
   float most = 0.0f;

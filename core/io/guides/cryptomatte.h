@@ -16,8 +16,8 @@
 
 namespace scumble {
 
-// What a channel like "ViewLayer.CryptoObject00.r" is. A channel file holds two ranks: r and b are ids, g and a their
-// coverage.
+// The meaning of a channel like "ViewLayer.CryptoObject00.r". A channel file holds two ranks: r and b are ids, g and a
+// their coverage.
 struct MatteChannel {
   std::string matte;   // "ViewLayer.CryptoObject", as cryptomatte/KEY/name has it
   std::string prefix;  // "ViewLayer": the view layer, or empty
@@ -36,19 +36,19 @@ std::uint32_t MatteHash(std::string_view name);
 std::uint32_t MatteBits(std::uint32_t hash);
 
 // Names by the bits of their ids. Reads {"name":"8 hex digits", …}, with JSON's escapes or, as Blender 3.4 writes them,
-// with quotation marks and backslashes of names left as they are: of the ways to read an entry, the one that gives its
-// hash is taken. Empty manifests ("", "}" and "{}") give no names; other text is an error. `name` stands for the file.
+// with unescaped quotation marks and backslashes. Of all readings of an entry, the one that gives its hash counts.
+// Empty manifests ("", "}" and "{}") give no names; other text is an error. `name` stands for the file.
 Expected<std::map<std::uint32_t, std::string>> ReadManifest(std::string_view text, const std::string& name);
 
-// Gives each pixel the id of the name that covers most of it, and keeps the names that occur. `ranks` are the planes of
-// MatteChannel::index 0 … 3; planes that the file lacks are empty. An id that the manifest lacks is named "unnamed
-// 1a2b3c4d" by its hash's bits. 0 where nothing covers the pixel. More than 100,000 such ids are no names but noise: an
-// error. `name` stands for the file.
+// Gives each pixel the id of the name with the largest coverage, and keeps the names that occur. `ranks` are the planes
+// of MatteChannel::index 0 … 3; planes that the file lacks are empty. An id that the manifest lacks is named "unnamed
+// 1a2b3c4d" by its hash's bits. Uncovered pixels get 0. More than 100,000 such ids are noise: an error. `name` stands
+// for the file.
 Status NameMattes(std::span<const std::vector<float>> ranks, const std::map<std::uint32_t, std::string>& manifest,
                   const std::string& name, std::span<float> ids, std::map<std::uint32_t, std::string>& names);
 
-// How much of each pixel is covered by anything, in [0, 1], from the planes of all ranks. 1 where the last rank is in
-// use: there may be more than the file has room for.
+// The total coverage of each pixel, in [0, 1], from the planes of all ranks. 1 where the last rank is in use: the file
+// may lack room for further ones.
 void MatteCoverage(std::span<const std::vector<float>> ranks, std::span<float> coverage);
 
 }  // namespace scumble

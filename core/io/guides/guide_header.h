@@ -1,4 +1,4 @@
-// How ids, names and cameras are written into a guide file's header as text. Not for other folders.
+// Ids, names and cameras as text in a guide file's header. Private to core/io.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,10 @@ std::map<std::uint32_t, std::string> NamesFromText(const std::string& text);
 std::string MatrixToText(const glm::dmat4& matrix);
 std::optional<glm::dmat4> MatrixFromText(const std::string& text);
 
-// "R, G, B": for people, so of very many channels the first ones.
+// "R, G, B": for people, so only the first of very many channels.
 std::string ListOfChannels(const std::vector<std::string>& names);
 
-// What a header's texts that begin with "scumble:" say, names, camera and attributes, put into `guides`.
+// Puts the header's texts that begin with "scumble:" (names, camera and attributes) into `guides`.
 void TakeHeader(const std::map<std::string, std::string>& texts, GuideSet& guides);
 
 }  // namespace scumble::internal

@@ -35,7 +35,7 @@ bool LookPacked(const GuideSet& guides) {
 }
 
 void NormalizeNormals(GuideSet& guides) {
-  // A unit vector in floats has a square of 1 but for 2√3 · 2^-25, and 3 · 2^-24 of the sum: 2.8e-7.
+  // A unit vector in floats has a square within 2√3 · 2^-25 of 1, and 3 · 2^-24 for the sum: 2.8e-7.
   constexpr float kOfFloats = 0x1p-20f;
   const auto x = guides.Plane(Layer::kNormal, 0), y = guides.Plane(Layer::kNormal, 1),
              z = guides.Plane(Layer::kNormal, 2);

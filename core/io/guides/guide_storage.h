@@ -1,4 +1,4 @@
-// How guides may be stored: what the halves of guide_file.h share.
+// Storage rules of guides, shared by the parts of guide_file.h.
 #pragma once
 
 #include <string>
@@ -7,21 +7,20 @@
 
 namespace scumble::internal {
 
-// Whether it is the name of one of OpenEXR's lossless compressions.
+// Whether `compression` names one of OpenEXR's lossless compressions.
 bool IsLossless(const std::string& compression);
 
-// Normals squeezed into [0, 1] for an 8-bit picture have no negative component anywhere and are rarely of length 1. A
-// few pixels prove nothing.
+// Whether normals look squeezed into [0, 1] for an 8-bit picture: no component is negative anywhere, and lengths are
+// rarely 1. A few pixels prove nothing.
 bool LookPacked(const GuideSet& guides);
 
-// Eight bits, half floats and filtered passes make normals longer or shorter; a direction is what the transfer needs,
-// and near a silhouette the sphere has none for a length that is off: there, x and y alone would find paint that was
-// made for a normal √(2 · what is missing) radians away. Lengths as good as floats can hold stay, so that a file gives
-// the bytes it was written from; lengths that no rounding or filter explains are left for Validate to refuse.
+// Makes normals unit vectors where eight bits, half floats or filtered passes changed their length. Near a silhouette a
+// length that is off finds no normal on the sphere: x and y alone would find paint of a normal √(2 · deficit) radians
+// away. Lengths within float precision stay, so that a file gives the bytes it was written from. Lengths that no
+// rounding or filter explains stay too, and Validate refuses them.
 void NormalizeNormals(GuideSet& guides);
 
-// Depths of covered pixels beyond what half floats hold, which are infinite then, become 10^30 m: as far away as each
-// other.
+// Depths of covered pixels that are infinite, because half floats cannot hold them, become 10^30 m: all equally far.
 void LimitDepths(GuideSet& guides);
 
 }  // namespace scumble::internal

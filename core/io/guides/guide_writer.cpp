@@ -36,7 +36,7 @@ internal::ExrImage ImageOf(const GuideSet& guides, const GuideWriteOptions& opti
     image.texts["scumble:camera"] = guides.camera->name;
     image.texts["scumble:viewFromWorld"] = internal::MatrixToText(guides.camera->view_from_world);
     image.texts["scumble:clipFromView"] = internal::MatrixToText(guides.camera->clip_from_view);
-    // Ours are for column vectors, OpenEXR's for row vectors: the same 16 numbers in memory.
+    // Our matrices are for column vectors, OpenEXR's for row vectors: the same 16 numbers in memory.
     image.matrices["worldToCamera"] = kExrFromView * guides.camera->view_from_world;
     image.matrices["worldToNDC"] = kNdcFromClip * guides.camera->clip_from_view * guides.camera->view_from_world;
   }

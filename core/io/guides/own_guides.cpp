@@ -16,7 +16,7 @@ namespace {
 
 using Meanings = std::map<std::string, ChannelMeaning>;  // by the channel's name
 
-// Nothing where a channel belongs to a view layer, means nothing to us, or means what another one means.
+// Empty if a channel belongs to a view layer, has no meaning here, or has another channel's meaning.
 std::optional<Meanings> MeaningsOf(const ExrHeader& header) {
   const auto software = header.texts.find("Software");
   if (software != header.texts.end() && software->second.starts_with("Blender")) return std::nullopt;
@@ -43,7 +43,7 @@ LayerSet CompleteLayers(const Meanings& meanings) {
   return complete;
 }
 
-// In the order in which OpenImageIO lists them: colours as R, G, B, where the file has them by the alphabet.
+// In OpenImageIO's order: colours as R, G, B, where the file has them alphabetically.
 std::string NamesOf(const ExrHeader& header) {
   std::vector<std::string> names;
   for (const auto& [name, half] : header.channels) names.push_back(name);

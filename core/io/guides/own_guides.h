@@ -1,4 +1,4 @@
-// Guides in the plain files that WriteGuides makes. Not for other folders.
+// Guides in the plain files that WriteGuides makes. Private to core/io.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace scumble::internal {
 
-// As ReadGuides and InspectGuides. Nothing where the file holds anything else than guides without a view layer, or
-// anything is wrong with it: the module of core/io/format_dispatch.h reads it, or says why nobody can.
+// Like ReadGuides and InspectGuides, but empty where the file holds anything besides guides without a view layer, or is
+// damaged: then the module of core/io/format_dispatch.h reads it or reports the error.
 std::optional<GuideSet> ReadPlainGuides(const std::filesystem::path& path, const GuideReadOptions& options);
 std::optional<GuideFileInfo> InspectPlainGuides(const std::filesystem::path& path);
 

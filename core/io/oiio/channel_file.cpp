@@ -37,7 +37,7 @@ Expected<std::vector<OIIO::ImageSpec>> ReadPartHeaders(OIIO::ImageInput& input, 
   return parts;
 }
 
-// Names that several parts share would be ambiguous without the part's own name.
+// Names that several parts share are ambiguous without the part's own name.
 std::vector<std::string> UniqueNames(const std::vector<OIIO::ImageSpec>& parts) {
   std::map<std::string, int> uses;
   for (const auto& part : parts) {

@@ -21,7 +21,7 @@ constexpr Size kMostChannels = 56;
 enum Mode { kBitmap = 0, kGrey = 1, kIndexed = 2, kRgb = 3 };
 constexpr Size kColorsOfModes[] = {1, 1, 1, 3, 4};  // the last is CMYK
 
-// Some bytes and, behind them, a file from a place on.
+// Some bytes, followed by a file from an offset on.
 class SplicedFile : public IOProxy {
  public:
   SplicedFile(std::string start, IOProxy& file, Size from)
@@ -49,7 +49,7 @@ class SplicedFile : public IOProxy {
   Size from_;
 };
 
-// Of that many bytes from there on, those that the file has.
+// Up to `count` bytes from an offset, as many as the file has.
 std::string BytesAt(IOProxy& file, Size at, Size count) {
   if (at >= file.size()) return {};
   std::string bytes(std::min<Size>(count, file.size() - at), '\0');
@@ -93,7 +93,8 @@ struct Header {
   Size channels, height, width, depth, mode;
 };
 
-// OpenImageIO takes as many channels as the colours need and as many bits as their kind has, there or not.
+// OpenImageIO reads as many channels as the colours need and as many bits as their kind has, whether the file has them
+// or not.
 Status CheckHeader(const Header& header, const std::string& name) {
   SCUMBLE_RETURN_IF_ERROR(
       CheckSize(OIIO::ImageSpec(static_cast<int>(header.width), static_cast<int>(header.height), 1), name));
@@ -113,7 +114,7 @@ Status CheckRows(IOProxy& file, const Header& header, Size at, const std::string
   if (packing == 0) {
     return rows * ((header.width * header.depth + 7) / 8) <= left ? Ok() : DeclaredSizeError(name, file.size());
   }
-  // Their lengths stand before packed rows.
+  // Packed rows are preceded by their lengths.
   const Size digits = header.RowLengthDigits();
   const std::string lengths = BytesAt(file, at + 2, rows * digits);
   if (lengths.size() < rows * digits) return DeclaredSizeError(name, file.size());
@@ -127,8 +128,8 @@ std::string Resource(Size id, const std::string& bytes) {
   return "8BIM" + AsBytes(id, 2) + AsBytes(0, 2) + WithLength(bytes, 4);
 }
 
-// Of the resources the resolution and an indexed picture's transparent colour. Without the latter OpenImageIO 2.4 says
-// that there is alpha, and writes none: one that no pixel has makes it write 1.
+// Keeps two resources: the resolution and an indexed picture's transparent colour. Without the latter OpenImageIO 2.4
+// reports alpha but writes none. A colour that no pixel has makes it write 1.
 std::string KeptResources(IOProxy& file, const Header& header, Size at, Size end) {
   constexpr Size kResolution = 1005, kTransparent = 1047, kNoColor = 256;
   std::string resolution, transparent = Resource(kTransparent, AsBytes(kNoColor, 2));
@@ -143,7 +144,7 @@ std::string KeptResources(IOProxy& file, const Header& header, Size at, Size end
   return resolution + (header.mode == kIndexed ? transparent : "");
 }
 
-// Whether the channel behind the colours is the flattened picture's alpha: then the number of layers is negative.
+// Whether the channel after the colours is the flattened picture's alpha: then the number of layers is negative.
 bool HasAlpha(IOProxy& file, const Header& header, Size layers, Size length) {
   const Size digits = header.LengthDigits();
   if (header.mode != kGrey && header.mode != kRgb) return false;
@@ -151,7 +152,7 @@ bool HasAlpha(IOProxy& file, const Header& header, Size layers, Size length) {
   return NumberAt(file, layers + digits, 2) >= 0x8000;
 }
 
-// Layers that say so: -1 of them, empty, without channels, mask and name.
+// A layer section that declares alpha: -1 layers, empty, without channels, mask and name.
 std::string LayersWithAlpha(Size digits) {
   const std::string extra(4 + 4 + 4, '\0'), rectangle_and_channels(4 * 4 + 2, '\0'), blend = "8BIMnorm", flags(4, '\0');
   const std::string layers = AsBytes(0xffff, 2) + rectangle_and_channels + blend + flags + WithLength(extra, 4);

@@ -1,4 +1,4 @@
-// Reading guides by OpenImageIO, as any program may have written them. Part of the module of formats.
+// Reads guides by OpenImageIO, from files of any program. Part of the module of formats.
 #include <algorithm>
 #include <array>
 #include <set>
@@ -14,7 +14,7 @@
 namespace scumble::formats {
 namespace {
 
-// A channel of a file that means something to us.
+// A file's channel with a known meaning.
 struct FoundChannel {
   int subimage;
   int channel;
@@ -82,7 +82,7 @@ Expected<FileContents> Survey(OIIO::ImageInput& input, const std::string& name) 
   return contents;
 }
 
-// The view layers of a file: what stands before the names of normals; in a Blender render without any, of Combined.
+// The view layers of a file: the prefixes of its normals. A Blender render without normals has those of Combined.
 std::set<std::string> ViewLayers(const FileContents& contents) {
   std::set<std::string> prefixes;
   const auto take = [&](Layer layer) {
@@ -95,7 +95,7 @@ std::set<std::string> ViewLayers(const FileContents& contents) {
   return prefixes;
 }
 
-// Which view layer's channels to read: the one that is asked for, or the only one that has normals.
+// The view layer to read: the requested one, or the only one that has normals.
 Expected<std::string> ChoosePrefix(const FileContents& contents, const std::string& wanted, const std::string& name) {
   const std::set<std::string> prefixes = ViewLayers(contents);
   std::string list;
@@ -113,7 +113,7 @@ Expected<std::string> ChoosePrefix(const FileContents& contents, const std::stri
   return prefixes.empty() ? std::string() : *prefixes.begin();
 }
 
-// The channels that fill the wanted layers: of the chosen view layer, else of none.
+// The channels that fill the wanted layers: those of the chosen view layer, else those without one.
 std::vector<FoundChannel> SelectChannels(const FileContents& contents, const std::string& prefix,
                                          const LayerSet& wanted) {
   std::vector<FoundChannel> selected;
@@ -170,8 +170,8 @@ struct ChannelRun {
   int end;
 };
 
-// The selected channels of one part, in runs. Each call unpacks the whole part anew, so that a few channels which
-// nobody asked for are cheaper to read along than to leave out.
+// The selected channels of one part, in runs. Each call unpacks the whole part anew, so reading a few unneeded channels
+// along is cheaper than leaving them out.
 std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage) {
   constexpr int kCheapGap = 16;
   std::set<int> indices;
@@ -188,7 +188,7 @@ std::vector<ChannelRun> RunsOf(const std::vector<PlaneRead>& reads, int subimage
   return runs;
 }
 
-// Copies one channel out of interleaved rows into its plane; what the data window does not cover stays background.
+// Copies one channel out of interleaved rows into its plane. Pixels outside the data window stay background.
 void Deinterleave(const OIIO::ImageSpec& spec, const std::vector<float>& pixels, const ChannelRun& run,
                   const PlaneRead& read) {
   const std::size_t stride = static_cast<std::size_t>(run.end - run.first);
@@ -232,7 +232,7 @@ void ReadHeader(const OIIO::ImageSpec& spec, GuideSet& guides) {
   internal::TakeHeader(texts, guides);
 }
 
-// The Cryptomattes of a view layer, their planes still to be read.
+// The Cryptomattes of a view layer, their planes not yet read.
 Expected<BlenderMattes> MattesOf(const FileContents& contents, const std::string& prefix, const std::string& name) {
   BlenderMattes mattes;
   for (const FoundMatte& found : contents.mattes) {
@@ -264,8 +264,8 @@ void ReadMattesToo(const FileContents& contents, const std::string& prefix, Blen
   }
 }
 
-// What guidegen writes unasked needs no option.
-std::string MendFor(const LayerSet& missing) {
+// Layers that guidegen always writes need no option.
+std::string RemedyFor(const LayerSet& missing) {
   std::string asked;
   for (const LayerInfo& info : AllLayers()) {
     if (missing.Has(info.layer) && !AlwaysWritten().Has(info.layer))
@@ -297,7 +297,7 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
       SCUMBLE_ASSIGN(camera, ReadBlenderCamera(options.blender_camera));
     }
     SCUMBLE_ASSIGN(mattes, MattesOf(contents, prefix, name));
-    // One Cryptomatte is wanted in any case: it knows the coverage that an opaque film's alpha does not.
+    // One Cryptomatte is always read: it has the coverage that an opaque film's alpha lacks.
     if (!wanted.Has(Layer::kMaterial) && mattes.count(Layer::kObject)) mattes.erase(Layer::kMaterial);
     read_along.Add({Layer::kDepth, Layer::kPosition});
   }
@@ -308,13 +308,13 @@ Expected<GuideSet> ReadGuides(const std::filesystem::path& path, const GuideRead
     if (complete.Has(info.layer) || mattes.count(info.layer)) missing.Remove(info.layer);
   }
   const bool solves_camera = contents.from_blender && !camera;
-  if (solves_camera && !missing.empty()) {  // say at once what the next run would lack
+  if (solves_camera && !missing.empty()) {  // name at once the layers that the next run would lack
     for (const Layer layer : {Layer::kDepth, Layer::kPosition}) {
       if (!complete.Has(layer)) missing.Add(layer);
     }
   }
   if (!missing.empty()) {
-    std::string remedy = MendFor(missing);
+    std::string remedy = RemedyFor(missing);
     if (contents.from_blender) remedy = BlenderPassesFor(missing);
     if (solves_camera && missing.Has(Layer::kPosition)) {
       remedy += ", or give the camera with --camera FILE, which does without Position";

@@ -1,5 +1,5 @@
-// The table by which the module of formats is called. The symbol's name holds the version, so that a module of another
-// one is refused.
+// The function table of the module of formats. The symbol's name holds the version, so that a module of another version
+// is refused.
 #include "core/io/format_dispatch.h"
 
 namespace scumble {

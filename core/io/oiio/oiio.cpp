@@ -30,14 +30,14 @@ OIIO::ImageSpec StraightAlpha() {
   return config;
 }
 
-// The readers look for the proxy in the configuration, and forget one that is only passed as an argument.
+// The readers take the proxy from the configuration, and drop one that is only passed as an argument.
 OIIO::ImageSpec StraightAlphaFrom(OIIO::Filesystem::IOProxy* proxy) {
   OIIO::ImageSpec config = StraightAlpha();
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   return config;
 }
 
-// The first line: what follows repeats it from layer to layer. Without the file's name, which our message begins with.
+// Keeps the first line: the others repeat it for each layer. Removes the file's name, with which our message begins.
 std::string LibraryReason(std::string reason, const std::string& name) {
   reason = reason.substr(0, reason.find('\n'));
   for (const std::string& mention : {" from image file \"" + name + "\"", " \"" + name + "\""}) {
@@ -67,7 +67,7 @@ Error OpenFailure(const std::string& reason, const std::string& name) {
   return InputError("cannot read " + name + ": " + LibraryReason(reason, name));
 }
 
-// Before memory is taken for pixels that so short a file cannot hold.
+// Checked before memory is allocated for pixels that so short a file cannot hold.
 Status CheckDeclaredSize(const OIIO::ImageSpec& spec, const std::string& reader, std::uint64_t bytes,
                          const std::string& name) {
   const std::uint64_t most = MostSamplesInAByte(reader);
@@ -81,12 +81,12 @@ Status CheckDeclaredSize(const OIIO::ImageSpec& spec, const std::string& reader,
                     " bytes cannot hold them; it may be cut short or damaged");
 }
 
-// Opens by one reader alone a file of so many bytes.
+// Opens a file of that many bytes with one reader only.
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, const std::string& name,
                                                    std::uint64_t bytes, const OIIO::ImageSpec& config) {
   std::shared_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(reader);
   if (!input) return OpenFailure(OIIO::geterror(), name);
-  // A library that was built without this reader would look for any other.
+  // If the library was built without this reader, it would try any other.
   if (input->format_name() != reader)
     return OpenFailure("OpenImageIO was built without its reader \"" + reader + "\"", name);
   OIIO::ImageSpec spec;
@@ -97,7 +97,7 @@ Expected<std::shared_ptr<OIIO::ImageInput>> OpenBy(const std::string& reader, co
   return input;
 }
 
-// A PSD, what is read of it, and its reader, which goes first.
+// A PSD, the part of it that is read, and its reader, which is destroyed first.
 struct PsdInput {
   std::unique_ptr<OIIO::Filesystem::IOProxy> file, flat;
   std::shared_ptr<OIIO::ImageInput> input;
@@ -167,7 +167,7 @@ Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::Ima
                        " cannot be written safely; name it .png, .exr, .tif or .jpg");
   }
   OIIO::ImageSpec timeless = spec;
-  timeless.attribute("DateTime", "");  // the library would write the hour, and the same picture would differ by it
+  timeless.attribute("DateTime", "");  // the library would write the time, and equal pictures would differ
   if (!output->open(name, timeless) || !write_pixels(*output) || !output->close()) {
     return OutputError("cannot write " + name + ": " + LibraryReason(output->geterror(), name));
   }

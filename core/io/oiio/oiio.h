@@ -1,4 +1,4 @@
-// What the files of io/ share about OpenImageIO. Not for other folders: OpenImageIO's headers stay in here.
+// The code that the files of core/io share for OpenImageIO. Private to core/io: OpenImageIO's headers stay in here.
 #pragma once
 
 #include <OpenImageIO/filesystem.h>
@@ -19,14 +19,13 @@
 namespace scumble::internal {
 
 // Opens a picture file with straight alpha left as it is stored. The message carries the library's reason. Of a PSD
-// only the flattened picture is there.
+// only the flattened picture is available.
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(const std::filesystem::path& path);
 
-// The same from memory; `proxy` must outlive the input.
+// OpenInput from memory; `proxy` must outlive the input.
 Expected<std::shared_ptr<OIIO::ImageInput>> OpenInput(OIIO::Filesystem::IOMemReader& proxy, const std::string& name);
 
-// Calls a reader of the library, which may throw where a file declares more than memory holds: kInput then, but for
-// want of memory, which is the caller's.
+// Calls a reader of the library, which may throw. The error is kInput; std::bad_alloc passes to the caller.
 template <class Call>
 Status WithoutExceptions(const std::string& name, const Call& call) {
   try {
@@ -41,11 +40,11 @@ Status WithoutExceptions(const std::string& name, const Call& call) {
 }
 
 // The library's reason why pixels could not be read. Some readers report success and leave an error behind, as for a
-// TIFF that ends too soon: ask has_error() as well.
+// truncated TIFF: check has_error() as well.
 Error ReadFailure(OIIO::ImageInput& input, const std::string& name);
 
-// Encodes with `write_pixels` into memory, in the format that the name's ending says. The library's failures become
-// errors that name the file.
+// Encodes with `write_pixels` into memory, in the format of the name's ending. The library's failures become errors
+// that name the file.
 Expected<std::vector<std::byte>> Encode(const std::string& name, const OIIO::ImageSpec& spec,
                                         const std::function<bool(OIIO::ImageOutput&)>& write_pixels);
 

@@ -1,4 +1,4 @@
-// Pictures by OpenImageIO: every format, PNG included where it is no plain one. Part of the module of formats.
+// Pictures by OpenImageIO: every format, including PNGs that are not plain. Part of the module of formats.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -19,7 +19,7 @@ namespace {
 
 using Bytes = Expected<std::vector<std::byte>>;
 
-// Which channel of a file is which colour; -1 where there is none.
+// The channel of each colour; -1 where there is none.
 struct ColorChannels {
   int r = -1, g = -1, b = -1, a = -1;
 };
@@ -37,8 +37,8 @@ std::string CombinedLayer(const OIIO::ImageSpec& spec) {
   return found;
 }
 
-// By name first (OpenImageIO sorts EXR channels), by position where the names say nothing. Names with a dot say of
-// which layer a channel is: guides are no colours, whatever their order.
+// Finds colours by name first (OpenImageIO sorts EXR channels), and by position where no name fits. A dot in a name
+// separates its layer: guides are no colours, whatever their order.
 Expected<ColorChannels> FindColorChannels(const OIIO::ImageSpec& spec, const std::string& file) {
   const std::string combined = CombinedLayer(spec);
   const auto find = [&](std::initializer_list<std::string> names) {
@@ -74,10 +74,10 @@ std::uint16_t RoundDivide(std::uint32_t value, std::uint32_t divisor) {
   return static_cast<std::uint16_t>(std::min<std::uint32_t>(65535, (value + divisor / 2) / divisor));
 }
 
-// Alpha as a file may hold it, NaN and all, as one that means something.
+// Clamps alpha to [0, 1]; NaN becomes 0.
 float ClampAlpha(float alpha) { return alpha > 0.0f ? std::min(alpha, 1.0f) : 0.0f; }
 
-// What a pixel of a file becomes.
+// Converts a file's pixel to a picture's.
 struct Decoder {
   ColorChannels channels;
   bool straight = true;
@@ -120,8 +120,8 @@ ColorChannels Within(ColorChannels channels, const ChannelRange& range) {
   return channels;
 }
 
-// Reads channels in the file's own numbers, `T`, and hands each pixel of them and its place in the picture to `decode`.
-// The picture is made when all of the file has been read: what is cut short does not cost the memory for it.
+// Reads channels in the file's own numbers, `T`, and passes each pixel and its place in the picture to `decode`. The
+// picture is allocated after the whole file has been read, so that a truncated file does not cost that memory.
 template <class T, class Decode>
 Expected<Picture> ReadPixels(OIIO::ImageInput& input, const std::string& name, OIIO::TypeDesc type,
                              const ChannelRange& range, Decode decode) {
@@ -142,7 +142,7 @@ Expected<Picture> ReadPixels(OIIO::ImageInput& input, const std::string& name, O
   return picture;
 }
 
-// A camera notes how it was held (Exif's Orientation, 1 to 8); the picture is turned so that up is up.
+// Turns the picture upright by the camera's orientation (Exif's Orientation, 1 to 8).
 Picture Upright(Picture stored, int orientation) {
   if (orientation < 2 || orientation > 8) return stored;
   const bool transposed = orientation >= 5;
@@ -159,7 +159,8 @@ Picture Upright(Picture stored, int orientation) {
   return upright;
 }
 
-// What the data window of an EXR leaves out of the display window is transparent; what lies beyond it is cut off.
+// Pixels of the display window outside an EXR's data window are transparent; those of the data window beyond the
+// display window are cut off.
 Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
   const OIIO::ImageSpec spec = input.spec();
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(spec, name));
@@ -168,7 +169,7 @@ Expected<Picture> ReadFrom(OIIO::ImageInput& input, const std::string& name) {
   SCUMBLE_RETURN_IF_ERROR(internal::CheckSize(display, name));
   SCUMBLE_ASSIGN(const ColorChannels channels, FindColorChannels(spec, name));
   const ChannelRange range = RangeOf(channels);
-  // Read at once; four of the largest picture are, side by side.
+  // Read in one call, up to four channels of the largest picture.
   if (std::int64_t(range.count()) * spec.width * spec.height > 4 * kMaxPicturePixels) {
     return InputError(name + " has its colours " + std::to_string(range.count()) +
                       " channels apart, too many for its size; write R, G, B and A side by side");
@@ -200,7 +201,7 @@ OIIO::ImageSpec EncodedSpec(const Picture& picture, int channels, const PictureW
 
 Bytes EncodeTiff(const std::filesystem::path& path, const Picture& picture, const PictureWriteOptions& options) {
   OIIO::ImageSpec spec = EncodedSpec(picture, options.grey ? 1 : 4, options);
-  // A TIFF would say sRGB in a second directory, which OpenImageIO 2.4 spoils in memory; integers are sRGB without it.
+  // OpenImageIO 2.4 corrupts the second directory that would mark a TIFF as sRGB; integers are sRGB without it.
   spec.erase_attribute("oiio:ColorSpace");
   if (options.grey) {
     std::vector<std::uint16_t> grey(picture.rgba.size() / 4);
@@ -218,7 +219,7 @@ Bytes EncodeTiff(const std::filesystem::path& path, const Picture& picture, cons
   });
 }
 
-// JPEG has no alpha: what is transparent becomes white paper, blended in linear light.
+// JPEG has no alpha: transparent pixels become white paper, blended in linear light.
 Bytes EncodeOnWhite(const std::filesystem::path& path, const Picture& picture, PictureWriteOptions options) {
   options.bits = 8;
   std::vector<std::uint8_t> bytes(std::size_t(3) * picture.width * picture.height);
@@ -236,8 +237,8 @@ Bytes EncodeOnWhite(const std::filesystem::path& path, const Picture& picture, P
   });
 }
 
-// The JPEG reader fills what is missing at the end with grey and says nothing. So the markers are followed here, from
-// segment to segment and through the coded data, until the one that ends the picture (ITU-T T.81, annex B).
+// The JPEG reader fills missing data with grey and reports no error. So the markers are followed here, from segment to
+// segment and through the coded data, up to the end marker (ITU-T T.81, annex B).
 Status CheckJpegIntegrity(std::span<const std::byte> bytes, const std::string& name) {
   constexpr unsigned kFill = 0xff, kStuffed = 0x00, kFirstAlone = 0xd0, kEndOfImage = 0xd9, kStartOfScan = 0xda;
   const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(bytes[i]); };
@@ -292,7 +293,8 @@ Expected<PictureHeader> InspectEncoded(std::span<const std::byte> bytes, const s
   OIIO::Filesystem::IOMemReader proxy(const_cast<std::byte*>(bytes.data()), bytes.size());
   SCUMBLE_ASSIGN(const auto input, internal::OpenInput(proxy, name));
   PictureHeader header = HeaderOf(input->spec());
-  header.width = input->spec().full_width, header.height = input->spec().full_height;  // as the picture will be
+  header.width = input->spec().full_width,
+  header.height = input->spec().full_height;  // of the picture, not of the data window
   return header;
 }
 

@@ -48,8 +48,8 @@ constexpr Mark kMarks[] = {
     {"\xff\x4f\xff\x51"sv, "jpeg2000"},
 };
 
-// OpenImageIO's readers of these look behind the end of what a file holds, or for ever, take memory for whatever it
-// says, or end the process at a number that they do not know.
+// Formats whose OpenImageIO readers are unsafe. They read beyond the file's end or loop for ever, allocate any declared
+// size, or end the process at an unknown number.
 constexpr Mark kNotRead[] = {
     {"GIF8"sv, "a GIF"}, {"DDS "sv, "a DDS"}, {"SDPX"sv, "a DPX"}, {"XPDS"sv, "a DPX"}, {"\x01\xda"sv, "an SGI"}};
 
@@ -59,7 +59,7 @@ bool EndsIn(const std::filesystem::path& name, std::initializer_list<std::string
   return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
-// Most of these begin as TIFF files do, whose reader would show the small preview in them.
+// Most of these begin like TIFF files, whose reader would show the small preview in them.
 bool IsRawPhotograph(const std::filesystem::path& name) {
   return EndsIn(
       name, {".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".fff", ".iiq", ".kdc", ".mef", ".mos",
@@ -71,8 +71,7 @@ struct Bound {
   std::uint64_t samples;
 };
 
-// What the tightest packing of each format comes to, once OpenImageIO has put palettes and bits into channels of their
-// own.
+// The tightest packing of each format, after OpenImageIO has expanded palettes and bits into separate channels.
 constexpr Bound kBounds[] = {
     {"pnm", 8},              // a bit a pixel
     {"bmp", 8 * 3},          // a bit a pixel, of a palette of three channels
@@ -114,7 +113,7 @@ Status CheckStart(std::string_view reader, std::span<const std::byte> start, con
   if (reader == "bmp" && byte(14) >= 40 && (byte(30) == 1 || byte(30) == 2)) {
     return InputError(failure + "it is a BMP packed by runs, which is not read; save it as a PNG");
   }
-  // OpenImageIO looks colours up behind the end of a short palette, and before the beginning of one that starts late.
+  // OpenImageIO reads colours beyond the end of a short palette, and before the beginning of one that starts late.
   const bool indexed = reader == "targa" && (byte(2) == 1 || byte(2) == 9);
   if (indexed && (byte(16) != 8 || byte(3) != 0 || byte(4) != 0 || (byte(6) << 8 | byte(5)) < 256)) {
     return InputError(failure + "it is a TGA whose palette is not of 256 colours, which is not read; save it as a PNG");

@@ -46,7 +46,7 @@ std::string LayerFile(std::size_t index) {
 }
 
 std::string Stack(std::span<const RasterLayer> layers, const Picture& merged, int dpi) {
-  // MyPaint's canvas has no end; without its frame it would save all that was painted, in steps of 64 pixels.
+  // MyPaint's canvas has no end; without its frame it would save the whole painted area, in steps of 64 pixels.
   std::string xml =
       "<?xml version='1.0' encoding='UTF-8'?>\n"
       "<image xmlns:mypaint=\"http://mypaint.org/ns/openraster\" mypaint:frame-active=\"true\" version=\"0.0.5\" "
@@ -65,7 +65,7 @@ std::string Stack(std::span<const RasterLayer> layers, const Picture& merged, in
   return xml + "  </stack>\n</image>\n";
 }
 
-// At most 256 pixels a side, as the format asks for: the mean of the pixels that each one covers.
+// At most 256 pixels a side, as the format requires: each pixel is the mean of those it covers.
 Picture Thumbnail(const Picture& picture) {
   constexpr int kLargest = 256;
   const int larger = std::max(picture.width, picture.height);
@@ -90,13 +90,13 @@ Picture Thumbnail(const Picture& picture) {
   return small;
 }
 
-// What a PNG in an archive says of its size, before it is unpacked.
+// The declared size of a PNG in an archive, before it is unpacked.
 Expected<MergedHeader> InspectPng(const ZipReader& zip, const std::string& entry, const std::string& file) {
   SCUMBLE_ASSIGN(const auto start, zip.ReadStart(entry, internal::kPngHeaderBytes));
   const std::string name = file + ": " + entry;
   const auto header = internal::ReadPngHeader(start);
   if (!header) return InputError("cannot read " + name + ": it is no PNG; save the file again");
-  constexpr std::uint32_t kLongest = 1u << 24;  // what OpenImageIO takes is judged by the reader
+  constexpr std::uint32_t kLongest = 1u << 24;  // OpenImageIO's own limit is checked by the reader
   if (header->width == 0 || header->height == 0 || std::max(header->width, header->height) > kLongest) {
     return InputError("cannot read " + name + ": it says that it is " + std::to_string(header->width) + "×" +
                       std::to_string(header->height) + " pixels; save the file again");
@@ -104,10 +104,10 @@ Expected<MergedHeader> InspectPng(const ZipReader& zip, const std::string& entry
   return MergedHeader{int(header->width), int(header->height), header->bits};
 }
 
-// A PNG in an archive. Its name there says nothing certain, and no other reader shall get to see a stranger's bytes.
+// A PNG in an archive. Its name there proves nothing, and no other reader may open untrusted bytes.
 Expected<Picture> ReadPng(const ZipReader& zip, const std::string& entry, const std::string& file) {
   SCUMBLE_ASSIGN(const MergedHeader header, InspectPng(zip, entry, file));
-  // Uncompressed at 16 bits, and words and colour profiles beside it. A small archive can unpack to gigabytes.
+  // Uncompressed at 16 bits, with texts and colour profiles. A small archive can unpack to gigabytes.
   constexpr std::size_t kBeside = std::size_t(1) << 24;
   const std::size_t picture = std::size_t(header.width) * std::size_t(header.height) * 8;
   SCUMBLE_ASSIGN(const auto bytes, zip.Read(entry, std::min(kMaxPngBytes, picture + picture / 64 + kBeside)));
@@ -122,7 +122,7 @@ Expected<ZipReader> OpenMerged(const std::filesystem::path& path) {
       ", the picture of all its layers: expected an .ora or .kra file of a painting program; export a PNG");
 }
 
-// `xml` without the resolutions that Stack may note.
+// `xml` without the resolutions that Stack may hold.
 std::string WithoutDpi(std::string xml) {
   for (const std::string name : {" xres=\"", " yres=\""}) {
     const std::size_t at = xml.find(name), end = at == xml.npos ? at : xml.find('"', at + name.size());
@@ -135,7 +135,7 @@ std::string WithoutDpi(std::string xml) {
 
 Expected<std::vector<std::byte>> EncodeOpenRaster(std::span<const RasterLayer> layers, const Picture& merged, int dpi,
                                                   const std::string& name) {
-  // The first entry, unpacked: so that a file's type is found at a fixed place near its beginning.
+  // The first entry, stored unpacked, so that the file's type is at a fixed place near its beginning.
   std::vector<ZipEntry> entries{{"mimetype", Bytes(kMimetype)}};
   entries.push_back({"stack.xml", Bytes(Stack(layers, merged, dpi)), true});
   for (std::size_t i = 0; i < layers.size(); ++i) entries.push_back({LayerFile(i), layers[i].png});
@@ -161,7 +161,7 @@ bool SameLayers(const std::filesystem::path& path, std::span<const RasterLayer> 
   constexpr std::size_t kOthers = 4;  // mimetype, stack.xml, mergedimage.png, the thumbnail
   if (!zip || zip->names().size() != layers.size() + kOthers) return false;
   const std::string stack = Stack(layers, merged, 0);
-  // Names, order and what is shown are the artist's too.
+  // Names, order and visibility belong to the artist too.
   constexpr std::size_t kNoted = 200;
   const auto held_stack = zip->Read("stack.xml", stack.size() + kNoted);
   if (!held_stack || WithoutDpi({reinterpret_cast<const char*>(held_stack->data()), held_stack->size()}) != stack) {

@@ -1,4 +1,4 @@
-// PNG's filters (PNG specification, third edition, section 9): what stands in a file instead of a row's bytes.
+// PNG's filters (PNG specification, third edition, section 9): the bytes that a file holds in place of a row's own.
 #pragma once
 
 #include <cstddef>

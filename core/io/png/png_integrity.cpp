@@ -32,7 +32,7 @@ bool CanHold(std::uint64_t packed, const PngHeader& header) {
 }
 
 std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes) {
-  // Length, type, width, height, bits; the rest is the reader's.
+  // Length, type, width, height, bits; the reader checks the other fields.
   constexpr std::size_t kType = 12, kWidth = 16, kHeight = 20, kBits = 24, kColors = 25;
   constexpr std::array<unsigned char, 4> kFirst = {'I', 'H', 'D', 'R'};
   if (!IsPng(bytes) || bytes.size() < kPngHeaderBytes ||

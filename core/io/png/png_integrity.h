@@ -1,4 +1,4 @@
-// Whether a PNG file is all there: libpng would say so on standard error, whoever listens.
+// Whether a PNG file is complete. libpng would report that on standard error only.
 #pragma once
 
 #include <array>
@@ -18,25 +18,24 @@ inline constexpr std::array<unsigned char, 8> kPngSignature = {0x89, 'P', 'N', '
 
 // Whether the bytes begin as every PNG file does.
 bool IsPng(std::span<const std::byte> bytes);
-// Whether a regular file does. A pipe is not asked: it would be waited for.
+// Whether a regular file begins so. A pipe is not opened, because reading it would wait.
 bool IsPngFile(const std::filesystem::path& path);
 
-// What a PNG file's first bytes say of its picture: kPngHeaderBytes of them are enough.
+// The picture's properties in a PNG file's first bytes: kPngHeaderBytes of them are enough.
 inline constexpr std::size_t kPngHeaderBytes = 33;
 struct PngHeader {
   std::uint32_t width = 0, height = 0;
   int bits = 0;  // per channel
   int channels = 0;
 };
-// Nothing where they are no PNG's. Thread-safe.
+// Empty if the bytes are no PNG's. Thread-safe.
 std::optional<PngHeader> ReadPngHeader(std::span<const std::byte> bytes);
 
-// Whether so many bytes of Deflate can unpack to the picture's pixels. A reader takes the memory for those first.
+// Whether that many bytes of Deflate can unpack to the picture's pixels. A reader allocates the pixels first.
 bool CanHold(std::uint64_t packed, const PngHeader& header);
 
-// Follows the chunks (PNG specification, third edition, section 5) up to the one that ends the picture, and checks the
-// sums of those that a reader needs, and that the pixels are not more than so many bytes can unpack to. `name` is for
-// the message. Thread-safe.
+// Follows the chunks (PNG specification, third edition, section 5) up to the end chunk. Checks the sums of those that a
+// reader needs, and that the packed bytes can hold the pixels. `name` is for the message. Thread-safe.
 Status CheckPngIntegrity(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace scumble::internal

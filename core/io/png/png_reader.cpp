@@ -29,8 +29,7 @@ void Take(png_structp png, png_bytep out, std::size_t count) {
 [[noreturn]] void Fail(png_structp png, png_const_charp) { png_longjmp(png, 1); }
 void Ignore(png_structp, png_const_charp) {}
 
-// A row, or a text or a profile beside the picture. libpng believes what a chunk says of its length, and its own limit
-// only makes it warn.
+// Allocates a row, a text or a profile. libpng trusts a chunk's length, and its own limit only makes it warn.
 png_voidp Allocate(png_structp png, png_alloc_size_t bytes) {
   constexpr png_alloc_size_t kMost = png_alloc_size_t(1) << 24;
   if (bytes > kMost) png_error(png, "too large");
@@ -38,7 +37,7 @@ png_voidp Allocate(png_structp png, png_alloc_size_t bytes) {
 }
 void Free(png_structp, png_voidp memory) { std::free(memory); }
 
-// Whether a text says nothing of colours or of which side is up; the picture library would heed what it says.
+// Whether a text has no influence on colours or orientation. The picture library would apply such a text.
 bool IsHarmless(const png_text& text) {
   std::string key = text.key ? text.key : "";
   for (char& c : key) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -63,7 +62,7 @@ bool IsOfASizeThatWeTake(std::int64_t width, std::int64_t height) {
   return width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxPicturePixels;
 }
 
-// libpng leaves by longjmp, which no destructor sees: what must be freed lives outside of these two.
+// libpng leaves by longjmp, which skips destructors. So resources live outside of these two functions.
 struct Reading {
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -71,7 +70,7 @@ struct Reading {
   ~Reading() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-// Reads the header, and says what the rows shall be: 8 or 16 bits, 1 to 4 channels.
+// Reads the header and sets the form of the rows: 8 or 16 bits, 1 to 4 channels.
 bool ReadHead(Reading& reading, Picture& picture) {
   if (setjmp(png_jmpbuf(reading.png)) != 0) return false;
   png_structp png = reading.png;
@@ -93,7 +92,7 @@ bool ReadRows(const Reading& reading, png_bytepp rows) {
   return true;
 }
 
-// Where a pixel's four values stand among those of the file; -1: opaque.
+// The places of a pixel's four values among those of the file; -1: opaque.
 struct Order {
   int r, g, b, a;
 };

@@ -1,4 +1,4 @@
-// Plain PNG files, by libpng: without the whole picture library, which takes a fifth of a second to load.
+// Reads plain PNG files by libpng, without the picture library, which takes a fifth of a second to load.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,12 @@
 
 namespace scumble::internal {
 
-// The picture in a PNG file that is whole (CheckPngIntegrity), as ReadPicture gives it. Nothing where the file is
-// damaged, larger than a picture may be, or has what only the picture library knows how to take: Exif, XMP, an offset,
-// a linear gamma, or words about colour spaces. That library then reads it, or says what is wrong. Thread-safe.
+// The picture in a complete PNG file (CheckPngIntegrity), as ReadPicture gives it. Empty if the file is damaged,
+// exceeds the largest picture, or needs the picture library: for Exif, XMP, an offset, a linear gamma, or texts about
+// colour spaces. That library then reads it, or reports the error. Thread-safe.
 std::optional<Picture> ReadPlainPng(std::span<const std::byte> bytes);
 
-// What that file's header says, as `InspectStored` gives it: of the same files, whole or not.
+// That file's header, as `InspectStored` gives it: for the same files, complete or not.
 std::optional<StoredPicture> InspectPlainPng(std::span<const std::byte> bytes);
 
 }  // namespace scumble::internal

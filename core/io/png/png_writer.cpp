@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kBandBytes = std::size_t(1)
                                    << 18;              // small enough for threads to share, large enough to pack well
-constexpr std::size_t kWindow = std::size_t(1) << 15;  // how far back deflate looks
+constexpr std::size_t kWindow = std::size_t(1) << 15;  // deflate's window
 
 void Append(std::vector<std::byte>& out, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::byte>(number >> shift & 0xff));
@@ -32,7 +32,7 @@ void Append(std::vector<std::byte>& out, std::string_view text) {
 
 const Bytef* Zlib(const std::byte* bytes) { return reinterpret_cast<const Bytef*>(bytes); }
 
-// A chunk begun at `start` with four bytes for its length: they and the sum are filled in.
+// Ends a chunk that began at `start` with four bytes for its length: fills in the length and the sum.
 void EndChunk(std::vector<std::byte>& out, std::size_t start) {
   const std::size_t length = out.size() - start - 8;
   for (int i = 0; i < 4; ++i) out[start + std::size_t(i)] = static_cast<std::byte>(length >> (24 - 8 * i) & 0xff);
@@ -45,8 +45,8 @@ std::size_t BeginChunk(std::vector<std::byte>& out, std::string_view type) {
   return start;
 }
 
-// Everything before the pixels. The colour space is said three times, as the specification advises: not every reader
-// knows sRGB.
+// Everything before the pixels. The colour space is stored three times, as the specification advises: not every reader
+// supports sRGB.
 std::vector<std::byte> Head(const Picture& picture, const PngOptions& options) {
   std::vector<std::byte> out;
   for (const unsigned char c : kPngSignature) out.push_back(static_cast<std::byte>(c));
@@ -86,7 +86,7 @@ std::vector<std::byte> Head(const Picture& picture, const PngOptions& options) {
   return out;
 }
 
-// How rows lie in the file.
+// The layout of rows in the file.
 struct Layout {
   const Picture& picture;
   const PngOptions& options;
@@ -117,7 +117,7 @@ void FillSamples(const Layout& layout, int y, std::uint8_t* out) {
   }
 }
 
-// Rows [begin, end) as the file has them.
+// Rows [begin, end) in the file's form.
 std::vector<std::byte> Rows(const Layout& layout, int begin, int end, std::uint8_t filter) {
   const std::size_t bytes = layout.row_bytes - 1;
   std::vector<std::byte> rows(layout.row_bytes * std::size_t(end - begin));
@@ -140,10 +140,10 @@ std::vector<std::byte> Rows(const Layout& layout, int begin, int end, std::uint8
 struct Band {
   std::vector<std::byte> chunk;  // an IDAT
   uLong adler = 1;               // of the rows
-  std::size_t bytes = 0;         // that they have
+  std::size_t bytes = 0;         // bytes of the rows
 };
 
-// zlib's state, freed however it is left.
+// zlib's state, freed on every exit.
 struct Stream : z_stream {
   explicit Stream(int level) : z_stream{} {
     constexpr int kRawWindowBits = -15, kMemory = 8;
@@ -155,13 +155,13 @@ struct Stream : z_stream {
   Stream& operator=(const Stream&) = delete;
 };
 
-// Deflates to `out`: a stream without header, to which another may be joined unless `last`.
+// Deflates to `out`: a stream without header, to which another may be appended unless `last`.
 void Deflate(std::span<const std::byte> dictionary, std::span<const std::byte> rows, int level, bool last,
              std::vector<std::byte>& out) {
   Stream stream(level);
   if (!dictionary.empty()) deflateSetDictionary(&stream, Zlib(dictionary.data()), static_cast<uInt>(dictionary.size()));
   const std::size_t before = out.size();
-  const std::size_t flush = 64 + rows.size() / 1000;  // what the block that ends it may add
+  const std::size_t flush = 64 + rows.size() / 1000;  // room for the block that ends it
   out.resize(before + deflateBound(&stream, static_cast<uLong>(rows.size())) + flush);
   stream.next_in = const_cast<Bytef*>(Zlib(rows.data()));
   stream.avail_in = static_cast<uInt>(rows.size());
@@ -172,8 +172,8 @@ void Deflate(std::span<const std::byte> dictionary, std::span<const std::byte> r
   out.resize(before + stream.total_out);
 }
 
-// The filter by which a sample of the band packs best. Paint that is copied in chunks repeats as it is, and loses that
-// by any filter; smooth pictures gain by one.
+// The filter that packs a sample of the band best. Paint copied in chunks repeats exactly, and any filter destroys the
+// repetition; smooth pictures gain by one.
 std::uint8_t ChooseFilter(const Layout& layout, int band) {
   if (layout.options.level == 0) return kNoFilter;
   const int begin = layout.begin(band), end = std::min(layout.end(band), begin + 2 * layout.look_back);
@@ -186,7 +186,7 @@ std::uint8_t ChooseFilter(const Layout& layout, int band) {
   return size(kPaeth) < size(kNoFilter) ? kPaeth : kNoFilter;
 }
 
-// zlib's two bytes: deflate with its whole window, how hard it was tried, and a sum of both that 31 divides.
+// zlib's two bytes: deflate with its whole window, the effort, and a check sum that makes both divisible by 31.
 std::array<std::byte, 2> StreamHead(int level) {
   const int effort = level < 2 ? 0 : level < 6 ? 1 : level == 6 ? 2 : 3;
   const int head = 0x7800 | effort << 6;
@@ -199,7 +199,7 @@ std::array<std::byte, 2> StreamHead(int level) {
 std::vector<std::byte> WritePng(const Picture& picture, const PngOptions& options) {
   SCUMBLE_CHECK(picture.width > 0 && picture.height > 0);
   const Layout layout{picture, options};
-  // Neighbours are alike, and a sample costs a quarter of a band.
+  // Neighbouring bands are alike, and a sample costs a quarter of a band.
   constexpr int kAlike = 4;
   std::vector<std::uint8_t> filters(std::size_t((layout.bands + kAlike - 1) / kAlike));
   ForEachIndex(static_cast<int>(filters.size()), options.threads,
@@ -221,7 +221,7 @@ std::vector<std::byte> WritePng(const Picture& picture, const PngOptions& option
             band.chunk);
     band.adler = adler32_z(1, Zlib(rows.data()), rows.size());
     band.bytes = rows.size();
-    if (end < picture.height) EndChunk(band.chunk, start);  // the last one lacks the sum of all
+    if (end < picture.height) EndChunk(band.chunk, start);  // the last chunk still lacks the sum of all
   });
   uLong adler = bands.front().adler;
   for (std::size_t b = 1; b < bands.size(); ++b) {

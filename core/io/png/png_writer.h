@@ -19,10 +19,10 @@ struct PngOptions {
 };
 
 // The bytes of a file with the picture's straight RGBA, or its red as grey, marked as sRGB. Rows are cut into bands of
-// fixed size, whatever the threads: each is deflated apart, with the end of the one before as its dictionary, so that
-// hardly a byte is lost, and ends at a full byte, as pigz does it. So the bytes depend on the picture and the options
-// alone. Each band's rows are as they are, or by Paeth's filter, as a sample says. `picture` has a pixel at least.
-// Throws std::bad_alloc where memory ends. Thread-safe.
+// fixed size, for any number of threads. As in pigz, each band is deflated separately, with the end of the previous one
+// as its dictionary, and ends at a full byte; this costs hardly a byte. So the bytes depend on the picture and the
+// options alone. Each band's rows are unfiltered or use Paeth's filter, as a sample decides. `picture` has at least one
+// pixel. Throws std::bad_alloc where memory ends. Thread-safe.
 std::vector<std::byte> WritePng(const Picture& picture, const PngOptions& options);
 
 }  // namespace scumble::internal

@@ -15,8 +15,8 @@ namespace scumble {
 namespace {
 
 constexpr double At(int modules) { return modules * kFiducialModule; }
-// The marker at a side's low end begins so far along it, that at its high end so far before the end. At these places
-// the sphere is 1/17 of its diameter away from the square's side.
+// The distance of a marker at a side's low end from that end, and the place of the one at its high end. There the
+// sphere is 1/17 of its diameter away from the square's side.
 constexpr int kLow = 11, kHigh = 64 - kLow - kFiducialModules;
 constexpr int kBefore = -1 - kFiducialModules, kBehind = 64 + 1;
 
@@ -38,7 +38,7 @@ constexpr std::array<const char*, kFiducialCount> kPlaces{
 // A marker's 16 bits, rows from the top, the highest bit first; 1 is white.
 using Bits = std::array<std::uint16_t, kFiducialCount>;
 
-// From the library's codes, whose bits go around in quarters.
+// Reads the library's codes, whose bits are ordered in quarter turns.
 Bits ReadFamily() {
   const std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family(tag16h5_create(), tag16h5_destroy);
   Bits bits{};
@@ -52,12 +52,12 @@ Bits ReadFamily() {
   return bits;
 }
 
-// Share of the pixel [i, i + 1) between `from` and `to`.
+// The share of the pixel [i, i + 1) between `from` and `to`.
 double Covered(int i, double from, double to) {
   return std::clamp(std::min<double>(i + 1, to) - std::max<double>(i, from), 0.0, 1.0);
 }
 
-// Share of pixel (x, y) that is black; (left, top) is the marker's corner, in pixels like `module`.
+// The share of pixel (x, y) that is black; (left, top) is the marker's corner, in pixels like `module`.
 double BlackShare(int id, int x, int y, double left, double top, double module) {
   const auto touched = [&](int pixel, double start) {
     const int first = std::max(0, int(std::floor((pixel - start) / module)));
@@ -130,7 +130,7 @@ static int CountFiducials(const Picture& picture, double size, double margin) {
   int found = 0;
   for (const Fiducial& mark : kFiducials) {
     bool right = true;
-    // One module further than the marker: the quiet zone is part of it.
+    // One module farther than the marker: the quiet zone is part of it.
     for (int row = -1; row <= kFiducialModules && right; ++row) {
       for (int column = -1; column <= kFiducialModules && right; ++column) {
         const bool inside = std::min(row, column) >= 0 && std::max(row, column) < kFiducialModules;

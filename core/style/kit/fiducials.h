@@ -1,5 +1,5 @@
-// The marks that are printed around the sphere's template, by which a scan or a photograph of it is laid back onto the
-// template's pixels. They are AprilTags (E. Olson, "AprilTag: A robust and flexible visual fiducial system", ICRA 2011;
+// The marks that are printed around the sphere's template, which align a scan or a photograph with the template's
+// pixels. They are AprilTags (E. Olson, "AprilTag: A robust and flexible visual fiducial system", ICRA 2011;
 // J. Wang, E. Olson, "AprilTag 2: Efficient and robust fiducial detection", IROS 2016), ids 0 … 11 of the family
 // tag16h5, whose bits the library keeps.
 //
@@ -24,7 +24,7 @@ inline constexpr int kFiducialModules = 6;
 inline constexpr double kFiducialSide = kFiducialModules * kFiducialModule;
 // White paper around each marker, in which nothing else may be printed.
 inline constexpr double kFiducialQuiet = kFiducialModule;
-// What the markers take of the margin, quiet zones included.
+// The part of the margin that the markers take, quiet zones included.
 inline constexpr double kFiducialMargin = kFiducialSide + 2 * kFiducialQuiet;
 
 // A marker; (left, top) is the corner of its black border.
@@ -35,13 +35,13 @@ struct Fiducial {
 
 inline constexpr int kFiducialCount = 12;
 
-// All markers, in the order of their ids: clockwise from the upper left corner. Besides the four corners there are two
-// on each side, away from its middle, where the sphere comes close and paint runs over the margin.
+// All markers, in the order of their ids: clockwise from the upper left corner. Four are in the corners and two on each
+// side. Those stay away from the side's middle, where the sphere is close and paint runs over the margin.
 const std::array<Fiducial, kFiducialCount>& Fiducials();
 
-// Where a marker lies, in words: "upper left corner", "right side, lower".
+// A marker's place in words: "upper left corner", "right side, lower".
 const char* FiducialPlace(int id);
-// The same of several, with commas between.
+// The places of several markers, with commas between.
 std::string FiducialPlaces(const std::vector<int>& ids);
 
 // Whether a module is black; `id` in 0 … kFiducialCount - 1, column and row in 0 … kFiducialModules - 1, the border
@@ -51,17 +51,17 @@ bool FiducialIsBlack(int id, int column, int row);
 // Whether the modules are large enough, two pixels, to be drawn in a template with `size` pixels across the sphere.
 bool FiducialsFit(int size);
 
-// Draws the markers, black on their white quiet zones, and leaves the rest as it is. Edges between pixels
-// are mixed in linear light, so that their place is exact at any size; transparent pixels become opaque under a mark.
-// `margin` in pixels, at least kFiducialMargin · size; needs FiducialsFit(size) and a picture of (size + 2 · margin)².
+// Draws the markers, black on their white quiet zones, and changes nothing else. Edges between pixels are mixed in
+// linear light, so that their place is exact at any size; transparent pixels become opaque under a mark. `margin` in
+// pixels, at least kFiducialMargin · size; needs FiducialsFit(size) and a picture of (size + 2 · margin)².
 void DrawFiducials(Picture& picture, int size, int margin);
 
-// How many markers stand in a picture exactly where DrawFiducials puts them: all twelve in a template, also one that
-// was saved as JPEG; none where the picture has another size than (size + 2 · margin)².
+// The number of markers that stand in a picture exactly where DrawFiducials puts them. All twelve in a template, also
+// after saving as JPEG; none where the picture has another size than (size + 2 · margin)².
 int FiducialsInPlace(const Picture& picture, int size, int margin);
 
-// The same for a square picture that was scaled as a whole, where the margin is an eighth of the sphere whatever the
-// pixels: all twelve in a template that was exported at another size, down to modules of two pixels.
+// The number of markers in a square picture that was scaled as a whole, whose margin is an eighth of the sphere. All
+// twelve in a template that was exported at another size, down to modules of two pixels.
 int FiducialsInProportion(const Picture& picture);
 
 // Fewest pixels across the sphere in the scan.

@@ -22,13 +22,13 @@ constexpr Color Rgb(int r, int g, int b) {
 constexpr Color kBlue = Rgb(30, 90, 220), kOrange = Rgb(235, 130, 20), kRed = Rgb(220, 30, 40),
                 kGreen = Rgb(20, 140, 90), kViolet = Rgb(150, 50, 190);
 
-// Thin enough to look past, thick enough to be seen when the whole template fits a screen.
+// Thin enough not to disturb, thick enough to be seen when the whole template fits a screen.
 double LineWidth(int size) { return std::max(1.2, size / 450.0); }
 
-// A pixel is covered by a line that runs at `distance` pixels from its centre.
+// The coverage of a pixel by a line at `distance` pixels from its centre.
 double Covered(double distance, double width) { return std::clamp(0.5 + width / 2 - distance, 0.0, 1.0); }
 
-// The stronger of two lines shows where they meet: adding them would make blots.
+// Where two lines meet, the stronger one shows: their sum would make blots.
 void Draw(Picture& picture, int x, int y, const Color& color, double opacity) {
   const auto alpha = static_cast<std::uint16_t>(std::lround(opacity * 65535.0));
   std::uint16_t* pixel = picture.At(x, y);
@@ -44,7 +44,7 @@ struct Line {
   std::function<bool(glm::dvec3)> where = {};  // parts of the sphere that have the line; empty: all
 };
 
-// Draws lines on the front of the sphere. How far a pixel is from a line follows from the value there and in the pixels
+// Draws lines on the front of the sphere. A pixel's distance from a line follows from the value there and in the pixels
 // around.
 void DrawOnSphere(Picture& picture, int size, const std::vector<Line>& lines) {
   const int margin = TemplateMargin(size);
@@ -75,7 +75,7 @@ Picture Empty(int size) {
   return Picture(side, side);
 }
 
-// Puts what `color` says of each covered pixel of the guides onto the template.
+// Puts the result of `color` for each covered pixel of the guides onto the template.
 Picture DrawCovered(const KitLight& light, const std::function<Color(std::size_t)>& color) {
   const GuideSet& guides = light.guides;
   SCUMBLE_CHECK_EQ(guides.width(), guides.height());
@@ -112,7 +112,7 @@ Picture DrawLightLines(int size, double azimuth, double elevation) {
     lines.push_back({[=](glm::dvec3 n) { return glm::dot(n, light) - level; }, kOrange, thin});
   }
   lines.push_back({[=](glm::dvec3 n) { return glm::dot(n, light); }, kBlue, 2 * thin});
-  // A lamp straight behind the sphere has no highlight.
+  // A light straight behind the sphere has no highlight.
   if (glm::length(half) > 1e-6) {
     constexpr double kRingDegrees = 6.0;
     const glm::dvec3 mirror = glm::normalize(half);

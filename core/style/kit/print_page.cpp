@@ -56,7 +56,7 @@ int LargestSphere(double room_mm, int dpi) {
 }
 
 Expected<PrintPage> Fitting(int size, int dpi) {
-  constexpr double kNarrowest = 170.0;      // for the words
+  constexpr double kNarrowest = 170.0;      // for the text
   constexpr double kLargestPdfMm = 5080.0;  // 14,400 points, annex C of ISO 32000-1
   const double side = MillimetresOf(TemplateSide(size), dpi);
   const double width = std::max(side, kNarrowest) + 2 * kPageEdgeMm, height = side + 2 * kPageEdgeMm + kWordsMm;

@@ -1,4 +1,4 @@
-// Where the template lies on a sheet of paper, true to scale.
+// The template's place on a sheet of paper, true to scale.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ enum class PaperSize {
   kA4,      // 210 × 297 mm
   kLetter,  // 8.5 × 11 in
   kA3,      // 297 × 420 mm
-  kFit,     // as large as the template and the words under it need
+  kFit,     // as large as the template and the text under it need
 };
 
 struct PrintPage {
@@ -23,19 +23,19 @@ struct PrintPage {
   int left = 0, top = 0;
 };
 
-// White that most printers cannot print on anyhow.
+// The white edge that most printers cannot print on.
 inline constexpr double kPageEdgeMm = 8.0;
-// Height of the words under the template.
+// Height of the text under the template.
 inline constexpr double kWordsMm = 62.0;
 
 inline double MillimetresOf(double pixels, int dpi) { return pixels * 25.4 / dpi; }
 
-// Dots an inch at which a printed sphere should be scanned: as fine as it was printed, at least 300, and as many as
-// RectifyScan needs across a small one, with a quarter to spare; in steps of 50.
+// Dots an inch at which a printed sphere should be scanned: as fine as it was printed, at least 300, and a quarter more
+// than RectifyScan needs across a small one; in steps of 50.
 int ScanDpi(int size, int dpi);
 
-// Places the template of a sphere `size` pixels across, printed at `dpi` pixels an inch. A template that the paper
-// cannot hold is kUsage, and the message says the largest sphere that it can; so is one that no PDF can hold.
+// Places the template of a sphere `size` pixels across, printed at `dpi` pixels an inch. If the paper or any PDF cannot
+// hold the template, the error is kUsage and gives the largest sphere that fits.
 Expected<PrintPage> PlacePage(PaperSize paper, int size, int dpi);
 
 // "a4", "letter", "a3", "fit", "auto".

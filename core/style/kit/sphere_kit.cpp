@@ -40,7 +40,7 @@ std::string GuidesName(const KitLight& light, std::size_t index) {
   return light.name.empty() ? Numbered("guides", ".exr", index) : light.name + "-guides.exr";
 }
 
-// What Numbered has put behind `stem`: "" or "-2" and so on; nothing where `text` is not made by it.
+// The suffix that Numbered has added to `stem`: "" or "-2" and so on. Empty optional if `text` was not made by it.
 std::optional<std::string> NumberBehind(const std::string& stem, const std::string& text) {
   if (text.rfind(stem, 0) != 0) return std::nullopt;
   const std::string rest = text.substr(stem.size());
@@ -49,13 +49,13 @@ std::optional<std::string> NumberBehind(const std::string& stem, const std::stri
   return rest.empty() || number ? std::optional(rest) : std::nullopt;
 }
 
-// Names under which a painting may stand in style.toml.
+// The file names of a painting that style.toml may contain.
 std::vector<std::string> PaintingNames(const KitLight& light, std::size_t index) {
   return {PaintingName(light, index), PaintingName(light, index, ".ora"), TemplateName(light, index, ".ora"),
           TemplateName(light, index)};
 }
 
-// `mark` begins each line: empty, or what makes a comment of it.
+// `mark` begins each line: empty, or the comment sign.
 std::string ExemplarEntry(const KitLight& light, std::size_t index, const std::string& mark) {
   return "\n" + mark + "[[exemplar]]          # light from " + AnglesInWords(light) + "\n" + mark + "image = \"" +
          PaintingName(light, index) + "\"\n" + mark + "guides = \"" + GuidesName(light, index) +
@@ -80,7 +80,7 @@ std::string StarterStyle(const std::vector<KitLight>& lights) {
   return text;
 }
 
-// A text with its "$PAINTING" and the like replaced by what they stand for; no name of a light holds a "$".
+// Replacements for "$PAINTING" and the like in a text; no name of a light holds a "$".
 using Words = std::vector<std::pair<std::string_view, std::string>>;
 std::string Filled(std::string text, const Words& words) {
   for (const auto& [word, meaning] : words) {
@@ -166,7 +166,8 @@ Error MayBePainting(const fs::path& path) {
                      "a painting. Move it away, give this light a --name of its own, or write to another folder");
 }
 
-// A template that somebody painted over must not be lost; one that is as we would draw it, or once drew it, may go.
+// A template that somebody painted over must not be lost. One that equals our drawing, of this or an earlier version,
+// may be replaced.
 Status RefusePaintedTemplate(const fs::path& path, const KitLight& light, const Picture& drawn) {
   if (!Exists(path)) return Ok();
   const auto old = ReadPicture(path);
@@ -174,9 +175,8 @@ Status RefusePaintedTemplate(const fs::path& path, const KitLight& light, const 
   return MayBePainting(path);
 }
 
-// Whether the luminance differs by more than a thousandth of the brightest, as that of lights a tenth of a degree apart
-// does. Other instruction sets round otherwise, by some millionths. Pixels of the edge depend on --aa, so they do not
-// count.
+// Whether the luminance differs by more than a thousandth of the brightest, as for lights a tenth of a degree apart.
+// Other instruction sets round differently, by some millionths. Edge pixels depend on --aa, so they do not count.
 bool HasOtherLight(const GuideSet& old, const GuideSet& now) {
   const auto was = old.Plane(Layer::kLuminance), is = now.Plane(Layer::kLuminance);
   const auto had = old.Plane(Layer::kCoverage), has = now.Plane(Layer::kCoverage);
@@ -189,7 +189,7 @@ bool HasOtherLight(const GuideSet& old, const GuideSet& now) {
   return difference > 1e-3f * brightest;
 }
 
-// A painting fits the guides that it was painted with. Guides that cannot be read are of no use to it.
+// A painting fits the guides that it was painted with. Unreadable guides cannot fit it.
 Status RefuseOtherGuides(const fs::path& folder, const KitLight& light, std::size_t index) {
   const int size = light.guides.width();
   const fs::path guides = folder / GuidesName(light, index);
@@ -214,8 +214,8 @@ Status RefuseOtherGuides(const fs::path& folder, const KitLight& light, std::siz
   return Ok();
 }
 
-// The layers from the top down, marks over paint over the lit sphere. Guides that are lines lie over the paint, so that
-// they can be seen on it; those that cover the sphere lie under it. All but the layer to paint on are locked.
+// The layers from the top down: marks, paint, the lit sphere. Guides that are lines lie over the paint, so that they
+// can be seen on it; those that cover the sphere lie under it. All but the layer to paint on are locked.
 Expected<std::vector<RasterLayer>> TemplateLayers(const KitLight& light) {
   const int size = light.guides.width(), side = size + 2 * TemplateMargin(size);
   std::vector<RasterLayer> layers;
@@ -241,7 +241,7 @@ Expected<std::vector<RasterLayer>> TemplateLayers(const KitLight& light) {
   return layers;
 }
 
-// style.toml as it should be; nothing where it should stay as it is.
+// The new text of style.toml; empty optional where the file should stay.
 Expected<std::optional<std::string>> NewStyle(const fs::path& path, const std::vector<KitLight>& lights) {
   std::error_code failed;
   if (!fs::exists(path, failed)) return std::optional(StarterStyle(lights));

@@ -142,7 +142,7 @@ Picture DrawLitSphere(const KitLight& light) {
     for (int x = 0; x < size; ++x) {
       const std::size_t i = guides.Index(x, y);
       if (!(coverage[i] > 0.0f)) continue;
-      // A little reflected light from the far side keeps the form readable in the shade, as a model in a studio has it.
+      // A little reflected light from the far side keeps the form readable in the shade, as in a studio.
       const glm::vec3 normal = guides.Vec3(Layer::kNormal, i);
       const float away = std::max(0.0f, -glm::dot(normal, to_light));
       const float lit = 0.03f + 0.12f * away + 0.05f * normal.z + 0.80f * luminance[i];
@@ -181,7 +181,7 @@ Picture DrawTemplateWithCrosses(const KitLight& light) {
 
 bool LooksLikeTemplate(const Picture& picture) {
   if (picture.width != picture.height) return false;
-  constexpr int kEnough = kFiducialCount / 2;  // paint may run over some; chance draws none
+  constexpr int kEnough = kFiducialCount / 2;  // paint may cover some; noise draws none
   if (FiducialsInProportion(picture) >= kEnough) return true;
   const std::optional<int> size = SizeOfTemplate(picture.width);
   if (!size) return false;

@@ -19,7 +19,7 @@ struct KitLight {
   std::string name = {};  // of its painting, "shade" for shade.png; empty: lit, and lit-2, lit-3 … for further ones
 };
 
-// Where the light comes from: "azimuth -40, elevation 40 degrees", and "the upper left".
+// The light's direction: "azimuth -40, elevation 40 degrees", and "the upper left".
 std::string AnglesInWords(const KitLight& light);
 std::string PlaceInWords(const KitLight& light);
 
@@ -57,7 +57,7 @@ Picture DrawTemplate(const KitLight& light);
 // fiducials. Templates of spheres smaller than 63 pixels are not recognised.
 bool LooksLikeTemplate(const Picture& picture);
 
-// The template with crosses instead of fiducials, as it once was: nobody painted on one that still looks so.
+// The template with crosses instead of fiducials, of earlier versions: a picture equal to it holds no paint.
 Picture DrawTemplateWithCrosses(const KitLight& light);
 
 }  // namespace scumble

@@ -24,7 +24,7 @@ using Document = std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, FreeDocument>;
 
 HPDF_REAL Real(double value) { return static_cast<HPDF_REAL>(value); }
 
-// A page that is drawn on in the template's pixels, from the template's upper left corner, y down.
+// A page with coordinates in the template's pixels, from the template's upper left corner, y down.
 class Sheet {
  public:
   Sheet(HPDF_Page page, const PrintPage& place, int dpi)
@@ -62,11 +62,12 @@ void DrawPaleSphere(HPDF_Doc document, const Sheet& sheet, const KitLight& light
   }
   const HPDF_Image image = HPDF_LoadRawImageFromMem(document, grey.data(), static_cast<HPDF_UINT>(size),
                                                     static_cast<HPDF_UINT>(size), HPDF_CS_DEVICE_GRAY, 8);
-  // A hair smaller than its place: readers paint all pixels that a picture touches, and edges are never exactly theirs.
+  // Slightly smaller than its place: readers paint every pixel that a picture touches, and its edges rarely fall on
+  // pixel edges.
   constexpr double kHair = 0.02;
   HPDF_Page_DrawImage(sheet.page(), image, sheet.X(margin + kHair), sheet.Y(margin + size - kHair),
                       sheet.Length(size - 2 * kHair), sheet.Length(size - 2 * kHair));
-  // Where the light falls the sphere is as white as the paper.
+  // Towards the light the sphere is as white as the paper.
   constexpr double kLineMm = 0.2, kLineGrey = 0.72;
   HPDF_Page_SetGrayStroke(sheet.page(), Real(kLineGrey));
   HPDF_Page_SetLineWidth(sheet.page(), Real(kLineMm * kPointsPerMm));
@@ -82,7 +83,7 @@ void DrawPrintedMarks(const Sheet& sheet, int size) {
   for (const Fiducial& mark : Fiducials()) {
     const double left = margin + mark.left * size, top = margin + mark.top * size;
     for (int row = 0; row < kFiducialModules; ++row) {
-      // Black modules side by side are one box: between two boxes some printers leave a hairline.
+      // Black modules side by side are one box: some printers leave a hairline between two boxes.
       for (int column = 0; column < kFiducialModules;) {
         int end = column;
         while (end < kFiducialModules && FiducialIsBlack(mark.id, end, row)) ++end;
@@ -94,7 +95,7 @@ void DrawPrintedMarks(const Sheet& sheet, int size) {
   }
 }
 
-// The page's letters are those of Western Europe; others of a file's name become '_'.
+// The page's letters are those of Western Europe; other letters of a file's name become '_'.
 std::string WesternLetters(const std::string& utf8) {
   std::string text;
   for (std::size_t i = 0; i < utf8.size(); ++i) {
@@ -106,7 +107,7 @@ std::string WesternLetters(const std::string& utf8) {
       text += static_cast<char>(lead == 0xc3 ? next + 0x40 : next);
       ++i;
     } else if ((lead & 0xc0) == 0xc0) {
-      text += '_';  // the first byte of a letter; the bytes that go on with it fall away
+      text += '_';  // the first byte of a letter; its further bytes are dropped
     }
   }
   return text;
@@ -146,7 +147,7 @@ void DrawWords(HPDF_Doc document, const Sheet& sheet, const KitLight& light, con
                const std::string& painting) {
   const double pixels_per_mm = dpi / 25.4;
   const int size = light.guides.width(), side = size + 2 * TemplateMargin(size);
-  // As far left as the template, but never so far right that the longest line would leave the page.
+  // Aligned with the template's left side, but never so far right that the longest line would leave the page.
   constexpr double kWidestMm = 168.0;
   const double room = page.width_mm - kPageEdgeMm - kWidestMm;
   const double left = std::min(0.0, room * pixels_per_mm - page.left);
@@ -185,7 +186,7 @@ Expected<std::vector<std::byte>> Save(HPDF_Doc document, const std::string& name
 
 Expected<std::vector<std::byte>> EncodeTemplatePdf(const KitLight& light, const PrintPage& page, int dpi,
                                                    const std::string& painting, const std::string& name) {
-  // Without a handler of ours the library notes the first error and does nothing from then on.
+  // Without an error handler the library notes the first error and ignores all later calls.
   const Document document(HPDF_New(nullptr, nullptr));
   if (!document) return OutputError("cannot write " + name + ": out of memory");
   HPDF_SetCompressionMode(document.get(), HPDF_COMP_ALL);
@@ -202,7 +203,7 @@ Expected<std::vector<std::byte>> EncodeTemplatePdf(const KitLight& light, const 
 bool IsTemplatePdf(std::span<const std::byte> bytes) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const std::size_t end = text.find("%%EOF");
-  // A program that writes the file anew leaves its own name in it; one that adds to it, a second end.
+  // A program that rewrites the file leaves its own name in it; one that appends to it leaves a second end.
   return text.substr(0, 5) == "%PDF-" && text.find(std::string("(") + kCreator + ")") != std::string_view::npos &&
          text.find("(Haru Free PDF Library") != std::string_view::npos && end != std::string_view::npos &&
          text.size() - end < 8;

@@ -10,8 +10,8 @@
 namespace scumble {
 namespace {
 
-// Moves and scales points to lie around the origin at a distance of about one: without it the equations of pixels are
-// badly conditioned.
+// Moves and scales points to lie around the origin at a distance of about one: equations in pixels are badly
+// conditioned.
 glm::dmat3 Normaliser(std::span<const glm::dvec2> points) {
   glm::dvec2 mean(0.0);
   for (const glm::dvec2 p : points) mean += p / double(points.size());

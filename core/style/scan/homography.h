@@ -14,8 +14,8 @@ inline glm::dvec2 Project(const glm::dmat3& map, glm::dvec2 point) {
 }
 
 // The map that takes `from` to `to` with the least squares of the linear equations, its last element 1; exact for four
-// points. Nothing for fewer than four points, or where they do not determine it. The origin of
-// `from` must not be seen at infinity.
+// points. Empty for fewer than four points, or where they do not determine the map. The map must not take the origin of
+// `from` to infinity.
 std::optional<glm::dmat3> FitHomography(std::span<const glm::dvec2> from, std::span<const glm::dvec2> to);
 
 // Solves the normal equations a · x = b of `n` unknowns in place; a is n × n by rows. False where they are singular.

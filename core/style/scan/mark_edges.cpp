@@ -13,7 +13,7 @@ namespace {
 
 using Quad = std::array<glm::dvec2, 4>;
 
-// Linear luminance between pixel centres of the whole picture. Linear, because there blur moves no edge.
+// Linear luminance between pixel centres of the whole picture. In linear light blur moves no edge.
 double LightAt(const Picture& picture, glm::dvec2 at) {
   const double u = std::clamp(at.x - 0.5, 0.0, picture.width - 1.0),
                v = std::clamp(at.y - 0.5, 0.0, picture.height - 1.0);
@@ -52,7 +52,7 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-// Tukey's weights, so that paint or dirt on a side does not bend it.
+// Tukey's weights, so that paint or dirt on a side does not bend the line.
 void FitRobustLine(std::span<const glm::dvec2> points, Line& line) {
   std::vector<double> weights(points.size(), 1.0), distances(points.size());
   for (int round = 0; round < 8; ++round) {
@@ -66,7 +66,7 @@ void FitRobustLine(std::span<const glm::dvec2> points, Line& line) {
   }
 }
 
-// One side of a mark: where, across the line between two corners, dark becomes light.
+// One side of a mark: the place, across the line between two corners, where dark becomes light.
 struct Side {
   glm::dvec2 start, along, across;  // unit vectors; `across` points outward
   Line line;
@@ -74,8 +74,8 @@ struct Side {
   glm::dvec2 PointAt(double t) const { return start + t * along + line.At(t) * across; }
 };
 
-// A profile of light across the side: the place of the change (the light that is missing, as a length, which blur and
-// noise do not move) and how blurred it is.
+// Measures a profile of light across the side. Its place is the missing light, as a length, which blur and noise do not
+// move. The other result is the width of the blur.
 bool MeasureEdge(const Picture& picture, glm::dvec2 at, glm::dvec2 across, double reach, double& place, double& blur) {
   const int steps = std::clamp(int(std::ceil(4 * reach)), 12, 120);
   std::vector<double> light(steps);

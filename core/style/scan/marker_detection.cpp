@@ -13,7 +13,7 @@
 namespace scumble {
 namespace {
 
-// Five bits part any two markers: what is one bit off is still told surely.
+// Any two markers differ in five bits, so one wrong bit is still unambiguous.
 constexpr int kMostWrongBits = 1;
 
 template <auto Destroy>
@@ -24,8 +24,8 @@ using Family = std::unique_ptr<apriltag_family_t, Destroyer<tag16h5_destroy>>;
 using Detector = std::unique_ptr<apriltag_detector_t, Destroyer<apriltag_detector_destroy>>;
 using Detections = std::unique_ptr<zarray_t, Destroyer<apriltag_detections_destroy>>;
 
-// The picture's brightness at 1 / `factor` of its size, each pixel the mean of factor² encoded ones: the library's own
-// reduction takes one of them, with all its noise.
+// The picture's brightness at 1 / `factor` of its size, each pixel the mean of factor² encoded ones. The library's own
+// reduction takes a single pixel, with all its noise.
 std::vector<std::uint8_t> Reduced(const Picture& picture, int width, int height, int factor) {
   std::vector<std::uint8_t> grey;
   grey.reserve(std::size_t(width) * std::size_t(height));
@@ -80,7 +80,7 @@ std::vector<FoundMark> FindMarks(const Picture& picture) {
   apriltag_detector_add_family_bits(detector.get(), family.get(), kMostWrongBits);
   std::vector<FoundMark> marks;
   int last_factor = 0;
-  // From small to large: most marks are seen soonest in a small picture, where noise is gone; small ones need more
+  // From small to large: most marks are found in a small picture, where noise is averaged out; small marks need more
   // pixels.
   for (const int longest : {900, 1800, 3600, 7200}) {
     const int factor = (std::max(picture.width, picture.height) + longest - 1) / longest;

@@ -1,5 +1,5 @@
 // Finds the template's printed marks in a scan or photograph, to a fraction of a pixel: AprilTag's detector at several
-// scales of the picture, then each side of a mark laid anew in the full picture (core/style/scan/mark_edges.h).
+// scales of the picture, then refines each side of a mark in the full picture (core/style/scan/mark_edges.h).
 #pragma once
 
 #include <array>
@@ -16,13 +16,12 @@ struct FoundMark {
   int id = 0;
   std::array<glm::dvec2, 4>
       corners;               // of the black border: upper left, upper right, lower right, lower left as printed
-  double module_pixels = 0;  // how large a module is seen
+  double module_pixels = 0;  // a module's size in the picture
   double blur_pixels = 0;    // standard deviation of the blur across its sides
 };
 
-// The marks by place from the top; an id may come twice if two sheets are in the picture. `picture` is opaque: alpha is
-// not looked at. Never fails: pictures without marks give none, mirrored ones too. The same marks for the same picture,
-// always.
+// The marks by place from the top; an id may occur twice if two sheets are in the picture. `picture` is opaque: alpha
+// is ignored. Never fails: a picture without marks, or a mirrored one, gives none. Deterministic.
 std::vector<FoundMark> FindMarks(const Picture& picture);
 
 }  // namespace scumble

@@ -31,7 +31,7 @@ struct Patch {
   bool clipped;
 };
 
-// The mean over the middle half of one module at `at`, from the pixels there, which are many in a fine scan.
+// The mean over the middle half of one module at `at`, from the pixels there, of which a fine scan has many.
 std::optional<Patch> PatchAt(const Picture& picture, const TemplateMap& map, glm::dvec2 at) {
   constexpr int kPoints = 5;
   Patch patch{at, glm::dvec3(0.0), false};
@@ -48,7 +48,7 @@ std::optional<Patch> PatchAt(const Picture& picture, const TemplateMap& map, glm
   return patch;
 }
 
-// Whether most modules around are black too, so that a blurred scan brings little of the white there.
+// Whether most modules around are black too: then a blurred scan mixes in little of the white.
 bool AmidBlack(int id, int column, int row) {
   int black = 0;
   for (int k = 0; k < 9; ++k) {
@@ -59,7 +59,7 @@ bool AmidBlack(int id, int column, int row) {
   return black >= 5;
 }
 
-// Where there is bare paper unless somebody painted on it, and where there is printed black.
+// Collects places of paper that is bare unless somebody painted on it, and places of printed black.
 void CollectPatches(const Picture& picture, const TemplateFit& fit, std::vector<Patch>& white,
                     std::vector<Patch>& black) {
   const auto take = [&](glm::dvec2 at, std::vector<Patch>& patches) {
@@ -107,7 +107,7 @@ Terms FitWeighted(const std::vector<Patch>& patches, const std::vector<double>& 
     }
     all += weights[i];
   }
-  // A gentle pull towards even light, where the marks that are left leave a curve undetermined.
+  // A weak pull towards even light, where the remaining marks leave a curve undetermined.
   for (int r = 1; r < kTerms; ++r) a[std::size_t(r * kTerms + r)] += 1e-5 * all;
   if (!(all > 0) || !SolveLinear(a.data(), b.data(), kTerms)) return {};
   return b;
@@ -120,8 +120,8 @@ double Quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Of the differences from the fit in log light, the channel's in which a patch is darkest: coloured paint may be as
-// bright as paper in one.
+// Differences from the fit in log light, in the channel where a place is darkest: coloured paint may be as bright as
+// paper in one channel.
 std::vector<double> DarkestDifferences(const std::vector<Patch>& white, const std::array<Terms, 3>& fit) {
   std::vector<double> differences;
   for (const Patch& patch : white) {
@@ -162,7 +162,7 @@ PaperLight MeasurePaperLight(const Picture& picture, const TemplateFit& fit) {
     for (int c = 0; c < 3; ++c) light.log_white[c] = FitWeighted(white, weights, c);
     differences = DarkestDifferences(white, light.log_white);
   };
-  // First the upper side of the cloud: what is darker than the fit has little say. Then only what is close to it.
+  // First the upper side of the cloud: places darker than the fit have little weight. Then only places close to it.
   for (int round = 0; round < 12; ++round) {
     refit();
     for (std::size_t i = 0; i < white.size(); ++i) weights[i] = differences[i] > -0.005 ? 1.0 : 0.03;

@@ -43,7 +43,7 @@ void SplitIds(const std::vector<FoundMark>& marks, std::vector<int>& found, std:
   }
 }
 
-// How much finer a scan should be, in words: the file's own dpi where it says one.
+// The required fineness of a new scan, in words: in dpi if the file gives its own.
 std::string FinerScan(double factor, double dpi) {
   constexpr double kStep = 50;
   if (dpi > 0) return "scan it at " + Number("%.0f", std::ceil(dpi * factor / kStep) * kStep) + " dpi or more";
@@ -59,7 +59,7 @@ Picture Mirrored(const Picture& picture) {
   return mirrored;
 }
 
-// Why no map could be laid through the marks.
+// Explains why no map fits the marks.
 Error NoTemplate(const Picture& scan, const std::string& name, const std::vector<FoundMark>& marks,
                  const RectifyOptions& options) {
   std::vector<int> found, missing;
@@ -98,7 +98,7 @@ Error SeveralTemplates(const std::string& name, std::size_t marks) {
                     std::to_string(kFiducialCount) + " of one; cut the picture to one of them");
 }
 
-// Marks of a whole second sheet, or nothing.
+// Whether the marks of a whole second sheet are in the scan.
 bool HasSecondTemplate(const std::vector<FoundMark>& marks, const TemplateFit& fit, int width, int height) {
   std::vector<FoundMark> rest;
   for (const FoundMark& mark : marks) {
@@ -110,7 +110,7 @@ bool HasSecondTemplate(const std::vector<FoundMark>& marks, const TemplateFit& f
   return FitTemplate(rest, width, height).has_value();
 }
 
-// How the sheet was held: from the map's slopes amid the template, and from how they change across it.
+// The sheet's pose: from the map's slopes in the template's middle, and from how they change across it.
 void MeasurePose(const TemplateMap& map, RectifyReport& report) {
   const double degrees = 180.0 / std::acos(-1.0);
   const glm::dvec2 x = map.ToPicture({0.51, 0.5}) - map.ToPicture({0.49, 0.5});
@@ -124,7 +124,7 @@ void MeasurePose(const TemplateMap& map, RectifyReport& report) {
   report.lens = map.bend;
 }
 
-// Most pixels of the scan per pixel of the output, in any direction, at a few places.
+// The largest number of scan pixels per output pixel, in any direction, at a few places.
 double Shrink(const TemplateMap& map, int size) {
   double most = 0;
   const double step = 1.0 / size;
@@ -203,7 +203,7 @@ void Warn(const RectifyOptions& options, const TemplateFit& fit, RectifyReport& 
   if (report.painted < 0.9) say.push_back(Percent(1 - report.painted) + " of the sphere is bare paper");
 }
 
-// Turned to what it would be on white paper in even white light.
+// Converts the pixels to white paper in even white light.
 Picture Finish(const LinearPicture& pixels, const PaperLight& light,
                const std::function<glm::dvec2(glm::dvec2)>& on_template, bool balance) {
   Picture picture(pixels.width, pixels.height);
@@ -223,7 +223,7 @@ Picture Finish(const LinearPicture& pixels, const PaperLight& light,
   return picture;
 }
 
-// What the marks say against going on; the first of it.
+// The first reason in the marks to refuse.
 Status CheckFit(const TemplateFit& fit, const std::string& name, const RectifyOptions& options) {
   const double sphere = fit.map.SpherePixels();
   if (!(sphere >= kMinScanSphere)) {
@@ -278,14 +278,14 @@ Status CheckSphereIsWhole(const TemplateMap& map, const Picture& scan, const std
 Status CheckScanSize(int width, int height, double dpi, const std::string& name) {
   const double pixels = double(width) * height;
   if (pixels <= kMaxScanPixels) return Ok();
-  std::string mend = "scale it down, or scan it at 300 to 600 dpi";
+  std::string remedy = "scale it down, or scan it at 300 to 600 dpi";
   if (dpi > 0) {
     const double most = std::floor(dpi * std::sqrt(kMaxScanPixels / pixels) / 50) * 50;
-    mend = "the file says " + Number("%.0f", dpi) + " dpi: scan it at " +
-           Number("%.0f", std::max(50.0, std::min(most, 600.0))) + " dpi, or cut it to the sheet";
+    remedy = "the file says " + Number("%.0f", dpi) + " dpi: scan it at " +
+             Number("%.0f", std::max(50.0, std::min(most, 600.0))) + " dpi, or cut it to the sheet";
   }
   return InputError(name + " is " + Pixels(width, height) + ", more than the " + Number("%.0f", kMaxScanPixels / 1e6) +
-                    " million that are read at most: " + mend);
+                    " million that are read at most: " + remedy);
 }
 
 Expected<Rectified> RectifyScan(Picture scan, const std::string& name, const RectifyOptions& options) {

@@ -18,7 +18,7 @@ double Lanczos(double x) {
   return std::sin(a) / a * std::sin(a / kLobes) / (a / kLobes);
 }
 
-// Weights of a pixel's own fine points and of `lead` before and behind them; together 1.
+// Weights of a pixel's own fine points and of `lead` points on each side; together 1.
 std::vector<float> Window(int fine, int lead) {
   std::vector<double> weights(std::size_t(fine + 2 * lead));
   double sum = 0;
@@ -53,7 +53,7 @@ void ReadCubic(const Picture& scan, glm::dvec2 at, float* rgb) {
 
 LinearPicture ResampleScan(const Picture& scan, int width, int height, double shrink,
                            const std::function<glm::dvec2(glm::dvec2)>& place) {
-  // As fine as the scan, but not finer than any eye: more than 16 points a pixel change nothing that can be seen.
+  // As fine as the scan, but at most 16 points a pixel: more make no visible difference.
   const int fine = std::clamp(int(std::ceil(shrink - 1e-6)), 1, 16);
   const int lead = fine == 1 ? 0 : (2 * kLobes - 1) * fine / 2;
   const std::vector<float> window = Window(fine, lead);

@@ -16,11 +16,11 @@ struct LinearPicture {
   std::vector<float> rgb;
 };
 
-// `place` takes a point of the new picture (pixel i covers [i, i + 1)) to one of the scan, where it lies `shrink` or
-// fewer scan pixels apart per pixel. Where the scan is finer, it is read at ceil(shrink)² points a pixel (Catmull and
-// Rom's cubic) and these are weighted by Lanczos's window of two lobes, along rows and then along columns, so that the
-// paper's grain does not come back as a pattern; where it is coarser, the cubic alone. Beyond the scan its border goes
-// on. All in linear light. Needs shrink > 0. Alpha is not looked at.
+// `place` maps a point of the new picture (pixel i covers [i, i + 1)) to the scan; neighbouring pixels lie at most
+// `shrink` scan pixels apart. Where the scan is finer, it is read at ceil(shrink)² points a pixel (Catmull and Rom's
+// cubic). These are weighted by Lanczos's window of two lobes, along rows and then along columns, so that the paper's
+// grain makes no moiré. Where it is coarser, the cubic alone. Beyond the scan its border is repeated. All in linear
+// light. Needs shrink > 0. Alpha is ignored.
 LinearPicture ResampleScan(const Picture& scan, int width, int height, double shrink,
                            const std::function<glm::dvec2(glm::dvec2)>& place);
 

@@ -10,11 +10,12 @@ namespace scumble {
 namespace {
 
 constexpr std::size_t kLeastMarks = 4;
-// A lens is asked for by this many marks, and must mend this share of the error: one more number always mends a little.
+// A lens is fitted from this many marks on, and must remove this share of the error: one more parameter always removes
+// a little.
 constexpr std::size_t kLeastMarksForLens = 6;
 constexpr double kLensMustMend = 0.15;
-// How far a mark may lie from where the map has it, in sides of a mark: first while only two marks are known, and at
-// last.
+// The largest distance of a mark from where the map has it, in sides of a mark: first while only two marks are known,
+// and at last.
 constexpr double kFarAtFirst = 0.6, kFarAtLast = 0.35;
 
 // Template coordinates around the sphere's middle, where the perspective's last element is surely not 0.
@@ -62,7 +63,7 @@ Numbers NumbersOf(const TemplateMap& map) {
   return {m[0][0], m[1][0], m[2][0], m[0][1], m[1][1], m[2][1], m[0][2], m[1][2], map.bend};
 }
 
-// The sum that is made least: squares that flatten (Geman and McClure), so that one corner under paint has little say.
+// The cost to minimise: squares that flatten (Geman and McClure), so that one corner under paint has little weight.
 double Cost(const TemplateMap& map, std::span<const Pair> pairs, double scale, std::vector<double>* weights) {
   double cost = 0;
   if (weights) weights->clear();
@@ -74,7 +75,7 @@ double Cost(const TemplateMap& map, std::span<const Pair> pairs, double scale, s
   return cost;
 }
 
-// How the places of points change with each of the map's numbers.
+// The derivatives of the points' places with respect to the map's numbers.
 class Slopes {
  public:
   Slopes(const TemplateMap& map, int numbers) : map_(map), numbers_(numbers) {
@@ -100,8 +101,8 @@ class Slopes {
   std::array<TemplateMap, kNumbers> stepped_;
 };
 
-// The equations a · x = b of least squares, every number in units of its own, so that pixels beside shares do not look
-// like a singular matrix.
+// The least-squares equations a · x = b. Each number has its own unit, so that pixels beside shares do not look like a
+// singular matrix.
 struct Equations {
   std::array<double, kNumbers * kNumbers> a{};
   std::array<double, kNumbers> b{}, unit{};
@@ -149,9 +150,9 @@ void Improve(TemplateMap& map, std::span<const Pair> pairs, int numbers, double 
   }
 }
 
-// Where four marks on one side leave open how the rest lies, holding one out does not show it. So the spread of what is
-// left at the corners is carried over to the sphere's outline (the covariance of least squares): its largest
-// standard deviation, in pixels. A mark's corners err together, which counts double.
+// Where four marks on one side leave the other side undetermined, holding one out does not show it. So the spread of
+// the residuals at the corners is carried over to the sphere's outline (the covariance of least squares): its largest
+// standard deviation, in pixels. The errors of a mark's corners are correlated, so the variance counts double.
 double SpreadOnSphere(const TemplateMap& map, std::span<const Pair> pairs, int numbers) {
   constexpr double kTogether = 2.0, kLeastSpread = 0.02;
   double squares = 0;
@@ -232,7 +233,8 @@ std::vector<FoundMark> Agreeing(const TemplateMap& map, std::span<const FoundMar
       off = std::max(off, glm::length(here - mark.corners[std::size_t(c)]));
       side += glm::length(map.ToPicture(PrintedCorner(mark.id, (c + 1) % 4)) - here) / 4;
     }
-    // A second mark of one id must be nearer to stand for it; marks seen much smaller or larger than expected are none.
+    // A second mark of one id must be nearer to replace the first; marks much smaller or larger than expected do not
+    // count.
     if (!(off < best[std::size_t(mark.id)] * side)) continue;
     best[std::size_t(mark.id)] = off / side, which[std::size_t(mark.id)] = &mark;
   }
@@ -269,7 +271,7 @@ glm::dvec2 PrintedCorner(int id, int corner) {
 
 std::optional<TemplateFit> FitTemplate(std::span<const FoundMark> marks, int width, int height) {
   if (marks.size() > kMostMarks) return std::nullopt;
-  // Every pair of marks proposes a map; all of them are asked, so that chance has no part in it.
+  // Every pair of marks proposes a map. All are tried, so that the result is deterministic.
   std::vector<FoundMark> best;
   TemplateMap start, best_map;
   start.middle = glm::dvec2(width, height) / 2.0;

@@ -8,8 +8,8 @@
 namespace scumble::paint {
 namespace {
 
-constexpr float kSpeed = 900.0f;  // units a second: a brisk hand; some presets answer to it
-constexpr float kStep = 3.0f;     // pixels between the positions that the brush is told
+constexpr float kSpeed = 900.0f;  // units a second: a fast hand; some presets depend on it
+constexpr float kStep = 3.0f;     // pixels between the positions that the brush receives
 
 glm::vec3 HsvFromRgb(glm::vec3 color) {
   const float high = std::max({color.r, color.g, color.b});
@@ -46,7 +46,7 @@ Expected<Brush> Brush::Load(const std::filesystem::path& folder, const std::stri
     return InputError(path.string() + " is not a brush that libmypaint understands: expected its JSON of version 3");
   }
   brush.radius_ = std::exp(mypaint_brush_get_base_value(brush.brush_.get(), MYPAINT_BRUSH_SETTING_RADIUS_LOGARITHMIC));
-  // Tracking lag pulls strokes inwards and cuts their ends short, and the planner has steadied them already.
+  // Tracking lag pulls strokes inwards and cuts their ends short, and the planner has smoothed them already.
   brush.Set(MYPAINT_BRUSH_SETTING_SLOW_TRACKING, 0.0f);
   // Tracking noise starts from memory that libmypaint leaves uninitialised: two runs would differ.
   brush.Set(MYPAINT_BRUSH_SETTING_TRACKING_NOISE, 0.0f);
@@ -83,7 +83,7 @@ void Brush::Paint(Canvas& canvas, const Stroke& stroke) {
   const auto move_to = [&](glm::vec2 at, float pressure, double seconds) {
     mypaint_brush_stroke_to(brush, surface, at.x * scale, at.y * scale, pressure, 0.0f, 0.0f, seconds);
   };
-  // A long pause in the air moves the brush to its start without leaving a mark.
+  // A long pause above the paper moves the brush to its start without leaving a mark.
   move_to(stroke.front().at, 0.0f, 10.0);
   for (std::size_t i = 1; i < stroke.size(); ++i) {
     const StrokePoint& from = stroke[i - 1];

@@ -1,4 +1,4 @@
-// A brush of libmypaint, loaded from one of the presets that MyPaint's users share.
+// A brush of libmypaint, loaded from a preset of MyPaint's users.
 #pragma once
 
 extern "C" {
@@ -28,12 +28,12 @@ class Brush {
   // `preset` is a path under `folder` without its ending: "tanda/charcoal-03".
   static Expected<Brush> Load(const std::filesystem::path& folder, const std::string& preset);
 
-  // Units of kSide; what the preset adds by pressure comes on top.
+  // Units of kSide; the preset's pressure response is added.
   Brush& Radius(float units);
   Brush& Color(glm::vec3 srgb);
   Brush& Set(MyPaintBrushSetting setting, float value);
 
-  // Draws through the points, of which there must be two at least, at an even speed.
+  // Draws through the points, at least two, at an even speed.
   void Paint(Canvas& canvas, const Stroke& stroke);
   void Paint(Canvas& canvas, const std::vector<Stroke>& strokes);
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kTile = MYPAINT_TILE_SIZE;
 constexpr float kOne = 1 << 15;  // full scale of a tile's channels
 
-// How the library's own surface finds its pixels.
+// The function by which the library's own surface finds its pixels.
 MyPaintTileRequestStartFunction PlainRequest() {
   static const MyPaintTileRequestStartFunction kPlain = [] {
     MyPaintFixedTiledSurface* surface = mypaint_fixed_tiled_surface_new(kTile, kTile);
@@ -25,7 +25,7 @@ MyPaintTileRequestStartFunction PlainRequest() {
   return kPlain;
 }
 
-// The same for a sheet that repeats: dabs and what a brush picks up both go through here.
+// The same for a repeating sheet: both the dabs and the colours that a brush picks up use it.
 void RequestRound(MyPaintTiledSurface* surface, MyPaintTileRequest* request) {
   const int tiles = mypaint_fixed_tiled_surface_get_width(reinterpret_cast<MyPaintFixedTiledSurface*>(surface)) / kTile;
   const auto round = [tiles](int tile) { return ((tile % tiles) + tiles) % tiles; };
@@ -47,7 +47,7 @@ Canvas::Canvas(const Sheet& sheet)
     SCUMBLE_CHECK_EQ(sheet_.pixels % kTile, 0);
     reinterpret_cast<MyPaintTiledSurface*>(tiles_)->tile_request_start = RequestRound;
   }
-  // The library hands out memory that it has not cleared.
+  // The library's memory is not cleared.
   ForEachPixel(false, [](int, int, std::uint16_t* pixel) { pixel[0] = pixel[1] = pixel[2] = pixel[3] = 0; });
 }
 

@@ -1,4 +1,4 @@
-// What libmypaint paints on, and what comes off it.
+// The surface for libmypaint, and its pixels.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -14,7 +14,7 @@ namespace scumble::paint {
 // Every length in this program is in units of a picture of this side; canvases of other sizes scale their strokes.
 inline constexpr float kSide = 1024.0f;
 
-// What is painted on: a square of pixels. A tile repeats without end: what leaves it on one side comes in on the other.
+// The size of a canvas: a square of pixels. A tile repeats: strokes that leave it on one side enter on the other.
 struct Sheet {
   int pixels = 1024;
   float units = kSide;  // along a side
@@ -34,12 +34,12 @@ struct Raster {
       : sheet(on), size(on.pixels), pixels(std::size_t(size) * size, value) {}
   T& At(int x, int y) { return pixels[std::size_t(y) * size + x]; }
   const T& At(int x, int y) const { return pixels[std::size_t(y) * size + x]; }
-  // The nearest pixel inside; on a tile, which may be left by its width, the one that comes round.
+  // The nearest pixel inside; on a tile, where at most one width outside is allowed, the repeated one.
   const T& Near(int x, int y) const {
     if (sheet.tile) return At((x + size) % size, (y + size) % size);
     return At(glm::clamp(x, 0, size - 1), glm::clamp(y, 0, size - 1));
   }
-  // Where the pixel's centre lies, in units.
+  // The place of the pixel's centre, in units.
   glm::vec2 Place(int x, int y) const {
     return glm::vec2(x + 0.5f, y + 0.5f) * (sheet.units / static_cast<float>(size));
   }
@@ -49,8 +49,8 @@ using Colors = Raster<glm::vec3>;  // sRGB-encoded, in [0, 1]
 using Layer = Raster<glm::vec4>;   // the same, premultiplied by the alpha in w
 using Field = Raster<float>;
 
-// A libmypaint surface over a sheet, transparent when new. Strokes that leave a tile come in on its other side.
-// Neither copied nor moved.
+// A libmypaint surface over a sheet, transparent when new. Strokes that leave a tile enter on its other side. Neither
+// copied nor moved.
 class Canvas {
  public:
   explicit Canvas(const Sheet& sheet);

@@ -1,4 +1,4 @@
-// The painter's hand: repeatable chance and smooth noise.
+// Repeatable random numbers and smooth noise for a hand's irregularity.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace scumble::paint {
 
-// A stream of random numbers, each a hash of (seed, stream, count): the same on every machine, and one pass of a
-// picture does not disturb the chance of the next when each has a stream of its own.
+// A stream of random numbers, each a hash of (seed, stream, count): the same on every machine. Each pass of a picture
+// has its own stream, so that no pass changes the numbers of the next.
 class Chance {
  public:
   Chance(std::uint64_t seed, std::uint64_t stream) : key_(Hash(seed, stream)) {}
@@ -44,7 +44,7 @@ struct NoisePlace {
   glm::vec2 at;
   glm::vec2 repeat{0.0f};  // 0: never
 
-  // The same place where features are smaller by that factor, or nearly so on a tile.
+  // The same place where features are smaller by that factor; on a tile, approximately.
   NoisePlace Finer(glm::vec2 factor) const;
 };
 

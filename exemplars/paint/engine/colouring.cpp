@@ -10,11 +10,11 @@ namespace scumble::paint {
 namespace {
 
 constexpr float kSquint = 11.0f;  // radius of the blur
-constexpr float kSteady = 8.0f;   // how far the hand's decisions run together
+constexpr float kSteady = 8.0f;   // distance over which the hand's decisions are smoothed
 constexpr float kCurl = 0.3f;     // radii: circles smaller than this are not drawn
-constexpr float kPlan = 4.0f;     // units between the places where the hand decides
+constexpr float kPlan = 4.0f;     // units between the places of decisions
 
-// The picture with half-closed eyes, at the places where the hand decides.
+// The blurred picture, at the places of decisions.
 Colors Squint(const Colors& picture, const Sheet& places) {
   Colors seen(places);
   const float to_pixels = static_cast<float>(picture.size) / static_cast<float>(places.pixels);
@@ -22,7 +22,7 @@ Colors Squint(const Colors& picture, const Sheet& places) {
     Field plane(places);
     for (int y = 0; y < places.pixels; ++y) {
       for (int x = 0; x < places.pixels; ++x) {
-        // The mean of the pixels there, of which there is one at least.
+        // The mean of the pixels there, of which there is at least one.
         const int left = static_cast<int>(static_cast<float>(x) * to_pixels);
         const int top = static_cast<int>(static_cast<float>(y) * to_pixels);
         const int side = std::max(1, static_cast<int>(to_pixels));
@@ -41,12 +41,12 @@ Colors Squint(const Colors& picture, const Sheet& places) {
 
 }  // namespace
 
-Wish MakeWish(const std::function<glm::vec3(glm::vec2 at)>& color_at) {
-  Wish wish(Sheet{static_cast<int>(kSide / kPlan)});
-  for (int y = 0; y < wish.size; ++y) {
-    for (int x = 0; x < wish.size; ++x) wish.At(x, y) = color_at(wish.Place(x, y));
+TargetColors MakeTargetColors(const std::function<glm::vec3(glm::vec2 at)>& color_at) {
+  TargetColors target_colors(Sheet{static_cast<int>(kSide / kPlan)});
+  for (int y = 0; y < target_colors.size; ++y) {
+    for (int x = 0; x < target_colors.size; ++x) target_colors.At(x, y) = color_at(target_colors.Place(x, y));
   }
-  return wish;
+  return target_colors;
 }
 
 Touch AwayFromPoles(const Touch& touch, glm::vec3 axis) {
@@ -55,8 +55,8 @@ Touch AwayFromPoles(const Touch& touch, glm::vec3 axis) {
       [=](glm::vec2 at) { return touch(at) * Ramp(kCurl, kCurl + 0.15f, glm::length(glm::cross(NormalAt(at), unit))); };
 }
 
-glm::vec3 ColorIn(const Wish& wish, glm::vec2 at) {
-  return wish.Near(static_cast<int>(at.x / kPlan), static_cast<int>(at.y / kPlan));
+glm::vec3 ColorIn(const TargetColors& target_colors, glm::vec2 at) {
+  return target_colors.Near(static_cast<int>(at.x / kPlan), static_cast<int>(at.y / kPlan));
 }
 
 std::vector<Stroke> Facets(Chance& chance, const std::vector<Stroke>& strokes, float width, int facets,
@@ -68,7 +68,7 @@ std::vector<Stroke> Facets(Chance& chance, const std::vector<Stroke>& strokes, f
       const float across = (static_cast<float>(k) + 0.5f) / static_cast<float>(facets) - 0.5f;
       const float offset = across * width + chance.Bell(0.08f * width);
       const float press = 1.0f + chance.Bell(0.25f);
-      // Facets touch down and leave one after another.
+      // Facets start and end one after another.
       const std::size_t begin = static_cast<std::size_t>(chance.Whole(0, 2));
       const std::size_t end = stroke.size() - static_cast<std::size_t>(chance.Whole(0, 3));
       Stroke line;
@@ -81,9 +81,9 @@ std::vector<Stroke> Facets(Chance& chance, const std::vector<Stroke>& strokes, f
   return lines;
 }
 
-Touch Colouring::Nearer(const Wish& wish, const Stick& stick, const Hand& hand) const {
-  const Colors seen = Squint(picture_, wish.sheet);
-  const auto plan = std::make_shared<Field>(wish.sheet);
+Touch Colouring::Nearer(const TargetColors& target_colors, const Stick& stick, const Hand& hand) const {
+  const Colors seen = Squint(picture_, target_colors.sheet);
+  const auto plan = std::make_shared<Field>(target_colors.sheet);
   for (int y = 0; y < plan->size; ++y) {
     for (int x = 0; x < plan->size; ++x) {
       const glm::vec2 at = plan->Place(x, y);
@@ -91,14 +91,14 @@ Touch Colouring::Nearer(const Wish& wish, const Stick& stick, const Hand& hand) 
       const glm::vec3 now = seen.At(x, y);
       const glm::vec3 effect = (stick.clear ? now * stick.color : stick.color) - now;
       const float strength = glm::length(effect);
-      if (strength < 1e-3f || glm::distance(stick.color, wish.At(x, y)) > hand.reach) continue;
-      // The share of the stick after which the colour would be as near as this stick can bring it.
-      const float nearer = glm::dot(wish.At(x, y) - now, effect) / strength;
+      if (strength < 1e-3f || glm::distance(stick.color, target_colors.At(x, y)) > hand.reach) continue;
+      // The share of the stick at which the colour is nearest to the target.
+      const float nearer = glm::dot(target_colors.At(x, y) - now, effect) / strength;
       if (nearer < hand.least) continue;
       plan->At(x, y) = glm::mix(hand.lightest, hand.heaviest, std::min(nearer / strength, 1.0f));
     }
   }
-  // A hand does not follow every crumb.
+  // A hand does not follow every detail.
   *plan = Blur(*plan, kSteady);
   return [plan, overhang = hand.overhang](glm::vec2 at) {
     const float pressure = plan->Near(static_cast<int>(at.x / kPlan), static_cast<int>(at.y / kPlan));
@@ -120,7 +120,7 @@ Field Colouring::Grain(float crumble) {
   const float contrast = 1.0f / std::sqrt(crumble * crumble + (1.0f - crumble) * (1.0f - crumble));
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      // The same kind of grain, from elsewhere and turned over.
+      // Similar grain, from another place and mirrored.
       const float crumbs = tooth_.At((y + right) % size, (x + down) % size);
       const float height = glm::mix(tooth_.At(x, y), crumbs, crumble) - 0.5f;
       grain.At(x, y) = glm::clamp(0.5f + contrast * height, 0.0f, 1.0f);
@@ -144,7 +144,7 @@ void Colouring::Settle(Layer layer, const Stick& stick, const Settling& settling
     RubInto(picture_, layer, grain, settling.media);
     return;
   }
-  // How much wax has settled is how much of white paper it would cover.
+  // The amount of settled wax is its coverage of white paper.
   for (glm::vec4& pixel : layer.pixels) pixel = glm::vec4(0, 0, 0, pixel.w);
   Colors bare(picture_.sheet, glm::vec3(1.0f));
   RubInto(bare, layer, grain, settling.media);

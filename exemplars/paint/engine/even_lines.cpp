@@ -12,7 +12,7 @@ constexpr float kCell = 20.0f;  // of the grid that finds neighbours
 constexpr float kWidestSpacing = 60.0f;
 constexpr std::size_t kMostSteps = 500;  // a line each way: a flow may go round in circles
 
-// Points that are taken, in a grid that is a little larger than the picture.
+// Occupied points, in a grid that is a little larger than the picture.
 class Taken {
  public:
   explicit Taken(float margin)
@@ -54,7 +54,7 @@ class Planner {
   // A line through `seed`, if there is room for it.
   void TryLine(glm::vec2 seed) {
     const float room = Spacing(seed);
-    // A little less, or a place that was found at just this distance from a line would be refused by its rounding.
+    // Slightly less: otherwise rounding would refuse a place at exactly this distance from a line.
     if (room <= 0.0f || taken_.AnyWithin(seed, 0.98f * room)) return;
     Stroke line = Walk(seed, -1.0f);
     std::reverse(line.begin(), line.end());
@@ -66,7 +66,7 @@ class Planner {
     lines_.push_back(std::move(line));
   }
 
-  // Beside each line others find their place, until no gap stays in which one fits.
+  // Adds lines beside each line, until no gap has room for one.
   void FillBeside() {
     for (; filled_ < lines_.size(); ++filled_) {
       // By index: lines_ grows meanwhile.

@@ -1,6 +1,5 @@
-// Lines side by side, as an engraver cuts them: none comes much nearer to its neighbour than the spacing, and none
-// leaves a gap where another fits (after Jobard and Lefer, Creating Evenly-Spaced Streamlines of Arbitrary Density,
-// 1997). Nothing here touches a canvas.
+// Evenly spaced lines, like an engraver's: no two are much nearer than the spacing, and no gap has room for another
+// (after Jobard and Lefer, Creating Evenly-Spaced Streamlines of Arbitrary Density, 1997). Nothing here uses a canvas.
 #pragma once
 
 #include <vector>
@@ -11,8 +10,8 @@ namespace scumble::paint {
 
 struct EvenLineOptions {
   float closest = 0.45f;   // a line ends where its neighbour is nearer than this share of the spacing
-  float shortest = 40.0f;  // units; what would be shorter is not begun
-  float margin = 90.0f;    // lines go on so far past the picture's edges
+  float shortest = 40.0f;  // units; shorter lines are left out
+  float margin = 90.0f;    // lines continue this far past the picture's edges
 };
 
 // Lines of `flow` wherever `spacing`, the distance between neighbours in units, is more than 0; 60 at most. Pressures

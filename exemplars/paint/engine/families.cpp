@@ -52,7 +52,7 @@ std::vector<glm::vec2> VisibleArc(glm::vec3 axis, float latitude, float overhang
   return line;
 }
 
-// How far apart neighbours of a family look at a place, as a share of their distance on the sphere: 1 where the surface
+// The distance of a family's neighbours in the picture, as a share of their distance on the sphere: 1 where the surface
 // faces the viewer or falls away along the lines, 0 where it falls away across them.
 float Openness(glm::vec3 axis, glm::vec2 at) {
   const glm::vec3 normal = NormalAt(at);
@@ -63,9 +63,9 @@ float Openness(glm::vec3 axis, glm::vec2 at) {
   return std::min(1.0f, sine / std::max(glm::length(slope), 1e-4f));
 }
 
-// Where lines would crowd, only every second goes on, then every fourth and so on, and what is left of the crowding is
-// taken back by pressure: the tone stays about the same. Just before the rim, where lines of latitude turn along it,
-// all of them end.
+// Where lines would crowd, only every second continues, then every fourth and so on, and lower pressure corrects the
+// remaining crowding: the tone stays about the same. Just before the rim, where lines of latitude turn along it, all of
+// them end.
 float ShareOfPressure(int line, float openness) {
   constexpr float kTurning = 0.22f;
   if (openness < kTurning) return 0.0f;
@@ -118,7 +118,7 @@ std::vector<Stroke> PlanFamily(Chance& chance, glm::vec3 axis, const Touch& touc
       const glm::vec2 place = at / kBend;
       at += 2.0f * options.wander * (glm::vec2(SmoothNoise(place, bend), SmoothNoise(place, bend + 1)) - 0.5f);
     }
-    // Neighbours do not end all in one place.
+    // Neighbours do not all end at one place.
     const float patience = 1.0f + chance.Bell(0.12f);
     const Touch uncrowded = [&](glm::vec2 at) {
       return ShareOfPressure(number, patience * Openness(unit, at)) * touch(at);

@@ -1,5 +1,5 @@
-// Families of lines: circles of latitude about one axis, side by side all over the sphere as an engraver or a
-// draughtsman lays them, each broken into strokes of the hand. Nothing here touches a canvas.
+// Families of lines: circles of latitude about one axis, side by side all over the sphere, each broken into strokes of
+// a hand. Nothing here uses a canvas.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct FamilyOptions {
 // nearer it is to the viewer, the more they bulge.
 std::vector<Stroke> PlanFamily(Chance& chance, glm::vec3 axis, const Touch& touch, const FamilyOptions& options);
 
-// A family that swells with the darkness wanted: lifted below `begins`, and from there on pressed from `lightest` to
+// A family whose pressure follows the target darkness: lifted below `begins`, from there on between `lightest` and
 // `heaviest`, which is reached at `full`. Darkness is in [0, 1].
 struct Swelling {
   glm::vec3 axis;
@@ -38,11 +38,11 @@ struct Swelling {
   float lightest, heaviest;
 };
 struct SwellingHand {
-  float ragged = 0.1f;  // how far the darkness that the hand heeds is off from place to place: ends of lines are uneven
-  float cloud = 40.0f;  // units over which it is off one way
+  float ragged = 0.1f;  // random error of the darkness from place to place: ends of lines are uneven
+  float cloud = 40.0f;  // units over which that error is of one sign
   FamilyOptions family;
 };
-// Draws its chance from (seed, stream). Lines fade out on the rim.
+// Draws its random numbers from (seed, stream). Lines fade out on the rim.
 std::vector<Stroke> PlanSwelling(std::uint64_t seed, std::uint64_t stream, const Touch& darkness,
                                  const Swelling& swelling, const SwellingHand& hand);
 

@@ -18,7 +18,7 @@ glm::vec2 Aside(const Stroke& path, std::size_t i) {
 
 FlatBrush::FlatBrush(Brush paint, Brush relief) : paint_(std::move(paint)), relief_(std::move(relief)) {
   for (Brush* brush : {&paint_, &relief_}) {
-    // Opaque paint covers and does not mix with what lies under it.
+    // Opaque paint covers and does not mix with the paint under it.
     brush->Set(MYPAINT_BRUSH_SETTING_SMUDGE, -1.0f)
         .Set(MYPAINT_BRUSH_SETTING_DABS_PER_ACTUAL_RADIUS, 2.0f)
         .Set(MYPAINT_BRUSH_SETTING_DABS_PER_BASIC_RADIUS, 0.0f);

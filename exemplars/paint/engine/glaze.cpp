@@ -15,13 +15,13 @@ std::vector<Stroke> PlanGlaze(const Glaze& glaze, const GlazePlan& plan, Chance&
     const float border = glaze.below + glaze.ragged * 2.0f * (CloudNoise(at / glaze.lobes, 3, stream) - 0.5f);
     return plan.value(at) < border ? 1.0f : 0.0f;
   };
-  // A stroke covers about `length` along its way, so the middles are sown wider than the strokes lie apart.
+  // A stroke covers about `length` in its direction, so the middles are spaced wider than the strokes.
   const float length = glaze.length * glaze.radius;
   for (const glm::vec2 middle : SowEvenly(chance, std::sqrt(glaze.spacing * length))) {
     const Flow flow = plan.flow(chance);
     const Stroke line = TraceStroke(flow, middle, chance.Uniform(0.8f, 1.8f) * length);
     for (const Stroke& piece : Press(line, touch, chance.Uniform(0.42f, 0.62f), 0.2f)) {
-      // Shorter than wide it would dry as a dot.
+      // A stroke shorter than wide would dry as a dot.
       if (glm::distance(piece.front().at, piece.back().at) > glaze.shortest * glaze.radius) strokes.push_back(piece);
     }
   }

@@ -1,5 +1,5 @@
-// A round brush of many hairs, as for ink on rice paper: the harder it is pressed the wider it fans; wet it lays a
-// wash, and dry its hairs part and leave streaks of paper between them. Nothing here touches a canvas.
+// A round brush of many hairs, as for ink on rice paper. More pressure fans it wider; wet it lays a wash; if dry, its
+// hairs part and leave streaks of paper between them. Nothing here uses a canvas.
 #pragma once
 
 #include <vector>
@@ -20,7 +20,7 @@ struct Tuft {
   float spent = 0.35f;     // share of the ink that is gone at the stroke's end
 };
 
-// The ways of the single hairs when the tuft is drawn along `path`, whose pressures, 0 … 1, fan it. A path of fewer
+// The paths of the single hairs when the tuft is drawn along `path`, whose pressures, 0 … 1, fan it. A path of fewer
 // than four points leaves no mark.
 std::vector<Stroke> PartIntoHairs(Chance& chance, const Stroke& path, const Tuft& tuft);
 

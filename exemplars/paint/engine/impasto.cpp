@@ -15,7 +15,7 @@ enum Pass : std::uint64_t { kCanvas, kHighlight, kFirstLayer, kGround = 100 };
 
 constexpr const char* kBristle = "tanda/oil-01-paint";
 
-// Each stroke is loaded afresh from the palette and never twice the same.
+// Each stroke gets its own colour from the palette, never twice the same.
 glm::vec3 BreakColor(Chance& chance, const Palette& palette, const Shading& shading, float amount) {
   const bool first = chance.Happens(0.5f);
   const glm::vec3 warm = palette.warm[first ? 0 : 1];
@@ -25,7 +25,7 @@ glm::vec3 BreakColor(Chance& chance, const Palette& palette, const Shading& shad
   return glm::mix(palette.At(shading), glm::mix(cool, warm, Ramp(0.10f, 0.5f, shading.light)), weight) * brightness;
 }
 
-// Bristles start almost together and run dry one by one, the outer ones first.
+// Bristles start almost together and end one by one, the outer ones first.
 Stroke OneBristle(Chance& chance, const Stroke& path, float offset, float outer, float press) {
   const int count = static_cast<int>(path.size());
   const int begin = chance.Whole(0, 2);
@@ -135,7 +135,7 @@ Colors Impasto::Finish(float depth) const {
   const Layer layer = colors_->Read();
   for (std::size_t i = 0; i < colors.pixels.size(); ++i) colors.pixels[i] = glm::vec3(layer.pixels[i]);
   Field height = Plane(heights_->Read(), 0);
-  // Thin paint lets the weave of the canvas through.
+  // Thin paint shows the weave of the canvas.
   const Field weave = MakeTooth(colors.sheet, {Tooth::kLaid, 6.0f}, Hash(seed_, kCanvas));
   for (std::size_t i = 0; i < height.pixels.size(); ++i) height.pixels[i] += 0.05f * weave.pixels[i];
   LightRelief(colors, height, {.shade = 0.72f * depth, .sheen = 0.12f * depth});

@@ -1,5 +1,5 @@
-// Oil paint laid on wet and thick: bundles of bristles drag it round the light, and a second canvas takes the thickness
-// that each bristle leaves, so that light across it shows the relief.
+// Oil paint laid on wet and thick. Bundles of bristles drag it around the light, and a second canvas stores the
+// thickness that each bristle leaves, so that lighting it shows the relief.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace scumble::paint {
 
-// Colours from the lightest to the core of the shade, and what comes back into it. All sRGB-encoded.
+// Colours from the lightest to the core of the shade, and the reflected light in it. All sRGB-encoded.
 struct Palette {
   glm::vec3 high, light, middle, turn, core, reflected;
-  // Each stroke is broken with one of these, the cool ones towards the shade.
+  // Each stroke's colour is varied with one of these, the cool ones towards the shade.
   std::array<glm::vec3, 2> warm, cool;
 
   glm::vec3 At(const Shading& shading) const;
@@ -28,38 +28,38 @@ struct BrushLayer {
   float spacing;  // of the strokes' middles
   float width_min, width_max;
   float length_min, length_max;
-  float sway;            // how far strokes leave the circles round the light
+  float sway;            // deviation of strokes from the circles around the light
   float broken;          // variation of colour from stroke to stroke
   float bristle;         // radius of one; they lie a little more than that apart
-  bool details_only;     // only where the tones turn fast
+  bool details_only;     // only where the tones change fast
   float across = 0.18f;  // share of the strokes that go across the form
 };
 
 class Impasto {
  public:
-  // `undertone` is what shows where no stroke comes. `thickness` is the share of the paint that a full brush would lay.
+  // `undertone` shows between strokes. `thickness` is a share of the paint of a full brush.
   static Expected<Impasto> Begin(const Sheet& sheet, const Studio& studio, glm::vec3 undertone, float thickness = 1.0f);
 
-  // Works over the sphere, lit as the studio says, in strokes of the layers' sizes.
+  // Paints over the sphere, lit by the studio's light, in strokes of the layers' sizes.
   void WorkOver(const Palette& palette, std::span<const BrushLayer> layers);
 
-  // One stroke of a brush of that kind, whatever the plan.
+  // One stroke of such a brush, outside the plan.
   struct Tuft {
     float width;
     float bristle;
     float load;            // how thick the paint is, 0 … 1
-    float streaks = 1.0f;  // how far the colours of its bristles part
+    float streaks = 1.0f;  // the difference between the colours of its bristles
   };
   void DragBristles(Chance& chance, const Stroke& path, const Tuft& tuft, glm::vec3 color);
 
-  // Thick dabs of one colour where the key light mirrors.
+  // Thick dabs of one colour at the mirror image of the key light.
   void PlaceHighlight(glm::vec3 color, int dabs);
 
-  // Loose strokes of one quiet colour, slanting now this way, now that. No stroke stands out: the eye would find it
-  // again in the next tile.
+  // Loose strokes of one quiet colour, in two slanting directions. No stroke stands out: it would be noticed in every
+  // tile.
   void BrushGround(glm::vec3 color);
 
-  // Light across the relief; `depth` weakens it for what is to recede.
+  // Light across the relief; `depth` weakens it for the background.
   Colors Finish(float depth = 1.0f) const;
 
  private:

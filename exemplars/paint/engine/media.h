@@ -1,5 +1,5 @@
-// How painted layers settle on a ground: grain, relief, washes. These finish what strokes have laid down; none of them
-// makes a mark of its own.
+// How painted layers settle on a ground: grain, relief, washes. These finish painted strokes and make no marks of their
+// own.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ struct DryMedia {
   float bite = 0.75f;      // 0: covers hollows like peaks, 1: the tooth alone decides
   float softness = 0.30f;  // of the grain's edges
   float density = 1.0f;    // of the covered grain
-  // The colour of the stick, where there is but one: the faintest strokes have too few bits left to tell it.
+  // The colour of the stick, where there is only one: the faintest strokes have too few bits left to determine it.
   std::optional<glm::vec3> stick = std::nullopt;
 };
 void RubInto(Colors& ground, const Layer& layer, const Field& tooth, const DryMedia& media);
@@ -25,8 +25,7 @@ struct Relief {
 };
 void LightRelief(Colors& paint, const Field& height, const Relief& relief);
 
-// Three box blurs, close to a Gaussian of that radius in units of kSide; the edge pixels continue outwards, on a tile
-// too.
+// Three box blurs, close to a Gaussian of that radius in units of kSide; edge pixels are repeated, on a tile too.
 Field Blur(const Field& field, float radius);
 
 // One plane of a layer.

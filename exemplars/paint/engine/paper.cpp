@@ -10,7 +10,7 @@
 namespace scumble::paint {
 namespace {
 
-// Where a pixel lies in noise whose features are `period` units wide.
+// A pixel's place in noise whose features are `period` units wide.
 template <class T>
 NoisePlace PlaceIn(const Raster<T>& raster, int x, int y, float period) {
   const glm::vec2 at = raster.Place(x, y);
@@ -71,7 +71,7 @@ Field MakeTooth(const Sheet& sheet, const Stock& stock, std::uint64_t seed) {
 
 Colors MakePaper(const Field& tooth, const Stock& stock, std::uint64_t seed) {
   const float relief = stock.relief;
-  // The eye soon finds a cloud that comes again in every tile.
+  // A cloud that repeats in every tile is noticed quickly.
   const float clouds = tooth.sheet.tile ? 0.008f : 0.03f;
   Colors paper(tooth.sheet);
   for (int y = 0; y < tooth.size; ++y) {

@@ -1,4 +1,4 @@
-// Grounds: the height of a paper's tooth, and how it looks bare.
+// Grounds: the height of a paper's tooth, and its bare look.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class Tooth {
 
 struct Stock {
   Tooth tooth = Tooth::kFine;
-  float period = 4.0f;    // width of a grain, in units; on a tile it gives a little, so that a whole number fits
+  float period = 4.0f;    // width of a grain, in units; on a tile rounded so that a whole number fits
   glm::vec3 color{1.0f};  // sRGB-encoded
   float relief = 0.0f;    // how strongly light from the upper left shows the tooth
 };
@@ -26,10 +26,10 @@ struct Stock {
 // Heights of the tooth in [0, 1], 0.5 in the middle.
 Field MakeTooth(const Sheet& sheet, const Stock& stock, std::uint64_t seed);
 
-// Bare paper with that tooth, mottled a little.
+// Bare paper with that tooth, slightly mottled.
 Colors MakePaper(const Field& tooth, const Stock& stock, std::uint64_t seed);
 
-// A sheet to begin on, and the same paper as a tile for what lies around. They take the streams 0 and 1 of the studio's
+// A sheet to paint on, and the same paper as a tile for its surroundings. They take the streams 0 and 1 of the studio's
 // seed; a style's own passes begin at kFirstStream.
 inline constexpr std::uint64_t kFirstStream = 2;
 struct Ground {

@@ -23,7 +23,7 @@ void LayPatches(Chance& chance, const Flow& flow, const PatchOptions& options,
     const glm::vec2 aside(-along.y, along.x);
     const int touches = chance.Whole(options.touches_min, options.touches_max);
     const float length = chance.Uniform(options.length_min, options.length_max);
-    // Touches follow one another to one side, as a hand goes.
+    // Touches follow one another to one side, like a hand's.
     const float side = chance.Happens(0.5f) ? 1.0f : -1.0f;
     for (int i = 0; i < touches; ++i) {
       const float across = side * (static_cast<float>(i) - 0.5f * static_cast<float>(touches - 1)) * options.apart +

@@ -1,5 +1,5 @@
-// Brushwork in patches: a few touches side by side and of one tone, then the hand moves on and turns. Each touch is
-// drawn by whoever asks.
+// Brushwork in groups: a few touches side by side in one tone, then another place and direction. The caller draws each
+// touch.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ struct PatchOptions {
   float unevenness = 0.20f;  // of spacing, ends and directions inside a patch
 };
 
-// Calls `draw(path, middle of the patch)` for each touch. `flow` is asked at the middle of a patch only, and the
+// Calls `draw(path, middle of the patch)` for each touch. `flow` is called at the middle of a patch only, and the
 // touches bend as it does there. Covers the picture and its margin evenly.
 void LayPatches(Chance& chance, const Flow& flow, const PatchOptions& options,
                 const std::function<void(Stroke path, glm::vec2 patch)>& draw);

@@ -109,7 +109,7 @@ std::vector<Stroke> PlanHatching(Chance& chance, Flow (*flow_of)(glm::vec3), glm
                                  const HatchOptions& options) {
   std::vector<Stroke> strokes;
   for (int patch = 0; patch < options.patches; ++patch) {
-    // Braces fix the order in which chance is asked.
+    // Braces fix the order of the random numbers.
     const glm::vec2 centre{chance.Uniform(-20.0f, kSide + 20.0f), chance.Uniform(-20.0f, kSide + 20.0f)};
     const float weight = std::min(1.0f, 1.4f * touch(centre));
     if (RimDistance(centre) > 1.06f || !chance.Happens(weight)) continue;
@@ -122,7 +122,7 @@ std::vector<Stroke> PlanHatching(Chance& chance, Flow (*flow_of)(glm::vec3), glm
     for (int i = 0; i < count; ++i) {
       const float across = (static_cast<float>(i) - 0.5f * static_cast<float>(count)) * options.spacing +
                            chance.Bell(options.unevenness * options.spacing);
-      // The ends of a patch step along like the rungs of a leaning ladder, and none ends where its neighbour does.
+      // The ends of a patch step along a slanting line, and none ends where its neighbour does.
       const float along = slant * across + chance.Bell(options.unevenness * 0.3f * length);
       const glm::vec2 middle = centre + aside * across + flow(centre) * along;
       const Stroke line = TraceStroke(flow, middle, length * (1.0f + chance.Bell(0.6f * options.unevenness)));

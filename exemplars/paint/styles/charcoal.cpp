@@ -1,5 +1,5 @@
-// Charcoal and white chalk on warm toned paper: the side of the stick first, a finger to smudge it, then the corner of
-// the stick for the shade, and chalk where the light strikes.
+// Charcoal and white chalk on warm toned paper: the side of the stick first, smudged by a finger, then the corner of
+// the stick for the shade, and chalk in the light.
 #include "exemplars/paint/engine/drawing.h"
 #include "exemplars/paint/styles.h"
 
@@ -12,7 +12,7 @@ constexpr glm::vec3 kChalk{0.985f, 0.97f, 0.93f};
 
 enum Pass : std::uint64_t { kTone = kFirstStream, kSmudge, kRim, kLights, kAccents, kFirstRound };
 
-// Darkness wanted: bare paper in the light, nearly black in the core of the shade.
+// Target darkness: bare paper in the light, nearly black in the core of the shade.
 float Target(glm::vec2 at) {
   const float value = ShadingAt(at).value;
   return 0.20f + 0.36f * Ramp(0.88f, 0.34f, value) + 0.29f * Ramp(0.42f, 0.05f, value);
@@ -34,7 +34,7 @@ Status LayTone(Drawing& drawing, const Studio& studio) {
   return Smudge(drawing, studio, kSmudge, kAlongShade, rub);
 }
 
-// The corner of the stick: strokes that stay visible, each round looking at what the last one left too light.
+// The corner of the stick: strokes that stay visible; each round goes where the last one left the drawing too light.
 Status LayStrokes(Drawing& drawing, const Studio& studio) {
   SCUMBLE_ASSIGN(Brush corner, Brush::Load(studio.brushes, "tanda/charcoal-04"));
   corner.Radius(2.6f).Color(kCharcoal);

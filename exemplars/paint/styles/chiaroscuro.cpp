@@ -1,6 +1,6 @@
-// Charcoal and chalk on grey-brown paper, three times the same ball. In the light the paper is the half-tone and white
-// chalk models what is above it; in half-light a little chalk and more of the paper; in the shade charcoal nearly
-// closes over it, and a cool grey chalk is what the sky gives.
+// Charcoal and chalk on grey-brown paper, three times the same sphere. In the light the paper is the half-tone and
+// white chalk models everything above it. In half-light there is little chalk and more of the paper. In the shade
+// charcoal nearly covers it, and a cool grey chalk is the light of the sky.
 #include "exemplars/paint/engine/drawing.h"
 #include "exemplars/paint/styles.h"
 
@@ -14,7 +14,7 @@ constexpr glm::vec3 kCoolChalk{0.37f, 0.42f, 0.50f};
 
 enum Pass : std::uint64_t { kTone = kFirstStream, kSmudge, kRim, kAccents, kFirstRound, kFirstChalk = 100 };
 
-// The darkness wanted, of which the bare paper has 0.44.
+// The target darkness, of which the bare paper has 0.44.
 Touch Target(Light light) {
   return [light](glm::vec2 at) {
     const float value = ShadingAt(at, light).value;
@@ -86,7 +86,7 @@ Status LayChalk(Drawing& drawing, const Studio& studio, const Touch& target) {
   for (int round = 0; round < rounds; ++round) {
     Chance chance(studio.seed, kFirstChalk + static_cast<std::uint64_t>(round));
     const float progress = static_cast<float>(round) / static_cast<float>(rounds - 1);
-    // In the shade the chalk only answers the sky: wanted a little lighter than the charcoal was laid.
+    // In the shade the chalk only shows the sky: its target is slightly lighter than the charcoal.
     const Touch wanted = [&](glm::vec2 at) {
       return target(at) - (shade ? 0.08f * Ramp(0.40f, 0.95f, ShadingAt(at, Light::kSky).light) : 0.0f);
     };

@@ -43,8 +43,8 @@ constexpr Palette kPalette{.high{1.00f, 0.97f, 0.88f},
                            .warm{{{0.98f, 0.84f, 0.46f}, {0.94f, 0.58f, 0.62f}}},
                            .cool{{{0.38f, 0.56f, 0.74f}, {0.62f, 0.36f, 0.66f}}}};
 
-Wish WishFor(const Studio& studio, float share) {
-  return MakeWish([&](glm::vec2 at) {
+TargetColors TargetColorsFor(const Studio& studio, float share) {
+  return MakeTargetColors([&](glm::vec2 at) {
     const float cloud = CloudNoise(at / 90.0f, 3, Hash(studio.seed, kClouds)) - 0.5f;
     Shading shading = ShadingAt(at);
     shading.light = glm::clamp(shading.light + 0.14f * cloud, 0.0f, 1.0f);
@@ -93,14 +93,14 @@ Expected<Picture> PaintColouredPencil(const Studio& studio) {
   constexpr int kRounds = 4;
   for (int round = 0; round < kRounds; ++round) {
     hatch.patches = round == 0 ? 300 : 170;
-    const Wish wish = WishFor(studio, 0.6f + 0.4f * static_cast<float>(round) / (kRounds - 1));
+    const TargetColors target_colors = TargetColorsFor(studio, 0.6f + 0.4f * static_cast<float>(round) / (kRounds - 1));
     for (std::size_t i = 0; i < kBox.size(); ++i) {
       const std::uint64_t number = static_cast<std::uint64_t>(round) * kBox.size() + i;
       Chance chance(studio.seed, kFirstPencil + number);
       const Stick stick{kBox[i].color, true};
       const glm::vec3 axis = kTurns[number % std::size(kTurns)];
-      const Touch nearer =
-          AwayFromPoles(drawing.Nearer(wish, stick, {.lightest = 0.45f, .heaviest = 0.80f, .least = 0.02f}), axis);
+      const Touch nearer = AwayFromPoles(
+          drawing.Nearer(target_colors, stick, {.lightest = 0.45f, .heaviest = 0.80f, .least = 0.02f}), axis);
       const Touch touch = [&](glm::vec2 at) {
         // The paper is the highlight.
         const float ragged = CloudNoise(at / 24.0f, 2, Hash(studio.seed, kSpared)) - 0.5f;

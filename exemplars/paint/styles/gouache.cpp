@@ -1,5 +1,5 @@
-// Gouache: a poster in a few flat, opaque tones, four times the same ball. One tone covers the sheet; the others are
-// laid over it with a flat brush that stops where the tone ends: with most of its hair at once, or running dry across
+// Gouache: a poster in a few flat, opaque tones, four times the same sphere. One tone covers the sheet; the others are
+// laid over it with a flat brush that stops at the tone's border: with most of its hair at once, or running dry across
 // the paper's tooth.
 #include <algorithm>
 #include <array>
@@ -19,20 +19,20 @@ constexpr Stock kCard{Tooth::kColdPress, 5.5f, {0.93f, 0.885f, 0.80f}, 0.03f};
 
 enum Pass : std::uint64_t { kFirstFlat = kFirstStream, kWobble = 40 };
 
-// What a tone's shape follows.
+// The shape of a tone.
 enum class Shape {
   kAll,        // the whole sheet
   kAbove,      // where the value is above the border
   kBelow,      // where it is below
-  kReflected,  // where light that comes back is stronger than the border
-  kHighlight,  // round the mirrored light, within the border in units of the normal
+  kReflected,  // where reflected light is stronger than the border
+  kHighlight,  // around the mirrored light, within the border in units of the normal
 };
 
 struct Flat {
   glm::vec3 color;
   Shape shape = Shape::kAll;
   float border = 0.0f;
-  float wobble = 0.03f;  // how far a hand leaves the border, in its units
+  float wobble = 0.03f;  // deviation of a hand from the border, in its units
   glm::vec3 lean{0.0f};  // of the strokes' axis, away from the light
 };
 
@@ -96,8 +96,8 @@ float FromHighlight(glm::vec3 normal) {
   return glm::length(glm::vec2(0.7f * (0.8f * away.x + 0.6f * away.y), 1.4f * (0.8f * away.y - 0.6f * away.x)));
 }
 
-// Lightness as a poster sees it: in the light what lies flat is lighter than what stands, so that floors and walls,
-// which face one way only, each keep well inside a tone.
+// Lightness for a poster: in the light level surfaces are lighter than upright ones, so that floors and walls, which
+// face one direction only, each stay well inside a tone.
 float ValueAt(glm::vec2 at, Light light) {
   const float sky = light == Light::kKey || light == Light::kGrazing ? 0.06f : 0.0f;
   return ShadingAt(at, light).value + sky * NormalAt(at).y;

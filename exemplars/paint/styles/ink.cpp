@@ -1,4 +1,4 @@
-// Pen and ink on white paper, three times the same ball: swelling lines along the form, a second and a third family
+// Pen and ink on white paper, three times the same sphere: swelling lines along the form, a second and a third family
 // laid across them towards the shade, dots towards the light.
 #include <span>
 

@@ -1,5 +1,5 @@
-// Soft pastel on dark blue-violet sanded paper, three times the same ball. Broad strokes with the side of the stick, a
-// finger here and there, then crisp strokes of other colours laid over them; the dark paper flickers between all of
+// Soft pastel on dark blue-violet sanded paper, three times the same sphere. Broad strokes with the side of the stick,
+// a finger here and there, then crisp strokes of other colours laid over them; the dark paper flickers between all of
 // them.
 #include <array>
 #include <cmath>
@@ -31,7 +31,7 @@ struct Plan {
   std::span<const glm::vec3> sparks;  // the purest of them, for the last strokes
   std::array<glm::vec3, 4> axes;
   float side_width;
-  float closed;  // share of the middle of the ball that the first strokes cover
+  float closed;  // share of the middle of the sphere that the first strokes cover
   float body_width;
   int body_rounds;
   glm::vec3 depth;  // of the first layer, against what is wanted
@@ -112,8 +112,8 @@ constexpr Plan kShade{.palette{.high{0.36f, 0.50f, 0.76f},
 const Plan& PlanFor(Light light) { return light == Light::kKey ? kLit : light == Light::kGrazing ? kHalf : kShade; }
 
 // Clouds of other hues drift over the form, so that neighbouring passages never have one colour.
-Wish WishFor(const Plan& plan, const Studio& studio) {
-  return MakeWish([&](glm::vec2 at) {
+TargetColors TargetColorsFor(const Plan& plan, const Studio& studio) {
+  return MakeTargetColors([&](glm::vec2 at) {
     const auto cloud = [&](float width, std::uint64_t which) {
       return CloudNoise(at / width, 3, Hash(Hash(studio.seed, kClouds), which)) - 0.5f;
     };
@@ -126,16 +126,17 @@ Wish WishFor(const Plan& plan, const Studio& studio) {
   });
 }
 
-// Puts the ball in with the side of the stick: everywhere, and well past the rim, the stick that is nearest to the
+// Puts the sphere in with the side of the stick: everywhere, and well past the rim, the stick that is nearest to the
 // colour wanted, or nearly so.
-void BlockIn(Colouring& drawing, Brush& brush, const Plan& plan, const Studio& studio, const Wish& wish) {
+void BlockIn(Colouring& drawing, Brush& brush, const Plan& plan, const Studio& studio,
+             const TargetColors& target_colors) {
   Chance chance(studio.seed, kSide);
   std::vector<std::vector<Stroke>> strokes(plan.box.size());
   for (const glm::vec2 middle : SowEvenly(chance, kBlockSpacing)) {
     // Towards the rim strokes shorten, so there are more of them.
     const float rim = RimDistance(middle);
     if (rim > 1.12f || !chance.Happens(glm::mix(plan.closed, 1.0f, Ramp(0.6f, 0.9f, rim)))) continue;
-    const glm::vec3 wanted = ColorIn(wish, middle);
+    const glm::vec3 wanted = ColorIn(target_colors, middle);
     std::size_t nearest = 0;
     float least = 10.0f;
     for (std::size_t i = 0; i < plan.box.size(); ++i) {
@@ -167,8 +168,8 @@ struct Turn {
   Settling settling;
   float width;  // of a stroke
 };
-void WorkOver(Colouring& drawing, Brush& brush, const Plan& plan, const Studio& studio, const Wish& wish,
-              const Turn& turn, const HatchOptions& hatch) {
+void WorkOver(Colouring& drawing, Brush& brush, const Plan& plan, const Studio& studio,
+              const TargetColors& target_colors, const Turn& turn, const HatchOptions& hatch) {
   const std::size_t count = turn.sticks.size();
   for (int round = 0; round < turn.rounds; ++round) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -177,7 +178,7 @@ void WorkOver(Colouring& drawing, Brush& brush, const Plan& plan, const Studio& 
       // Not always from the lightest to the darkest.
       const Stick stick{turn.sticks[(i * 7 + static_cast<std::size_t>(round) * 3) % count]};
       const glm::vec3 axis = plan.axes[number % plan.axes.size()];
-      const Touch touch = AwayFromPoles(drawing.Nearer(wish, stick, turn.hand), axis);
+      const Touch touch = AwayFromPoles(drawing.Nearer(target_colors, stick, turn.hand), axis);
       const auto strokes = PlanHatching(chance, AroundAxis, axis, touch, hatch);
       drawing.Draw(brush, stick, Facets(chance, strokes, turn.width, kFacets, 2.6f * turn.width), turn.settling);
     }
@@ -185,9 +186,9 @@ void WorkOver(Colouring& drawing, Brush& brush, const Plan& plan, const Studio& 
 }
 
 Status Work(Colouring& drawing, const Plan& plan, const Studio& studio) {
-  const Wish wish = WishFor(plan, studio);
+  const TargetColors target_colors = TargetColorsFor(plan, studio);
   // Light over dark: what is laid first is deeper than what is wanted.
-  Wish deep = wish;
+  TargetColors deep = target_colors;
   for (glm::vec3& color : deep.pixels) color *= plan.depth;
   SCUMBLE_ASSIGN(Brush stick, Brush::Load(studio.brushes, "tanda/acrylic-05-paint"));
 
@@ -214,7 +215,7 @@ Status Work(Colouring& drawing, const Plan& plan, const Studio& studio) {
   hatch.length_min = 60.0f;
   hatch.length_max = 120.0f;
   stick.Radius(kFacet * plan.body_width);
-  WorkOver(drawing, stick, plan, studio, wish,
+  WorkOver(drawing, stick, plan, studio, target_colors,
            {.sticks = plan.box,
             .first_stream = kBody,
             .rounds = plan.body_rounds,
@@ -231,7 +232,7 @@ Status Work(Colouring& drawing, const Plan& plan, const Studio& studio) {
   const float crisp = 0.6f * plan.body_width;
   hatch.spacing = 2.0f * crisp;
   stick.Radius(kFacet * crisp);
-  WorkOver(drawing, stick, plan, studio, wish,
+  WorkOver(drawing, stick, plan, studio, target_colors,
            {.sticks = plan.sparks,
             .first_stream = kSparks,
             .rounds = 2,

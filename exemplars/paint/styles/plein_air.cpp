@@ -1,5 +1,5 @@
-// Oil out of doors, three times the same ball: in the sun, turning from it, and under the open sky alone. The light is
-// warm and thick, the shade cool and thin; colours lie broken side by side.
+// Oil out of doors, three times the same sphere: in the sun, turning from it, and under the open sky alone. The light
+// is warm and thick, the shade cool and thin; colours lie broken side by side.
 #include <array>
 
 #include "exemplars/paint/engine/impasto.h"

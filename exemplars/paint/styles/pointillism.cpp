@@ -1,5 +1,5 @@
 // Pointillism: dabs of unmixed colour side by side on a pale ground, in three layers. Each tone of the form has its own
-// handful of colours, and between two tones the dabs of both mingle; the eye does the mixing.
+// few colours, and between two tones the dabs of both mix optically.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,9 +19,9 @@ constexpr Stock kPriming{Tooth::kLaid, 6.0f, {0.955f, 0.925f, 0.85f}, 0.05f};
 
 enum Pass : std::uint64_t { kFirstLayer = kFirstStream, kHighlight = 20, kAir };
 
-// The colours of one tone: what makes its hue first, then neighbours, then sparks of the complement.
+// The colours of one tone: its main hues first, then neighbours, then sparks of the complement.
 struct Tone {
-  float value;                       // where the tone is at home
+  float value;                       // the value of the tone's middle
   std::array<std::uint32_t, 6> rgb;  // sRGB-encoded bytes
   std::array<float, 6> share;        // of the dabs
 };
@@ -33,13 +33,13 @@ constexpr std::array<Tone, 5> kTones{{
     {0.76f, {0xfccc52, 0xfcb052, 0xfab09e, 0xf7e67a, 0xb8d694, 0xc2b2e6}, {0.36f, 0.20f, 0.18f, 0.14f, 0.07f, 0.05f}},
     {0.98f, {0xfff5c7, 0xffeb8f, 0xffdbc2, 0xfcfaed, 0xd6ebf0, 0xe0ebbd}, {0.38f, 0.24f, 0.18f, 0.12f, 0.05f, 0.03f}},
 }};
-// Where light comes back into the shade.
+// Reflected light in the shade.
 constexpr Tone kReflected{
     0.34f, {0x3885bd, 0x2e8f8f, 0x8061bd, 0xb26b8f, 0x6bad70, 0xcc7a57}, {0.30f, 0.24f, 0.20f, 0.12f, 0.08f, 0.05f}};
-// The lamp itself, mirrored.
+// The light itself, mirrored.
 constexpr Tone kSparkle{
     1.0f, {0xfffced, 0xfff7d1, 0xfff0e6, 0xebf5f7, 0xfff2b2, 0xf7edf7}, {0.50f, 0.25f, 0.15f, 0.06f, 0.02f, 0.02f}};
-// What lies around: quiet, of one lightness, so that no dab is met again in the next tile.
+// The surroundings: quiet, of one lightness, so that no dab is noticed again in the next tile.
 constexpr Tone kHaze{
     0.85f, {0xccdee6, 0xdbe0db, 0xd4d6eb, 0xcce6db, 0xe8dbd1, 0xe0d4e3}, {0.30f, 0.25f, 0.20f, 0.13f, 0.07f, 0.05f}};
 
@@ -48,8 +48,8 @@ struct DabLayer {
   float spacing;
   float width_min, width_max;
   float longest;  // length in widths; the shortest is round
-  float scatter;  // of the tone a dab is meant for
-  float sparks;   // how much more often than said the last three colours of a tone come
+  float scatter;  // of the tone that a dab belongs to
+  float sparks;   // factor for the shares of a tone's last three colours
 };
 constexpr std::array<DabLayer, 3> kLayers{{
     {10.5f, 12.0f, 15.0f, 2.1f, 0.02f, 0.4f},
@@ -82,7 +82,7 @@ glm::vec3 ColorOf(Chance& chance, const Shading& shading, const DabLayer& layer)
   return Take(chance, tone, layer.sparks) * lift;
 }
 
-// A canvas that dabs are set on, one layer over the other.
+// A canvas for dabs, one layer over the other.
 class Dabs {
  public:
   static Expected<Dabs> Begin(const Sheet& sheet, const Studio& studio) {

@@ -1,5 +1,5 @@
-// Red chalk on cream laid paper: rubbed half-tones, then hatching that can be counted, most of it from one diagonal of
-// the hand; a deeper chalk for the core of the shade, and touches of white in the light.
+// Red chalk on cream laid paper: rubbed half-tones, then open hatching, most of it along one diagonal of the hand; a
+// deeper chalk for the core of the shade, and touches of white in the light.
 #include "exemplars/paint/engine/drawing.h"
 #include "exemplars/paint/engine/families.h"
 #include "exemplars/paint/styles.h"
@@ -27,7 +27,7 @@ enum Pass : std::uint64_t {
   kDeepForm,
 };
 
-// The hand's own diagonal, nearly the same whatever the form does, and lines that follow the form round the light.
+// The hand's own diagonal, nearly independent of the form, and lines that follow the form around the light.
 constexpr glm::vec3 kHand{-0.68f, 0.72f, 0.12f};
 constexpr glm::vec3 kSteeperHand{-0.82f, 0.55f, 0.16f};
 constexpr glm::vec3 kForm{-0.42f, 0.50f, 0.76f};

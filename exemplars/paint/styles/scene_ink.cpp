@@ -1,5 +1,5 @@
-// Pen and brown wash from a set-up: bistre washes for what the lamp leaves dark, pen lines over them that follow the
-// form: round the ball, across the floor, down the wall, and the cast shadow hatched the way it falls.
+// Pen and brown wash from a set-up: bistre washes for the unlit parts, pen lines over them that follow the form: around
+// the sphere, across the floor, down the wall, and the cast shadow hatched in its direction.
 #include <cmath>
 
 #include "exemplars/paint/engine/glaze.h"
@@ -18,10 +18,10 @@ constexpr glm::vec3 kInk{0.16f, 0.10f, 0.07f};
 
 enum Pass : std::uint64_t { kFirstWash = kFirstStream, kFirstLines = 40 };
 
-// Lightness wanted, of ball, floor and wall alike.
+// Target lightness of sphere, floor and wall alike.
 float Value(const Scene& scene, glm::vec2 at) {
-  if (scene.BallDistance(at) < 1.0f) {
-    const Seen seen = scene.OnBall(at);
+  if (scene.SphereDistance(at) < 1.0f) {
+    const Seen seen = scene.OnSphere(at);
     return 0.04f + 0.88f * std::pow(seen.light, 0.9f) + 0.14f * seen.bounce + 0.3f * seen.highlight;
   }
   const Seen seen = scene.Behind(at);
@@ -31,13 +31,13 @@ float Value(const Scene& scene, glm::vec2 at) {
 }
 
 void LayWashes(Colors& picture, Brush& brush, const Field& tooth, const Scene& scene, std::uint64_t seed) {
-  const Flow over = scene.OverBall(AroundAxis({-0.62f, 0.66f, -0.1f}));
+  const Flow over = scene.OverSphere(AroundAxis({-0.62f, 0.66f, -0.1f}));
   const Flow across = scene.AcrossFloor();
   const GlazePlan plan{[&](glm::vec2 at) { return Value(scene, at); },
                        [&](Chance& chance) -> Flow {
                          const Flow wall = Scene::Slanting(0.9f + chance.Bell(0.25f));
                          return [=, &scene](glm::vec2 at) {
-                           if (scene.BallDistance(at) < 1.0f) return over(at);
+                           if (scene.SphereDistance(at) < 1.0f) return over(at);
                            return scene.IsFloor(at) ? across(at) : wall(at);
                          };
                        }};
@@ -100,12 +100,12 @@ PatchOptions Lines(float apart, float length, float spacing) {
 
 void DrawAllLines(Canvas& canvas, Brush& pen, const Scene& scene, std::uint64_t seed) {
   const auto dark = [&](glm::vec2 at) { return 1.0f - Value(scene, at); };
-  const Touch on_ball = [&](glm::vec2 at) { return scene.BallDistance(at) < 0.992f ? dark(at) : -1.0f; };
+  const Touch on_sphere = [&](glm::vec2 at) { return scene.SphereDistance(at) < 0.992f ? dark(at) : -1.0f; };
   const Touch on_floor = [&](glm::vec2 at) {
-    return scene.BallDistance(at) > 1.005f && scene.IsFloor(at) ? dark(at) : -1.0f;
+    return scene.SphereDistance(at) > 1.005f && scene.IsFloor(at) ? dark(at) : -1.0f;
   };
   const Touch on_wall = [&](glm::vec2 at) {
-    return scene.BallDistance(at) > 1.01f && at.y < scene.horizon() - 4.0f ? dark(at) : -1.0f;
+    return scene.SphereDistance(at) > 1.01f && at.y < scene.horizon() - 4.0f ? dark(at) : -1.0f;
   };
   const auto press = [](Touch darkness, float from, float to, float heaviest) -> Touch {
     return [=](glm::vec2 at) { return heaviest * Ramp(from, to, darkness(at)); };
@@ -116,21 +116,21 @@ void DrawAllLines(Canvas& canvas, Brush& pen, const Scene& scene, std::uint64_t 
       {scene.AcrossFloor(), Lines(11.0f, 110.0f, 84.0f), press(on_floor, 0.025f, 0.35f, 0.50f), 1.3f},
       {scene.AlongShadow(), Lines(7.5f, 80.0f, 44.0f), press(on_floor, 0.32f, 0.75f, 0.70f)},
       {Scene::Slanting(0.55f), Lines(8.5f, 56.0f, 46.0f), press(on_floor, 0.62f, 0.95f, 0.65f)},
-      {scene.OverBall(AroundAxis({-0.62f, 0.66f, 0.02f})), Lines(8.0f, 100.0f, 46.0f),
-       press(on_ball, 0.09f, 0.62f, 0.62f), 1.4f},
-      {scene.OverBall(AroundAxis({0.55f, 0.80f, 0.05f})), Lines(8.5f, 60.0f, 48.0f),
-       press(on_ball, 0.50f, 0.88f, 0.62f), 1.5f},
-      {scene.OverBall(AroundAxis({-0.95f, 0.10f, -0.1f})), Lines(8.5f, 46.0f, 48.0f),
-       press(on_ball, 0.80f, 0.97f, 0.60f)},
+      {scene.OverSphere(AroundAxis({-0.62f, 0.66f, 0.02f})), Lines(8.0f, 100.0f, 46.0f),
+       press(on_sphere, 0.09f, 0.62f, 0.62f), 1.4f},
+      {scene.OverSphere(AroundAxis({0.55f, 0.80f, 0.05f})), Lines(8.5f, 60.0f, 48.0f),
+       press(on_sphere, 0.50f, 0.88f, 0.62f), 1.5f},
+      {scene.OverSphere(AroundAxis({-0.95f, 0.10f, -0.1f})), Lines(8.5f, 46.0f, 48.0f),
+       press(on_sphere, 0.80f, 0.97f, 0.60f)},
   };
   std::uint64_t stream = kFirstLines;
   for (const Family& family : families) DrawLines(canvas, pen, family, seed, stream++);
   // The outline swells in the shade and breaks in the light; so does the line where the wall stands.
   const Family outline{
-      scene.OverBall(AroundAxis({0.0f, 0.0f, 1.0f})),
+      scene.OverSphere(AroundAxis({0.0f, 0.0f, 1.0f})),
       {.spacing = 15.0f, .touches_min = 1, .touches_max = 1, .length_min = 70.0f, .length_max = 150.0f, .slant = 0.02f},
       [&](glm::vec2 at) {
-        const float off = std::fabs(scene.BallDistance(at) - 0.996f);
+        const float off = std::fabs(scene.SphereDistance(at) - 0.996f);
         return off > 0.012f ? 0.0f : 0.35f + 0.55f * Ramp(0.2f, 0.8f, 1.0f - Value(scene, at));
       }};
   DrawLines(canvas, pen, outline, seed, stream++);
@@ -142,8 +142,8 @@ void DrawAllLines(Canvas& canvas, Brush& pen, const Scene& scene, std::uint64_t 
                         .length_max = 200.0f,
                         .slant = 0.008f},
                        [&](glm::vec2 at) {
-                         return std::fabs(at.y - scene.horizon()) < 4.0f && scene.BallDistance(at) > 1.02f ? 0.45f
-                                                                                                           : 0.0f;
+                         return std::fabs(at.y - scene.horizon()) < 4.0f && scene.SphereDistance(at) > 1.02f ? 0.45f
+                                                                                                             : 0.0f;
                        }};
   DrawLines(canvas, pen, horizon, seed, stream);
 }

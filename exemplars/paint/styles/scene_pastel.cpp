@@ -1,6 +1,6 @@
-// Soft pastel on sand-coloured paper, from a set-up: a turquoise ball, rose floor, lilac wall. Sticks are laid broad
-// and side by side, first the local colours, then light and shade over them, then the sharp ends: the paper stays
-// between.
+// Soft pastel on sand-coloured paper, from a set-up: a turquoise sphere, rose floor, lilac wall. Sticks are laid broad
+// and side by side, first the local colours, then light and shade over them, then the sharp ends: paper shows between
+// them.
 #include <cmath>
 
 #include "exemplars/paint/engine/drawing.h"
@@ -16,7 +16,7 @@ constexpr Stock kPaper{Tooth::kLaid, 5.5f, {0.76f, 0.69f, 0.58f}, 0.05f};
 constexpr const char* kStick = "tanda/charcoal-04";
 constexpr const char* kTip = "classic/charcoal";
 
-// One stick's turn at the picture.
+// The use of one stick in the picture.
 struct Turn {
   const char* preset;
   float radius;
@@ -38,7 +38,7 @@ class Sticks {
     Chance plan(studio_.seed, stream_++);
     Chance hand(studio_.seed, Hash(stream_, 77));
     LayPatches(plan, turn.flow, turn.patches, [&](const Stroke& path, glm::vec2 patch) {
-      // Sown by tone, not only pressed by it: where little is wanted, few strokes go.
+      // Density follows the tone, not only pressure: where little is needed there are few strokes.
       if (!hand.Happens(1.3f * turn.where(patch))) return;
       const float shift = hand.Bell(0.035f);
       stick.Color(glm::clamp(turn.color * glm::vec3(1.0f + shift, 1.0f + hand.Bell(0.02f), 1.0f - shift), 0.0f, 1.0f));
@@ -75,13 +75,13 @@ PatchOptions Narrow(float length) {
 struct Places {
   const Scene& scene;
 
-  float Ball(glm::vec2 at) const { return Ramp(1.005f, 0.985f, scene.BallDistance(at)); }
-  float Wall(glm::vec2 at) const { return scene.BallDistance(at) > 0.98f && !scene.IsFloor(at) ? 1.0f : 0.0f; }
-  float Floor(glm::vec2 at) const { return scene.BallDistance(at) > 0.98f && scene.IsFloor(at) ? 1.0f : 0.0f; }
-  // A touch of what is seen there.
+  float Sphere(glm::vec2 at) const { return Ramp(1.005f, 0.985f, scene.SphereDistance(at)); }
+  float Wall(glm::vec2 at) const { return scene.SphereDistance(at) > 0.98f && !scene.IsFloor(at) ? 1.0f : 0.0f; }
+  float Floor(glm::vec2 at) const { return scene.SphereDistance(at) > 0.98f && scene.IsFloor(at) ? 1.0f : 0.0f; }
+  // A touch that depends on the values there.
   template <class Where>
-  Touch OnBall(Where where) const {
-    return [this, where](glm::vec2 at) { return Ball(at) > 0.0f ? Ball(at) * where(scene.OnBall(at)) : 0.0f; };
+  Touch OnSphere(Where where) const {
+    return [this, where](glm::vec2 at) { return Sphere(at) > 0.0f ? Sphere(at) * where(scene.OnSphere(at)) : 0.0f; };
   }
   template <class Where>
   Touch OnWall(Where where) const {
@@ -97,7 +97,7 @@ Status LayGroundColors(Drawing& drawing, const Studio& studio, const Places& at)
   Sticks sticks(drawing, studio, kFirstStream);
   const Scene& scene = at.scene;
   const Flow down = Scene::Slanting(1.15f), up = Scene::Slanting(-0.95f), across = scene.AcrossFloor();
-  const Flow round = scene.OverBall(AroundAxis({-0.62f, 0.66f, 0.10f}));
+  const Flow round = scene.OverSphere(AroundAxis({-0.62f, 0.66f, 0.10f}));
   PatchOptions close = Broad(70);
   close.spacing = 25.0f;
   SCUMBLE_RETURN_IF_ERROR(sticks.Lay(
@@ -115,8 +115,8 @@ Status LayGroundColors(Drawing& drawing, const Studio& studio, const Places& at)
          return Ramp(0.20f, 0.75f, s.cast);
        })}));
   SCUMBLE_RETURN_IF_ERROR(sticks.Lay(
-      {kStick, 6.0f, {0.20f, 0.55f, 0.58f}, 0.75f, round, close, at.OnBall([](const Seen&) { return 1.0f; })}));
-  return sticks.Lay({kStick, 6.0f, {0.16f, 0.17f, 0.44f}, 0.8f, round, Broad(60), at.OnBall([](const Seen& s) {
+      {kStick, 6.0f, {0.20f, 0.55f, 0.58f}, 0.75f, round, close, at.OnSphere([](const Seen&) { return 1.0f; })}));
+  return sticks.Lay({kStick, 6.0f, {0.16f, 0.17f, 0.44f}, 0.8f, round, Broad(60), at.OnSphere([](const Seen& s) {
                        return Ramp(0.26f, 0.04f, s.light);
                      })});
 }
@@ -124,8 +124,8 @@ Status LayGroundColors(Drawing& drawing, const Studio& studio, const Places& at)
 Status Model(Drawing& drawing, const Studio& studio, const Places& at) {
   Sticks sticks(drawing, studio, 40);
   const Scene& scene = at.scene;
-  const Flow slant = scene.OverBall(AroundAxis({-0.85f, 0.35f, 0.0f}));
-  const Flow round = scene.OverBall(AroundAxis({-0.55f, 0.75f, -0.10f}));
+  const Flow slant = scene.OverSphere(AroundAxis({-0.85f, 0.35f, 0.0f}));
+  const Flow round = scene.OverSphere(AroundAxis({-0.55f, 0.75f, -0.10f}));
   const Flow across = scene.AcrossFloor();
   PatchOptions sparse = Narrow(70);
   sparse.spacing = 46.0f;
@@ -154,18 +154,18 @@ Status Model(Drawing& drawing, const Studio& studio, const Places& at) {
          return 0.8f * Ramp(0.35f, 0.65f, s.light);
        })}));
   SCUMBLE_RETURN_IF_ERROR(
-      sticks.Lay({kTip, 3.8f, {0.40f, 0.74f, 0.68f}, 0.70f, round, Narrow(55), at.OnBall([](const Seen& s) {
+      sticks.Lay({kTip, 3.8f, {0.40f, 0.74f, 0.68f}, 0.70f, round, Narrow(55), at.OnSphere([](const Seen& s) {
                     return Ramp(0.28f, 0.62f, s.light);
                   })}));
   SCUMBLE_RETURN_IF_ERROR(
-      sticks.Lay({kTip, 3.8f, {0.70f, 0.88f, 0.68f}, 0.75f, slant, Narrow(50), at.OnBall([](const Seen& s) {
+      sticks.Lay({kTip, 3.8f, {0.70f, 0.88f, 0.68f}, 0.75f, slant, Narrow(50), at.OnSphere([](const Seen& s) {
                     return Ramp(0.58f, 0.90f, s.light);
                   })}));
   SCUMBLE_RETURN_IF_ERROR(
-      sticks.Lay({kTip, 3.4f, {0.27f, 0.22f, 0.58f}, 0.75f, slant, Narrow(48), at.OnBall([](const Seen& s) {
+      sticks.Lay({kTip, 3.4f, {0.27f, 0.22f, 0.58f}, 0.75f, slant, Narrow(48), at.OnSphere([](const Seen& s) {
                     return Ramp(0.24f, 0.08f, s.light);
                   })}));
-  return sticks.Lay({kTip, 3.4f, {0.84f, 0.48f, 0.52f}, 0.70f, round, Narrow(44), at.OnBall([](const Seen& s) {
+  return sticks.Lay({kTip, 3.4f, {0.84f, 0.48f, 0.52f}, 0.70f, round, Narrow(44), at.OnSphere([](const Seen& s) {
                        return 0.85f * Ramp(0.45f, 0.85f, s.bounce) * Ramp(0.20f, 0.03f, s.light);
                      })});
 }
@@ -173,8 +173,8 @@ Status Model(Drawing& drawing, const Studio& studio, const Places& at) {
 Status SetAccents(Drawing& drawing, const Studio& studio, const Places& at) {
   Sticks sticks(drawing, studio, 80);
   const Scene& scene = at.scene;
-  const Flow slant = scene.OverBall(AroundAxis({-0.85f, 0.35f, 0.0f}));
-  const Flow outline = scene.OverBall(AroundAxis({0.0f, 0.0f, 1.0f}));
+  const Flow slant = scene.OverSphere(AroundAxis({-0.85f, 0.35f, 0.0f}));
+  const Flow outline = scene.OverSphere(AroundAxis({0.0f, 0.0f, 1.0f}));
   PatchOptions few = Narrow(60);
   few.spacing = 52.0f;
   SCUMBLE_RETURN_IF_ERROR(
@@ -182,7 +182,7 @@ Status SetAccents(Drawing& drawing, const Studio& studio, const Places& at) {
                     return 0.7f * Ramp(0.75f, 0.98f, s.light);
                   })}));
   SCUMBLE_RETURN_IF_ERROR(
-      sticks.Lay({kTip, 2.6f, {0.98f, 0.95f, 0.66f}, 0.60f, slant, Narrow(56), at.OnBall([](const Seen& s) {
+      sticks.Lay({kTip, 2.6f, {0.98f, 0.95f, 0.66f}, 0.60f, slant, Narrow(56), at.OnSphere([](const Seen& s) {
                     return 0.8f * Ramp(0.76f, 0.98f, s.light);
                   })}));
   SCUMBLE_RETURN_IF_ERROR(
@@ -201,8 +201,8 @@ Status SetAccents(Drawing& drawing, const Studio& studio, const Places& at) {
                                        .length_max = 110.0f,
                                        .slant = 0.04f},
                                       [&](glm::vec2 p) {
-                                        const float off = std::fabs(scene.BallDistance(p) - 0.988f);
-                                        return Ramp(0.020f, 0.006f, off) * Ramp(0.65f, 0.2f, scene.OnBall(p).light);
+                                        const float off = std::fabs(scene.SphereDistance(p) - 0.988f);
+                                        return Ramp(0.020f, 0.006f, off) * Ramp(0.65f, 0.2f, scene.OnSphere(p).light);
                                       }}));
   return sticks.Lay(
       {kTip,
@@ -211,7 +211,7 @@ Status SetAccents(Drawing& drawing, const Studio& studio, const Places& at) {
        1.0f,
        slant,
        {.spacing = 12.0f, .touches_min = 1, .touches_max = 2, .apart = 7.0f, .length_min = 18.0f, .length_max = 34.0f},
-       at.OnBall([](const Seen& s) { return Ramp(0.35f, 0.75f, s.highlight); })});
+       at.OnSphere([](const Seen& s) { return Ramp(0.35f, 0.75f, s.highlight); })});
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Ink on rice paper, as in East Asia: few broad strokes. Pale washes run into one another while the paper is wet, a dry
-// brush sweeps along the turn of the form and leaves flying white, black pools in the core; the light is bare paper.
+// Ink on East Asian rice paper: few broad strokes. Pale washes run into one another while the paper is wet, a dry brush
+// sweeps along the turn of the form and leaves streaks of white, black pools in the core; the light is bare paper.
 #include <algorithm>
 #include <cmath>
 
@@ -57,12 +57,12 @@ Expected<Ground> RicePaper(const Sheet& sheet, const Studio& studio) {
 // One brush and one bowl of ink.
 struct Wash {
   float from, below;  // strokes have their middles where the value is between these
-  float ragged;       // how far chance moves the upper one
+  float ragged;       // the random shift of the upper border
   float spacing;      // of the strokes' middles
   glm::vec2 width;
   glm::vec2 length;
   Tuft tuft;       // but for its width
-  float wetness;   // how far the ink runs in the wet paper, in units; 0: dry brush
+  float wetness;   // the spread of the ink in the wet paper, in units; 0: dry brush
   float strength;  // of the ink in the picture
   float inside;    // share of the width that strokes keep inside the rim
 };
@@ -111,7 +111,7 @@ constexpr Wash kWashes[] = {
      .wetness = 8.0f,
      .strength = 1.5f,
      .inside = 0.5f},
-    // Flying white along the turn.
+    // Streaks of white along the turn.
     {.from = 0.04f,
      .below = 0.32f,
      .ragged = 0.07f,
@@ -139,7 +139,7 @@ void BrushWash(Canvas& canvas, Brush& brush, const Wash& wash, std::uint64_t str
     tuft.width = hand.Uniform(wash.width.x, wash.width.y);
     tuft.ink *= 1.0f + hand.Bell(0.15f);
     tuft.side = hand.Uniform(-0.5f, 0.5f);
-    // A sweep is not bound to the tone under it, but it stays out of the light and ends soon past the rim.
+    // A sweep does not follow the tone under it, but it avoids the light and ends soon past the rim.
     const float limit = wash.below + 0.14f;
     const float past = 1.02f + hand.Bell(0.015f) - wash.inside * tuft.width / kRadius;
     const Touch touch = [&](glm::vec2 at) {
@@ -153,7 +153,7 @@ void BrushWash(Canvas& canvas, Brush& brush, const Wash& wash, std::uint64_t str
   }
 }
 
-// Ink in wet paper: it runs along the fibres, further where the sheet is wetter, and leaves a darker line where it
+// Ink in wet paper: it runs along the fibres, farther where the sheet is wetter, and leaves a darker line where it
 // stops.
 void Soak(Ground& ground, const Field& ink, const Wash& wash, std::uint64_t stream) {
   const Field near = Blur(ink, std::max(1.0f, 0.12f * wash.wetness));
@@ -172,7 +172,7 @@ void Soak(Ground& ground, const Field& ink, const Wash& wash, std::uint64_t stre
       const float wet = Ramp(0.40f, 0.70f, CloudNoise(at / 140.0f, 2, Hash(stream, 3)));
       const float amount = glm::mix(crisp, bled, wet);
       if (amount < 0.003f) continue;
-      // Paper that has drunk its fill takes little more where strokes overlap.
+      // Saturated paper takes little more where strokes overlap.
       const float drunk = 1.25f * wash.tuft.ink * (1.0f - std::exp(-amount / wash.tuft.ink));
       const float gathered = (1.0f - wet) * 0.5f * std::max(crisp - bled, 0.0f);
       const float grain = 1.0f + 0.22f * (0.5f - ground.tooth.At(x, y));
@@ -181,7 +181,7 @@ void Soak(Ground& ground, const Field& ink, const Wash& wash, std::uint64_t stre
   }
 }
 
-// Where the form ends, in a few sweeps: thin and pale towards the light, heavier in the shade.
+// The contour in a few sweeps: thin and pale towards the light, heavier in the shade.
 void DrawContour(Canvas& canvas, Brush& brush, const Studio& studio) {
   Chance chance(studio.seed, kContour);
   const Touch weight = [](glm::vec2 at) { return 0.06f + 0.94f * Ramp(0.15f, 0.9f, DarknessAt(at)); };

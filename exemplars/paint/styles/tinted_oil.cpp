@@ -1,6 +1,6 @@
-// Oil in greys, to be tinted by what a scene's things are coloured: a loaded flat brush lays patches of parallel
-// touches that slant across the form, thick enough to cast shadows of their own. Light on the whole, so that a base
-// colour stays as it is and only the core of the shade sinks.
+// Oil in greys, for tinting by the colours of a scene's objects. A loaded flat brush lays patches of parallel touches
+// that slant across the form, thick enough to cast shadows. It is light on the whole, so that a base colour is kept and
+// only the core of the shade is darker.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,14 +13,14 @@
 namespace scumble::paint {
 namespace {
 
-// Impasto has the streams below for its own passes.
+// Impasto uses the lower streams for its own passes.
 constexpr std::uint64_t kFirstPatches = 200;
 
 struct Stage {
   PatchOptions patches;
   float width, bristle;
   float broken;  // variation of the tone from patch to patch
-  float share;   // of the patches that are painted, at least; all are where tones turn fast
+  float share;   // minimum share of the patches that are painted; all are where tones change fast
 };
 constexpr std::array<Stage, 3> kStages{{
     {{.spacing = 48.0f, .touches_min = 3, .touches_max = 5, .apart = 26.0f, .length_min = 90.0f, .length_max = 140.0f},
@@ -52,7 +52,7 @@ float Tone(const Shading& shading) {
 
 Expected<Picture> PaintTintedOil(const Studio& studio) {
   SCUMBLE_ASSIGN(Impasto painting, Impasto::Begin({studio.size}, studio, glm::vec3(0.70f)));
-  // One slant for the whole ball, as a right hand has it, wound round the form; not much shorter at the rim, where
+  // One slant for the whole sphere, as of a right hand, wound around the form. It is not much shorter at the rim, where
   // short touches would leave the undertone bare.
   const Flow slanting = [round = AroundAxis({-0.80f, 0.60f, 0.06f})](glm::vec2 at) {
     const glm::vec2 way = round(at);

@@ -1,5 +1,5 @@
-// A soft pencil on white paper, to be tinted: open hatching, so dark that a base colour in it is deep and so wide that
-// the paper shines between the lines. Tone comes from layers that cross and from pressure, never from rubbing.
+// A soft pencil on white paper, for tinting: open hatching, dark enough for deep base colours and wide enough that the
+// paper shows between the lines. Tone comes from layers that cross and from pressure, never from rubbing.
 #include "exemplars/paint/engine/drawing.h"
 #include "exemplars/paint/neutral.h"
 #include "exemplars/paint/styles.h"
@@ -12,15 +12,15 @@ constexpr glm::vec3 kLead{0.24f, 0.24f, 0.24f};
 
 enum Pass : std::uint64_t { kRim = kFirstStream, kAccents, kFirstHatch };
 
-// Darkness wanted. More of it than the form has, in the light too: where no line goes, no colour comes.
+// Target darkness. Darker than the form, in the light too: without lines there is no colour.
 float Target(glm::vec2 at) {
   const Shading shading = ShadingAt(at);
   return 0.16f * Ramp(0.97f, 0.80f, shading.value) + 0.24f * Ramp(0.88f, 0.34f, shading.value) +
          0.24f * Ramp(0.40f, 0.06f, shading.value) - 0.10f * Ramp(0.3f, 0.9f, shading.highlight);
 }
 
-// The first way is the hand's own; the others cross it where it grows dark. Their poles lie on the rim, and the last
-// one's away from the light.
+// The first direction is the hand's own; the others cross it in the dark parts. Their poles lie on the rim, and the
+// last one's away from the light.
 constexpr glm::vec3 kHand{-0.86f, 0.50f, 0.0f};
 constexpr glm::vec3 kSteep{-0.45f, 0.88f, 0.0f};
 constexpr glm::vec3 kLevel{0.55f, 0.83f, 0.0f};

@@ -1,5 +1,5 @@
-// Washes of ink on rough paper, to be tinted: a few broad glazes that a large brush lays in sweeps across the ball,
-// with hard dried edges and pools. Pale throughout: a tint shows its colour in what is light.
+// Washes of ink on rough paper, for tinting: a few broad glazes that a large brush lays in sweeps across the sphere,
+// with hard dried edges and pools. Pale throughout: a tint is visible in light parts.
 #include <array>
 
 #include "exemplars/paint/engine/glaze.h"
@@ -35,7 +35,7 @@ struct Wash {
             .wetness = wetness,
             .length = loose ? 20.0f : 9.0f,
             .lobes = 170.0f,
-            // What a border leaves of a loose sweep would dry as a blot.
+            // The remainder of a loose sweep at a border would dry as a blot.
             .shortest = loose ? 9.0f : 3.0f};
   }
 };

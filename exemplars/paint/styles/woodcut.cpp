@@ -15,13 +15,13 @@ namespace {
 constexpr Stock kPaper{Tooth::kFine, 5.0f, {0.965f, 0.94f, 0.885f}, 0.02f};
 constexpr glm::vec3 kBlack{0.085f, 0.08f, 0.085f};
 constexpr glm::vec3 kBrick{0.80f, 0.33f, 0.20f};
-constexpr glm::vec2 kOutOfRegister{-7.0f, 6.0f};  // how far the colour lies from where it should
+constexpr glm::vec2 kOutOfRegister{-7.0f, 6.0f};  // offset of the colour from its right place
 
 enum Pass : std::uint64_t { kDirection = kFirstStream, kContour, kEdges, kGrain, kBlackCuts = 10, kColorCuts = 20 };
 
 // Radius of the preset "deevad/brush"; pressure makes it 0.42 to 4.5 times as wide.
 constexpr float kGouge = 1.3f;
-constexpr float kAlongTheLight = 38.0f;  // degrees between the cuts and the way to the light
+constexpr float kAlongTheLight = 38.0f;  // degrees between the cuts and the direction of the light
 
 float PressureFor(float radius) {
   return radius < 0.44f * kGouge ? 0.0f : std::min((std::log(radius / kGouge) + 0.859f) / 2.36f, 1.0f);
@@ -63,7 +63,7 @@ class Block {
   void Cut(const Cuts& cuts) {
     Chance chance(studio_.seed, cuts.pass);
     const Flow flow = CutDirection(cuts.degrees, Hash(studio_.seed, kDirection));
-    // The gouge goes on past the rim, so that no stubs stay along it.
+    // The gouge continues past the rim, so that no stubs stay along it.
     const Touch room = [&](glm::vec2 at) {
       return RimDistance(at) < 1.14f && cuts.width(at) > 0.8f ? cuts.room(at) : 0.0f;
     };
@@ -83,7 +83,7 @@ class Block {
     }
   }
 
-  // Where the form ends the wood is left standing as a line: the eraser takes the cuts away again.
+  // The contour of the form is left standing as a line: the eraser removes the cuts there.
   void KeepContour() {
     Chance chance(studio_.seed, kContour);
     const Touch weight = [](glm::vec2 at) { return PressureFor(3.2f + 2.6f * DarknessAt(at)); };
@@ -94,8 +94,8 @@ class Block {
     gouge_.Set(MYPAINT_BRUSH_SETTING_ERASER, 0.0f);
   }
 
-  // What prints, 0 … 1, when the block lies `shift` units from its place: all that was not cut away, as far as the
-  // block is inked, with the burr of the wood's edges.
+  // The print, 0 … 1, of the block shifted by `shift` units: all uncut parts, as far as the block is inked, with the
+  // burr of the wood's edges.
   Field Inked(glm::vec2 shift, std::uint64_t stream) const {
     const Field cut = Plane(cuts_.Read(), 3);
     const float scale = static_cast<float>(cut.size) / kSide;
@@ -115,7 +115,7 @@ class Block {
   }
 
  private:
-  // The edges of a print are crisp, and smooth all the same.
+  // The edges of a print are crisp and smooth.
   static constexpr int kOversampling = 2;
 
   Brush& gouge_;
@@ -133,7 +133,7 @@ void ClearOpenLight(Block& block, std::uint64_t first_pass, float widest, const 
 Field PrintBlack(Brush& gouge, const Studio& studio) {
   Block block(gouge, studio);
   block.Cut({kBlackCuts, kAlongTheLight, Room, [](glm::vec2 at) { return 1.12f * Room(at) * Cleared(at); }});
-  // Light that comes back into the shade; a contour stays outside it.
+  // Reflected light in the shade; a contour stays outside it.
   const Touch reflected = [](glm::vec2 at) {
     return 9.5f * Ramp(0.20f, 0.9f, ShadingAt(at).reflected) * (1.0f - Cleared(at)) *
            Ramp(1.0f, 0.99f, RimDistance(at));
@@ -152,7 +152,7 @@ Field PrintColor(Brush& gouge, const Studio& studio) {
   return block.Inked(kOutOfRegister, Hash(studio.seed, kEdges, 1));
 }
 
-// How well the ink took: it skips along the veins of the wood and in hollows of the paper.
+// The transfer of the ink: it skips along the veins of the wood and in hollows of the paper.
 float Took(glm::vec2 at, float tooth, std::uint64_t stream) {
   const glm::vec2 vein(at.x / 90.0f + 0.3f * SmoothNoise(at / 120.0f, Hash(stream, 1)), (at.y + 0.12f * at.x) / 3.2f);
   const float grain = CloudNoise(vein, 2, Hash(stream, 2));

@@ -92,7 +92,7 @@ bool IsIndexType(int component_type) {
          component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-// One accessor of one file, and how to complain about it.
+// One accessor of one file, with its error messages.
 class Reader {
  public:
   Reader(const tinygltf::Model& model, const std::string& file, int index, const std::string& what)
@@ -132,7 +132,7 @@ class Reader {
     bool strided = false;  // by the view's own stride, if it has one
   };
 
-  // Where they are inside the view's buffer; sums and products are arranged so as not to overflow.
+  // Their place inside the view's buffer; sums and products cannot overflow.
   Expected<Block> Slice(const Extent& want) const {
     const std::size_t bytes = want.element_bytes;
     if (want.view < 0 || std::size_t(want.view) >= model_.bufferViews.size()) {
@@ -181,7 +181,7 @@ class Reader {
   }
 
  private:
-  // Checks everything that does not need the values.
+  // Checks everything but the values.
   Status OpenAny() {
     if (index_ < 0 || std::size_t(index_) >= model_.accessors.size()) {
       return Bad("does not exist, the file has " + std::to_string(model_.accessors.size()));

@@ -1,4 +1,4 @@
-// Reads glTF accessors, with every offset and count checked against the data that is really there.
+// Reads glTF accessors, with every offset and count checked against the data in the file.
 #pragma once
 
 #include <cstddef>
@@ -26,22 +26,22 @@ struct FloatTable {
 
 // Throughout, `file` and `what` ("mesh 'Cube', POSITION") are for the messages.
 
-// How many elements an accessor claims to have, once its index and its extent are known to be right.
+// The declared number of an accessor's elements, after its index and its extent have been checked.
 Expected<std::size_t> AccessorCount(const tinygltf::Model& model, const std::string& file, int accessor,
                                     const std::string& what);
 
-// An accessor without a buffer view is all zeros, but for what a sparse one puts in their place: it needs no byte of
-// the file, however many elements it has, and may be named any number of times. So its count has a limit, and what is
-// read of such accessors has one for all together.
+// An accessor without a buffer view is all zeros, except for the values of a sparse one. It needs no byte of the file,
+// however many elements it has, and may be named any number of times. So its count has a limit, and all readings of
+// such accessors share another.
 inline constexpr std::uint64_t kMaxZeroElements = 16'000'000;
 
-// Counts elements that no byte of the file stands for; a value of a sparse accessor stands for 16.
+// Counts elements without a byte in the file; a value of a sparse accessor counts for 16 of them.
 class ZeroBudget {
  public:
   explicit ZeroBudget(std::uint64_t limit) : limit_(limit) {}
 
-  // One more reading of an accessor, before it is read: kInput, naming the file, where it is one too many. Those that
-  // have data, or do not exist, take nothing.
+  // Takes one reading of an accessor from the budget, before it is read. Over the limit: kInput, naming the file. An
+  // accessor with data, or one that does not exist, takes nothing.
   Status Take(const tinygltf::Model& model, const std::string& file, int accessor);
 
  private:
@@ -49,14 +49,14 @@ class ZeroBudget {
   std::uint64_t taken_ = 0;
 };
 
-// Elements of a list that many readers share, in the order in which they were added. No call costs more for a longer
-// list, but for the first that reaches so far, so one choice serves reader after reader.
+// Elements of a list that many readers share, in the order in which they were added. Its cost depends on the elements
+// added, except for the first call that reaches further into the list: so one choice serves many readers.
 class ElementChoice {
  public:
   static constexpr std::uint32_t kNone = ~std::uint32_t(0);
 
   void Clear();
-  // Its place among the chosen ones; an element that is among them keeps the place that it has.
+  // Returns the element's place among the chosen ones; a chosen element keeps its place.
   std::uint32_t Add(std::uint32_t element);
   // kNone where it is not among them.
   std::uint32_t PlaceOf(std::size_t element) const { return element < places_.size() ? places_[element] : kNone; }
@@ -68,8 +68,8 @@ class ElementChoice {
 };
 
 // Scalars and vectors of any component type, strided, sparse, or without data (zeros). Matrices are refused. With a
-// choice, whose elements must all exist, the table has those alone, at their places; the values of a sparse accessor
-// are looked through all the same.
+// choice, whose elements must all exist, the table holds only those, at their places; all values of a sparse accessor
+// are still checked.
 Expected<FloatTable> ReadFloats(const tinygltf::Model& model, const std::string& file, int accessor,
                                 const std::string& what, const ElementChoice* choice = nullptr);
 

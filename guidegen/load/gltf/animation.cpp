@@ -10,13 +10,13 @@
 
 namespace scumble {
 
-// Each channel keeps its times and values, and any number of channels may name the same accessors. This refuses before
-// they are read.
+// Each channel keeps its times and values, and any number of channels may name one accessor. This budget refuses excess
+// before it is read.
 class KeyBudget {
  public:
-  // 200 joints that are moved, turned and scaled 30 times a second for 20 minutes have 43 million times and values.
+  // 200 joints with translation, rotation and scale 30 times a second for 20 minutes have 43 million times and values.
   static constexpr std::uint64_t kMaxElements = 64'000'000;
-  // Times have data, since they increase. What is known to stand still is left out, seldom written as zeros.
+  // Times have data, since they increase. Exporters omit constant values and seldom write them as zeros.
   static constexpr std::uint64_t kMaxZeros = 4'000'000;
 
   Status Take(const tinygltf::Model& model, const std::string& file, int accessor, const std::string& where) {
@@ -49,7 +49,7 @@ bool HasDirection(const double* v) {
   return length > 0.0 && std::isfinite(length);
 }
 
-// Reads one animation's channels; the members only save passing them on.
+// Reads one animation's channels; the members are shared arguments.
 class ChannelReader {
  public:
   ChannelReader(const tinygltf::Model& model, const std::string& file, int animation, KeyBudget& budget)
@@ -66,7 +66,7 @@ class ChannelReader {
     return InputError(file_ + ": " + where + " " + what + ": export it again");
   }
 
-  // `width` is the property's; 0 for morph weights, which are as many as the node's mesh has targets.
+  // `width` is the property's; 0 for morph weights, of which the node's mesh has one per target.
   Expected<KeyTrack> Read(std::size_t channel, int width) const {
     const std::string where = Where(channel);
     const int index = animation_.channels[channel].sampler;
@@ -159,7 +159,7 @@ std::vector<double> KeyTrack::At(double seconds, bool is_rotation) const {
   const bool cubic = interpolation == KeyInterpolation::kCubicSpline;
   const std::size_t n = std::size_t(width), stride = cubic ? 3 * n : n;
   const auto value = [&](std::size_t key) { return values.data() + key * stride + (cubic ? n : 0); };
-  // The key at or before the time; the first one where the time lies before them all, or is NaN.
+  // The key at or before the time; the first one if the time is before all keys, or NaN.
   const auto after = std::upper_bound(times.begin(), times.end(), seconds);
   const std::size_t key = after == times.begin() ? 0 : std::size_t(after - times.begin()) - 1;
   const double* v0 = value(key);

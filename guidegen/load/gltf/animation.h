@@ -1,6 +1,6 @@
-// glTF animation: what the samplers of the chosen animation say of a node at a time. glTF 2.0, section 3.11 and
-// appendix C: linear (rotations by slerp), step, cubic spline; before the first key and after the last one the value
-// stands still.
+// glTF animation: a node's properties at a time, by the samplers of the chosen animation. glTF 2.0, section 3.11 and
+// appendix C: linear (rotations by slerp), step, cubic spline. Before the first key and after the last one the value is
+// constant.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -20,7 +20,7 @@ namespace scumble {
 
 class KeyBudget;
 
-// A node's own placing, as glTF splits it: scaled, then rotated, then moved.
+// A node's own transform in glTF's parts: scale, then rotation, then translation.
 struct NodePose {
   glm::dvec3 translation{0.0};
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  // unit
@@ -45,10 +45,9 @@ struct KeyTrack {
 // Immutable once read; free to use from any thread.
 class GltfAnimation {
  public:
-  // Chooses by name: "" is the file's first, "*" all of them at once (Blender may write one for each object). A name
-  // that the file lacks is a kUsage error that lists those there are. Keys that are not finite or do not increase,
-  // accessors whose counts do not fit, and more keys in all than any animation has, are kInput errors that name
-  // animation, channel and place.
+  // Chooses by name: "" is the file's first, "*" all of them at once (Blender may write one for each object). An
+  // unknown name is a kUsage error that lists those of the file. kInput errors name animation, channel and place: keys
+  // that are not finite or do not increase, counts of accessors that do not fit, and more keys than the limit.
   static Expected<GltfAnimation> Read(const tinygltf::Model& model, const std::string& file, const std::string& name,
                                       WarningCounter& warnings);
 
@@ -57,7 +56,7 @@ class GltfAnimation {
 
   bool Moves(int node) const;
   bool Morphs(int node) const;
-  // Overwrites what the animation says; the rest of `pose` stays.
+  // Overwrites the animated properties of `pose` only.
   void Pose(int node, double seconds, NodePose& pose) const;
   std::vector<double> MorphWeights(int node, double seconds) const;  // of a node that Morphs
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLumensPerWatt = 683.0;
 
-// By KHR_lights_punctual, without its place.
+// Reads KHR_lights_punctual, without the light's place.
 Expected<Light> ReadPunctualLight(const tinygltf::Model& model, const std::string& file, const RigNode& visit,
                                   int index, WarningCounter& warnings) {
   const auto bad = [&](const std::string& what) {
@@ -49,7 +49,7 @@ Expected<Light> ReadPunctualLight(const tinygltf::Model& model, const std::strin
   return light;
 }
 
-// Puts a light at its node, whose name it takes if there is one.
+// Places a light at its node, whose name it takes if there is one.
 Expected<Light> PlaceLight(const tinygltf::Model& model, const std::string& file, const RigNode& visit, Light light) {
   const std::string& name = model.nodes[std::size_t(visit.node)].name;
   if (!name.empty()) light.name = name;

@@ -15,8 +15,8 @@ class Model;
 
 namespace scumble {
 
-// The camera of a node that has one, by the node's name if there is one. What makes no picture is a kInput error that
-// names the node.
+// The camera of a node that has one, by the node's name if there is one. A camera without a picture is a kInput error
+// that names the node.
 Expected<Camera> ReadCamera(const tinygltf::Model& model, const std::string& file, const RigNode& node);
 
 // The light of a node: the one that its extras describe, or else that of KHR_lights_punctual; nothing where it has

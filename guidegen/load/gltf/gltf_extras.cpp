@@ -23,7 +23,7 @@ const tinygltf::Value* Find(const tinygltf::Value& extras, const std::string& ke
   return ours.IsObject() && ours.Has(key) ? &ours.Get(key) : nullptr;
 }
 
-// Takes values out of one object and keeps the first complaint, so that a reader states what it wants line by line.
+// Takes values out of one object and keeps the first error, so that a reader lists its values line by line.
 class Fields {
  public:
   Fields(const tinygltf::Value& object, std::string where) : object_(object), where_(std::move(where)) {
@@ -86,7 +86,7 @@ void ReadSpot(Fields& fields, Light& light) {
   light.inner_cone_degrees = light.outer_cone_degrees * (1.0 - light.spot_blend);
 }
 
-// False where the light has no area, and so gives none.
+// False if the light has no area, and so emits nothing.
 bool ReadArea(Fields& fields, Light& light, double energy) {
   const std::string shape = fields.Text("shape");
   light.ellipse = shape == "DISK" || shape == "ELLIPSE";
@@ -135,7 +135,7 @@ Status ReadBsdf(const tinygltf::Value& value, const std::string& where, Material
 
 constexpr const char* kStyleProperty = "scumble_style";
 
-// A style as our exporter writes it, or the custom property itself, which Blender's own exporter and others keep.
+// A style from our exporter, or the custom property itself, which Blender's own exporter and others keep.
 Expected<std::string> ReadStyle(const tinygltf::Value& extras, const std::string& where) {
   if (Find(extras, "style")) {
     Fields fields(extras.Get("scumble"), where);

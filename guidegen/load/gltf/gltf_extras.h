@@ -1,7 +1,7 @@
-// What blender_scripts/export_scene.py writes into the `extras` of a glTF file, key "scumble", because glTF has no
-// words for it: Cycles' lamps, shifted cameras, Blender's pure shaders, the world's colour, objects' styles. Where
-// extras and glTF both speak, the extras win. Files without them are not touched. Values of a wrong type or range are a
-// kInput error that names the place.
+// Data that blender_scripts/export_scene.py writes into the `extras` of a glTF file, key "scumble", because glTF lacks
+// it: Cycles' lights, shifted cameras, Blender's pure shaders, the world's colour, objects' styles. Extras override
+// glTF's own values. Files without extras are not changed. Values of a wrong type or range are a kInput error that
+// names the place.
 #pragma once
 
 #include <numbers>
@@ -25,18 +25,18 @@ inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 // Completes scene.materials, which holds the model's materials in their order.
 Status ReadMaterialExtras(const tinygltf::Model& model, const std::string& file, Scene& scene);
 
-// The world's radiance of the model's scene of that index, and what its export could not express, as warnings. An index
-// that does not exist is no error.
+// The world's radiance of the model's scene of that index, and warnings for losses in its export. An index that does
+// not exist is no error.
 Status ReadSceneExtras(const tinygltf::Model& model, int scene_index, const std::string& file, Scene& scene);
 
-// The light that a node's extras describe, in watts as Cycles 3.4 means them: point and spot I = P/(4π), sun W/m², area
-// L = P/(4A). Name and place are the caller's. Nothing where the node has no such extras. `where` is for the messages.
+// The light that a node's extras describe, in watts as in Cycles 3.4: point and spot I = P/(4π), sun W/m², area L =
+// P/(4A). The caller sets name and place. Empty if the node has no such extras. `where` is for the messages.
 Expected<std::optional<Light>> ReadLightExtras(const tinygltf::Node& node, const std::string& where);
 
-// Completes an instance by the style and pass index that its node's extras name.
+// Completes an instance by the style and pass index in its node's extras.
 Status ReadObjectExtras(const tinygltf::Node& node, const std::string& where, Instance& instance);
 
-// Completes a camera by what its node's extras say of sensor fit, angle and shift.
+// Completes a camera by the sensor fit, angle and shift in its node's extras.
 Status ReadCameraExtras(const tinygltf::Node& node, const std::string& where, Camera& camera);
 
 }  // namespace scumble

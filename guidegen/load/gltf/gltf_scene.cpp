@@ -21,17 +21,17 @@
 namespace scumble {
 namespace {
 
-// Morph targets are what exporters write without data: 100 that do nothing to the positions and normals of 100,000
-// vertices are 20 million.
+// Exporters write morph targets without data: 100 targets that do not change the positions and normals of 100,000
+// vertices have 20 million elements.
 constexpr std::uint64_t kMaxZerosOfTargets = 4 * kMaxZeroElements;
-// Counted for each node. 100,000 meshes of 150 targets with three attributes have 60 million; the vertices of all those
-// targets come to more than their own limit long before.
+// Counted for each node. 100,000 meshes of 150 targets with three attributes have 60 million; the vertices of so many
+// targets reach their own limit long before.
 constexpr std::uint64_t kMaxParts = 64'000'000;
-// Skins have as many inverse bind matrices as joints; more are allowed, and not looked at.
+// A skin needs as many inverse bind matrices as joints; further ones are allowed, and ignored.
 constexpr std::size_t kMaxSpareMatrices = 1024;
 
-// Extensions that a file may require: those read here, in part if need be, and those that change only shading that no
-// guide holds.
+// Extensions that a file may require: those read here, at least in part, and those that change only shading outside the
+// guides.
 bool IsKnownExtension(std::string_view name) {
   constexpr std::string_view kKnown[] = {"KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization",
                                          "EXT_texture_webp"};
@@ -43,7 +43,7 @@ bool IsKnownExtension(std::string_view name) {
 
 class GltfLoader {
  public:
-  // `animation` as in AnimationOptions; without one the scene is seen at rest.
+  // `animation` as in AnimationOptions; without one the scene is at rest.
   GltfLoader(std::string file, std::optional<std::string> animation)
       : file_(std::move(file)), animation_(std::move(animation)) {}
 
@@ -86,8 +86,8 @@ class GltfLoader {
                       "meshopt: switch compression off)");
   }
 
-  // A default of the file's own may stand anywhere in its list: looked for anew for each primitive without a material,
-  // that would take the square of what the file holds. One that is made stands at the end, and is found at once.
+  // A file's own default may be anywhere in its list, and searching for it with each primitive without a material would
+  // take quadratic time. One that we make is at the end, and is found at once.
   void ShareDefaultMaterial() {
     const int shared = FindDefaultMaterial(scene_);
     if (shared < 0) return;
@@ -130,7 +130,7 @@ class GltfLoader {
     if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
       warnings_.Add("EXT_mesh_gpu_instancing is ignored, such a mesh is seen once", Label(visit.node));
     }
-    // A skeleton places its mesh anew, and an animation may give it back what flattens it at rest.
+    // A skeleton places its mesh anew, and an animation may restore a mesh that is flat at rest.
     if (Flattens(visit.world) && !visit.moves && node.skin < 0) {
       warnings_.Add("objects that their transform flattens are left out", Label(visit.node));
       return Ok();
@@ -165,14 +165,14 @@ class GltfLoader {
                       ": simplify the scene");
   }
 
-  // Each node has a weight for each target of its mesh, also where that does nothing.
+  // Takes one weight from the budget for each target of a node's mesh, also for targets without effect.
   Status TakeTargets(int mesh) {
     const std::vector<tinygltf::Primitive>& primitives = model_.meshes[std::size_t(mesh)].primitives;
     return primitives.empty() ? Ok() : TakeParts(primitives[0].targets.size());
   }
 
-  // Before a mesh is read for one more node, which has it for itself: its primitives, those among them that will be
-  // left out, and what each consists of, however empty that is. It is all looked through for each node.
+  // Takes a mesh from the budget before it is read for one more node, which gets a copy: its primitives, also those
+  // that will be left out, and their attributes, also empty ones. All are visited for each node.
   Status TakeDeformed(int mesh, bool with_targets) {
     for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
       SCUMBLE_RETURN_IF_ERROR(budget_.TakeInstance(file_, Mesh(), true));
@@ -185,8 +185,8 @@ class GltfLoader {
     return Ok();
   }
 
-  // Before a mesh is read, what it has of elements without data: all its primitives', and their morph targets' where
-  // those are read too.
+  // Takes a mesh's elements without data from the budget before it is read: those of all its primitives, and of their
+  // morph targets where those are read too.
   Status TakeZeros(int mesh, bool with_targets) {
     for (const tinygltf::Primitive& primitive : model_.meshes[std::size_t(mesh)].primitives) {
       SCUMBLE_RETURN_IF_ERROR(zeros_.Take(model_, file_, primitive.indices));
@@ -250,7 +250,7 @@ class GltfLoader {
     return Ok();
   }
 
-  // The skin's place in the rig. Skins are few, and each is read once.
+  // The skin's index in the rig. Skins are few, and each is read once.
   Expected<int> LoadSkin(int index) {
     const auto [known, is_new] = loaded_skins_.try_emplace(index, static_cast<int>(rig_.skins.size()));
     if (!is_new) return known->second;
@@ -270,9 +270,9 @@ class GltfLoader {
     return known->second;
   }
 
-  // Before they are read: skins may share one list of any length.
+  // Checked before they are read: skins may share one list of any length.
   Status CheckInverseBinds(int index) const {
-    if (index < 0 || std::size_t(index) >= model_.skins.size()) return Ok();  // ReadSkin says so
+    if (index < 0 || std::size_t(index) >= model_.skins.size()) return Ok();  // ReadSkin reports it
     const tinygltf::Skin& skin = model_.skins[std::size_t(index)];
     const int accessor = skin.inverseBindMatrices;
     if (accessor < 0 || std::size_t(accessor) >= model_.accessors.size()) return Ok();

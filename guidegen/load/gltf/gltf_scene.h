@@ -1,16 +1,16 @@
 // glTF 2.0 scenes, binary (.glb) and text (.gltf), by tinygltf. Use LoadScene (guidegen/load/load_scene.h), which also
-// sees to what all formats have in common.
+// does the work common to all formats.
 //
 // Read: the default scene's node hierarchy; triangles, strips and fans; every component type, sparse accessors and
 // strides; base colour, its texture, vertex colours, normal maps, alpha modes; both kinds of camera;
 // KHR_lights_punctual, KHR_texture_transform, KHR_mesh_quantization; skins, morph targets and animations;
 // KHR_materials_pbrSpecularGlossiness in part, with a warning. Ignored with
-// a warning: points, lines, the range of lights (Blender's lamps have none). A file that *requires* another extension
+// a warning: points, lines, the range of lights (Blender's lights have none). A file that *requires* another extension
 // is refused by the extension's name.
 //
 // An object is named after its node. Where several nodes have one name, the first in the file's list keeps it and the
-// others take their path, "Parent/Name", then "Parent/Name#2", …: what is added behind them renames nobody. Names that
-// would come to more than 512 MiB, counted wherever one is kept, are refused.
+// others take their path, "Parent/Name", then "Parent/Name#2", …: the additions rename no other object. Names of more
+// than 512 MiB in total, counted for each copy, are refused.
 #pragma once
 
 #include <filesystem>

@@ -28,7 +28,7 @@ TextureWrap WrapFromGltf(int wrap) {
   return TextureWrap::kRepeat;
 }
 
-// A list of numbers inside an extension, or nothing where it is absent, too short or not finite.
+// A list of numbers inside an extension; empty if it is absent, too short or not finite.
 std::optional<std::vector<double>> Numbers(const tinygltf::Value& object, const std::string& key, std::size_t count) {
   if (!object.Has(key)) return std::nullopt;
   const tinygltf::Value& list = object.Get(key);
@@ -42,8 +42,8 @@ std::optional<std::vector<double>> Numbers(const tinygltf::Value& object, const 
   return numbers;
 }
 
-// KHR_texture_transform. The rotation is counter-clockwise for someone who looks at the picture, where v points down:
-// what Blender, Babylon and three.js do, while the matrix printed in the extension's text turns the other way.
+// KHR_texture_transform. The rotation is counter-clockwise for a viewer of the picture, where v points down. Blender,
+// Babylon and three.js do that, while the matrix printed in the extension's text turns clockwise.
 glm::mat3 UvTransform(const tinygltf::Value& extension) {
   const auto offset = Numbers(extension, "offset", 2);
   const auto scale = Numbers(extension, "scale", 2);
@@ -61,7 +61,7 @@ glm::mat3 UvTransform(const tinygltf::Value& extension) {
   return glm::mat3(matrix);
 }
 
-// The ending that fits a picture's first bytes, or nothing: glTF knows PNG, JPEG and, by extension, WebP. Neither the
+// The file ending for a picture's first bytes, or empty. glTF allows PNG, JPEG and, by extension, WebP. Neither the
 // file's mimeType nor its uri can be relied on.
 std::optional<std::string> EndingOf(std::span<const unsigned char> bytes) {
   const auto starts_with = [&](std::size_t at, std::string_view magic) {
@@ -75,14 +75,14 @@ std::optional<std::string> EndingOf(std::span<const unsigned char> bytes) {
 
 using SharedBytes = std::shared_ptr<const std::vector<unsigned char>>;
 
-// A picture of the file, as its decoding needs it when the file is closed.
+// A picture of the file, with everything that its decoding needs after the file is closed.
 struct EncodedPicture {
   std::string file;   // the scene's
   std::string label;  // of the picture, and of a material that uses it
   std::string owner;
   int number = 0;
   SharedBytes bytes;             // null: none are kept
-  std::filesystem::path beside;  // the file that has them instead; empty: none
+  std::filesystem::path beside;  // the file that holds them instead; empty: none
 };
 
 // Reads it with a function of its bytes and of a name for messages.
@@ -104,14 +104,14 @@ auto ReadWith(const EncodedPicture& encoded, const Read& read) -> decltype(read(
     return InputError(encoded.file + ": " + encoded.label + ", used by " + encoded.owner +
                       ", is neither PNG, JPEG nor WebP: export it again");
   }
-  // The decoder goes by the ending of the name.
+  // The decoder is chosen by the ending of the name.
   const std::string name = encoded.file + ": image " + std::to_string(encoded.number) + *ending;
   auto result = read(std::as_bytes(bytes), name);
   if (!result) return Error{result.error().kind, result.error().message + " (" + encoded.label + ")"};
   return result;
 }
 
-// Keeps each picture once, to be decoded later, and gives the indices of Scene::textures.
+// Keeps each picture once, to be decoded later, and returns indices of Scene::textures.
 class TextureLoader {
  public:
   TextureLoader(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings)
@@ -151,8 +151,8 @@ class TextureLoader {
   }
 
  private:
-  // Any number of images may name one buffer view, and any number of views one part of a buffer: that is kept once.
-  // Pictures that do not lie on each other fit into the buffers together.
+  // Any number of images may name one buffer view, and any number of views one part of a buffer: that part is kept
+  // once. Pictures that do not overlap fit into the buffers together.
   Expected<SharedBytes> BytesOf(int view, const std::string& label) {
     SCUMBLE_ASSIGN(const auto bytes, ReadBufferView(model_, file_, view, label));
     SharedBytes& kept = kept_[{bytes.data(), bytes.size()}];
@@ -215,10 +215,10 @@ class TextureLoader {
   WarningCounter& warnings_;
   std::map<int, int> loaded_;
   std::map<std::pair<const unsigned char*, std::size_t>, SharedBytes> kept_;  // by their place in the model
-  std::uint64_t room_ = 0;  // bytes of the buffers that no picture was found in yet
+  std::uint64_t room_ = 0;  // bytes of the buffers that no picture has used yet
 };
 
-// A factor that the format confines to 0 … 1.
+// A factor that the format limits to 0 … 1.
 Expected<float> UnitFactor(double value, const char* what, const std::string& where) {
   if (value >= 0.0 && value <= 1.0) return float(value);
   return InputError(where + " has the " + what + " factor " + std::to_string(value) + "; expected 0 … 1");
@@ -235,8 +235,8 @@ tinygltf::TextureInfo TextureInExtension(const tinygltf::Value& from) {
   return info;
 }
 
-// KHR_materials_pbrSpecularGlossiness, the model before metalness, as far as the present one can say it. Its metals
-// have a black diffuse colour and are their specular one, which has no place here.
+// Converts KHR_materials_pbrSpecularGlossiness, the older model, to metallic-roughness as far as possible. Its metals
+// have a black diffuse colour and a specular one, which is lost here.
 Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::Value& extension,
                                                                 const std::string& where) {
   tinygltf::PbrMetallicRoughness pbr;
@@ -247,7 +247,7 @@ Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::
     pbr.baseColorFactor = *factor;
   }
   if (extension.Has("diffuseTexture")) pbr.baseColorTexture = TextureInExtension(extension.Get("diffuseTexture"));
-  // With a texture the factor is only the most that it may reach, a mirror if nothing else is said.
+  // With a texture the factor is only the maximum, by default a mirror.
   if (extension.Has("specularGlossinessTexture")) return pbr;
   double glossiness = 1.0;
   if (extension.Has("glossinessFactor")) {
@@ -259,8 +259,8 @@ Expected<tinygltf::PbrMetallicRoughness> FromSpecularGlossiness(const tinygltf::
   return pbr;
 }
 
-// What exporters write beside that extension is for programs without it, and knows metals: it goes first if it has a
-// colour.
+// The material that exporters write beside that extension is for programs without it, and can be metallic: it is
+// preferred if it has a colour.
 Expected<tinygltf::PbrMetallicRoughness> MetallicRoughness(const tinygltf::Material& from, const std::string& file,
                                                            const std::string& owner, WarningCounter& warnings) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
@@ -284,7 +284,7 @@ Expected<double> EmissiveStrength(const tinygltf::Material& from, const std::str
   return InputError(where + " has an emissive strength that is not a number of 0 or more; export it again");
 }
 
-// How the material answers light: metalness and roughness, and what it emits.
+// The material's response to light: metalness and roughness, and its emission.
 Status LoadLighting(const tinygltf::Material& from, const std::string& file, const std::string& owner,
                     TextureLoader& textures, Material& material) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;

@@ -14,12 +14,12 @@ class Model;
 
 namespace scumble {
 
-// Appends every material of the file to scene.materials, in the file's order, and keeps the pictures that their base
-// colours, normal maps, roughness, metalness and emission use (others are never looked at) as encoded textures. That
-// one is missing or cannot be decoded is an error which names it, once it is to be decoded. A material that has no
-// colour but that of KHR_materials_pbrSpecularGlossiness is not metallic and takes its diffuse colour and texture and
-// its glossiness, with a warning of what is lost. Images in one part of a buffer share its bytes; that they lie on each
-// other otherwise, more than the buffers hold, is an error now.
+// Appends every material of the file to scene.materials, in the file's order. Keeps the pictures of their base colours,
+// normal maps, roughness, metalness and emission as encoded textures; other pictures are ignored. A picture that is
+// missing or damaged is an error that names it, when it is decoded. A material whose only colour is that of
+// KHR_materials_pbrSpecularGlossiness becomes non-metallic, with its diffuse colour and texture and its glossiness; a
+// warning names the loss. Images in one part of a buffer share its bytes. Other overlaps, that exceed the buffers'
+// size, are an error at once.
 Status LoadGltfMaterials(const tinygltf::Model& model, const std::string& file, Scene& scene, WarningCounter& warnings);
 
 }  // namespace scumble

@@ -18,14 +18,14 @@ std::uint64_t TriangleCount(int mode, std::uint64_t corners) {
   return corners < 3 ? 0 : corners - 2;
 }
 
-// Corner numbers of triangle i of a list, strip or fan; odd triangles of a strip are turned round.
+// Corner numbers of triangle i of a list, strip or fan; odd triangles of a strip are reversed.
 glm::uvec3 TriangleCorners(int mode, std::uint32_t i) {
   if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) return {i, i + 1 + i % 2, i + 2 - i % 2};
   if (mode == TINYGLTF_MODE_TRIANGLE_FAN) return {i + 1, i + 2, 0};
   return {3 * i, 3 * i + 1, 3 * i + 2};
 }
 
-// Loads one primitive; the members only save passing them on.
+// Loads one primitive; the members are shared arguments.
 class PrimitiveLoader {
  public:
   PrimitiveLoader(const GltfLoad& load, const tinygltf::Primitive& primitive, std::string name,
@@ -43,7 +43,7 @@ class PrimitiveLoader {
   // After Load, where one was requested.
   MeshDeformation TakeDeformation() { return std::move(deformation_); }
 
-  // Nothing for primitives that are left out.
+  // Empty for primitives that are left out.
   Expected<std::optional<Mesh>> Load() {
     if (primitive_.mode < TINYGLTF_MODE_TRIANGLES || primitive_.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
       warnings_.Add("points and lines are left out, only triangles are seen", name_);
@@ -93,8 +93,9 @@ class PrimitiveLoader {
     return it == primitive_.attributes.end() ? -1 : it->second;
   }
 
-  // Exporters share one long vertex list between many primitives: of such a list only what the triangles use is read,
-  // in the order of its first use, and they are renumbered to it. Reading all of it for each would take their product.
+  // Exporters share one long vertex list between many primitives. Only the vertices that the triangles use are read, in
+  // the order of first use, and the triangles are renumbered. Reading the whole list for each primitive would take
+  // quadratic time.
   void ChooseVertices() {
     shared_choice_.Clear();
     for (glm::uvec3& triangle : mesh_.triangles) {
@@ -103,10 +104,10 @@ class PrimitiveLoader {
     choice_ = &shared_choice_;
   }
 
-  // A vertex of the mesh as the file counts it.
+  // A vertex's number in the file.
   std::size_t NumberInFile(std::size_t vertex) const { return choice_ ? choice_->elements()[vertex] : vertex; }
 
-  // Of all accessors that may be read. Where vertices are chosen, these are still looked through, and count as
+  // Values of all accessors that may be read. Where vertices are chosen, these are still visited, and count as
   // vertices.
   std::uint64_t SparseValues() const {
     std::uint64_t values = 0;
@@ -124,7 +125,7 @@ class PrimitiveLoader {
     return values;
   }
 
-  // The mesh's vertices of an accessor, which must have one for each of the file's.
+  // The mesh's vertices of an accessor, which must have an element for each vertex of the file.
   Expected<FloatTable> ReadVertices(int accessor, const std::string& attribute) {
     const std::string what = name_ + ", " + attribute;
     SCUMBLE_ASSIGN(const std::size_t count, AccessorCount(model_, file_, accessor, what));
@@ -172,7 +173,7 @@ class PrimitiveLoader {
     return Ok();
   }
 
-  // Reads an attribute, if the primitive has it, and hands put(vertex, values) each row.
+  // Reads an attribute, if the primitive has it, and passes each row to put(vertex, values).
   template <class Put>
   Status ReadAttribute(const std::string& attribute, int min_components, int max_components, Put put) {
     const int accessor = Accessor(attribute);
@@ -234,7 +235,7 @@ class PrimitiveLoader {
       const auto read = [&](const std::string& attribute, std::vector<glm::vec3>& deltas) -> Status {
         const auto it = primitive_.targets[i].find(attribute);
         if (it == primitive_.targets[i].end()) return Ok();
-        // What targets hold counts as geometry: a sparse accessor asks for any amount of it with a few bytes.
+        // Values of targets count as geometry: a sparse accessor declares any number of them with a few bytes.
         SCUMBLE_RETURN_IF_ERROR(budget_.Take(file_, vertices, 0));
         deltas.resize(vertices);
         std::size_t broken = vertices;
@@ -294,7 +295,7 @@ class PrimitiveLoader {
         const std::size_t at = v * influences + 4 * std::size_t(set) + i;
         const bool exists = j[i] >= 0.0f && j[i] < float(std::min<std::size_t>(request_->joints, 65536));
         deformation_.joints[at] = exists ? static_cast<std::uint16_t>(j[i]) : std::uint16_t(0);
-        // What weighs nothing may name anything: some exporters leave it undefined.
+        // A joint of weight 0 may be invalid: some exporters leave it undefined.
         if (!exists && deformation_.weights[at] > 0.0f) {
           complain(joints, v, "joint " + std::to_string(j[i]) + " of " + std::to_string(request_->joints));
         }
@@ -342,7 +343,7 @@ class PrimitiveLoader {
     return true;
   }
 
-  // Keeps tangents only where a normal map needs them; computes them where the file gives none that can be used.
+  // Keeps tangents only where a normal map needs them; computes them where the file gives none that are usable.
   void PrepareTangents(const Material& material) {
     const TextureUse& use = material.normal_texture;
     if (use.texture < 0) {
@@ -372,7 +373,7 @@ class PrimitiveLoader {
   const std::string name_;
   const DeformationRequest* request_;
   ElementChoice& shared_choice_;
-  const ElementChoice* choice_ = nullptr;  // which of the file's vertices the mesh has; null: all
+  const ElementChoice* choice_ = nullptr;  // the chosen vertices of the file; null: all
   std::size_t vertices_ = 0;               // in the file
   Mesh mesh_;
   MeshDeformation deformation_;

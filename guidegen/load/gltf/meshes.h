@@ -16,7 +16,7 @@ class Model;
 
 namespace scumble {
 
-// What the parts of one file's loader share; all of it is the caller's.
+// State that the parts of one file's loader share; all of it is the caller's.
 struct GltfLoad {
   const tinygltf::Model& model;
   const std::string& file;  // for the messages
@@ -31,7 +31,7 @@ struct GltfLoad {
 // export writes, becomes rest_positions. scene.materials must hold the file's.
 Expected<std::vector<int>> LoadGltfMesh(const GltfLoad& load, int mesh_index);
 
-// A mesh that is to be deformed. Its scene.meshes have rest_positions.
+// A mesh to be deformed. Its scene.meshes have rest_positions.
 struct DeformationRequest {
   std::size_t joints = 0;   // of its skin; 0: it has none
   std::size_t targets = 0;  // how many weights there are; 0: morph targets are not read
@@ -40,8 +40,8 @@ struct DeformableMesh {
   int mesh = 0;  // in scene.meshes
   MeshDeformation deformation;
 };
-// Counts that differ, joints that do not exist and numbers that are not finite are kInput errors naming mesh and place.
-// A primitive without JOINTS_0 and WEIGHTS_0 has no influences.
+// kInput errors, naming mesh and place: counts that differ, joints that do not exist, numbers that are not finite. A
+// primitive without JOINTS_0 and WEIGHTS_0 has no influences.
 Expected<std::vector<DeformableMesh>> LoadDeformableMesh(const GltfLoad& load, int mesh_index,
                                                          const DeformationRequest& request);
 

@@ -15,7 +15,8 @@ namespace scumble {
 namespace {
 
 constexpr int kMaxNodeDepth = 1024;
-// Of objects, cameras and lights, wherever one is kept: as many instances as there may be, with names of 500 bytes.
+// Bytes of names of objects, cameras and lights, for each copy: as many as the largest number of instances with names
+// of 500 bytes.
 constexpr std::uint64_t kMaxNameBytes = std::uint64_t(1) << 29;
 
 std::string NodeName(const tinygltf::Model& model, int node) {
@@ -63,7 +64,7 @@ class NodeReader {
     return scene.nodes;
   }
 
-  // Depth first, in the file's order, without recursion: the depth is the file's to choose.
+  // Depth first, in the file's order, without recursion: the file sets the depth.
   Status WalkNodes(const std::vector<int>& roots) {
     std::vector<bool> seen(model_.nodes.size(), false);
     std::vector<RigNode> stack;
@@ -138,7 +139,7 @@ class NodeReader {
     return local;
   }
 
-  // Of a node without a matrix that LocalTransform has accepted.
+  // The pose of a node without a matrix that LocalTransform has accepted.
   NodePose RestPose(int index) const {
     const tinygltf::Node& node = model_.nodes[std::size_t(index)];
     NodePose pose;
@@ -165,8 +166,8 @@ class ObjectNamer {
   ObjectNamer(const tinygltf::Model& model, const std::string& file, const std::vector<RigNode>& nodes)
       : model_(model), file_(file), nodes_(nodes) {}
 
-  // Ids are hashes of names, so objects of one name would be one object. The first node of a name, by its place in the
-  // file's list, keeps it whatever comes later; the others take their whole path.
+  // Ids are hashes of names, so objects of one name would be one object. The first node of a name in the file's list
+  // keeps it; the others take their whole path.
   Expected<std::vector<std::string>> NameAll() const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -202,9 +203,9 @@ class ObjectNamer {
     return path;
   }
 
-  // A name is in the file once and kept many times: with each primitive of a mesh, in the path of each node below, by
-  // each node that shows one camera or light. So names are counted before the paths are made, which nodes `with_path`
-  // get.
+  // A name is in the file once and kept many times: with each primitive of a mesh, in the path of each node below, with
+  // each node of one camera or light. So the lengths of names are summed before the paths are made, which nodes
+  // `with_path` get.
   Status CheckNames(const std::vector<std::size_t>& with_path) const {
     std::vector<bool> has_path(nodes_.size(), false);
     for (std::size_t i : with_path) has_path[i] = true;

@@ -16,20 +16,20 @@ class Node;
 
 namespace scumble {
 
-// For messages: its number, and its name where it has one.
+// For messages: the node's number, and its name where it has one.
 std::string NodeLabel(const tinygltf::Model& model, int node);
 
 // The light that KHR_lights_punctual gives a node.
 std::optional<int> LightOf(const tinygltf::Node& node);
 
-// The nodes that the file's own scene reaches, depth first in the file's order, as they stand without the animation;
-// what the animation moves is marked. A node that does not exist or is reached twice, nesting beyond 1024 levels, and a
-// transform that is none are kInput errors that name the node.
+// The nodes that the file's own scene reaches, depth first in the file's order, with their transforms without the
+// animation; animated ones are marked. kInput errors that name the node: one that does not exist or is reached twice,
+// nesting beyond 1024 levels, and an invalid transform.
 Expected<std::vector<RigNode>> ReadNodes(const tinygltf::Model& model, const std::string& file,
                                          const GltfAnimation& animation, WarningCounter& warnings);
 
-// The names of the objects at those nodes, each another one; empty where a node has no mesh. Names that come to more
-// than any scene has are a kInput error.
+// The names of the objects at those nodes, all different; empty where a node has no mesh. Names beyond the limit in
+// total are a kInput error.
 Expected<std::vector<std::string>> NameObjects(const tinygltf::Model& model, const std::string& file,
                                                const std::vector<RigNode>& nodes);
 

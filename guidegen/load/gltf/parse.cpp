@@ -19,8 +19,8 @@ namespace {
 
 // tinygltf walks and frees extras by recursion; real files nest a dozen levels.
 constexpr int kMaxJsonDepth = 200;
-// Of files that several buffers name. Exporters write one for each: as tinygltf wants a buffer to be as long as its
-// file, others would only hold the same bytes again.
+// Bytes of files that several buffers name. Exporters write one file for each buffer: tinygltf requires a buffer to be
+// as long as its file, so further buffers would only hold equal bytes.
 constexpr std::uintmax_t kMaxBytesAgain = std::uintmax_t(1) << 26;
 constexpr std::size_t kGlbHeaderBytes = 12;
 constexpr std::size_t kChunkHeaderBytes = 8;
@@ -35,7 +35,7 @@ bool IsGlb(std::span<const unsigned char> bytes) {
   return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
 }
 
-// Where the JSON of a .glb is. Every chunk must lie inside the file: tinygltf reads up to eight bytes beyond one that
+// The place of a .glb's JSON. Every chunk must lie inside the file: tinygltf reads up to eight bytes beyond one that
 // does not.
 Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::span<const unsigned char> bytes) {
   const auto bad = [&](const std::string& reason) {
@@ -66,9 +66,9 @@ Expected<std::span<const unsigned char>> GlbJson(const std::string& file, std::s
   return json;
 }
 
-// Lists of the top level whose elements tinygltf makes far larger than they may be spelled, as `{}` or little more: 2
-// KB for a material, half a KB for a node. Of what a file may show, a million instances, none needs so many. Accessors
-// and buffer views cannot be spelled so shortly, and there are several for each mesh.
+// Top-level lists whose elements tinygltf makes far larger than their text, which may be `{}`: 2 KB for a material,
+// half a KB for a node. A file's limit of a million instances needs fewer. Accessors and buffer views cannot be written
+// so shortly, and there are several for each mesh.
 struct ListLimit {
   std::string_view list;
   std::size_t most;
@@ -78,22 +78,22 @@ constexpr ListLimit kListLimits[] = {
     {"nodes", 2'000'000},      {"meshes", 2'000'000},        {"materials", kMostElements}, {"textures", kMostElements},
     {"images", kMostElements}, {"samplers", kMostElements},  {"scenes", kMostElements},    {"cameras", kMostElements},
     {"skins", kMostElements},  {"animations", kMostElements}};
-// Each value inside extras and extensions takes tinygltf 150 bytes: 2 are enough to spell it. A million nodes with ten
+// tinygltf takes 150 bytes for each value inside extras and extensions, whose text may have 2. A million nodes with ten
 // of Blender's custom properties each have 10 million.
 constexpr std::uint64_t kMaxFreeValues = 16'000'000;
 
-// What a cheap look ahead of the parser proper finds in the JSON.
+// The result of a cheap scan of the JSON before it is parsed.
 struct JsonOutline {
   int depth = 0;                  // of the deepest brackets
-  int buffers_without_uri = 0;    // or with one that is empty or no text, which tinygltf takes for none
-  std::string_view long_list;     // one of the top level that has more elements than it may; empty: none
-  std::size_t elements = 0;       // which it has,
-  std::size_t most = 0;           // and may have
+  int buffers_without_uri = 0;    // or with an empty one or one that is no text, which tinygltf treats as none
+  std::string_view long_list;     // a top-level list that exceeds its limit; empty: none
+  std::size_t elements = 0;       // its number of elements
+  std::size_t most = 0;           // and its limit
   std::uint64_t free_values = 0;  // inside extras and extensions, as often as tinygltf copies them
 };
 
-// Keys are compared as they are spelled. One with an escape may be any, so it counts for the worst: no exporter writes
-// such.
+// Keys are compared as they are written. A key with an escape may be any key, so it counts as the worst case: no
+// exporter writes such keys.
 class Outliner {
  public:
   JsonOutline Read(std::string_view json) {
@@ -188,13 +188,13 @@ class Outliner {
   JsonOutline outline_;
   int depth_ = 0;
   std::string_view text_;  // the last string
-  bool escaped_ = false;   // has it an escape?
+  bool escaped_ = false;   // whether it has an escape
   std::string_view list_;  // key of the top level
   bool list_escaped_ = false;
   std::size_t elements_ = 0;
   bool in_buffers_ = false, at_uri_ = false, has_uri_ = false;
-  bool at_free_ = false;  // what comes next is the value of extras or extensions,
-  int free_depth_ = 0;    // of whose brackets this is the depth; 0 outside
+  bool at_free_ = false;  // the next value is that of extras or extensions
+  int free_depth_ = 0;    // the depth of its brackets; 0 outside
   bool in_animations_ = false, at_samplers_ = false, at_copied_ = false;
   std::uint64_t samplers_ = 0;       // of one animation, less one
   std::uint64_t copied_values_ = 0;  // inside its extensions
@@ -213,13 +213,13 @@ bool KeepEncoded(tinygltf::Image* image, int, std::string* error, std::string*, 
   return true;
 }
 
-// Where tinygltf finds files.
+// Files and folders that tinygltf may read.
 struct Surroundings {
   std::string folder;            // the scene's
   bool keep_pictures = false;    // pictures are there, too
-  bool hidden_pictures = false;  // some were asked for, and were not
+  bool hidden_pictures = false;  // some were requested, and hidden
   std::set<std::filesystem::path> read = {};
-  std::uintmax_t bytes_again = 0;  // read of files that had been read before
+  std::uintmax_t bytes_again = 0;  // of files that are read more than once
 };
 
 bool HasPictureEnding(const std::string& name) {
@@ -228,8 +228,8 @@ bool HasPictureEnding(const std::string& name) {
   return ending == ".png" || ending == ".jpg" || ending == ".jpeg" || ending == ".webp";
 }
 
-// tinygltf also looks in the current folder; only files beside the scene (or below or above it) belong to it. It takes
-// a missing picture for one that is not needed.
+// tinygltf also searches the current folder; only files beside the scene (or below or above it) belong to it. It treats
+// a missing picture as optional.
 bool BesideScene(const std::string& name, void* base) {
   Surroundings& surroundings = *static_cast<Surroundings*>(base);
   if (name.rfind(surroundings.folder, 0) != 0) return false;
@@ -272,7 +272,7 @@ bool ReadForTinygltf(std::vector<unsigned char>* out, std::string* error, const 
 
 bool NeverWrite(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
 
-// What tinygltf says about a file that it accepts is worth a warning, save where it is stricter than glTF.
+// tinygltf's message about an accepted file becomes a warning, except where tinygltf is stricter than glTF.
 void WarnOfComplaints(std::string complaints, WarningCounter& warnings) {
   for (const std::string harmless : {"JSON Chunk end does not aligned to a 4-byte boundary.",
                                      "'inverseBindMatrices' property is missing in Skin.\n"}) {
@@ -349,8 +349,8 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
                       " values in extras and extensions; expected at most " + std::to_string(kMaxFreeValues) +
                       ": export it without custom properties");
   }
-  // Each of them would be a copy of the binary chunk. glTF allows it to the first alone; where meshopt packs the
-  // meshes, others stand for what they become.
+  // Each of them would be a copy of the binary chunk. glTF allows that to the first buffer alone. Where meshopt packs
+  // the meshes, other buffers stand for the unpacked data.
   if (IsGlb(bytes) && outline.buffers_without_uri > 1) {
     return InputError(file + " has " + std::to_string(outline.buffers_without_uri) +
                       " buffers without a uri; expected one, the file's own binary chunk: export it again, with " +
@@ -365,7 +365,7 @@ Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, Warn
   return RunTinygltf(file, surroundings, bytes, model, warnings);
 }
 
-// The escapes %20 to %FF stand for bytes; a name that has a % of its own keeps it.
+// The escapes %20 to %FF stand for bytes; a name with another % keeps it.
 std::filesystem::path PictureFile(const std::filesystem::path& scene, const std::string& uri) {
   const auto digit = [&](std::size_t at) -> int {
     if (at >= uri.size()) return -1;
@@ -383,7 +383,7 @@ std::filesystem::path PictureFile(const std::filesystem::path& scene, const std:
       name += uri[i];
     }
   }
-  return FolderOf(scene) + "/" + name;  // also where the name begins with a slash: nothing outside is meant
+  return FolderOf(scene) + "/" + name;  // also if the name begins with a slash: no file outside is meant
 }
 
 }  // namespace scumble

@@ -1,4 +1,4 @@
-// The outer shell of a glTF file: container, JSON, buffers and encoded pictures, by tinygltf. Nothing is interpreted.
+// The container of a glTF file: JSON, buffers and encoded pictures, by tinygltf. Nothing is interpreted.
 #pragma once
 
 #include <filesystem>
@@ -14,16 +14,16 @@ class Model;
 
 namespace scumble {
 
-// Fills `model` from a file. Pictures stay encoded in Image::image (those in buffer views stay in their buffer); those
-// in files beside the scene are not read, and stay empty: only the materials know whether anybody wants them. Checks
-// the container before tinygltf sees it, refuses JSON nested too deeply for its recursion, lists of more elements and
-// extras of more values than any scene has, each of which it makes hundreds of times as large, and buffers that are one
-// chunk or one large file many times, of which it would keep as many copies, and turns whatever it throws into an error
-// that names the file; what it only complains about becomes a warning. Files beside the scene are read only if they are
-// regular files.
+// Fills `model` from a file. Pictures stay encoded in Image::image; those in buffer views stay in their buffer.
+// Pictures in files beside the scene are not read and stay empty: only the materials show which are needed.
+//
+// Checks the container before tinygltf reads it. Refuses JSON nested too deeply for its recursion, lists of more
+// elements and extras of more values than any scene has, each of which it makes hundreds of times as large. Refuses
+// buffers that repeat one chunk or one large file, of which it would keep as many copies. Its exceptions become errors
+// that name the file, its messages about accepted files become warnings. Only regular files beside the scene are read.
 Status ParseGltf(const std::filesystem::path& path, tinygltf::Model& model, WarningCounter& warnings);
 
-// The file that Image::uri of such a picture of the scene names.
+// The file of a picture of the scene, by its Image::uri.
 std::filesystem::path PictureFile(const std::filesystem::path& scene, const std::string& uri);
 
 }  // namespace scumble

@@ -9,9 +9,9 @@
 namespace scumble {
 namespace {
 
-// Where a skinned mesh stands: it is the joints that place it, not its node. The object's origin is the first joint, so
-// that a character far from the world's origin keeps its floats' precision; a mirrored skeleton mirrors the object, so
-// that its triangles do not turn their backs.
+// The frame of a skinned mesh, which its joints place, not its node. The object's origin is the first joint, so that a
+// character far from the world's origin keeps its floats' precision. A mirrored skeleton mirrors the object, so that
+// its triangles keep their front sides.
 glm::dmat4 SkinFrame(const glm::dmat4& first_joint, const glm::dmat4& first_matrix) {
   glm::dmat4 frame(1.0);
   if (glm::determinant(glm::dmat3(first_matrix)) < 0.0) frame[0][0] = -1.0;
@@ -21,11 +21,11 @@ glm::dmat4 SkinFrame(const glm::dmat4& first_joint, const glm::dmat4& first_matr
 
 struct PlacedSkin {
   bool moves = false;
-  glm::dmat4 frame{1.0};             // of the meshes that hang on it
+  glm::dmat4 frame{1.0};             // of the meshes with this skin
   std::vector<glm::dmat4> matrices;  // by joint, from rest to that frame
 };
 
-// Poses one scene at one time; the members only save passing them on.
+// Poses one scene at one time; the members are shared arguments.
 class Poser {
  public:
   Poser(const GltfRig& rig, std::optional<double> seconds, Scene& scene)
@@ -46,7 +46,7 @@ class Poser {
  private:
   Error Bad(const std::string& what) const {
     const std::string when = seconds_ ? ", at " + std::to_string(*seconds_) + " s" : "";
-    return InputError(rig_.file + when + ": " + what + ": mend the animation and export it again");
+    return InputError(rig_.file + when + ": " + what + ": fix the animation and export it again");
   }
 
   Status PlaceNodes() {
@@ -66,7 +66,7 @@ class Poser {
     return Ok();
   }
 
-  // Once for each skin, of which any number of meshes may hang.
+  // Once for each skin, which any number of meshes may share.
   void PlaceSkins() {
     for (const GltfSkin& from : rig_.skins) {
       PlacedSkin skin;
@@ -83,7 +83,7 @@ class Poser {
     }
   }
 
-  // Whether its shape at a time may be another than at rest.
+  // Whether its shape at some time may differ from the one at rest.
   bool Changes(const RigMesh& mesh) const {
     if (rig_.animation.Morphs(rig_.nodes[std::size_t(mesh.node)].node)) return true;
     return mesh.skin >= 0 && skins_[std::size_t(mesh.skin)].moves;

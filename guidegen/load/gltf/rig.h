@@ -1,4 +1,4 @@
-// What moves in a loaded glTF scene, and how it stands at a time. Knows nothing of the file any more.
+// The moving parts of a loaded glTF scene, and their pose at a time. Independent of the file.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@
 
 namespace scumble {
 
-// A node of the hierarchy as reached from the scene's roots; parents stand before their children.
+// A node of the hierarchy, reached from the scene's roots; parents stand before their children.
 struct RigNode {
   int node = 0;     // in the file
   int parent = -1;  // in the rig
   int depth = 0;
   bool moves = false;  // itself or one above it is animated
-  NodePose pose{};     // at rest; looked at only where it is animated
+  NodePose pose{};     // at rest; used only where it is animated
   glm::dmat4 local{1.0};
   glm::dmat4 world{1.0};  // at rest
 };
 
-// A mesh that is deformed: one for each node that shows it.
+// A mesh that is deformed: one for each node that has it.
 struct RigMesh {
   int mesh = 0;  // in Scene::meshes
   int node = 0;  // in the rig
@@ -48,16 +48,16 @@ struct GltfRig {
   std::vector<int> camera_nodes;  // of each of Scene::cameras, in its order
   std::vector<int> light_nodes;
 
-  // Rewrites of `scene`, which was loaded with this rig, what may differ from its rest pose, as it stands at the time,
-  // or at rest without one. What was appended to its lists stays. Objects that their transform flattens at that time
-  // are not among its instances. Errors name the file, the time and the node or mesh.
+  // Rewrites the animated parts of `scene`, which was loaded with this rig, for a time, or for the rest pose without
+  // one. Entries appended to its lists stay. Objects that their transform flattens at that time are not among its
+  // instances. Errors name the file, the time and the node or mesh.
   Status Pose(std::optional<double> seconds, Scene& scene) const;
 };
 
-// Whether a matrix leaves an object no volume.
+// Whether a matrix reduces an object's volume to zero.
 bool Flattens(const glm::dmat4& world);
 
-// Rotation and translation only; nothing where scale and shear leave no direction.
+// Rotation and translation only; empty where scale and shear leave no direction.
 std::optional<glm::dmat4> WithoutScale(const glm::dmat4& world);
 
 }  // namespace scumble

@@ -37,8 +37,8 @@ glm::dmat4 BlendJoints(const MeshDeformation& deformation, std::size_t vertex, s
   return blend;
 }
 
-// What the targets that move anything add to one attribute: collected once, because of any number of targets most may
-// be empty or at rest, and no vertex then looks at those.
+// The deltas of the active targets for one attribute. They are collected once: most of many targets may be empty or
+// have weight 0, and no vertex visits those.
 class ActiveDeltas {
  public:
   ActiveDeltas(const MeshDeformation& deformation, std::span<const double> weights,
@@ -51,7 +51,7 @@ class ActiveDeltas {
 
   bool empty() const { return active_.empty(); }
 
-  // `rest` plus what they add, in double.
+  // `rest` plus the deltas, in double.
   glm::dvec3 Add(const glm::dvec3& rest, std::size_t vertex) const {
     glm::dvec3 sum = rest;
     for (const auto& [weight, deltas] : active_) sum += weight * glm::dvec3(deltas[vertex]);

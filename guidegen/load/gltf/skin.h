@@ -16,14 +16,14 @@ class Model;
 
 namespace scumble {
 
-// What one target adds to a mesh, per vertex; attributes that the file leaves out are empty.
+// One target's deltas of a mesh, per vertex; attributes that the file leaves out are empty.
 struct MorphTarget {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec3> tangents;
 };
 
-// How a mesh is deformed. Its rest shape is mesh.rest_positions and what is kept here.
+// The deformation of a mesh. Its rest shape is mesh.rest_positions and the attributes kept here.
 struct MeshDeformation {
   std::vector<MorphTarget> targets;
   int influences = 0;                 // joints of each vertex; 0 where the mesh is not skinned
@@ -42,14 +42,14 @@ struct GltfSkin {
 };
 
 // Without an inverse bind matrix each is the identity. A skin without joints, or with fewer matrices than joints, is a
-// kInput error that names it; whether the joints exist is the caller's to check.
+// kInput error that names it. The caller checks whether the joints exist.
 Expected<GltfSkin> ReadSkin(const tinygltf::Model& model, const std::string& file, int index);
 
-// Rewrites positions, normals and tangents of a mesh from its rest shape: `morph_weights` are as many as the targets,
-// `joint_matrices` take rest positions to object space, and are empty where the mesh is not skinned. Normals go by the
+// Rewrites positions, normals and tangents of a mesh from its rest shape. `morph_weights` has one entry per target.
+// `joint_matrices` take rest positions to object space, and are empty where the mesh is not skinned. Normals use the
 // inverse transpose of the blended matrix and are unit again. Weights are divided by their sum; a vertex without any
-// follows the first joint that it names. The result depends on nothing but the arguments. False where a position is
-// not finite, and the mesh is of no use then.
+// follows its first joint. The result depends on the arguments alone. False if a position is not finite; the mesh is
+// then unusable.
 [[nodiscard]] bool DeformMesh(const MeshDeformation& deformation, std::span<const double> morph_weights,
                               std::span<const glm::dmat4> joint_matrices, Mesh& mesh);
 

@@ -1,5 +1,5 @@
-// What people really hand to a program: files that are missing, cut short or damaged, disks that are full, scenes that
-// show nothing. Each has its exit code and a message that names the file.
+// Bad inputs: files that are missing, truncated or damaged, full disks, scenes without geometry. Each has its exit code
+// and a message that names the file.
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -295,7 +295,7 @@ TEST_F(CliBadOutput, StandardOutputThatTakesNothing) {
   for (const Arguments& command : {commands.front(), commands.at(8), commands.back()}) {
     ExpectError(command, 4, {"cannot write to standard output"}, closed);
   }
-  // Nothing that was to be printed has found its way into a file instead.
+  // No printed text has been written to a file instead.
   EXPECT_TRUE(ReadPicture(At("new.png")));
   EXPECT_TRUE(ReadGuides(At("new.exr")));
 }

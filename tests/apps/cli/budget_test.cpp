@@ -1,4 +1,4 @@
-// --budget-ms as its users run it. What the clock decides is not looked at, only what must hold whatever it decides.
+// --budget-ms from the command line. The tests check only properties that hold for any clock.
 #include "tests/support/cli_harness.h"
 
 namespace scumble {
@@ -56,10 +56,10 @@ TEST_F(CliBudget, CalibrationIsAStageOfItsOwn) {
   }
 }
 
-// A plan alone is that of the way that was picked, which is said: whichever the clock decides on.
+// A plan alone shows the chosen variant, whichever the clock decides on.
 TEST_F(CliBudget, APlanIsOfWhatIsPicked) {
   struct Plan {
-    int smaller = 1;  // how much smaller than the picture the guides are said to be
+    int smaller = 1;  // factor by which the guides are smaller than the picture
     double guides = 0.0;
   };
   const auto plan_of = [&](const Arguments& command, const Arguments& more) {
@@ -94,7 +94,7 @@ TEST_F(CliBudget, TrialsKeepToTheMemoryThatThereIs) {
   EXPECT_FALSE(Exists("p.png"));
 }
 
-// A nanosecond is enough for nothing: the quickest, with a warning that says what it needs, and no failure.
+// A nanosecond is never enough: the fastest variant is taken, with a warning that gives its time, and no failure.
 TEST_F(CliBudget, WhereNothingFitsTheQuickestIsTakenWithAWarning) {
   for (const Arguments& command : {Stylize(), Transfer()}) {
     const CommandResult result = RunOk(With(command, {"--budget-ms", "0.000001", "--json", "-o", "picked.png"}));
@@ -118,7 +118,7 @@ TEST_F(CliBudget, WhateverIsPickedIsRepeatedByTheOptionsThatAreNamed) {
   }
 }
 
-// The ball's lamp has an extent, so its light takes samples; suzanne's suns and points need none, and then no way has
+// The light of ball.glb has extent, so it takes samples. suzanne's suns and points need none, and then no variant has
 // fewer.
 TEST_F(CliBudget, FewerSamplesWhereLightTakesThem) {
   const auto stylize = [&](const char* scene) {
@@ -252,7 +252,7 @@ TEST_F(CliBudget, TwoAtOnceAreBothServed) {
   EXPECT_FALSE(nlohmann::json::parse(Bytes("other.json"), nullptr, false).is_discarded());
 }
 
-// All frames by the way that suits the first, also those that are made later.
+// All frames use the variant that suits the first, also those that are made later.
 TEST_F(CliBudget, ASequenceHasOneWay) {
   const Arguments stylize = With(Stylize(), {"--frames", "1-3"});
   const CommandResult result = RunOk(With(stylize, {"--budget-ms", "0.000001", "--json", "-o", "p.#.png"}));

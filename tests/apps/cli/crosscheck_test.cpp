@@ -1,4 +1,4 @@
-// scumble crosscheck: what it says before it would run Blender.
+// scumble crosscheck: its checks before it runs Blender.
 #include <gtest/gtest.h>
 
 #include <fstream>

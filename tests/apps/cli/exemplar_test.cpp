@@ -1,4 +1,4 @@
-// Exemplars with guides of their own, from the command line: painting scenes, the cache of tables, styles check.
+// Exemplars with their own guides, from the command line: painted scenes, the cache of tables, styles check.
 #include <chrono>
 #include <filesystem>
 #include <vector>
@@ -92,7 +92,7 @@ TEST_F(CliExemplar, GuidesOfLightFromTheSphereToThePicture) {
   const auto checked = RunOk({"styles", "check", "ball"});
   EXPECT_NE(checked.out.find("guides: 7 dimensions"), std::string::npos) << checked.out;
   EXPECT_NE(checked.out.find("lpe.LDE shows 0.00 to"), std::string::npos) << checked.out;
-  // Guides that do not hold what is asked for.
+  // Guides that lack a required layer.
   RunOk(With({"guidegen", scene, "-q", "-o", "dark.exr"}, size));
   const auto refused = Run({"transfer", "dark.exr", "--style", "ball", "-o", "no.png"});
   EXPECT_EQ(refused.code, 3);

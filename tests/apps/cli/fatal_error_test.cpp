@@ -1,4 +1,4 @@
-// What is thrown where nothing catches it: one sentence, exit code 6, and no temporary file of an output left.
+// Uncaught exceptions: one sentence, exit code 6, and no temporary file of an output left.
 #include "apps/cli/app/fatal_error.h"
 
 #include <gmock/gmock.h>

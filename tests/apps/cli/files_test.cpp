@@ -1,5 +1,5 @@
-// Files of a run: outputs that would take the place of inputs, what --resume keeps, and what is said of files that are
-// wrong or options that do nothing.
+// Files of a run: outputs that would replace inputs, files that --resume keeps, and messages about wrong files or
+// options without effect.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -151,7 +151,7 @@ TEST_F(CliFiles, ResumeKeepsOnlyWhatWouldBeMade) {
   // What holds no settings is compared by size alone.
   EXPECT_EQ(kept({}, "p#.jpg"), 0);
   EXPECT_EQ(kept({"--seed", "7"}, "p#.jpg"), 2);
-  // It says why.
+  // The message gives the reason.
   fs::resize_file(At("p2.png"), Bytes("p2.png").size() / 2);
   const CommandResult cut = RunOk(With(transfer_, {"--frames", "1-2", "--bits", "16", "--resume", "-o", "p#.png"}));
   EXPECT_TRUE(Contains(cut.err, "p2.png: the PNG file ends before its picture does")) << cut.err;
@@ -194,7 +194,7 @@ TEST_F(CliFiles, WhatFailsInEveryFrameEndsTheRunAtOnce) {
   once({"transfer", "flat.exr"}, "flat.exr has no layer normal");
   once({"transfer", "gone.exr"}, "gone.exr");
   once({"stylize", Scene("suzanne.glb"), "--size", "32", "--over", "wide.png"}, "wide.png is 33×32");
-  // What all guides of a range lack is said once, and the end names all frames.
+  // A layer that all guides of a range lack is reported once, and the end names all frames.
   for (int frame = 1; frame <= 3; ++frame) WriteGuideFile("f." + std::to_string(frame) + ".exr", flat);
   const CommandResult all = Run({"transfer", "f.#.exr", "--style", "style", "--frames", "1-3", "-o", "p#.png"});
   EXPECT_EQ(Count(all.err, "warning"), 1) << all.err;

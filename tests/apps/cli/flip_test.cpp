@@ -83,7 +83,7 @@ TEST_F(CliFlip, OfOneLayerOfLight) {
   EXPECT_EQ(map->width, 24);
   const CommandResult red = RunOk({"compare", "a.exr", "b.exr", "--flip", "--layer", "lpe.full", "--json"});
   EXPECT_EQ(red.Json()["flip"], 0.0);
-  // Twice the white is shown as white, and that is said; so is what is no number.
+  // Twice the white is shown as white, with a message; so is NaN.
   WriteLight("c.exr", 2.0f, 0.25f);
   const CommandResult above = RunOk({"compare", "a.exr", "c.exr", "--flip", "--layer", "luminance"});
   EXPECT_TRUE(Contains(above.out, "FLIP mean 0.967")) << above.out;

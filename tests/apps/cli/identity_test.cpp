@@ -1,5 +1,5 @@
-// The command line's promise for every bundled style: the same bytes in one step or two, on any number of threads, and
-// however a range of frames is cut. The styles are those in exemplars/, so that a new one is tested by being there.
+// Every bundled style gives the same bytes in one step or two, on any number of threads, and for any cut of a range of
+// frames. The styles are those in exemplars/, so that a new one is tested automatically.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFrames = 6;
-constexpr int kPaint = 128;  // pixels along a painting's side
+constexpr int kPaint = 128;  // pixels along an exemplar's side
 
 class CliIdentity : public CliTest {
  protected:

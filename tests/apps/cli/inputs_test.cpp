@@ -1,5 +1,5 @@
-// Inputs at the ends of what is promised: the smallest and the largest exemplar, spheres in pictures that are not
-// square, lights in any order, names that a scene has not.
+// Inputs at the limits: the smallest and the largest exemplar, spheres in pictures that are not square, lights in any
+// order, names that a scene lacks.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,7 +42,7 @@ TEST_F(CliInputs, TheSmallestExemplar) {
   RunOk({"styles", "check", "tiny.png"});
 }
 
-// 67 million pixels: red tells the column and green the row, in 256 steps, so that a ball shows its own place.
+// 67 million pixels: red encodes the column and green the row, in 256 steps, so that a sphere shows its own place.
 TEST_F(CliInputs, TheLargestExemplar) {
   constexpr int kSide = 8192;
   std::string ppm = "P6\n8192 8192\n255\n";
@@ -69,8 +69,8 @@ TEST_F(CliInputs, TheLargestExemplar) {
   }
 }
 
-// A sphere off the middle of a wide or tall painting, told by its guides: stylising these very guides gives the
-// painting back, wherever it may be used.
+// A sphere off the middle of a wide or tall exemplar, placed by its guides: stylising these guides reproduces the
+// exemplar on its usable part.
 TEST_F(CliInputs, ASphereInAPictureThatIsNotSquare) {
   for (const auto& [width, height] : {std::pair{150, 90}, {90, 150}}) {
     GuideSet guides(width, height);
@@ -181,7 +181,7 @@ TEST_F(CliLights, EqualOnesAreSaidAndTheFirstIsUsed) {
   EXPECT_TRUE(Pixels("alike.png") == Pixels("alone.png"));
 }
 
-// Scenes change, and a style sheet is made for many: what is not there is said and does no harm.
+// Scenes change, and one style sheet serves many: names that are missing are reported and do no harm.
 TEST_F(CliInputs, NamesThatTheSceneHasNot) {
   WriteStyle("style");
   WritePainted("other.png", 64, 64);

@@ -1,4 +1,4 @@
-// What is left of a run that is stopped, by a disk that is full or by a signal: whole files and nothing else.
+// A run stopped by a full disk or by a signal leaves only whole files.
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -90,7 +90,7 @@ TEST_F(CliInterrupted, AFullDiskInTheMiddleOfASequence) {
       EXPECT_EQ(Bytes("p.3" + ending), "an older one");
     }
   }
-  // With room again, the rest is made.
+  // With room again, the missing frames are made.
   const CommandResult rest = RunOk(With(transfer, {"--resume", "-o", "p.#.exr"}));
   EXPECT_NE(rest.out.find("3 made, 2 kept"), std::string::npos) << rest.out;
 }
@@ -119,7 +119,7 @@ TEST_F(CliInterrupted, GuidesOnAFullDisk) {
   EXPECT_EQ(Unfinished(), std::vector<std::string>());
 }
 
-// As a shell's `ulimit -f` leaves it: the system would end the program, and is told not to.
+// Like a shell's `ulimit -f`: the system would end the program by default.
 TEST_F(CliInterrupted, ALimitOfFileSizesIsAnErrorOfWriting) {
   WriteText("run.sh", std::string("ulimit -f 1; exec ") + SCUMBLE_BINARY + " guidegen " + Scene("suzanne.glb") +
                           " --size 64 -o g.exr\n");

@@ -1,4 +1,4 @@
-// What `--isa` is named for: the same bytes again.
+// `--isa` reproduces the same bytes.
 #include <string>
 
 #include "tests/support/cli_harness.h"
@@ -8,8 +8,8 @@ namespace {
 
 using CliIsa = CliTest;
 
-// SSE2 is what every machine has. A file tells nothing of threads, and one set of instructions decides the same for any
-// order of work: so all bytes are the same, header, subsamples and bounced light included.
+// Every machine has SSE2. A file does not depend on threads, and one instruction set gives equal results for any order
+// of work: so all bytes are equal, header, subsamples and bounced light included.
 TEST_F(CliIsa, OneSetWritesTheSameFileForAnyThreads) {
   const Arguments guidegen = {"guidegen",  Scene("stilllife.glb"),
                               "--isa",     "sse2",

@@ -1,4 +1,4 @@
-// Styles for several lights, from the template to the check: what an artist does on the command line.
+// Styles for several lights, from the template to the check: an artist's steps on the command line.
 #include <string>
 #include <vector>
 

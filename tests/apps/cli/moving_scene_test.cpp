@@ -1,5 +1,5 @@
-// Scenes with animations on the command line: frames that depend on nothing but their number, cameras and lamps that
-// are decided once, the layer motion, several animations in one file, broken ones.
+// Scenes with animations on the command line: frames that depend only on their number, cameras and lights that are
+// chosen once, the layer motion, several animations in one file, broken ones.
 #include <cmath>
 #include <map>
 #include <string>
@@ -104,7 +104,7 @@ TEST_F(CliMoving, FrameNIsAtNOverFps) {
       {{"0", "24"}, 30},   {{"-48", "24"}, 30}, {{"24", "24"}, 30}, {{"36", "24"}, 40},           {{"48", "24"}, 50},
       {{"480", "24"}, 50}, {{"36", "48"}, 30},  {{"15", "10"}, 40}, {{"48000", "24000/1001"}, 50}};
   for (const auto& [frame, column] : expected) EXPECT_EQ(edge(frame.first, frame.second), column) << frame.first;
-  // Without a frame's number it is seen at rest, and that is said.
+  // Without a frame's number the scene is at rest, with a message.
   const CommandResult rest = RunOk({"guidegen", "wall.glb", "--size", "100", "-o", "g.exr"});
   EXPECT_NE(rest.Warning().find("animations are not played without a frame's number"), std::string::npos) << rest.err;
   EXPECT_EQ(RunOk({"guidegen", "wall.glb", "--size", "9", "--frame", "1", "-o", "g.exr"}).Warning(), "");
@@ -220,7 +220,7 @@ TEST_F(CliMoving, BrokenAnimationsAreNamed) {
       ExpectError(With(verb, {"--size", "16", "--frames", "1-3", "-o", output}), 3, words);
       ExpectError(With(verb, {"--size", "16", "--frame", "2", "-o", output}), 3, words);
     }
-    // At rest it can be seen, and looked at.
+    // At rest it can be cast and inspected.
     RunOk({"guidegen", "bad.glb", "--size", "16", "-o", "rest.exr"});
     EXPECT_NE(RunOk({"info", "bad.glb"}).out.find(words.back()), std::string::npos);
   };
@@ -239,7 +239,7 @@ TEST_F(CliMoving, BrokenAnimationsAreNamed) {
       Run({"guidegen", "flat.glb", "--size", "16", "--fps", "1", "--frames", "1-3", "-o", "f#.exr"});
   EXPECT_EQ(some.code, 3);
   EXPECT_NE(some.Error().find("2 of 3 frames were not made: 2-3"), std::string::npos) << some.err;
-  EXPECT_NE(some.Error().find("mend the animation"), std::string::npos) << some.err;
+  EXPECT_NE(some.Error().find("fix the animation"), std::string::npos) << some.err;
   EXPECT_TRUE(Exists("f1.exr"));
 }
 

@@ -1,5 +1,4 @@
-// The command line's pictures: one step or two, any number of threads, chance and its seed; and comparing what came
-// out.
+// The command line's pictures: one step or two, any number of threads, random seeds; and comparing results.
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -83,7 +82,7 @@ TEST_F(CliPictures, EveryFormatHoldsThePicture) {
     ASSERT_EQ(read->rgba.size(), png->rgba.size());
     for (std::size_t i = 0; i < read->rgba.size(); ++i) {
       const bool is_alpha = i % 4 == 3, covered = png->rgba[i - i % 4 + 3] == 65535;
-      if (!is_alpha && !covered) continue;  // formats differ in the colour of what is not there
+      if (!is_alpha && !covered) continue;  // formats differ in the colour of transparent pixels
       if (ending == ".jpg") continue;       // lossy, and on white
       ASSERT_NEAR(read->rgba[i], png->rgba[i], 257) << name;
     }
@@ -251,7 +250,7 @@ TEST_F(CliCompare, FlickerAlongTheMotion) {
   const CommandResult still =
       RunOk({"compare", "a.png", "a.png", "--motion", "g.exr", "--motion-next", "next.exr", "--json"});
   EXPECT_GT(still.Json()["flicker"], 1.0);
-  EXPECT_LT(still.Json()["pixels"], moved.Json()["pixels"]);  // beyond the ball's edge the next frame shows nothing
+  EXPECT_LT(still.Json()["pixels"], moved.Json()["pixels"]);  // beyond the sphere's edge there is background
   EXPECT_TRUE(Contains(RunOk({"compare", "a.png", "a.png", "--motion", "g.exr"}).out, "flicker "));
   RunOk({"compare", "a.png", "b.png", "--motion", "g.exr", "-o", "moved-map.png"});
   RunOk({"compare", "a.png", "a.png", "--motion", "g.exr", "-o", "still-map.png"});

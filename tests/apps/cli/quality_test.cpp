@@ -1,4 +1,4 @@
-// --quality: fixed points of the ladder, the same on any machine.
+// --quality: fixed steps of the ladder, the same on any machine.
 #include "tests/support/cli_harness.h"
 
 namespace scumble {
@@ -47,7 +47,7 @@ TEST_F(CliQuality, SetAndUpsampleWin) {
   EXPECT_EQ(Options(chosen), Arguments());
   RunOk(With(Stylize("style"), {"--upsample", "2", "-o", "plain.png"}));
   EXPECT_EQ(Bytes("draft.png"), Bytes("plain.png"));
-  // Said even where it is what it would be anyway.
+  // Reported even if it equals the default.
   const nlohmann::json one =
       RunOk(With(Stylize("style"), {"--quality", "draft", "--upsample", "1", "--json", "-o", "one.png"})).Json();
   EXPECT_EQ(one.at("upsample"), 1);
@@ -75,7 +75,8 @@ TEST_F(CliQuality, SizesThatHaveNoFactorAreCastWhole) {
   EXPECT_EQ(report.at("width"), 121);
 }
 
-// The rung's value holds in all frames, as that of --set does, whatever the style says of them; and it is part of what
+// The preset step's value holds in all frames, as that of --set does, whatever values the style has; and it is part of
+// what
 // --resume compares.
 TEST_F(CliQuality, SequencesArePaintedByOneWayAndResumed) {
   WritePainted("style/lit.png", 64, 64);
@@ -111,7 +112,7 @@ TEST_F(CliQuality, APreviewIsNotTakenForTheFinalPicture) {
   EXPECT_EQ(kept("preview"), 0);
 }
 
-// Nor is a noisy one, in either verb: samples are told where a style asks for light, and nowhere else.
+// Nor is a noisy one, in either command: samples are reported if a style needs light, and only then.
 TEST_F(CliQuality, FewerSamplesAreNotTakenForMore) {
   WriteStyle("style");
   for (const bool lit : {true, false}) {

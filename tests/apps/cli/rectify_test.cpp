@@ -1,4 +1,4 @@
-// `scumble sphere --rectify` as an artist runs it: from a photograph in the kit's folder to a style.
+// `scumble sphere --rectify`: from a photograph in the kit's folder to a style.
 #include "core/io/file/atomic_file.h"
 #include "core/io/picture/open_raster.h"
 #include "tests/support/cli_harness.h"
@@ -79,7 +79,7 @@ TEST_F(RectifyCliTest, ScansOfAnyKind) {
   WriteScan("scan.png");
   RunOk({"sphere", "--rectify", "scan.png", "--size", "64", "-q", "-o", "shallow.png"});
   EXPECT_EQ(InspectPicture(At("shallow.png"))->bits, 8);
-  // A sheet cut out of its surroundings: what is transparent is white.
+  // A sheet cut out of its surroundings: transparent pixels count as white.
   Picture cut = CharcoalSheet();
   for (std::size_t i = 0; i < cut.rgba.size(); i += 4) {
     if (cut.rgba[i] == 65535) cut.rgba[i] = cut.rgba[i + 1] = cut.rgba[i + 2] = cut.rgba[i + 3] = 0;

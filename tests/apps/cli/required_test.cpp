@@ -1,5 +1,5 @@
-// Only what is required, as a user meets it: counts in --json and --explain, and pictures of a model that no style asks
-// for are neither read nor missed, nor is the library that would read them.
+// Only required work, from the command line: counts in --json and --explain. Unused pictures of a model are neither
+// read nor missed, nor is the library that would read them.
 #include <filesystem>
 #include <string>
 
@@ -110,8 +110,7 @@ TEST_F(CliRequired, PicturesThatNoStyleAsksForAreNotMissed) {
   ExpectError(Stylize("plain", {"--set", "transfer.colorize=1", "--frames", "1-2"}, "q#.png"), 3, {"lost.png"});
 }
 
-// A JPEG is OpenImageIO's to read. Without that library at hand, a style of normals, and of light, is painted all the
-// same.
+// Only OpenImageIO reads JPEG. Without that library, styles of normals and of light still work.
 TEST_F(CliRequired, TheLibraryOfPicturesIsOpenedWhereItIsNeeded) {
   WriteText("photo.jpg", "\xFF\xD8\xFF\xE0 the rest is never read");
   WriteTextured("photo.jpg");

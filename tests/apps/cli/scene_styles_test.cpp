@@ -1,5 +1,5 @@
-// Styles by object and material: what a scene's author gives, what --assign gives, and what --set changes in one of
-// them; shadow catchers; wrong names.
+// Styles by object and material: from the scene's author, from --assign, and changed by --set; shadow catchers; wrong
+// names.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,7 +17,7 @@ class CliSceneStyles : public CliTest {
     const std::vector<unsigned char> glb = builder.Glb();
     WriteText(name, std::string(glb.begin(), glb.end()));
   }
-  // A style of one colour, so that a pixel says which style painted it.
+  // A style of one colour, so that a pixel shows which style painted it.
   void WriteColor(const std::string& folder, int red, int green, int blue, const std::string& more = "") {
     Picture picture(16, 16);
     for (int i = 0; i < 16 * 16; ++i) {
@@ -108,7 +108,7 @@ TEST_F(CliSceneStyles, ObjectsAndMaterialsGetWhatTheirAuthorWants) {
   EXPECT_EQ(bundled[3], 'r');
 }
 
-// They are opened when the scene is, and are read all the same.
+// They are opened with the scene, and read later.
 TEST_F(CliSceneStyles, NoOutputTakesThePlaceOfTheirFiles) {
   GltfBuilder b = Tiles(2, 1);
   Want(b, 0, "green");
@@ -187,7 +187,7 @@ TEST_F(CliSceneStyles, WishesThatCannotBeGranted) {
   }
 }
 
-// A ball's shadow on a floor that is not painted: dark in the style's darkest paint, over paper, nothing or a picture.
+// A sphere's shadow on an unpainted floor, in the style's darkest paint: over paper, transparency or a picture.
 TEST_F(CliSceneStyles, ACatcherShowsTheShadowsOnIt) {
   WriteColor("grey", 120, 120, 120);
   GltfBuilder b;
@@ -264,7 +264,7 @@ TEST_F(CliSceneStyles, ACatcherShowsTheShadowsOnIt) {
   }
   EXPECT_GT(lit, 3000);
   EXPECT_GT(shaded, 100);
-  // The same from guides, and by the scene's own wish.
+  // The same from guides, and by the scene's own request.
   RunOk({"transfer", "g.exr", "--style", "grey", "--assign", "Floor=catcher", "--set", "transfer.shadow=paint",
          "--over", "under.png", "-o", "two.png"});
   EXPECT_TRUE(Pixels("two.png") == Pixels("p.png"));
@@ -421,7 +421,7 @@ TEST_F(CliAssign, TheTwoStepsTakeWhatTheOneTakes) {
   EXPECT_EQ(Count(lacks.err, "normal.X"), 0) << lacks.err;
   RunOk({"guidegen", "s.glb", "--size", "32x8", "--layers", "albedo,luminance", "-o", "few.exr"});
   RunOk(With({"transfer", "few.exr", "-o", "two.png"}, styles));
-  EXPECT_TRUE(Bytes("one.png") == Bytes("two.png")) << "the option that the error names mends it";
+  EXPECT_TRUE(Bytes("one.png") == Bytes("two.png")) << "the option that the error names fixes it";
   ExpectError({"guidegen", "s.glb", "--assign", "Tile1=red", "-o", "g.exr"}, 2, {"--assign", "--style"});
 }
 

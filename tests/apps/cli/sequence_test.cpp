@@ -1,4 +1,4 @@
-// Sequences on the command line: ranges however they are cut, names, holes, and going on where a run was stopped.
+// Sequences on the command line: ranges with any cuts, names, gaps, and resuming a stopped run.
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -30,7 +30,7 @@ class CliSequence : public CliTest {
               "[transfer]\nreference_height = 0\nlevels = 4\n[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.8\n"
               "[[exemplar]]\nimage = \"lit.png\"\nluminance = 0.1\n");
   }
-  // The ball, lit the more the later the frame.
+  // The sphere, brighter in later frames.
   void WriteLitBall(const std::string& name, float light) {
     GuideSet guides = Ball(32);
     guides.Add(Layer::kLuminance);
@@ -154,8 +154,8 @@ TEST_F(CliSequence, ResumeComparesTheExposure) {
   EXPECT_EQ(kept("auto"), 2);
 }
 
-// Pictures of older versions do not tell of everything: what they were all made with is taken for granted, what nobody
-// can know agrees with anything, and all else that one side alone tells of differs.
+// Pictures of older versions lack some settings. Settings with a known old value count as that value, unknown ones
+// agree with any, and all others that one side lacks count as a difference.
 TEST_F(CliSequence, ResumeTakesForGrantedWhatOlderPicturesDoNotTell) {
   const auto agrees = [&](const std::string& found, const std::string& wanted) {
     PictureWriteOptions options;
@@ -300,7 +300,7 @@ TEST_F(CliSequence, OneExposureForAllFrames) {
   std::snprintf(text, sizeof text, "%.2f", stops);
   EXPECT_TRUE(Contains(all.Warning(), "measured on frame 1")) << all.err;
   EXPECT_TRUE(Contains(all.Warning(), std::string("--exposure ") + text)) << all.err;
-  // The stops that were printed repeat it, whatever the range. Its file tells that they were given.
+  // The printed stops reproduce it, for any range. The file records that they were given.
   const std::string second = Pixels("p.0002.png");
   const CommandResult part = RunOk(With(transfer, {"--frames", "2-3", "--exposure", text}));
   EXPECT_EQ(part.Warning(), "");

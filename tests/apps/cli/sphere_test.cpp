@@ -1,4 +1,4 @@
-// scumble sphere: sizes on paper, the template's files, and what is refused.
+// scumble sphere: sizes on paper, the template's files, and refusals.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -81,7 +81,7 @@ TEST_F(CliSphere, OnlySomeFiles) {
   RunOk({"sphere", "--size", "32", "-o", "other", "--only", "png", "--page", "a4", "--dpi", "72", "-q"});
 }
 
-// Without a template in pixels nothing but the guides tells what light a painting has.
+// Without a template in pixels only the guides record the light of an exemplar.
 TEST_F(CliSphere, GuidesOfAnotherLightDoNotReplaceThoseOfAPainting) {
   const Arguments sphere = {"sphere", "--size", "128", "--only", "pdf", "-q", "-o", "kit"};
   RunOk(With(sphere, {"--light", "10,20"}));

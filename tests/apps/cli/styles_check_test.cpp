@@ -1,4 +1,4 @@
-// scumble styles check: what it says, on which channel, and with which exit code.
+// scumble styles check: its messages, their channel, and its exit codes.
 #include <set>
 #include <string>
 #include <vector>
@@ -106,7 +106,7 @@ TEST_F(StylesCheck, WhatIsLeftOfTheKitsTemplate) {
   const nlohmann::json untouched = RunOk({"styles", "check", "kit", "--json"}).Json();
   EXPECT_EQ(CodesOf(untouched).count("bare-template"), 1u);
   EXPECT_GT(untouched["exemplars"][0]["template_percent"], 95.0);
-  // Painted but for a patch; its place is told in the file.
+  // Painted except for one region, whose place is reported in pixels of the file.
   PaintedSphere sphere;
   sphere.azimuth = 60.0, sphere.elevation = 20.0, sphere.paper = 1.0;
   const Picture paint = PaintSphere(sphere);

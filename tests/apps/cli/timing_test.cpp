@@ -111,7 +111,7 @@ TEST_F(CliTiming, EveryVerbThatWritesExrCanBeFast) {
   same("zip.exr", "fast.exr");
   const auto png = RunOk(With(transfer, {"--fast-io", "-o", "fast.png"}));
   EXPECT_NE(png.Warning().find("--fast-io changes nothing: fast.png is no .exr"), std::string::npos) << png.err;
-  // A frame that is there is kept, whichever way it was packed.
+  // An existing frame is kept, for either packing.
   RunOk(With(transfer, {"--frames", "1", "-o", "p.#.exr"}));
   const auto kept = RunOk(With(transfer, {"--frames", "1", "--fast-io", "--resume", "-o", "p.#.exr"}));
   EXPECT_NE(kept.out.find("0 made, 1 kept"), std::string::npos) << kept.out;

@@ -52,7 +52,7 @@ class Tradeoff : public CliTest {
   Arguments Small(const std::string& scene, const Arguments& more, const std::string& size = "96x54") const {
     return With({"tradeoff", scene, "--style", "mine", "--size", size, "--repeat", "1", "--no-memory"}, more);
   }
-  // The ways' measures but for what the clock says.
+  // The variants' measures without times.
   nlohmann::json WithoutTimes(const CommandResult& result) const {
     nlohmann::json ways = result.Json()["ways"];
     for (auto& way : ways) {
@@ -60,7 +60,7 @@ class Tradeoff : public CliTest {
     }
     return ways;
   }
-  // What a shell makes of options without blanks in them.
+  // Splits options without blanks in them like a shell.
   static Arguments Words(std::string options) {
     std::erase(options, '\'');
     std::istringstream stream(options);
@@ -179,7 +179,7 @@ TEST_F(Tradeoff, AFrameIsThatOfStylize) {
     RunOk(With(With({"stylize", Scene("toys.glb")}, words), {"-o", "other.png"}));
     EXPECT_NE(Pixels("other.png"), picture);
   }
-  // What a key asks for in other frames is there in this one too: guides of half the size are upsampled by it.
+  // Layers that a key needs in other frames are in this one too: guides of half the size are upsampled with them.
   WriteText("mine/style.toml",
             "[transfer]\nreference_height = 0\nlevels = 4\nblend_radius = [[0, 0], [48, 3]]\n[[exemplar]]\nimage = "
             "\"lit.png\"\n");
@@ -222,7 +222,7 @@ TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
   EXPECT_GT(ways[2]["guide_rms"].get<double>(), ways[3]["guide_rms"].get<double>()) << "half floats are finer";
   EXPECT_NE(ways[0]["options"].get<std::string>().find("transfer.paper="), std::string::npos)
       << "measured without paper";
-  // ball.glb is lit by a square: its light is sampled.
+  // ball.glb is lit by a square light, which is sampled.
   const nlohmann::json sampled =
       RunOk(Small(Scene("ball.glb"), {"--json", "--only", "samples"}, "40x40")).Json()["ways"];
   std::map<std::string, double> rms;
@@ -233,8 +233,8 @@ TEST_F(Tradeoff, AnIlluminatedStyleIsComparedByItsLight) {
   EXPECT_GT(rms["1"], 4.0 * rms["256"]) << "noise falls with the root of the samples: 16 times, less what is cut at 1";
 }
 
-// Given stops are those of every way, of what stylize is told to make it again, and of the run that measures it again;
-// fitted ones are told.
+// Given stops apply to every variant, to its stylize command, and to the command that measures it again; fitted ones
+// are reported.
 TEST_F(Tradeoff, TheExposureIsGivenOrTold) {
   Picture shade = Painted(64, 64);
   for (std::size_t i = 0; i < shade.rgba.size(); ++i) {
@@ -278,8 +278,8 @@ TEST_F(Tradeoff, AnExposureThatIsNoneOrIdleIsSaid) {
   EXPECT_TRUE(idle.Json()["exposure"].is_null());
 }
 
-// Eight ways, what they are measured against and all pictures are too much for a gigabyte at 16384², of which guides
-// alone take 7 GiB. Nothing is cast, no folder is made, and what is advised is what the verb has: it has no layers.
+// Eight variants, their reference and all pictures are too much for a gigabyte at 16384², of which guides alone take 7
+// GiB. Nothing is cast, no folder is made, and the advice names options that the command has: it has no layers.
 TEST_F(Tradeoff, WhatDoesNotFitIsRefusedBeforeItIsTaken) {
   const Arguments huge = Small(Scene("suzanne.glb"), {"--max-memory", "1G", "--only", "levels", "-o", "out"}, "16384");
   const CommandResult result =
@@ -291,7 +291,7 @@ TEST_F(Tradeoff, WhatDoesNotFitIsRefusedBeforeItIsTaken) {
   ExpectError(Small(Scene("suzanne.glb"), {"--max-memory", "0"}), 2, {"--max-memory"});
 }
 
-// Guides of twice the size have a side that is too long here; the others are measured all the same.
+// Guides of twice the size exceed the largest side here; the others are still measured.
 TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
   const nlohmann::json json =
       RunOk(Small(Scene("suzanne.glb"), {"--only", "resolution,levels 1", "--json"}, "20000x4")).Json();
@@ -302,7 +302,7 @@ TEST_F(Tradeoff, AWayThatCannotBeMadeIsLeftOut) {
   EXPECT_EQ(json["left_out"][0].get<std::string>().find("resolution 2, as "), 0u) << json["left_out"];
 }
 
-// What a table costs is told, though this machine has made it before.
+// The cost of a table is reported, though this machine has made it before.
 TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
   const Arguments arguments = Small(Scene("suzanne.glb"), {"--only", "nearest table 64,nearest table 1024", "--json"});
   std::map<std::string, double> ms;  // the least, whatever else the machine does
@@ -319,8 +319,8 @@ TEST_F(Tradeoff, PreparingIsToldWithNothingKept) {
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// The estimate is the most that there may be, as of other verbs (memory_need_test): above what the system counts, and
-// no idle one, so not four times as much.
+// The estimate is an upper bound, as for other commands (memory_need_test): above the system's count, but less than
+// four times as much.
 TEST_F(Tradeoff, TakesNoMoreMemoryThanItSays) {
   const Arguments arguments =
       Small(Scene("suzanne.glb"), {"--only", "levels 1,resolution 0.5", "--threads", "2", "-o", "out"}, "640x360");
@@ -380,7 +380,7 @@ TEST_F(Tradeoff, SaysWhatIsWrongAndHowToMendIt) {
   EXPECT_FALSE(Exists("out/tradeoff.csv"));
 }
 
-// A folder holds one report: pictures that an earlier one names are gone with it, and nobody else's.
+// A folder holds one report: pictures that an earlier one lists are removed, and no other files.
 TEST_F(Tradeoff, AFolderIsTakenAgainAndLeftAsItWasFound) {
   const auto pictures = [&] {
     std::set<std::string> names;
@@ -422,8 +422,8 @@ TEST_F(Tradeoff, InterruptedLeavesNoFolder) {
   EXPECT_FALSE(Exists("out"));
 }
 
-// Files may not grow beyond 10,000 bytes: the pictures fit, the page, which holds them all as text, does not. What an
-// older report has stays as it is, to the byte; what was measured is told all the same.
+// Files may not exceed 10,000 bytes: the pictures fit, the page, which holds them all as text, does not. An older
+// report stays, to the byte; the new figures are still printed.
 TEST_F(Tradeoff, AReportWithoutRoomLeavesTheOlderOne) {
   const Arguments arguments = Small(Scene("suzanne.glb"), {"--only", "levels 1", "-o", "out"}, "48x27");
   RunOk(arguments);
@@ -453,8 +453,8 @@ TEST_F(Tradeoff, AReportWithoutRoomLeavesTheOlderOne) {
   EXPECT_EQ(json.Json()["ways"].size(), 2u) << json.out;
 }
 
-// Killed among its pictures it leaves no page, table or figures of the older report over them. A pipe that nobody reads
-// from holds it up at the second picture.
+// If killed among its pictures, it leaves no page, table or figures of the older report with them. A pipe without a
+// reader stops it at the second picture.
 TEST_F(Tradeoff, KilledAmongItsPicturesItLeavesNoPage) {
   const Arguments arguments = Small(Scene("suzanne.glb"), {"--only", "levels 1", "-o", "out"}, "48x27");
   RunOk(arguments);
@@ -486,8 +486,8 @@ TEST_F(Tradeoff, HelpSaysWhatIsTimed) {
   EXPECT_EQ(help.find("--peak-of"), std::string::npos) << "for the program itself";
 }
 
-// Embree's robust mode is about rays that meet an edge: what is hit elsewhere is the same, and its last bits are
-// refined by our own arithmetic in any case. The file says which it was.
+// Embree's robust mode affects rays that hit an edge. Other hits are equal, and our own arithmetic refines their last
+// bits in any case. The file records the mode.
 TEST_F(Tradeoff, GuidesWithoutRobustModeSaySo) {
   const Arguments arguments = {"guidegen", Scene("suzanne.glb"), "--size", "160x90", "-o"};
   RunOk(With(arguments, {"robust.exr"}));

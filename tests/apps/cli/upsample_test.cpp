@@ -97,7 +97,7 @@ TEST_F(Upsample, TheStylesStepAndHybridAreKeysLikeOthers) {
   EXPECT_FALSE(Pixels("step.png") == Pixels("plain.png"));
   RunOk(With(transfer, {"hybrid.png", "--set", "transfer.hybrid=4", "--set", "transfer.threshold=0.4"}));
   EXPECT_FALSE(Pixels("hybrid.png") == Pixels("plain.png"));
-  // Frame 2 of a keyed style is what the same values give without keys.
+  // Frame 2 of a keyed style equals the picture with those values without keys.
   RunOk({"transfer", "ball.exr", "--style", "style", "--set", "transfer.match_step=[[1,1],[2,4]]", "--set",
          "transfer.hybrid=[[1,0],[3,8]]", "--frames", "1-3", "-o", "k.#.png"});
   RunOk(With(transfer, {"two.png", "--set", "transfer.match_step=4", "--set", "transfer.hybrid=4"}));

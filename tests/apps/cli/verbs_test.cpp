@@ -1,4 +1,4 @@
-// The command line's verbs: what they print, what they write, and their exit codes.
+// The program's commands: their output, their files, and their exit codes.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -31,7 +31,7 @@ TEST_F(CliUsage, HelpNamesEveryVerbAndExitCode) {
 
 TEST_F(CliUsage, VersionIsOneLine) { EXPECT_EQ(RunOk({"--version"}).out, "scumble 0.1.0\n"); }
 
-// What every verb's help must hold for people to find their way: options, defaults, no parser's jargon, no long lines.
+// The help of every command needs options and defaults, no parser's jargon, no long lines.
 TEST_F(CliUsage, EveryVerbHasHelp) {
   for (const std::string& verb : kVerbs) {
     const CommandResult help = RunOk({verb, "--help"});
@@ -50,18 +50,18 @@ TEST_F(CliUsage, EveryVerbHasHelp) {
     }
   }
   EXPECT_EQ(RunOk({"help", "sphere"}).out, RunOk({"sphere", "-h"}).out);
-  ExpectError({"help", "bogus"}, 2, {"there is no verb 'bogus'", "scumble help"});
+  ExpectError({"help", "bogus"}, 2, {"there is no command 'bogus'", "scumble help"});
 }
 
 TEST_F(CliUsage, VerbsThatAreNone) {
   ExpectError(
       {}, 2,
-      {"no verb given: expected one of sphere, guidegen, transfer, stylize, compare, crosscheck, tradeoff, info, "
+      {"no command given: expected one of sphere, guidegen, transfer, stylize, compare, crosscheck, tradeoff, info, "
        "styles"});
-  ExpectError({"bogus"}, 2, {"unknown verb 'bogus': expected one of sphere, guidegen"});
+  ExpectError({"bogus"}, 2, {"unknown command 'bogus': expected one of sphere, guidegen"});
   ExpectError({""}, 2, {"expected one of sphere"});
-  ExpectError({"--bogus"}, 2, {"unknown option --bogus: options follow the verb"});
-  ExpectError({"--quiet", "styles"}, 2, {"unknown option --quiet before the verb", "as in scumble styles --quiet"});
+  ExpectError({"--bogus"}, 2, {"unknown option --bogus: options follow the command"});
+  ExpectError({"--quiet", "styles"}, 2, {"unknown option --quiet before the command", "as in scumble styles --quiet"});
 }
 
 // The unknown option is named even where required ones are missing too: it is what was mistyped.
@@ -228,7 +228,7 @@ TEST_F(CliVerbs, PlanOfAStyleOfNormalsKnowsNoLight) {
   EXPECT_TRUE(Contains(RunOk(With(explain, {"--layers", "shadow"})).out, "shadow ray"));
   const Arguments stylize = {
       "stylize", Scene("stilllife.glb"), "--size", "32x18", "--style", "style", "--explain", "-o", "p.png"};
-  const std::string layers = plan.out.substr(0, plan.out.find("memory "));  // which painting adds to
+  const std::string layers = plan.out.substr(0, plan.out.find("memory "));  // to which painting adds
   EXPECT_EQ(RunOk(stylize).out.substr(0, layers.size()), layers);
   EXPECT_EQ(RunOk(With(stylize, {"--json"})).Json()["plan"], json["plan"]);
 }
@@ -281,7 +281,7 @@ TEST_F(CliVerbs, InfoTellsWhatAScenesAuthorWants) {
   const std::string text = RunOk({"info", "a.gltf"}).out;
   EXPECT_TRUE(Contains(text, "styles        Pot: oil\n")) << text;
   EXPECT_TRUE(Contains(text, "pass_indices  Pot: 4, Lid: 2\n")) << text;
-  // Where nothing is said, nothing is listed.
+  // Without assignments, nothing is listed.
   const nlohmann::json plain = RunOk({"info", Scene("suzanne.glb"), "--json"}).Json();
   EXPECT_FALSE(plain.contains("styles"));
   EXPECT_FALSE(plain.contains("pass_indices"));

@@ -164,8 +164,8 @@ TEST(AtomicFile, AFullDeviceIsSaidInWords) {
   EXPECT_EQ(folder.List(), (Names{"x.exr", "x.jpg", "x.png", "x.tif"}));
 }
 
-// While it lives, this process can write no file beyond 4 KiB: what a full disk is like. A forked child would not do,
-// because the picture library's threads do not live on in it.
+// While it lives, this process can write no file beyond 4 KiB, like on a full disk. A forked child would not do,
+// because the picture library's threads do not survive in it.
 class SmallFilesOnly {
  public:
   SmallFilesOnly() : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,5 +1,5 @@
-// Plain Blender renders: names from Cryptomatte, coverage from an opaque film, the camera from what it saw or from its
-// file. Scenes are made here, so the truth is known; tests/blender/render_test.cpp asks Blender itself.
+// Plain Blender renders: names from Cryptomatte, coverage from an opaque film, the camera solved or from its file.
+// Scenes are made here, so the truth is known; tests/blender/render_test.cpp compares with Blender itself.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
@@ -330,7 +330,7 @@ TEST(BlenderFile, ATransparentFilmKeepsItsAlpha) {
   EXPECT_EQ(guides->Plane(Layer::kCoverage)[1199], 0.75f);
 }
 
-// The first sample of a filtered pixel may miss what covers the rest of it.
+// The first sample of a filtered pixel may miss the surface that covers most of it.
 TEST(BlenderFile, EdgesAreCompletedFromTheirNeighbours) {
   const TemporaryFolder folder;
   BlenderFile file;

@@ -1,4 +1,4 @@
-// EXR files by OpenEXR alone: the bytes that OpenImageIO would write, and what it would read from them.
+// EXR files by OpenEXR alone: the bytes equal OpenImageIO's, and so do the values read.
 #include <Imath/half.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

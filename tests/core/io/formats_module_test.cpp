@@ -1,5 +1,4 @@
-// Where the program finds its module of formats, and what it does without one: in the folders of builds and
-// installations.
+// The search for the module of formats, and the program without it: in the folders of builds and installations.
 #include <filesystem>
 #include <string>
 #include <vector>

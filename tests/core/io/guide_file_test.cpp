@@ -1,4 +1,4 @@
-// Guides through EXR files: nothing lost, and every file that is no guide file refused in words.
+// Guides through EXR files: no loss, and a clear refusal of every file that is no guide file.
 #include "core/io/guide_file.h"
 
 #include <Imath/half.h>
@@ -213,7 +213,7 @@ TEST(GuideHeader, DamagedTextNeverDoesHarm) {
   }
 }
 
-// ---- what is read ----------------------------------------------------------------------------------------------
+// ---- reading -------------------------------------------------------------------------------------------------
 
 TEST(GuideFile, OnlyWhatIsAskedForIsRead) {
   const TemporaryFolder folder;

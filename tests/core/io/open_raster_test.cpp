@@ -1,4 +1,4 @@
-// Files of layers: what is written, and what is read from strangers' files.
+// Files of layers: written, and read from untrusted files.
 #include "core/io/picture/open_raster.h"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ TEST_F(OpenRaster, TheMergedPictureIsRead) {
   EXPECT_EQ(header->width, 40);
   EXPECT_EQ(header->height, 30);
   EXPECT_EQ(header->bits, 8);
-  // Krita's own files are built the same way; so is the name no matter.
+  // Krita's own files have an equal structure; the name does not matter.
   const auto krita =
       WriteZip("b.kra", {{"mimetype", Bytes("application/x-krita")}, {"mergedimage.png", *EncodePng(merged), true}});
   EXPECT_EQ(ReadPicture(krita)->rgba, merged.rgba);
@@ -176,7 +176,7 @@ TEST_F(OpenRaster, APngUnpacksToItsOwnSizeAtMost) {
   png.resize(std::size_t(64) << 20);
   ExpectRefusal(ReadPicture(WriteZip("long.ora", {{"mergedimage.png", png, true}})),
                 {"mergedimage.png in ", "long.ora", "unpacks to more than"});
-  // The same bytes, cut, of a picture that says it is huge.
+  // The same bytes, truncated, of a picture that declares a huge size.
   png.resize(200);
   for (int i = 16; i < 20; ++i) png[std::size_t(i)] = std::byte(0xff);
   ExpectRefusal(ReadPicture(WriteZip("huge.ora", {{"mergedimage.png", png}})),

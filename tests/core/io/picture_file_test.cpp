@@ -373,8 +373,8 @@ TEST(PictureFile, AWrongEndingDoesNotMatter) {
   ExpectSame(Read(folder / "p.tif"), picture);
 }
 
-// Each format by its own reader, found by what is in the file: a name without an ending says nothing. TGA begins with
-// nothing of its own and needs its name. Tolerances of 16 bits: WebP loses, HDR has 8 bits of mantissa.
+// Each format is read by its own reader, chosen by the file's content: a name without an ending gives no hint. TGA has
+// no mark and needs its name. Tolerances of 16 bits: WebP is lossy, HDR has 8 bits of mantissa.
 TEST(PictureFile, FormatsAreKnownByHowTheyBegin) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> bytes(3 * 16 * 16, 200);
@@ -399,8 +399,8 @@ TEST(PictureFile, FormatsAreKnownByHowTheyBegin) {
   }
 }
 
-// A reader of OpenImageIO's ends the process at some RLA files. Nobody paints in that format, and a file that turns out
-// to be nothing else must not come to it.
+// A reader of OpenImageIO's ends the process at some RLA files. Painters do not use that format, and a file of unknown
+// content must not reach that reader.
 TEST(PictureFile, FormatsThatNobodyPaintsInAreRefused) {
   const TemporaryFolder folder;
   const fs::path path = folder / "render.rla";

@@ -1,4 +1,4 @@
-// Which channels of an EXR file are its picture, and which files of layers are none.
+// The channels of an EXR file that are its picture, and files of layers without one.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 

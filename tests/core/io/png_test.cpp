@@ -1,4 +1,4 @@
-// PNG without the picture library: the same pixels and the same words as with it, the same bytes for any threads.
+// PNG without the picture library: pixels and texts equal to the library's, and equal bytes for any threads.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 #include <png.h>
@@ -139,7 +139,7 @@ TEST(PngWriter, MoreEffortLessBytes) {
   EXPECT_GT(sizes[1], sizes[2]);
 }
 
-// What a file says beside its pixels, as the picture library tells.
+// A file's texts beside its pixels, as the picture library reads them.
 std::map<std::string, std::string> Said(const fs::path& path) {
   std::map<std::string, std::string> said;
   const auto input = OIIO::ImageInput::open(path.string());

@@ -1,5 +1,5 @@
-// What a file promises and cannot hold is refused before memory is taken for it; what is packed as tightly as it can be
-// is read all the same.
+// A file that declares more than it can hold is refused before memory is allocated; a file packed as tightly as
+// possible is still read.
 #include <gmock/gmock.h>
 #include <sys/mman.h>
 
@@ -73,8 +73,7 @@ class Promises : public testing::Test {
   std::filesystem::path path_ = folder_ / "g.exr";
 };
 
-// 28 bytes a pixel, 2²⁰ pixels, and nearly all of them the same: as near to the limit of each compression as pixels
-// come.
+// 28 bytes a pixel, 2²⁰ pixels, nearly all of them equal: as near to the limit of each compression as pixels come.
 TEST_F(Promises, WhatIsPackedTightlyIsRead) {
   for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
     const auto file = Guides(compression, 1024);
@@ -144,7 +143,7 @@ std::vector<std::byte> CalledDeep(int side, std::uint32_t flags) {
   image.channels.push_back({"A", false, guides.Plane(Layer::kCoverage, 0)});
   std::vector<std::byte> file = *internal::EncodeExr("g.exr", image);
   auto* const begin = reinterpret_cast<char*>(file.data());
-  const std::string name = "tYPE";  // the library would mend one that it is given
+  const std::string name = "tYPE";  // the library would repair one that it is given
   char* const at = std::search(begin, begin + file.size(), name.begin(), name.end());
   EXPECT_NE(at, begin + file.size());
   std::memcpy(at, "type", name.size());
@@ -177,7 +176,7 @@ TEST_F(Promises, DeepPixelsAreRefusedAsThat) {
   for (const std::uint32_t flags : {0x800u, 0x1000u, 0x1800u}) ExpectRefused(CalledDeep(8, flags), "deep pixels");
 }
 
-// A PNG's header says its sides at bytes 16 and 20, and its sum follows.
+// A PNG's header has its sides at bytes 16 and 20, and its sum follows.
 TEST(PromisesOfPng, SidesThatNoDataOfThatSizeFills) {
   for (const std::uint32_t side : {2048u, 16384u, 32768u, 0x7fffffffu}) {
     auto file = *EncodePng(Picture(4, 4), 0);
@@ -230,8 +229,7 @@ std::vector<Claim> Claims() {
   };
 }
 
-// What the formats' bounds let a file of some kilobytes promise is at most 512 times as many samples: far less than
-// these.
+// By the formats' bounds, a file of some kilobytes may declare at most 512 times as many samples: far less than these.
 TEST(PromisesOfPictures, SidesThatNoFileOfThatSizeHolds) {
   const TemporaryFolder folder;
   for (Claim& claim : Claims()) {
@@ -349,7 +347,7 @@ TEST(PromisesOfPsd, NothingButTheFlattenedPictureIsLookedAt) {
   }
 }
 
-// A negative number of layers says that the fourth channel is alpha, if there is one. Resolution is kept: 300 an inch.
+// A negative number of layers means that the fourth channel is alpha, if there is one. Resolution is kept: 300 an inch.
 TEST(PromisesOfPsd, AlphaAndResolutionAreKept) {
   const TemporaryFolder folder;
   for (const int version : {1, 2}) {
@@ -369,7 +367,7 @@ TEST(PromisesOfPsd, AlphaAndResolutionAreKept) {
   }
 }
 
-// By the palette, 256 values of red, then of green, then of blue; opaque but where a colour is said to be transparent.
+// By the palette, 256 values of red, then of green, then of blue; opaque but for the transparent colour.
 TEST(PromisesOfPsd, IndexedColoursAreThoseOfThePalette) {
   std::string palette(768, '\0');
   palette[7] = '\xc8', palette[256 + 7] = 'd', palette[512 + 7] = '2';
@@ -418,7 +416,7 @@ TEST(PromisesOfPsd, SectionsAndRowsThatTheFileDoesNotHold) {
   refused(bytes, "promises more than its");
   for (std::size_t at = 14; at < 22; ++at) bytes[at] = std::byte(0xff);
   refused(bytes, "expected one flat picture");
-  // What is not there would be read all the same: of one channel three, of eight bits a pixel one.
+  // Missing data would be read: of one channel three, of eight bits a pixel one.
   for (const PsdFile& file : {PsdFile{.channels = 1}, PsdFile{.channels = 3, .mode = 4}, PsdFile{.channels = 57},
                               PsdFile{.depth = 1}, PsdFile{.depth = 1, .mode = 2}, PsdFile{.depth = 16, .mode = 2}}) {
     refused(file.Bytes(), "do not fit its colours");

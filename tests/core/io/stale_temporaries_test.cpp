@@ -1,4 +1,4 @@
-// Temporary files that killed runs leave: which are taken away, and which are not.
+// Temporary files of killed runs: which are removed, and which are not.
 #include "core/io/file/stale_temporaries.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ std::vector<std::string> Names(const TemporaryFolder& folder) {
 
 void WriteText(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
 
-// What a process leaves that ends in the middle of a write, without a chance to clean up.
+// The files of a process that ends in the middle of a write, without a chance to clean up.
 void LeaveOne(const fs::path& target) {
   const pid_t child = ::fork();
   if (child == 0) {

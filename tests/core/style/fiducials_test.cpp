@@ -1,4 +1,4 @@
-// The printed marks: where they lie, what they say, how they are drawn.
+// The printed marks: their places, their bits, their drawing.
 #include "core/style/kit/fiducials.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The lines and tones that a painter switches on, against plain geometry.
+// The lines and steps of light that a painter switches on, against plain geometry.
 #include "core/style/kit/guide_layers.h"
 
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TEST(GuideLayers, TheTerminatorIsWhereLightEnds) {
 TEST(GuideLayers, TheRingIsAroundTheHighlight) {
   const glm::dvec3 light = DirectionFromAngles(-40, 40);
   const glm::dvec3 mirror = glm::normalize(light + glm::dvec3(0, 0, 1));
-  // A polished ball shows the lamp where the view is thrown back to it.
+  // A polished sphere shows the light where the view is reflected towards it.
   EXPECT_NEAR(glm::distance(2 * mirror.z * mirror - glm::dvec3(0, 0, 1), light), 0, 1e-12);
   ExpectDrawn(
       DrawLightLines(kSize, -40, 40), Circle(mirror, 6), [](auto* p) { return HueOf(p) == Hue::kRed; }, 1.8);

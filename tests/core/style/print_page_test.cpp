@@ -1,4 +1,4 @@
-// Where the template lies on paper, against sums in millimetres.
+// The template's place on paper, against sums in millimetres.
 #include "core/style/kit/print_page.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What --rectify is made of, part by part, against formulas.
+// The parts of --rectify against formulas.
 #include <gtest/gtest.h>
 
 #include <algorithm>

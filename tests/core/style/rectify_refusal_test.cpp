@@ -1,4 +1,4 @@
-// Pictures that no exemplar can be made of: each is refused, and the reason helps.
+// Pictures that no exemplar can be made of: each is refused, with a helpful reason.
 #include <gtest/gtest.h>
 
 #include "core/style/scan/rectify.h"
@@ -51,7 +51,7 @@ TEST(RectifyRefusal, HalfAPage) {
                 {"a part of the sphere only", "50% of it lies beyond the left border"});
 }
 
-// The four marks of the left side, coarse and noisy: where the sphere's right side is they do not tell.
+// The four marks of the left side, coarse and noisy: they do not determine the sphere's right side.
 TEST(RectifyRefusal, MarksOnOneSideThatLeaveTheOtherOpen) {
   Scan scan;
   scan.covered = {1, 2, 3, 4, 5, 6, 7, 8}, scan.noise = 8, scan.blur = 0.8, scan.fill = 0.36;

@@ -1,4 +1,4 @@
-// Scans with a known camera and known light: where the template is found, and what comes back of its colours.
+// Scans with a known camera and known light: the place of the template, and its colours.
 #include "core/style/scan/rectify.h"
 
 #include <gtest/gtest.h>

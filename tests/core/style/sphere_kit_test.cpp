@@ -50,7 +50,7 @@ TEST(SphereKit, TheTemplateShowsTheLitSphereAndMarksOnlyTheMargin) {
     ASSERT_GE(margin, 1);
     ASSERT_EQ(picture.width, size + 2 * margin);
     ASSERT_EQ(picture.height, size + 2 * margin);
-    // The same sphere in the dark, everywhere transparent: what is drawn then is the marks alone.
+    // The same sphere in the dark, everywhere transparent: only the marks are drawn.
     GuideSet nothing = SphereGuides(size);
     for (float& coverage : nothing.Plane(Layer::kCoverage)) coverage = 0.0f;
     const Picture marks = DrawTemplate({-45, 35, nothing});
@@ -213,7 +213,7 @@ TEST(SphereKit, PaintedLayersAreNotOverwritten) {
   ASSERT_TRUE(kit(300));
   EXPECT_TRUE(kit(300)) << "the same may be written again";
   EXPECT_TRUE(kit(150)) << "and for other paper: nobody has painted on it";
-  // Layers as another program names and numbers them; what they show is the same but for a dot of paint.
+  // Layers as another program names and numbers them; their composite is equal but for a dot of paint.
   Picture paint(48, 48), merged = DrawTemplate({0, 0, SphereGuides(32)});
   for (std::uint16_t* pixel : {paint.At(20, 20), merged.At(20, 20)}) pixel[0] = 40000, pixel[3] = 65535;
   const auto saved = EncodeOpenRaster(std::vector<RasterLayer>{{"mine", *EncodePng(paint)}}, merged, 0, "template.ora");

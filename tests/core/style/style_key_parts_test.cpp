@@ -1,4 +1,4 @@
-// Keys of many parts, which toml++ would follow down to the end of the stack.
+// Keys of many parts, on which toml++ would use up the stack.
 #include <gtest/gtest.h>
 
 #include <algorithm>

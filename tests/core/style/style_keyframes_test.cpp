@@ -169,7 +169,7 @@ TEST_F(StyleKeyframes, TracksOfManyFramesAreSearchedByHalves) {
   EXPECT_LT(seconds, 3.0 * SCUMBLE_TESTS_SLOWER);
 }
 
-// Numbers of frames are those of pictures, and half way from the first to the last of all is frame 0.
+// Numbers of frames are those of pictures, and halfway from the first to the last of all is frame 0.
 TEST_F(StyleKeyframes, FramesGoAsFarAsThoseOfPictures) {
   static_assert(kMaxTrackFrame == kMaxFrame);
   Style style = Loaded("threshold = [[-999999999, 0.25], [999999999, 0.75]]");

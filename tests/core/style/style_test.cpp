@@ -1,4 +1,4 @@
-// Styles from files: every key honoured, or refused by name.
+// Styles from files: every key applied, or refused by name.
 #include <gtest/gtest.h>
 
 #include <cmath>

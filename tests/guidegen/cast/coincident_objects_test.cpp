@@ -1,4 +1,4 @@
-// Objects that stand exactly where another one stands: which of them are left out.
+// Objects at exactly the same place: which of them are left out.
 #include "guidegen/rays/coincident_objects.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ struct Stand {
   PlacedObject Of(const Material& material) const { return Place(&mesh, &material, {}, glm::dmat4(1.0)); }
 };
 
-// Of two in one place the first is left out where the second hides all of it: never behind holes, nor behind what is
-// culled where it is not; and what emits is a light besides.
+// Of two at one place the first is left out if the second hides all of it: never behind holes, nor behind a culled
+// object where it is not culled. An emissive object is a light besides.
 TEST(ExactCopies, AreCoveredByWhatHidesThemWhole) {
   const Stand stand;
   const auto first_is_covered = [&](const Material& first, const Material& second) {

@@ -1,6 +1,6 @@
-// The ray caster on broken and empty scenes, on any number of threads, and when it must refuse. Scenes at the ends of
-// every scale are extreme_geometry_test.cpp's, those far away extreme_place_test.cpp's, and what Embree's instruction
-// sets agree on is instruction_sets_test.cpp's.
+// The ray caster on broken and empty scenes, on any number of threads, and its refusals. Scenes at the ends of every
+// scale are extreme_geometry_test.cpp's, those far away extreme_place_test.cpp's, and agreement of Embree's instruction
+// sets is instruction_sets_test.cpp's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 LayerSet Everything() { return {Layer::kPosition, Layer::kPref, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}; }
 
-// Balls that overlap each other exactly, walls in one plane, masks, mirrors, lamps.
+// Spheres that overlap each other exactly, walls in one plane, masks, mirrors, lights.
 Scene CrowdedScene() {
   Scene scene = SceneOf(BallMesh(24));
   scene.materials.emplace_back();
@@ -68,7 +68,7 @@ TEST(Determinism, ThreadsDoNotChangeAByte) {
 TEST(Determinism, LargeMeshesBuildTheSameTree) {
   // Above some ten thousand triangles Embree builds in parallel; doubled geometry makes every hit a tie.
   Scene scene = SceneOf(BallMesh(200));
-  // One rounding larger than the first, in double: no exact copy, but the same to Embree.
+  // One rounding larger than the first, in double: no exact copy, but equal for Embree.
   scene.instances.push_back({"twin", 0, glm::scale(glm::dmat4(1.0), glm::dvec3(1.0 + 0x1p-52))});
   GuidegenOptions options = Sized(200, 200);
   options.threads = 1;

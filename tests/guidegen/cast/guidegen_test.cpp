@@ -435,7 +435,7 @@ TEST(Light, TwoLampsShareTheShadow) {
   Scene scene = SceneOf(QuadMesh(), glm::scale(glm::dmat4(1.0), glm::dvec3(5.0)));
   AddObject(scene, "screen", QuadMesh(), glm::scale(Moved(-1.5, 0, 1.5), glm::dvec3(0.5)));
   scene.lights = {PointLight({-3, 0, 3}, 1.0), PointLight({3, 0, 3}, 3.0)};
-  // At the origin the screen hides the left lamp; both lamps shine equally obliquely.
+  // At the origin the screen hides the left light; both lights shine equally obliquely.
   const auto result = Render(scene, LookingAt({0, -6, 3}, {0, 0, 0}, 0.5), Sized(1, 1, {Layer::kShadow}));
   EXPECT_NEAR(result.guides.Plane(Layer::kShadow)[0], 0.25, 1e-6);
 }

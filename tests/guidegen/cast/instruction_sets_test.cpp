@@ -1,6 +1,6 @@
-// Embree traces in float, in another order for each instruction set. What of that shows in the guides: which triangle a
-// ray meets where two are within float's sight of it, and whether light reaches a place on a shadow's edge. All else is
-// worked out in double from the triangle's number, by code that has the same bits everywhere.
+// Embree traces in float, in another order for each instruction set. Two effects show in the guides: the triangle that
+// a ray hits where two are within float's resolution of it, and whether light reaches a place on a shadow's edge. All
+// other values are computed in double from the triangle's number, with equal bits everywhere.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -48,7 +48,7 @@ GuidegenOptions Wanted(const Sample& sample, const std::string& isa) {
   return options;
 }
 
-// Of the sets that this machine has. Whatever they differ in, each is what a transfer accepts: no NaN, no length of 0.
+// Of the sets that this machine has. Each gives valid guides, whatever their differences: no NaN, no length of 0.
 std::map<std::string, GuidegenResult> OnEachSet(const Sample& sample, GuidegenOptions options,
                                                 std::span<const char* const> sets) {
   std::map<std::string, GuidegenResult> results;
@@ -91,7 +91,7 @@ Difference Compare(const GuideSet& a, const GuideSet& b, Layer layer, std::vecto
   return difference;
 }
 
-// The same bytes for one set, whatever the threads, and so whatever the order of tiles.
+// The same bytes for one set, for any threads, and so for any order of tiles.
 TEST(InstructionSets, OneSetGivesTheSameBytesForAnyThreads) {
   const Sample sample = Load("stilllife", 203, 151);
   int sets = 0;
@@ -117,7 +117,7 @@ TEST(InstructionSets, OneSetGivesTheSameBytesForAnyThreads) {
 // of another surface (exact_rays.h derives how near that is). Where they meet the same triangle there is not one ulp
 // between them: a pixel that float could not doubt has the same bits in every layer of the surface. Where it could,
 // each of the two shows a place on the pixel's ray, to float's sight, with a unit normal. Its light may differ where
-// its way to a lamp passes an edge within float's sight: of a pixel's width that is 2^-19 of the distance to both
+// its way to a light passes an edge within float's sight: of a pixel's width that is 2^-19 of the distance to both
 // sides, so of all pixels no more than that share, though a shadow's edge ran through each of them. Returns how many
 // pixels differ.
 int ExpectNoOthersToDiffer(const Sample& sample, std::span<const char* const> sets) {
@@ -165,7 +165,7 @@ TEST(InstructionSets, SampleScenesDifferOnlyWhereFloatMayChoose) {
   }
 }
 
-// Large enough for some pixels to be in doubt: those of AVX2 multiply and add in one rounding.
+// Large enough that some pixels are ambiguous: those of AVX2 multiply and add in one rounding.
 TEST(InstructionSets, LargePicturesDifferOnlyWhereFloatMayChoose) {
   constexpr std::array<const char*, 2> kMostUnlike = {"sse2", "avx2"};
   for (const char* name : {"snail", "stilllife"}) {
@@ -208,7 +208,7 @@ TEST(InstructionSets, RaysAlongEdgesAreWhereTheyDisagree) {
   EXPECT_GT(disagreed, 0);
 }
 
-// An open room of 2 m, with a cube in it and a lamp that has extent, seen through the missing wall, with sky around.
+// An open room of 2 m, with a cube and a light with extent in it, seen through the missing wall, with sky around.
 Sample OpenRoom() {
   Mesh walls = CubeMesh();
   walls.triangles.resize(walls.triangles.size() - 2);  // the wall at +Z is the last
@@ -226,8 +226,8 @@ Sample OpenRoom() {
 // light in a room are, meet a convex body in it as often as its surface is of the room's (Crofton): within float's
 // sight of an edge they pass as often as the edge's tube is of the 24 m². What is missing of a wall, and rays that end
 // before, make it fewer. The sum takes the edges that two triangles share twice. Rays do not begin evenly: where the
-// eye looks there are more of them, and towards the lamp. Half a metre from an edge they are 2.4 times as dense as in
-// the mean, and nothing is nearer to the lamp; with the edges that are taken twice, twice the sum allows for four
+// eye looks there are more of them, and towards the light. Half a metre from an edge they are 2.4 times as dense as in
+// the mean, and nothing is nearer to the light; with the edges that are taken twice, twice the sum allows for four
 // times. No bound is as strict as that of the surfaces, where the plain caster tells pixel by pixel: of a path's
 // decisions only the engine knows.
 double DoubtfulShare(const Sample& room) {

@@ -1,4 +1,4 @@
-// Which pure material stands in for which glTF material.
+// The pure material that replaces each glTF material.
 #include "guidegen/scene/pure_materials.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A scene that is cast many times: the same bytes as a fresh one, built once, and as good as new after a cancelled
-// cast.
+// A scene that is cast many times: the bytes equal those of a fresh one, it is built once, and it works after a
+// cancelled cast.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -18,8 +18,8 @@
 namespace scumble::testing {
 namespace {
 
-// Every kind of object that asks Embree's filters something: single-sided, with holes, shining, and a ground that
-// reaches far. Two objects stand in the same place.
+// Every kind of object that Embree's filters handle: single-sided, with holes, emissive, and a ground that reaches far.
+// Two objects stand at one place.
 Scene MixedScene() {
   Scene scene = SceneOf(CubeMesh(), Moved(-1.2, 0.0, 0.0));
   scene.materials.resize(4);

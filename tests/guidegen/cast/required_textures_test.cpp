@@ -1,4 +1,4 @@
-// Textures are read and decoded when a layer needs them, and not before: what is missing or broken is told then.
+// Textures are read and decoded when a layer needs them, and not before: missing or damaged ones are reported then.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -80,7 +80,7 @@ TEST_F(RequiredTextures, AreDecodedOnceAndForTheLayersThatNeedThem) {
   EXPECT_EQ(decoded->bytes, 8u) << "four channels of two bytes";
   EXPECT_THAT(scene->textures[0].rgba, ElementsAre(65535, 0, 0, 65535));
   EXPECT_EQ(DecodeTextures(*scene, Asking({Layer::kAlbedo}))->count, 0) << "it is there";
-  // A copy from before has what it takes to do the same.
+  // An earlier copy can still decode its textures.
   Scene other = copy;
   EXPECT_EQ(DecodeAllTextures(other)->count, 1);
   EXPECT_EQ(other.textures[0].rgba, scene->textures[0].rgba);
@@ -93,7 +93,7 @@ TEST_F(RequiredTextures, AreDecodedOnceAndForTheLayersThatNeedThem) {
   EXPECT_EQ(posed->textures[0].rgba, scene->textures[0].rgba);
 }
 
-// Whoever paints normals does not care for a picture that was lost; who asks for colours is told its name.
+// A style of normals works without a lost picture; a style that needs colours gets an error that names it.
 TEST_F(RequiredTextures, AMissingPictureIsAnErrorOnlyWhereItIsNeeded) {
   const std::filesystem::path path = WriteSquare(SquareWith({{"uri", "lost.png"}}));
   EXPECT_EQ(ErrorFor(path, {}), "");
@@ -113,7 +113,7 @@ TEST_F(RequiredTextures, ABrokenPictureIsAnErrorOnlyWhereItIsNeeded) {
   const std::filesystem::path glb = Write("square.glb", b.Glb());
   EXPECT_EQ(ErrorFor(glb, {}), "");
   EXPECT_THAT(ErrorFor(glb, {Layer::kAlbedo}), HasSubstr("image 0"));
-  // What is wrong with the file itself is told at once: the view is not in its buffer.
+  // A fault in the file itself is reported at once: the view is not in its buffer.
   b.json["bufferViews"].back()["byteLength"] = 1 << 20;
   EXPECT_FALSE(LoadScene(Write("torn.glb", b.Glb()), kLater).ok());
 }

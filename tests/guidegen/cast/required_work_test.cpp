@@ -1,5 +1,5 @@
-// Only what is required: what the ray caster casts, asks and allocates, counted, against formulas. Each expectation is
-// an exact number, so that a scene or a style which begins to pay for what it does not use fails here.
+// Only required work: the ray caster's casts, evaluations and allocations, counted, against formulas. Each expectation
+// is an exact number, so that a scene or a style that begins to pay for an unused feature fails here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Light Panel() {
   return panel;
 }
 
-// A texture that nobody may decode: the test fails where somebody does.
+// A texture that must not be decoded: the test fails if it is.
 std::shared_ptr<const EncodedTexture> Untouchable() {
   auto texture = std::make_shared<EncodedTexture>();
   texture->decode = []() -> Expected<Picture> {
@@ -71,7 +71,7 @@ std::size_t PlaneBytes(const LayerSet& asked) {
   return channels * kPixels * sizeof(float);
 }
 
-// What is not said is 0.
+// Counts that are not listed are 0.
 struct Counts {
   std::size_t shadow = 0, bounce = 0, light_samples = 0, materials = 0, texture_lookups = 0, texels = 0;
 };
@@ -101,8 +101,8 @@ std::size_t Covered(const GuidegenResult& result) {
   return std::size_t(std::count_if(coverage.begin(), coverage.end(), [](float a) { return a > 0.0f; }));
 }
 
-// Everything that could cost something is there: lamps with and without extent, a world that shines, a material that
-// emits, textures on it. A style of normals pays for none of it.
+// The scene has every costly feature: lights with and without extent, a world that emits, an emissive material,
+// textures on it. A style of normals pays for none of them.
 TEST(RequiredWork, NormalsAloneCostOneRayAPixel) {
   Scene scene = SceneOf(CubeMesh(), glm::rotate(glm::dmat4(1.0), 0.6, glm::dvec3(1, 2, 3)));
   for (Mesh& mesh : scene.meshes) mesh.uvs[0].assign(mesh.positions.size(), glm::vec2(0.25f));
@@ -124,7 +124,7 @@ TEST(RequiredWork, NormalsAloneCostOneRayAPixel) {
   EXPECT_GT(Covered(result), 0u);
   EXPECT_EQ(result.work.filtered_hits, 0u) << "what shines stops camera rays as any surface does, unasked";
   EXPECT_EQ(result.samples, 0);
-  // Neither do positions, rest positions, or normals in the eye's frame look at materials or lights.
+  // Neither do positions, rest positions, or normals in the eye's frame need materials or lights.
   GuidegenOptions geometry = Asking({Layer::kPosition, Layer::kPref});
   geometry.normal_frame = NormalFrame::kEye;
   ExpectWork(scene, FrontCamera(5.0), geometry, {});
@@ -135,8 +135,8 @@ TEST(RequiredWork, CoverageRaysAreCastOnlyWhereAnEdgeMayBe) {
   GuidegenOptions options = Asking({});
   options.aa = 3;
   const GuidegenResult whole = Render(WholeFloor(), AboveFloor(), options);
-  // Known to be covered: what has four neighbours of its own tile on the same triangle. At least the tiles' borders and
-  // the diagonal are not; everything else is.
+  // Pixels known to be covered have four neighbours of their own tile on the same triangle. At least the tiles' borders
+  // and the diagonal are not; all others are.
   EXPECT_LT(whole.rays.coverage, 9 * kPixels / 2);
   EXPECT_EQ(whole.rays.coverage % 9, 0u) << "nothing is missed, so no pixel is looked at again";
   Scene empty = WholeFloor();
@@ -170,7 +170,7 @@ TEST(RequiredWork, ASunCostsOneShadowRayForEachPixelThatFacesIt) {
              {.shadow = kPixels, .light_samples = kPixels});
   scene.lights = {Sun(), Sun(true), PointLight({0, 0, 4}, 1.0)};
   ExpectWork(scene, AboveFloor(), Asking({Layer::kLuminance}), {.shadow = 2 * kPixels, .light_samples = 3 * kPixels});
-  // Flat faces tell by their normal, in the layer itself, whether they face the sun's +Z.
+  // Flat faces show by their normal, in the layer itself, whether they face the sun's +Z.
   Scene cube = SceneOf(CubeMesh(), glm::rotate(glm::dmat4(1.0), 1.1, glm::dvec3(1, 2, 3)));
   cube.lights = {Sun()};
   cube.lights[0].world_from_light = glm::rotate(glm::dmat4(1.0), 1.3, glm::dvec3(0.6, 1.0, 0.0));
@@ -183,8 +183,8 @@ TEST(RequiredWork, ASunCostsOneShadowRayForEachPixelThatFacesIt) {
   ExpectWork(cube, FrontCamera(5.0), Asking({Layer::kLuminance}), {.shadow = facing, .light_samples = Covered(seen)});
 }
 
-// A lamp that is small in the sky is sampled by points on it, each with its shadow ray, because all of it faces all of
-// the floor. Few lamps are each sampled.
+// A light that is small in the sky is sampled by points on it, each with its shadow ray, because all of it faces all of
+// the floor. Few lights are each sampled.
 TEST(RequiredWork, AnAreaLightCostsItsSamples) {
   Scene scene = WholeFloor();
   scene.lights = {Panel()};
@@ -272,8 +272,8 @@ TEST(RequiredWork, FullPathsOnAnOpenFloor) {
   ExpectWork(scene, AboveFloor(), Asking(kAllPaths), expected);
 }
 
-// In a closed room with a lamp inside, all that is convex is seen from everywhere. With one bounce, S samples cost: S
-// rays that meet a wall, whose material is asked, and from there one to the lamp, beside the first surface's own.
+// In a closed room with a light inside, every convex object sees it from everywhere. With one bounce, S samples cost: S
+// rays that hit a wall, whose material is evaluated, and from there one to the light, beside the first surface's own.
 TEST(RequiredWork, FullPathsInAClosedRoom) {
   Scene room = SceneOf(CubeMesh());
   room.materials[0] = Painted(Bsdf::kDiffuse, 0.5f);

@@ -23,8 +23,8 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Objects before a camera, a tile of its picture, and what the rays are said to have met there. The plain code asks
-// for no more than a triangle's number, so hits may be as wild as Embree never makes them.
+// Objects before a camera, a tile of its picture, and given hits of its rays. The plain code needs only a triangle's
+// number, so hits may be wilder than Embree's ever are.
 struct Case {
   std::vector<Mesh> meshes;
   Material material;
@@ -122,7 +122,7 @@ bool Crosses(const ViewRay& ray, const Triangle& triangle) {
   return left == 0 || left == 3;
 }
 
-// Pixels whose ray does not cross what it is said to have met.
+// Pixels whose ray does not cross its given hit.
 int CountMisses(const Case& scene) {
   int count = 0;
   for (int pixel = 0; pixel < kTilePixels; ++pixel) {
@@ -224,8 +224,8 @@ TEST(TileSurface, EmptyFullAndSinglePixels) {
   });
 }
 
-// NaN, zero and cancelling normals, triangles without area and edge on, huge and tiny ones, corners at the eye: what is
-// not left to the plain code has its bits.
+// NaN, zero and cancelling normals, triangles without area and edge on, huge and tiny ones, corners at the eye: pixels
+// not left to the plain code have its bits.
 TEST(TileSurface, WildGeometry) {
   OnEveryInstructionSet([] {
     Case scene = RandomCase(9, false, 3, 0.1);
@@ -269,7 +269,7 @@ TEST(TileSurface, TheCacheForgetsWithoutHarm) {
   }
 }
 
-// Triangles whose places in the cache are the same ones, as many as may be asked for at once.
+// Triangles that share one place in the cache, as many as may be requested at once.
 TEST(TileSurface, TheCacheKeepsWhatWasFoundSinceItBegan) {
   const Case scene = RandomCase(2, false, 1, 0.0);
   const std::vector<ObjectRecord> records = MakeObjectRecords(scene.objects);

@@ -1,5 +1,5 @@
-// The ray caster through lenses and from places at the ends of what a camera can be, against spheres and planes in
-// closed form and against exact_rays.h's plain caster.
+// The ray caster with lenses and cameras at the ends of their ranges, against spheres and planes in closed form and
+// against exact_rays.h's plain caster.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,8 +23,8 @@ constexpr int kRings = 96;
 // the middle: no place of it lies deeper under the unit sphere than this.
 const double kInset = 1.0 - std::cos(glm::pi<double>() / kRings / std::sqrt(2.0));
 
-// A ball of radius 1 about `centre`, seen along one ray: how far the ray passes from the centre, and where it enters
-// and leaves the sphere.
+// A sphere mesh of radius 1 about `centre`, seen along one ray: how far the ray passes from the centre, and where it
+// enters and leaves the sphere.
 struct SphereView {
   SphereView(const ExactRay& ray, const glm::dvec3& centre) {
     const double squared = glm::dot(ray.direction, ray.direction);
@@ -37,10 +37,10 @@ struct SphereView {
   double passes_by, enters, leaves;
 };
 
-// The normals of a ball against the sphere's. On a ball of radius 1 the interpolated normal is the facet's place, made
-// a unit: what a ray sees at the radius r has the angle asin(b / r) to the ray, b being how far the ray passes from the
-// centre, while the sphere itself has asin(b). Facets have r between 1 − inset and 1. To that come 4 roundings to
-// float: of the vertices, their normals, the weights and the result, each of 2^-24 in three coordinates.
+// The normals of a sphere mesh against the sphere's. On a sphere mesh of radius 1 the interpolated normal is the
+// facet's place, made a unit: what a ray sees at the radius r has the angle asin(b / r) to the ray, b being how far the
+// ray passes from the centre, while the sphere itself has asin(b). Facets have r between 1 − inset and 1. To that come
+// 4 roundings to float: of the vertices, their normals, the weights and the result, each of 2^-24 in three coordinates.
 int ExpectBall(const GuideSet& guides, const Camera& camera, const glm::dvec3& centre, bool from_inside) {
   const glm::dmat3 view_from_world(guides.camera->view_from_world);
   constexpr double kRounding = 4.0 * 1.7320508 / (1 << 24);
@@ -76,13 +76,13 @@ int ExpectBall(const GuideSet& guides, const Camera& camera, const glm::dvec3& c
 
 // --- Field of view ------------------------------------------------------------------------------------------------
 
-// From 0.1° to 175° the same ball fills the same part of the picture, from as far as that takes. Through the longest
-// lens it is 2 km away: a float's step there is 0.1 mm, a double's is nothing.
+// From 0.1° to 175° the same sphere mesh fills the same part of the picture, from as far as that takes. Through the
+// longest lens it is 2 km away: a float's step there is 0.1 mm, a double's is nothing.
 TEST(FieldOfView, ABallHasTheSpheresNormalsFromATenthOfADegreeTo175) {
   for (const double degrees : {0.1, 1.0, 10.0, 40.0, 90.0, 120.0, 150.0, 170.0, 175.0}) {
     SCOPED_TRACE(degrees);
     const double half = glm::radians(degrees / 2.0);
-    // Tangents from the eye to the ball make this angle with the axis.
+    // Tangents from the eye to the sphere mesh make this angle with the axis.
     const double distance = 1.0 / std::sin(std::atan(std::tan(half) * 0.8));
     const Camera camera = LookingAt(glm::dvec3(0.36, 0.48, 0.8) * distance, {0, 0, 0}, degrees);
     const GuideSet guides = Render(SceneOf(BallMesh(kRings)), camera, Sized(60, 60)).guides;
@@ -137,7 +137,7 @@ TEST(Orthographic, ABallHasTheSpheresNormalsFromAMicrometreToAThousandKilometres
     camera.ymag = 1.25 * scale;
     const auto sized = glm::scale(glm::dmat4(1.0), glm::dvec3(scale));
     const auto result = Render(SceneOf(BallMesh(kRings), sized), camera, Sized(50, 50));
-    // The ball's own scale, for the formulas of a ball of radius 1.
+    // The sphere mesh's own scale, for the formulas of a sphere mesh of radius 1.
     GuideSet guides = result.guides;
     for (float& depth : guides.Plane(Layer::kDepth)) depth = float(depth / scale);
     Camera unit = camera;
@@ -272,8 +272,8 @@ TEST(FarOut, CamerasThatSeeBeyondEmbreesRangeAreRefused) {
 
 // --- Inside -------------------------------------------------------------------------------------------------------
 
-// From any place inside a ball every ray meets its inside once, with the normal turned towards the eye; the sphere in
-// closed form says where. Backs that are culled leave nothing.
+// From any place inside a sphere mesh every ray meets its inside once, with the normal turned towards the eye; the
+// sphere in closed form says where. Backs that are culled leave nothing.
 TEST(Inside, ABallSeenFromWithinIsTheSphereTurnedInward) {
   for (const glm::dvec3 eye :
        {glm::dvec3(0.0), glm::dvec3(0.5, 0.2, -0.3), glm::dvec3(0.0, 0.0, 0.9), glm::dvec3(0.57, 0.57, 0.57)}) {
@@ -302,7 +302,7 @@ TEST(Inside, AMicrometreFromAWallAndOnIt) {
       // With the wall right before the eye.
       const GuideSet close = Render(scene, FrontCamera(-1.0 + gap, degrees), Sized(9, 9)).guides;
       for (std::size_t i = 0; i < 81; ++i) {
-        // Embree's wall may be a float's step of 1 m away from where it is, which says nothing of the depth.
+        // Embree's wall may be a float's step of 1 m off, which does not affect the depth.
         EXPECT_NEAR(close.Plane(Layer::kDepth)[i], gap, std::ldexp(gap, -24) + 0x1p-52);
         EXPECT_EQ(close.Vec3(Layer::kNormal, i), glm::vec3(0, 0, 1));
       }
@@ -347,8 +347,9 @@ TEST(Inside, AMicrometreFromAWallAndOnIt) {
 
 // --- Up -----------------------------------------------------------------------------------------------------------
 
-// A matrix whose up lies along the view says nothing of how the picture stands, and is refused by name. One whose up is
-// barely beside it does: the view is kept exactly, and up is what the smallest part of it says.
+// A matrix whose up is parallel to the view does not determine the picture's rotation, and is refused by name. One
+// whose up is barely off the view does: the view is kept exactly, and the small remaining part of up determines the
+// rotation.
 TEST(UpVector, ParallelToTheViewIsRefusedAndBarelyBesideItIsEnough) {
   const Scene scene = SceneOf(QuadMesh());
   const auto with_up = [](const glm::dvec3& up) {
@@ -377,8 +378,8 @@ TEST(UpVector, ParallelToTheViewIsRefusedAndBarelyBesideItIsEnough) {
   }
 }
 
-// Straight up and straight down: the framing camera turns about the scene by its angles, not by a world's up, so these
-// are views like any other; the azimuth then says which way the picture stands.
+// Straight up and straight down: the framing camera uses its angles, not a world's up, so these need no special case;
+// the azimuth then determines the picture's rotation.
 TEST(UpVector, ViewsFromStraightAboveAndBelowStandAsTheAzimuthSays) {
   const Scene scene = SceneOf(BallMesh(16));
   for (const double elevation : {90.0, -90.0}) {

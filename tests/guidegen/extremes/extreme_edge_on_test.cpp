@@ -1,6 +1,6 @@
-// Triangles seen edge on, or nearly so. Embree says in float that a ray meets one of them; where, is said in double,
-// and must be a place of the triangle that the ray passes as near as it passes the triangle at all. The truth is worked
-// out in long double, from the ray's distance to the three edges; it shares nothing with the engine.
+// Triangles seen edge on, or nearly so. Embree decides in float that a ray hits one of them. The place is computed in
+// double, and must be a point of the triangle with the least distance from the ray. The truth is computed in long
+// double, from the ray's distance to the three edges; it shares no code with the engine.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -102,8 +102,9 @@ TEST(EdgeOn, TheRayMeetsWhatItPassesNearest) {
   }
 }
 
-// A wall whose plane holds the eye and the rays of the picture's middle column, from exactly so to float's step beside
-// it. Whatever float says of that column, what is shown of the wall is where the ray passes it, and before the eye.
+// A wall whose plane holds the eye and the rays of the picture's middle column, from exactly so to a float's step
+// beside it. Whatever float decides about that column, the visible part of the wall is where the ray passes it, and
+// before the eye.
 TEST(EdgeOn, AWallInTheEyesPlaneIsShownOnItsRays) {
   int met = 0;
   for (const double lean : {0.0, 1e-12, 1e-9, 2e-8, 1e-7, 1e-6, 1e-5}) {

@@ -23,7 +23,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 LayerSet Everything() { return {Layer::kPosition, Layer::kPref, Layer::kAlbedo, Layer::kLuminance, Layer::kShadow}; }
 
-// A ball before a leaning wall, and a lamp that throws the one's shadow on the other.
+// A sphere mesh before a leaning wall, and a light that throws the one's shadow on the other.
 Scene SmallScene(double scale) {
   const glm::dmat4 sized = glm::scale(glm::dmat4(1.0), glm::dvec3(scale));
   Scene scene = SceneOf(BallMesh(12), sized);
@@ -35,7 +35,7 @@ Scene SmallScene(double scale) {
 
 Camera SmallSceneCamera(double scale) { return LookingAt(glm::dvec3(1, 2, 6) * scale, {0, 0, 0}); }
 
-// The same in light of every kind that has extent: a lamp whose radius is below a nanometre at 2^-20, an area light, a
+// The same in light of every kind that has extent: a light whose radius is below a nanometre at 2^-20, an area light, a
 // sun, a panel that shines, and a sky.
 Scene SoftScene(double scale) {
   Scene scene = SmallScene(scale);
@@ -84,7 +84,7 @@ TEST(ExtremeScale, PowersOfTwoChangeNoBit) {
   ExpectNoBitChanges(SmallScene, options);
 }
 
-// Irradiance is strength over squared distance, a lamp's strength grows with the square of the scale, and radiances do
+// Irradiance is strength over squared distance, a light's strength grows with the square of the scale, and radiances do
 // not; chance is hashed by pixel. So light with extent, wherever it is reflected, has the same bits too.
 TEST(ExtremeScale, PowersOfTwoChangeNoBitOfSoftLight) {
   GuidegenOptions options = Sized(24, 18, Everything().Add(kAllPaths));
@@ -436,8 +436,8 @@ TEST(Grazing, DepthsAreTheFormulasUpTo89999ThousandthsOfADegree) {
   }
 }
 
-// A ball a thousandth of a pixel across is a point. A ray through it sees it and its normal; subsamples beside it do
-// not, so its coverage is that of the one subsample, and moved between the subsamples it is gone.
+// A sphere mesh a thousandth of a pixel across is a point. A ray through it sees it and its normal; subsamples beside
+// it do not, so its coverage is that of the one subsample, and moved between the subsamples it is gone.
 TEST(Dust, ABallOfAThousandthOfAPixelIsSeenByTheRayThatMeetsItAndByNoOther) {
   for (const double distance : {1.0, 1e3, 1e6}) {
     SCOPED_TRACE(distance);
@@ -461,11 +461,11 @@ TEST(Dust, ABallOfAThousandthOfAPixelIsSeenByTheRayThatMeetsItAndByNoOther) {
   }
 }
 
-// The same ball, turned so that the middle of a facet faces the eye. On a ball interpolated normals are the facet's
-// places themselves, so the ray through its middle sees the normal that points back along it: to the rounding of
-// corners, normals and the result to floats, two of them over the facet's height above the ball's middle, which is 0.9
-// at least. The facet's own normal, at whose place it would be the wrong one, is another by more than that wherever
-// facets are not regular.
+// The same sphere mesh, turned so that the middle of a facet faces the eye. On a sphere mesh interpolated normals are
+// the facet's places themselves, so the ray through its middle sees the normal that points back along it: to the
+// rounding of corners, normals and the result to floats, two of them over the facet's height above the sphere mesh's
+// middle, which is 0.9 at least. The facet's own normal, at whose place it would be the wrong one, is another by more
+// than that wherever facets are not regular.
 TEST(Dust, ItsNormalIsTheOneUnderTheRay) {
   const Mesh ball = BallMesh(4);
   const glm::uvec3& facet = ball.triangles[10];
@@ -490,9 +490,9 @@ TEST(Dust, ItsNormalIsTheOneUnderTheRay) {
   }
 }
 
-// A ball ten thousand times as wide as the picture. Its facets are larger than the picture too; each pixel shows the
-// facet that the plain caster finds, and the normal points away from the ball's middle, because on a ball interpolated
-// normals are the facet's places themselves.
+// A sphere mesh ten thousand times as wide as the picture. Its facets are larger than the picture too; each pixel shows
+// the facet that the plain caster finds, and the normal points away from the sphere mesh's middle, because on a sphere
+// mesh interpolated normals are the facet's places themselves.
 TEST(Planet, ABallTenThousandTimesThePictureIsExactUnderTheEye) {
   for (const double radius : {1.0, 6.4e6}) {
     for (const double degrees : {0.0, 45.0, 85.0}) {

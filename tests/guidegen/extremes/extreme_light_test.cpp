@@ -1,5 +1,6 @@
-// Light at its extremes: the ray caster's light layers against closed formulas. Every case says what must come out and
-// why; tolerances are roundings (2^-24 for a float) or five standard deviations of a sum whose variance is known.
+// Light at its extremes: the ray caster's light layers against closed formulas. Every case states the expected value
+// and its reason; tolerances are roundings (2^-24 for a float) or five standard deviations of a sum whose variance is
+// known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ constexpr double kFloat = 0x1.0p-24;  // the largest relative error of a roundin
 
 LayerSet AllLight() { return LayerSet(kAllPaths).Add(Layer::kLuminance).Add(Layer::kShadow); }
 
-// A floor and a coated ball under a lamp of every kind, with extent and without, a mesh that emits, and a sky.
+// A floor and a coated sphere under a light of every kind, with extent and without, a mesh that emits, and a sky.
 Scene EveryLight(double factor) {
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.7f), 3.0);
   Mesh ball = BallMesh(16);
@@ -101,7 +102,7 @@ TEST(ExtremeIntensity, NothingShinesWithNone) {
   EXPECT_EQ(dark.rays.shadow, 0u);  // and nothing is paid for it
 }
 
-// A lamp from a metre above the floor down to it and below. Above float's sight it lights all of the floor by the
+// A light from a metre above the floor down to it and below. Above float's sight it lights all of the floor by the
 // formula. Below that, whether anything lies between is rounding: a pixel has the formula's light, or none. In the
 // floor or under it there is none: what the side of the plane is told by leaves a few 2^-52 of the distance.
 TEST(LampOnASurface, LightsByTheFormulaOrNotAtAll) {
@@ -134,7 +135,7 @@ TEST(LampOnASurface, LightsByTheFormulaOrNotAtAll) {
   }
 }
 
-// A lamp as far away as doubles and floats reach, as bright as its distance's square: on a floor that faces it, 1/π,
+// A light as far away as doubles and floats reach, as bright as its distance's square: on a floor that faces it, 1/π,
 // rounded once; and a lid over the floor hides it. No ray is longer than Embree takes.
 TEST(FarOut, LampsLightByTheFormula) {
   for (const double distance : {1e10, 1e17, 1.8e18, 2e18, 1e20, 1e37, 1e100, 1e150}) {
@@ -178,9 +179,9 @@ TEST(FarOut, WhateverStandsThereIsSurvived) {
 
 enum class LightKind { kPoint, kArea, kPanel };
 
-// A lamp, with and without extent, or a panel that shines, behind a lid of a room or before it, by 2^-19 of the largest
-// coordinate before the eye: the ray ends 2^-20 of it before the lamp, and the lid is no farther off than that again.
-// Behind, none of it comes in, at any scale, place and turn of the room. Before, the lid hides nothing.
+// A light, with and without extent, or a panel that shines, behind a lid of a room or before it, by 2^-19 of the
+// largest coordinate before the eye: the ray ends 2^-20 of it before the light, and the lid is no farther off than that
+// again. Behind, none of it comes in, at any scale, place and turn of the room. Before, the lid hides nothing.
 TEST(LampBesideALid, IsHiddenBehindItAndNotBeforeIt) {
   constexpr double kWidth = 3.0;  // of the lid, in heights of the room
   for (int turn = 0; turn < 52; ++turn) {
@@ -190,7 +191,7 @@ TEST(LampBesideALid, IsHiddenBehindItAndNotBeforeIt) {
         glm::rotate(glm::translate(glm::dmat4(1.0), glm::dvec3(place, -place, 0.5 * place)), 0.7 * turn, axis),
         glm::dvec3(scale));
     const auto at = [&](const glm::dvec3& local) { return glm::dvec3(room * glm::dvec4(local, 1.0)); };
-    // From half way up, the lid's corners are the farthest, less than √2 of its half width and a half away.
+    // From halfway up, the lid's corners are the farthest, less than √2 of its half width and a half away.
     const double gap = 0x1p-19 * std::sqrt(2.0 * kWidth * kWidth + 0.25);
     for (const double side : {1.0, -1.0}) {
       for (const LightKind kind : {LightKind::kPoint, LightKind::kArea, LightKind::kPanel}) {
@@ -229,8 +230,8 @@ TEST(LampBesideALid, IsHiddenBehindItAndNotBeforeIt) {
   }
 }
 
-// Lamps of each kind inside a closed box over a floor: all of their light stays inside, so the floor has none of it and
-// `shadow` is 1 wherever a lamp would shine; and the box's outside is turned away from them.
+// Lights of each kind inside a closed box over a floor: all of their light stays inside, so the floor has none of it
+// and `shadow` is 1 wherever a light would shine; and the box's outside is turned away from them.
 TEST(LampInsideAnObject, NoneOfItsLightComesOut) {
   for (const LightType type : {LightType::kPoint, LightType::kSpot, LightType::kArea}) {
     for (const double radius : {0.0, 0.3}) {
@@ -302,7 +303,7 @@ TEST(AreaLight, EdgeOnItFadesByTheFormulaToNothing) {
   }
 }
 
-// A sun of no width is one ray: E cosθ / π, rounded once. One of 1e-8 degrees is told from it by nothing.
+// A sun of no width is one ray: E cosθ / π, rounded once. One of 1e-8 degrees is equal to it.
 TEST(SunAngle, NoneIsOneRay) {
   for (const double degrees : {0.0, 1e-8}) {
     for (const double elevation : {90.0, 30.0, 1.0, 0.001}) {
@@ -389,8 +390,8 @@ TEST(Roughness, FromAMirrorToTheRoughest) {
   EXPECT_NEAR(returned(1.0f), 1.0 - std::log(2.0), 5.0 * 0.5 / 256.0);
 }
 
-// The sum, lamp by lamp, in double; the tracer sums in double too and rounds once. A thousand roundings of doubles are
-// below 2^-42.
+// The sum, light by light, in double; the tracer sums in double too and rounds once. A thousand roundings of doubles
+// are below 2^-42.
 TEST(ThousandLights, BringTheirSum) {
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.8f), 2.0);
   for (int i = 0; i < 1000; ++i) {
@@ -402,7 +403,7 @@ TEST(ThousandLights, BringTheirSum) {
   Stopwatch watch;
   const auto result = Render(scene, camera, Sized(32, 32, {Layer::kLuminance, Layer::kShadow, Layer::kLpeLDE}));
   RecordProperty("ms", std::to_string(watch.Lap()));
-  EXPECT_EQ(result.rays.shadow, 2u * 1000u * 32u * 32u);  // luminance and the path layer, every lamp at every pixel
+  EXPECT_EQ(result.rays.shadow, 2u * 1000u * 32u * 32u);  // luminance and the path layer, every light at every pixel
   const glm::dvec3 eye(camera.world_from_camera[3]);
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 32; ++x) {

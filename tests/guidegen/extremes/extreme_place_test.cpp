@@ -1,5 +1,5 @@
-// Scenes far from the origin, as files hold them: what a loader keeps in double and what the file itself has lost. And
-// normals without a length, as files hold those.
+// Scenes far from the origin in files: the precision that a loader keeps in double, and the precision that the file
+// itself has lost. And normals without a length in files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 class ExtremePlace : public LoaderTest {
  protected:
   // A quad under two nodes whose places add up to `place`, turned, and a camera that stands 3 m before it. Where it is
-  // lit, a lamp beside the camera, and between them a lid that throws its shadow on the quad.
+  // lit, a light beside the camera, and between them a lid that throws its shadow on the quad.
   Expected<Scene> SceneAt(const glm::dvec3& place, const std::vector<float>& corners, bool lit = false) {
     GltfBuilder gltf;
     const int position = gltf.Floats(corners, 3);
@@ -58,7 +58,7 @@ class ExtremePlace : public LoaderTest {
 // A float at 1e7 m steps by 1 m, a double by 2e-9 m. The file's node translations are doubles, and they are kept and
 // subtracted as such: these places have few enough bits that nothing is rounded at all, so the guides have the same
 // bits but for the positions, which are floats in the world's own frame and can be no better than half a metre. The
-// same goes for light: a lamp's place is a node's, its distance from the eye is a difference of doubles without a
+// same goes for light: a light's place is a node's, its distance from the eye is a difference of doubles without a
 // rounding, and from there on all is relative to the eye; chance is hashed by pixel.
 TEST_F(ExtremePlace, NodesTenThousandKilometresAwayLoseNothing) {
   const auto here = SceneAt({0, 0, 0}, kQuad, true);
@@ -195,8 +195,8 @@ TEST_F(LoadAnimation, SkinsAndAnimationsTenThousandKilometresAwayLoseNothing) {
   }
 }
 
-// A loader's own choice: any direction that can be told is kept, down to the smallest float; the others are computed
-// from the triangles, with a warning.
+// A loader's own choice: any direction that can be determined is kept, down to the smallest float; the others are
+// computed from the triangles, with a warning.
 TEST_F(ExtremePlace, LoadersKeepTheDirectionOfTinyNormalsAndReplaceThoseWithoutOne) {
   GltfBuilder gltf;
   const int position = gltf.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 0, 6, 5, 0, 5, 6, 0}, 3);

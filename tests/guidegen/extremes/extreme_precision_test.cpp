@@ -1,6 +1,6 @@
-// What guides of 8 bits, half floats and floats lose: normals, where they find their source, and which pieces of paint
-// grow across them. Every limit is derived here from the size of a step; "measured against it" says that it is no idle
-// one. Rounding is written out once more, plainly.
+// The loss in guides of 8 bits, half floats and floats: normals, their sources, and the chunks that grow across them.
+// Every limit is derived here from the size of a step; "measured against it" shows that the limit is tight. Rounding is
+// implemented once more, plainly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -120,7 +120,7 @@ double LargestTurn(double to, double step) {
 
 // The source of the analytic search is R · (n.x, n.y), cut to the usable disc. Rounding moves it by √2 · R · e at the
 // most, everywhere alike, for cutting to a disc brings no two places further apart; float's sums add 2^-22 R to either
-// of the two places that are compared. The paint found there was made for a normal that is further off the closer to
+// of the two places that are compared. The paint found there was made for a normal that is farther off the closer to
 // the silhouette it is: the turn of above.
 struct SourceError {
   double moved = 0.0;   // of the radius
@@ -289,7 +289,7 @@ glm::ivec2 NearestOnLattice(const glm::dvec3& n, int radius, const glm::dvec2& s
 
 constexpr std::array<int, 2> kPixelRadii = {200, 400};
 
-// How many directions find another pixel, of how many, and what is expected of them.
+// The number of directions that find another pixel, the total, and the expected number.
 struct Changes {
   int seen = 0, found = 0;
   double expected = 0.0, variance = 0.0;
@@ -369,8 +369,8 @@ void CheckPixels(NearestSearch search) {
 TEST(Precision, TheSourceInPixelsByTree) { CheckPixels(NearestSearch::kTree); }
 TEST(Precision, TheSourceInPixelsByTable) { CheckPixels(NearestSearch::kTable); }
 
-// Floats are what both searches take, so rounding to them changes nothing that could be compared; the truth is told in
-// double here. What they find, for each ring of each sphere.
+// Both searches take floats, so rounding to them changes no comparison; the truth is computed in double here. The
+// results, for each ring of each sphere.
 constexpr int kFloatDirections = 1000;
 void CheckPixelsInFloats(NearestSearch search, int rings,
                          const std::function<Source(const PreparedExemplar&, int, const glm::dvec3&, Source)>& truth) {
@@ -535,7 +535,7 @@ TEST(Precision, DecisionsAtTheThreshold) {
     const double reach = std::sqrt(3.0) * LargestHalfStep(kept) + 0x1p-20;
     int seen = 0, near = 0, flipped = 0, other_level = 0, other_offset = 0;
     double expected = 0.0;
-    std::vector<double> differences;  // by seed, of what is decided otherwise from what is expected
+    std::vector<double> differences;  // by seed, decisions that differ from the expected ones
     TransferOptions options;
     for (options.seed = 0; options.seed < kSeeds; ++options.seed) {
       style.transfer.threshold = 2.0f * threshold;

@@ -1,5 +1,6 @@
-// Surveyors' coordinates in a file that also lists something at 0: what no face uses moves nothing, and objects too far
-// apart for one origin have several. The same far from the origin but in one place is in extreme_place_test.cpp.
+// Surveyors' coordinates in a file that also lists a vertex at 0: vertices outside all faces have no effect, and
+// objects too far apart for one origin have several. Scenes far from the origin but at one place are in
+// extreme_place_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,8 +1,9 @@
-// Light-path layers where light is hardest: mirrors, lamps that touch or swallow what they light, an eye inside a mesh,
-// very many lamps, very weak and very strong ones. Nothing is clamped on the way, so nothing here is hidden by a clamp.
-// Tolerances are roundings (2^-24 for a float), or five standard errors of noise: of noise whose variance is bounded by
-// what the estimator is, or is measured in the test itself, by renders that differ in nothing but their seed. Seeds are
-// fixed, so where a false alarm's probability is said, it was drawn when the test was written, not at each run.
+// Light-path layers where light is hardest: mirrors, lights that touch or swallow what they light, an eye inside a
+// mesh, very many lights, very weak and very strong ones. Nothing is clamped on the way, so nothing here is hidden by a
+// clamp. Tolerances are roundings (2^-24 for a float), or five standard errors of noise: of noise whose variance is
+// bounded by what the estimator is, or is measured in the test itself, by renders that differ in nothing but their
+// seed. Seeds are fixed, so where a false alarm's probability is said, it was drawn when the test was written, not at
+// each run.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +24,9 @@ namespace {
 constexpr double kFloat = 0x1.0p-24;  // the largest relative error of a rounding to float
 constexpr double kErrors = 5.0;       // standard errors: a normal deviate is farther off once in 1.7 million
 
-// A floor with a matt, a smooth metal and a coated ball under one lamp of every kind with extent, a point lamp, a panel
-// that emits, and a sky. What shines is told by floats of few bits, so that Scale can multiply it without a rounding.
+// A floor with a matt, a smooth metal and a coated sphere under one light of every kind with extent, a point light, a
+// panel that emits, and a sky. What shines is told by floats of few bits, so that Scale can multiply it without a
+// rounding.
 Scene Stage(float roughness) {
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.7f), 3.0);
   const auto ball = [&](Bsdf bsdf, double x) {
@@ -61,10 +63,10 @@ void Scale(Scene& scene, double factor) {
 // Factors that are no powers of two round every sum on the way, but in double; both are 15625 times a power of two,
 // which takes 14 bits, so what shines is multiplied exactly. A layer is then off by two roundings to float, its own in
 // either picture (of the smallest floats half of 2^-149), and by what double leaves. That is 2^-53 a step; it also
-// moves the border between two lamps of which one is chosen, and so the point drawn on a lamp, by 2^-50 over the
+// moves the border between two lights of which one is chosen, and so the point drawn on a light, by 2^-50 over the
 // choice's probability, which is above 1e-3 here, and what a lobe of α = 0.04 reflects by 1/α² times that: less than
 // 2^-30. A choice itself falls out otherwise where a number of 2^-32 lies that near a border: 65,000 choices of five
-// lamps, less than once in a million sets of random numbers.
+// lights, less than once in a million sets of random numbers.
 TEST(Extremes, LayersScaleWithTheLight) {
   const LayerSet layers = LayerSet(kAllPaths).Add(Layer::kLuminance);
   const auto one = Render(Stage(0.2f), kStageCamera, Paths(16, layers, 16));
@@ -149,11 +151,11 @@ TEST(Extremes, SmoothSurfacesMakeNoFireflies) {
   }
 }
 
-// A lamp in the floor's own plane is off it by what the place is known to, δ = 2^-49 of the largest coordinate, which
+// A light in the floor's own plane is off it by what the place is known to, δ = 2^-49 of the largest coordinate, which
 // is below 8 m: it brings its light times the cosine δ / d. Of a panel of 1 m² the cosine is as small at either end of
 // the way, so a point d away brings its radiance times δ² / d⁴. That one of the 32,768 points drawn on both panels lies
-// within 1e-5 m of the place that it lights has a probability of 1e-5. Directions leave the floor from above the lamps,
-// and meet none.
+// within 1e-5 m of the place that it lights has a probability of 1e-5. Directions leave the floor from above the
+// lights, and meet none.
 TEST(Extremes, LampsInTheSurfaceItselfDoNotLightIt) {
   constexpr int kSide = 32;
   constexpr double kAlbedo = 0.8, kStrength = 5.0, kNearest = 1e-5;
@@ -190,17 +192,17 @@ TEST(Extremes, LampsInTheSurfaceItselfDoNotLightIt) {
   }
 }
 
-// The lamp is a disc that turns to the point it lights, and its middle is inside the ball, below the horizon of all
-// that the ball has outside. So at most half of the sky is the disc: a share F ≤ ½ of what a sky of the lamp's radiance
-// would bring, M. A sample is a point of the disc and a direction, weighed by the balance heuristic: α M and β M in the
-// mean, α + β = F. The sum of both squares is β M² in the mean (w = p_b / (p_l + p_b): ∫ w² (p_l + p_b) = ∫ w p_b), so
-// the variance is (β - α² - β²) M², which for F ≤ ½ is never more than F (1 - F) M² ≤ ¼ M². Numbers of a net in base 2
-// may double it (Owen 1997). Of 64 samples five standard errors are then 0.44 M, so no value is above 0.94 M.
+// The light is a disc that turns to the point it lights, and its middle is inside the sphere, below the horizon of all
+// that the sphere has outside. So at most half of the sky is the disc: a share F ≤ ½ of what a sky of the light's
+// radiance would bring, M. A sample is a point of the disc and a direction, weighed by the balance heuristic: α M and β
+// M in the mean, α + β = F. The sum of both squares is β M² in the mean (w = p_b / (p_l + p_b): ∫ w² (p_l + p_b) = ∫ w
+// p_b), so the variance is (β - α² - β²) M², which for F ≤ ½ is never more than F (1 - F) M² ≤ ¼ M². Numbers of a net
+// in base 2 may double it (Owen 1997). Of 64 samples five standard errors are then 0.44 M, so no value is above 0.94 M.
 TEST(Extremes, ALampThatSwallowsTheObjectIsNoBrighterThanItsOwnRadiance) {
   constexpr int kSamples = 64;
   Scene scene = SceneOf(BallMesh(24));
   scene.materials[0] = Painted(Bsdf::kDiffuse, 0.8f);
-  for (const double radius : {0.5, 1.0, 5.0}) {  // inside the ball, as large, around it and the camera
+  for (const double radius : {0.5, 1.0, 5.0}) {  // inside the sphere, as large, around it and the camera
     for (const double offset : {0.0, 0.7}) {
       Light lamp = PointLight({offset, 0, 0}, 4.0);
       lamp.radius = radius;
@@ -214,7 +216,8 @@ TEST(Extremes, ALampThatSwallowsTheObjectIsNoBrighterThanItsOwnRadiance) {
         EXPECT_LE(value, share * most) << radius;
         brightest = std::max(brightest, value);
       }
-      // About a middle that is the ball's own the disc lies below every horizon; beside it a wide one rises above some.
+      // About a middle that is the sphere's own the disc lies below every horizon; beside it a wide one rises above
+      // some.
       if (offset == 0.0) {
         EXPECT_EQ(brightest, 0.0f) << radius;
       } else if (radius == 5.0) {
@@ -235,7 +238,7 @@ TEST(Extremes, AnEyeInsideAMeshSeesWhatIsInside) {
   scene.world_radiance = glm::vec3(1.0f);
   const auto dark = Render(scene, inside, Paths(24, kAllPaths, 16));
   for (const float value : dark.guides.Plane(Layer::kLpeFull)) EXPECT_EQ(value, 0.0f);
-  // A lamp inside, and a surface that touches the eye.
+  // A light inside, and a surface that touches the eye.
   scene.lights = {PointLight({0, 0, 0}, 1.0)};
   scene.world_radiance = glm::vec3(0.0f);
   const auto lit = Render(scene, inside, Paths(24, kAllPaths, 16));
@@ -304,8 +307,8 @@ void ExpectAlike(const LightSum& all, const LightSum& parts, const std::vector<L
 }
 
 TEST(Extremes, OneOfFiveHundredLampsBringsWhatAllBring) {
-  // Light from the floor on the wall and back: one lamp is chosen there. A quarter of the lamps is near, the others are
-  // far.
+  // Light from the floor on the wall and back: one light is chosen there. A quarter of the lights is near, the others
+  // are far.
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.8f), 2.0);
   AddObject(scene, "wall", QuadMesh(), glm::rotate(Moved(0, 1, 1), 0.5 * kPi, glm::dvec3(1, 0, 0)));
   for (int i = 0; i < 500; ++i) {
@@ -316,7 +319,7 @@ TEST(Extremes, OneOfFiveHundredLampsBringsWhatAllBring) {
   const std::vector<Layer> layers = {Layer::kLpeLDDE};
   LightSum all(layers, 0), parts(layers, 1000);
   all.Add(scene, camera, 256);
-  // The sum over lamps that are alone, ten at a time, weighed one by one.
+  // The sum over lights that are alone, ten at a time, weighed one by one.
   for (int i = 0; i < 500; i += 10) {
     Scene few = scene;
     few.lights.assign(scene.lights.begin() + i, scene.lights.begin() + i + 10);

@@ -92,7 +92,7 @@ double Integrated(const Paint& p, double eye, int n) {
     const double s = (ring + 0.5) / n, q = s * s * s * s;
     const double z = std::sqrt(q / (q + alpha * alpha * (1.0 - q)));
     for (int column = 0; column < n; ++column) {
-      const double around = kPi * (column + 0.5) / n;  // the other half is the same
+      const double around = kPi * (column + 0.5) / n;  // the other half is equal
       const double along = std::sqrt((1.0 - z * z) * (1.0 - eye * eye)) * std::cos(around) + z * eye;
       const double light = 2.0 * along * z - eye;
       if (!(along > 0.0) || !(light > 0.0)) continue;
@@ -124,7 +124,7 @@ void ExpectReturned(const Paint& paint, double height, int samples, double expec
   EXPECT_LT(5.0 * error, 0.03);
 }
 
-// A ball has all angles, and normals that are not its facets'. Of two renders that differ in nothing but their seed
+// A sphere has all angles, and normals that are not its facets'. Of two renders that differ in nothing but their seed
 // each pixel's mean is off by half of their difference, root mean square; the squares add up, as pixels draw
 // independently.
 TEST(MaterialFurnace, AWhiteSurfaceNeverReturnsMoreThanTheWorld) {
@@ -259,7 +259,8 @@ TEST(MaterialTextures, Emission) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen.guides.Vec3(Layer::kLpeFull, 0)[c], radiance[c], 1e-5) << side;
   }
   EXPECT_EQ(Center(Render(panel, SlantedAt(0.5), Paths(1, {Layer::kLpeFull})), Layer::kLpeFull), 0.0);
-  // The bright half, 1 × 2 m at a height of 1.5 m, over one corner each way of the point below the panel's middle.
+  // The bright half, 1 × 2 m at a height of 1.5 m, over the point below the panel's middle, one corner in each
+  // direction.
   Scene lit = Floor(Painted(Bsdf::kDiffuse, 1.0f), 4.0);
   lit.textures = panel.textures;
   Mesh quad = QuadMesh();
@@ -295,7 +296,7 @@ TEST(MaterialSides, TheBackAnswersLightAsTheFrontDoes) {
   }
 }
 
-// Of a one-sided surface the eye does not see the back; light meets it all the same, as in Cycles.
+// The eye does not see the back of a single-sided surface; light hits it, as in Cycles.
 TEST(MaterialSides, ASheetOfOneSideStillCastsItsShadow) {
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.5f), 4.0);
   Mesh sheet = QuadMesh();

@@ -243,7 +243,7 @@ Light AreaLight(bool ellipse) {
   return light;
 }
 
-// Drawing and meeting are two views of the same light: the same radiance and density, and the same solid angle.
+// Drawing a light and hitting it must agree: equal radiance and density, and equal solid angle.
 TEST(LightSet, DrawnDirectionsMeetTheLightWithTheSameDensity) {
   Light ball = PointLight({0.5, 0.2, 1.0}, 3.0);
   ball.radius = 0.4;

@@ -1,4 +1,4 @@
-// Light-path layers of a room with everything in it: what they cost, that they repeat, converge and stay finite.
+// Light-path layers of a room with every feature: their cost, and that they repeat, converge and stay finite.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -197,7 +197,7 @@ TEST(LightPaths, ExtremesStayFiniteAndNotNegative) {
       Scene scene = Room();
       for (Material& material : scene.materials) material.roughness = roughness;
       for (Light& light : scene.lights) light.intensity *= intensity;
-      // Lamps that touch: on the floor's surface, in it, and inside the ball.
+      // Lights that touch: on the floor's surface, in it, and inside the sphere.
       Light panel = Above(LightType::kArea, 0.0, intensity);
       Light ball = PointLight({0, 0, 0}, intensity);
       ball.radius = 0.5;
@@ -210,7 +210,7 @@ TEST(LightPaths, ExtremesStayFiniteAndNotNegative) {
   }
 }
 
-// That they bring what all of them bring is told by Extremes.OneOfFiveHundred… and …ManySoftLamps….
+// Extremes.OneOfFiveHundred… and …ManySoftLamps… test that they give the sum of all.
 TEST(LightPaths, FiveHundredLights) {
   Scene scene = Room();
   for (int i = 0; i < 500; ++i) {
@@ -274,7 +274,7 @@ TEST(LightPaths, EmissiveMeshesThatTouchASurfaceMakeNoFireflies) {
   }
 }
 
-// The back of a ball of light is hidden by its own front, and that is no shadow; a lid over the floor is.
+// The back of an emissive sphere is hidden by its own front, and that is no shadow; a lid over the floor is.
 TEST(LightPaths, OnlyWhatDoesNotShineCastsShadowsInTheLightOfMeshes) {
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 1.0f), 2.0);
   Material glow = Painted(Bsdf::kEmission, 1.0f);
@@ -285,9 +285,9 @@ TEST(LightPaths, OnlyWhatDoesNotShineCastsShadowsInTheLightOfMeshes) {
   const LayerSet layers = {Layer::kLuminance, Layer::kShadow};
   const auto free = Render(scene, SlantedSpot(), Paths(1, layers, 1024));
   EXPECT_EQ(free.guides.Plane(Layer::kShadow)[0], 0.0f);
-  // A ball of radius r and radiance 1, d above: (r/d)².
+  // A sphere of radius r and radiance 1, d above: (r/d)².
   EXPECT_NEAR(free.guides.Plane(Layer::kLuminance)[0], 1.0 / 9.0, 2e-3);
-  // Half of the ball is behind a lid whose edge is right above the point; the camera looks in from the other side.
+  // Half of the sphere is behind a lid whose edge is right above the point; the camera looks in from the other side.
   AddObject(scene, "lid", QuadMesh(), glm::scale(Moved(0, 1, 0.3), glm::dvec3(2.0, 1.0, 1.0)));
   const auto half = Render(scene, SlantedSpot(), Paths(1, layers, 4096));
   EXPECT_NEAR(half.guides.Plane(Layer::kShadow)[0], 0.5, 5e-3);
@@ -339,7 +339,7 @@ TEST(LightPaths, LuminanceTakesNoLimitOfTheNoise) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
   EXPECT_NE(refused.error().message.find("--samples"), std::string::npos) << refused.error().message;
-  // Under lamps without extent there is no noise, and nothing to refuse.
+  // Under lights without extent there is no noise, and nothing to refuse.
   Scene scene = Floor(Painted(Bsdf::kDiffuse, 0.5f));
   scene.lights = {PointLight({0, 0, 2}, 1.0)};
   EXPECT_GT(Render(scene, FrontCamera(3.0), options).guides.Plane(Layer::kLuminance)[0], 0.0f);

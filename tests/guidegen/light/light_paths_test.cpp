@@ -1,4 +1,4 @@
-// Light-path layers against light that is known: furnaces, form factors, exact lamps, integrals.
+// Light-path layers against light that is known: furnaces, form factors, exact lights, integrals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -253,7 +253,7 @@ TEST(Specular, MirrorsShowLampsAndWorldAndTheEyeDoesNot) {
     scene.lights.clear();
     scene.world_radiance = glm::vec3(3.0f);
     EXPECT_NEAR(Center(Render(scene, SlantedSpot(), Paths(1, kAllPaths, 4)), Layer::kLpeLSE), 1.5, 1e-6);
-    // The lamp between the eye and the floor is not in the picture.
+    // The light between the eye and the floor is not in the picture.
     scene.world_radiance = glm::vec3(0.0f);
     panel.world_from_light = Moved(0, -1.5, 1.5);
     scene.lights = {panel};
@@ -262,7 +262,7 @@ TEST(Specular, MirrorsShowLampsAndWorldAndTheEyeDoesNot) {
 }
 
 TEST(Specular, RoughHighlightsAgreeByLampAndByMesh) {
-  // The same square of light as a lamp and as a mesh, seen in a rough floor: two sets of techniques, one truth.
+  // An equal square of light as an area light and as a mesh, seen in a rough floor: two sets of techniques, one truth.
   for (const float roughness : {0.2f, 0.5f, 0.9f}) {
     Scene lamp_scene = Floor(Painted(Bsdf::kGlossy, 1.0f, roughness), 4.0);
     Scene mesh_scene = lamp_scene;

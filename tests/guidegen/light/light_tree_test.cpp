@@ -1,4 +1,4 @@
-// Many lights: choosing one by the tree, against weighing every light.
+// Many lights: the tree's choice of one, against the weights of all lights.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 double Chance(int light, int what) { return UnitFloat(Hash(light, what)); }
 
-// Lamps of every kind about the origin.
+// Lights of every kind about the origin.
 std::vector<PlacedLight> Swarm(int count) {
   std::vector<PlacedLight> lamps;
   for (int i = 0; i < count; ++i) {

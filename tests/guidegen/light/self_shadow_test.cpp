@@ -1,6 +1,6 @@
 // Where rays of light start: surfaces do not shade themselves, and no light comes through closed walls, at any scale,
-// place, size of triangle and angle of light. The truth needs no ray: what is convex shades no lit part of itself, and
-// what is closed is dark inside.
+// place, size of triangle and angle of light. The truth needs no ray: a convex object shades no lit part of itself, and
+// a closed one is dark inside.
 //
 // A ray is decided in float. Its origin lies 16 u C above the surface, u = 2^-24 and C the largest coordinate before
 // the camera; why that is enough is derived beside kRoundingPerCoordinate. How low a light may stand over what it
@@ -42,13 +42,13 @@ double LongestEdge(const glm::dvec3 (&c)[3]) {
   return std::max({glm::length(c[1] - c[0]), glm::length(c[2] - c[1]), glm::length(c[0] - c[2])});
 }
 
-// Whether a triangle is higher than a float's step is long; what is not has no inside.
+// Whether a triangle is higher than a float's step is long; lower ones have no inside.
 bool IsThere(const glm::dvec3 (&c)[3]) {
   const double longest = LongestEdge(c);
   return glm::length(glm::cross(c[1] - c[0], c[2] - c[0])) > kUnit * longest * longest;
 }
 
-// What arithmetic promises of a thing that is seen from `distance` of its sizes.
+// The arithmetic's guarantee for an object seen from `distance` of its sizes.
 struct Promise {
   bool height_is_enough = true;
   double lowest_sun = 1e-9;  // radians over any of its triangles
@@ -218,7 +218,7 @@ struct Stage {
   Camera camera;
 };
 
-// A thing, suns all about and grazing its XY plane, two lamps; a camera `distance` scales away.
+// A thing, suns all about and grazing its XY plane, two lights; a camera `distance` scales away.
 Stage LitFromOutside(const Named& thing, double scale, double place, double distance, int turn) {
   const glm::dvec3 middle = AnyDirection(77) * place;
   const glm::dmat4 matrix = Placed(scale, middle, turn);
@@ -321,7 +321,7 @@ TEST(SelfShadow, FromAfarOnlySilhouettesAreUndecided) {
 constexpr int kTurns = 12;
 constexpr double kEyeToSquare = 4.0;  // m
 
-// A square of 2 m in the middle of a ground `width` times as wide, or `gap` metres above it; suns and lamps overhead
+// A square of 2 m in the middle of a ground `width` times as wide, or `gap` metres above it; suns and lights overhead
 // and slanted. The eye looks down on it at an angle, and all is turned, so that corners have every digit.
 Stage SquareOnAGround(double width, double gap, int turn) {
   const glm::dmat4 matrix = Placed(1.0, glm::dvec3(0.0), turn);
@@ -393,8 +393,8 @@ TEST(SelfShadow, WhatLiesHigherThanAGroundsRoundingIsNotShadedByIt) {
   }
 }
 
-// The same in the ground itself, and so low above it that the rounding may be more: what a decal is. Whether float
-// shows the square or the ground there is float's choice, but nothing is in the way of any light. Expected: no shadow.
+// The square in the ground itself, and so low above it that rounding may be larger: a decal. Float chooses whether it
+// shows the square or the ground there, but nothing blocks any light. Expected: no shadow.
 TEST(SelfShadow, WhatLiesInAGroundIsNotShadedByIt) {
   for (const double width : {10.0, 30.0, 1e2, 1e3, 1e4, 1e5}) {
     for (const double gap : {0.0, 1e-6, 1e-5, 1e-4, 1e-3}) {
@@ -459,8 +459,8 @@ Stage OfSides(const Mesh& mesh, Sides sides, double scale, double place, int tur
   return stage;
 }
 
-// Expected: not one lit pixel. Every way out crosses a wall. What is single-sided is met by light from both sides, and
-// what stands far away, whatever its sides, changes nothing.
+// Expected: not one lit pixel. Every way out crosses a wall. Light hits both sides of single-sided walls, and far
+// objects, whatever their sides, have no effect.
 TEST(LightLeaks, ClosedThingsAreDarkInside) {
   for (const Sides sides : {Sides::kDouble, Sides::kDoubleBesideASingle, Sides::kSingle}) {
     std::size_t rays = 0;
@@ -497,8 +497,8 @@ std::size_t LitPixels(const GuidegenResult& result) {
   return lit;
 }
 
-// The same for paths: what reflects goes on from where it met, however flat it came in. Each of the 576 pixels sends 8
-// paths, and each path one ray at least to a light or onward.
+// The same for paths: a reflection continues from its hit, however flat it came in. Each of the 576 pixels sends 8
+// paths, and each path at least one ray to a light or onward.
 TEST(LightLeaks, NoPathFindsAWayOut) {
   for (const Sides sides : {Sides::kDouble, Sides::kDoubleBesideASingle, Sides::kSingle}) {
     for (const Named& thing : ClosedThings()) {
@@ -524,7 +524,7 @@ TEST(LightLeaks, PathsFindTheWayOutOfAnOpenBox) {
 }
 
 // A box whose near walls are cut away for the viewer still keeps the light out. Here the way back to the eye is clear
-// as far as half way to the last wall that it passes, and the rest of the height h = 2^-20 C goes straight up.
+// as far as halfway to the last wall that it passes, and the rest of the height h = 2^-20 C goes straight up.
 // Expected: no lit pixel but beside a second wall. The origin is past that wall only where half of the distance to it
 // is less than what goes straight up and the wall's own rounding, h each: where the pixel is within 4 h of it. From a
 // million sizes away that is more than the box, and nothing is promised.

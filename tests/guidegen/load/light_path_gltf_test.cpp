@@ -1,4 +1,4 @@
-// What glTF says of how materials answer and emit light.
+// glTF's data on how materials reflect and emit light.
 #include <gtest/gtest.h>
 
 #include <string>

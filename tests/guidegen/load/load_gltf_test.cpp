@@ -245,8 +245,8 @@ TEST_F(LoadGltf, MaterialsAndTextures) {
   EXPECT_EQ(scene.meshes[0].uvs[1][2], glm::vec2(2, 2));
 }
 
-// What a primitive has of a list that others share is what it would have of a list of its own, in the order in which
-// its triangles name it. Nothing else of the list is read: it may be NaN.
+// A primitive's part of a shared list equals what a list of its own would give, in the order in which its triangles use
+// it. No other part of the list is read: it may be NaN.
 TEST_F(LoadGltf, SharedListsGiveWhatListsOfTheirOwnWould) {
   constexpr int kLong = 40;
   const std::vector<std::uint16_t> used = {31, 7, 12};
@@ -608,7 +608,7 @@ TEST_F(LoadGltf, TextFilesWithBuffersBesideThemAndInside) {
 
   std::filesystem::remove(Path("my data/a b.png"));
   EXPECT_THAT(ErrorOf(Path("side.gltf")), HasSubstr("a%20b.png"));
-  b.json["materials"][0] = {{"name", "Plain"}};  // nobody wants the picture now
+  b.json["materials"][0] = {{"name", "Plain"}};  // the picture is not needed now
   EXPECT_EQ(Load(Write("side.gltf", b.json.dump())).textures.size(), 0u);
   std::filesystem::remove(Path("my data/geo.bin"));
   EXPECT_THAT(ErrorOf(Path("side.gltf")), HasSubstr("geo.bin"));

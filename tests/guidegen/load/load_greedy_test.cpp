@@ -1,5 +1,5 @@
-// Small scene files that ask for much memory or time, by naming a thing again and again or by what a few bytes stand
-// for: that is counted beforehand, kept once or left out.
+// Small scene files that ask for much memory or time, by naming one object many times or by compact encodings: these
+// are counted beforehand, kept once or left out.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 

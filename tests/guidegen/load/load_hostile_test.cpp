@@ -1,5 +1,5 @@
 // Scenes that are broken, by accident or on purpose: each loads or is refused with an error that names the file. Most
-// of these tests say little by themselves and much under AddressSanitizer.
+// of these tests are most useful under AddressSanitizer.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -188,7 +188,7 @@ TEST_F(Hostile, WrongVersionsAndContainers) {
   EXPECT_THAT(Refusal(b), HasSubstr("expected 2.0"));
   glb[4] = 1;
   EXPECT_THAT(Refusal(Write("one.glb", glb)), HasSubstr("version 1"));
-  // The BIN chunk says eight bytes more than the file has.
+  // The BIN chunk declares eight bytes more than the file has.
   glb[4] = 2;
   const std::size_t chunk = 20 + (glb[12] | glb[13] << 8);
   glb[chunk] = static_cast<unsigned char>(glb[chunk] + 8);
@@ -283,7 +283,7 @@ TEST_F(Hostile, PlyWithVerticesTwice) {
   }
 }
 
-// A pipe never ends, and nobody writes to it.
+// A pipe without a writer: reading it would never end.
 TEST_F(Hostile, ObjTexturesThatAreNoFiles) {
   ASSERT_EQ(mkfifo(Path("pipe.png").c_str(), 0600), 0);
   std::filesystem::create_directory(Path("folder.png"));
@@ -381,7 +381,7 @@ TEST(PictureBudget, HoldsForAScenesTextures) {
   EXPECT_THAT(refused.error().message, HasSubstr("bomb.glb has textures of at least 1342177280 pixels together"));
 }
 
-// Where the header tells, what is too much is never decoded.
+// If the header shows an excess, nothing is decoded.
 TEST(PictureBudget, RefusesByTheHeader) {
   const auto encoded = std::make_shared<EncodedTexture>();
   int decoded = 0;

@@ -1,4 +1,4 @@
-// What all scene loaders share, and the formats that are quickly told: normals, polygons, OBJ, PLY, framing.
+// Code that all scene loaders share, and the simple formats: normals, polygons, OBJ, PLY, framing.
 #include "guidegen/load/load_scene.h"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ void ExpectNear(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-// The cube from -1 to 1. Every face is cut along one of its diagonals, as `diagonals` says bit by bit.
+// The cube from -1 to 1. Each bit of `diagonals` chooses the diagonal along which a face is cut.
 Mesh Cube(unsigned diagonals) {
   Mesh mesh;
   for (unsigned i = 0; i < 8; ++i) mesh.positions.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
@@ -223,7 +223,7 @@ TEST_F(LoadText, ObjMaterialsAnswerLightAsBlenderReadsThem) {
   EXPECT_EQ(scene.materials[8].emission, glm::vec3(0.0f));
 }
 
-// Nobody who gives no material means a varnish.
+// A missing material does not mean a varnish.
 TEST_F(LoadText, FacesWithoutAMaterialAreMatt) {
   const std::string face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   const auto expect_matt = [](const Scene& scene, const glm::vec4& color) {

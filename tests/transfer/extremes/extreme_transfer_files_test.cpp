@@ -1,4 +1,4 @@
-// Numbers at the ends of their formats: in style files, options and calls the same, and in the half floats of EXR
+// Numbers at the ends of their formats: equal results in style files, options and calls, and in the half floats of EXR
 // files.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
@@ -100,8 +100,8 @@ struct Written {
   std::optional<float> expected;  // nothing: refused
 };
 
-// What a double holds and a float does not is the nearest float that says the same: infinite where it is larger than
-// all, and above 0 where it is above 0, because a threshold of 0 accepts nothing and any other exact copies.
+// A double outside a float's range becomes the nearest equivalent float: infinite where it is larger than all, and
+// above 0 where it is above 0, because a threshold of 0 accepts nothing and any other exact copies.
 TEST_F(ExtremeFiles, ThresholdsMeanTheSameInFilesOptionsAndCalls) {
   const Written all[] = {
       {"0", 0.0f},
@@ -145,7 +145,7 @@ TEST_F(ExtremeFiles, ThresholdsMeanTheSameInFilesOptionsAndCalls) {
   }
 }
 
-// The program says which option it was, and ends with the code of a usage error, or of a bad file.
+// The message names the option, and the exit code is that of a usage error, or of a bad file.
 TEST_F(ExtremeFiles, TheProgramRefusesThemToo) {
   WriteGuideFile("g.exr", Ball(16));
   WriteStyle("style");
@@ -204,7 +204,8 @@ TEST_F(ExtremeFiles, WhatIsWrittenAsHalfStaysFinite) {
   }
 }
 
-// Another program's halves may be infinite: it is said where, and nothing is painted. Up to the largest they are read.
+// Another program's halves may be infinite: the error gives the place, and nothing is painted. Up to the largest half
+// they are read.
 TEST_F(ExtremeFiles, InfiniteHalvesAreRefusedWithTheirPlace) {
   WriteStyle("style");
   WriteHalfByOpenImageIO("good.exr", Tinted({kLargestHalf, -kLargestHalf, 0.5f}));
@@ -235,7 +236,7 @@ TEST_F(ExtremeFiles, TintsBeyondOneSaturate) {
   for (const float dark : {0.0f, -1.0f, -1e30f}) EXPECT_EQ(painted(dark), std::vector<int>({0, 0, 0, 65535})) << dark;
 }
 
-// A painted sphere in linear floats: what is brighter than white is white, what is no number or below black is black.
+// A painted sphere in linear floats: values brighter than white become white, NaN and values below black become black.
 TEST_F(ExtremeFiles, ExemplarsInFloatsSaturate) {
   const float values[] = {kInfinity, 1e30f, kLargestHalf, 1.0f, 0.0f, -1.0f, -kInfinity, kNan};
   const int expected[] = {65535, 65535, 65535, 65535, 0, 0, 0, 0};
@@ -256,8 +257,8 @@ TEST_F(ExtremeFiles, ExemplarsInFloatsSaturate) {
 
 // ---- luminances of files -------------------------------------------------------------------------------------------
 
-// Half floats end at 65504, and what is farther is written as infinite. Two such pixels are as far away as each other,
-// so they are no edge: the picture is that of a wall at 60000 m, with the same step before it.
+// Half floats end at 65504, and larger depths are written as infinite. Two such pixels are equally far, so they are no
+// edge: the picture is that of a wall at 60000 m, with the same step before it.
 TEST_F(ExtremeFiles, DepthsBeyondHalfFloats) {
   WritePainted("style/lit.png", 32, 32);
   WriteText("style/style.toml",
@@ -278,7 +279,7 @@ TEST_F(ExtremeFiles, DepthsBeyondHalfFloats) {
   EXPECT_FALSE(painted(kInfinity, true) == painted(kInfinity, false)) << "the step is an edge";
 }
 
-// Negative light, which denoisers leave, is darkness; NaN and infinity are said with their place.
+// Negative light, from denoisers, counts as darkness; NaN and infinity are reported with their place.
 TEST_F(ExtremeFiles, LuminancesThatAreNone) {
   WritePainted("style/lit.png", 32, 32), WritePainted("style/shade.png", 32, 32);
   WriteText("style/style.toml",

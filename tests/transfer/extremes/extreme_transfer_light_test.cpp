@@ -113,7 +113,7 @@ TEST(ExtremeLight, WhatItLeavesOfATinyThresholdTakesExactCopiesInASpace) {
   ExpectCopiesWithinTinyThresholds(LuminanceError::kExcess, 2.0f);
 }
 
-// A pixel has one other exemplar and one excess: what a weight rejects, all above it reject.
+// A pixel has one other exemplar and one excess: if a weight rejects it, all larger weights do.
 TEST(ExtremeLight, HeavierWeightsOnlyCutMore) {
   const GuideSet guides = LitSphere(96, {kBelow, kAbove, 0.1f, 0.4f, 0.49f, 0.4999f, 0.6f, 0.9f, 4.0f});
   std::size_t last = guides.pixel_count();
@@ -125,7 +125,7 @@ TEST(ExtremeLight, HeavierWeightsOnlyCutMore) {
   EXPECT_EQ(last, 0u);
 }
 
-// A weight of 0 takes nothing off the threshold: the pieces are those of one exemplar.
+// A weight of 0 does not change the threshold: the chunks are those of one exemplar.
 TEST(ExtremeLight, WithoutWeightLightCutsNothing) {
   const GuideSet guides = LitSphere(96, {0.0f, 0.3f, 0.7f, 1e30f});
   Style one = TwoLights(96, 0.0f);
@@ -136,7 +136,7 @@ TEST(ExtremeLight, WithoutWeightLightCutsNothing) {
 }
 
 // The published error is 0 at an exemplar's own luminance alone, and infinity times 0 counts as 0: such pixels take
-// pieces of exemplars of their light, all others their own nearest neighbour.
+// chunks of exemplars of their light, all others their own nearest neighbour.
 TEST(ExtremeLight, ThePublishedErrorAtItsLimit) {
   const GuideSet guides = LitSphere(96, {0.75f, 0.25f, 0.3f});
   const SourceField field = MustTransfer(TwoLights(96, kInfinity, LuminanceError::kPublished), guides).field;
@@ -167,7 +167,7 @@ TEST(ExtremeLight, BothInfiniteLightDecides) {
 
 // ---- luminances that are none --------------------------------------------------------------------------------------
 
-// Nothing is darker than darkness: what is below 0, and NaN, which no comparison finds brighter than anything, is as 0.
+// Values below 0 count as 0, and so does NaN, which compares brighter than no value.
 TEST(ExtremeLight, NegativeAndNanAreDarkness) {
   const std::vector<float> dark = {0.0f, -0.0f, -1.0f, -1e30f, -kInfinity, kNan, -kNan};
   const GuideSet odd = LitSphere(96, dark), zero = LitSphere(96, {0.0f});
@@ -201,7 +201,7 @@ TEST(ExtremeLight, HoweverBrightTheBrightestIsTaken) {
   EXPECT_TRUE(SameField(a.field, b.field) && a.field.exemplar == b.field.exemplar);
 }
 
-// The measured exposure looks at what is above 0; it stays finite whatever the rest is.
+// The measured exposure uses values above 0; it stays finite whatever the other values are.
 TEST(ExtremeLight, TheExposureIsMeasuredOnLight) {
   const float luminances[] = {0.75f, 0.25f};
   for (const float odd : {-1.0f, -kInfinity, kNan, 0.0f}) {

@@ -1,6 +1,5 @@
-// The same bytes at the ends of every scale: with 1, 2, 3 and 7 threads, with every set of vector instructions, by
-// bands of rows and through a field, whole and in pieces. What they are compared with is one thread with the least
-// instructions.
+// Equal bytes at the ends of every scale: with 1, 2, 3 and 7 threads, with every set of vector instructions, by bands
+// of rows and through a field, whole and in parts. The reference is one thread with the least instructions.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -39,8 +38,7 @@ GuideSet Guides(int width, int height) {
   return guides;
 }
 
-// The same with numbers that are none, here and there on what is covered: through the public call, which no file
-// precedes.
+// The same with NaN and infinity at some covered pixels: through the public call, which accepts guides without a file.
 GuideSet OddGuides(int width, int height) {
   GuideSet guides = Guides(width, height);
   const float odd[] = {-1.0f, kNan, kInfinity, -kInfinity, 65504.0f, 65520.0f, 1e38f, kDenormal, -0.0f};
@@ -94,8 +92,8 @@ std::vector<Extreme> Extremes(const GuideSet& guides) {
     Style style = Base();
     style.transfer.levels = levels;
     add("levels " + std::to_string(levels), style);
-    // The coarsest seed stands in the picture, and takes what is at any distance. In rows and single pixels hardly one
-    // does.
+    // The coarsest seed is in the picture, and its candidate is accepted at any distance. In rows and single pixels
+    // there is hardly one.
     if (levels < 3 || guides.height() == 1 || guides.width() == 1) continue;
     all.back().style.transfer.threshold = kInfinity;
     all.back().reached = levels - 1, all.back().seed = SeedThatReaches(levels - 1, guides);
@@ -171,7 +169,7 @@ Picture InPieces(const Job& job, int width, int height) {
 }
 
 void ExpectTheSame(const GuideSet& guides, const std::string& where) {
-  // oneTBB has no workers beyond the machine's cores unless it is told that more are welcome.
+  // oneTBB has no workers beyond the machine's cores unless the limit is raised.
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 7);
   for (const Extreme& extreme : Extremes(guides)) {
     const auto prepared = Prepare(extreme.style, guides.height());
@@ -216,7 +214,7 @@ Style Weighed(float weight) {
   return style;
 }
 
-// Whose matching has one form for all instruction sets, but for the tree; all have fast ways to vote.
+// Methods whose matching has one form for all instruction sets, but for the tree; all have fast votes.
 TEST(ExtremeSame, OtherWaysToMatch) {
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 7);
   const GuideSet guides = OddGuides(90, 60);

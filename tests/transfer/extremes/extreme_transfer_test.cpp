@@ -1,4 +1,4 @@
-// The transfer at the ends of every scale, against the plain engine and against what arithmetic says must come out.
+// The transfer at the ends of every scale, against the plain engine and against exact arithmetic.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -94,7 +94,8 @@ TEST(ExtremeThreshold, TheSmallestTakesExactCopiesAndNothingElse) {
         }
       }
       EXPECT_GT(settled, sphere.pixel_count() / 2) << threshold;
-      // On hills, whose normals are nobody's, hardly a distance is 0: all of them are found by the plain engine, too.
+      // On hills, whose normals are not the exemplar's, hardly any distance is 0: the plain engine finds all of them,
+      // too.
       ExpectPlainField(ChunkStyle(64, threshold, metric), HillGuides(150, 110),
                        "threshold " + std::to_string(threshold));
     }
@@ -140,8 +141,8 @@ TEST(ExtremeThreshold, SquaresThatVanishAreZeroToTheTransfer) {
   });
 }
 
-// What light adds is taken off the threshold. What is left is above 0, so the distance 0 is below it, however small the
-// square of what is left.
+// The light's part is subtracted from the threshold. The remainder is above 0, so the distance 0 is below it, however
+// small its square.
 TEST(ExtremeThreshold, WhatLightLeavesOfASmallThresholdStillTakesExactCopies) {
   const glm::vec3 zero(0.0f), off(1e-3f, 0, 0);
   for (const ThresholdMetric metric : {ThresholdMetric::kL2, ThresholdMetric::kL1}) {
@@ -160,7 +161,7 @@ TEST(ExtremeThreshold, WhatLightLeavesOfASmallThresholdStillTakesExactCopies) {
 TEST(ExtremeThreshold, InfinityTakesTheCoarsestSeedThatIsThere) {
   for (const ThresholdMetric metric : {ThresholdMetric::kL2, ThresholdMetric::kL1}) {
     ExpectPlainField(ChunkStyle(100, kInfinity, metric), HillGuides(150, 110), "infinity");
-    // Unit normals are at most 2 apart, and 2√3 by the other metric: any threshold above is the same.
+    // Unit normals are at most 2 apart, and 2√3 by the other metric: all larger thresholds are equal.
     const GuideSet guides = HillGuides(150, 110);
     const SourceField all = MustTransfer(ChunkStyle(100, kInfinity, metric), guides).field;
     for (const float threshold : {3.6f, 1e30f, std::numeric_limits<float>::max()}) {
@@ -213,7 +214,7 @@ TEST(ExtremeLevels, OneIsTheLitSphereAndNoneIsAboveTheLast) {
   EXPECT_TRUE(SameField(one, MustTransfer(style, guides).field));
 }
 
-// Radii at the borders between the ways to vote (0, 3 | 4) and the last, whose window holds the whole picture.
+// Radii at the borders between the forms of voting (0, 3 | 4) and the last, whose window holds the whole picture.
 TEST(ExtremeRadius, ZeroToSixtyFourAreThePlainEngines) {
   const GuideSet guides = HillGuides(90, 61);
   for (const int radius : {0, 1, 3, 4, 31, 63, 64}) {

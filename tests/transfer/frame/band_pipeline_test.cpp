@@ -42,7 +42,7 @@ GuideSet RandomGuides(int width, int height, Cover cover, std::uint64_t seed) {
   return guides;
 }
 
-// A pixel's style, or that none paints it; in pieces, or changing from pixel to pixel.
+// A pixel's style, or none; in regions, or changing from pixel to pixel.
 StyleMap RandomMap(int width, int height, std::uint64_t styles, std::uint64_t seed) {
   StyleMap map{std::vector<std::uint16_t>(std::size_t(width) * height)};
   for (std::size_t i = 0; i < map.style.size(); ++i) {

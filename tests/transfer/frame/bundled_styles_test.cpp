@@ -1,5 +1,6 @@
-// Every bundled style, whatever it turns on: the same bytes for any number of threads and any cutting into regions, and
-// whatever was in the picture before. The styles are those in exemplars/, so that a new one is tested by being there.
+// Every bundled style, with all of its features: equal bytes for any number of threads and any cutting into regions,
+// and for any previous content of the picture. The styles are those in exemplars/, so that a new one is tested
+// automatically.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -35,7 +36,7 @@ GuideSet StillLife(const LayerSet& layers) {
   return std::move(rendered->guides);
 }
 
-// What is asked of a style beyond its own file.
+// Settings of a style beyond its own file.
 struct Variant {
   const char* name;
   std::function<void(TransferSettings&)> set;
@@ -51,7 +52,7 @@ std::vector<Variant> Variants() {
       more(settings);
     };
   };
-  // Styles in greys are so by themselves: those the other way.
+  // Styles in greys tint by default: those use the other mode.
   const auto oklab = [](TransferSettings& s) {
     const bool already = s.colorize == 1.0 && s.colorize_mode == ColorizeMode::kOklab;
     s.colorize = 1.0, s.colorize_mode = already ? ColorizeMode::kMultiply : ColorizeMode::kOklab;
@@ -78,7 +79,7 @@ std::vector<Variant> Variants() {
   };
 }
 
-// A style ready for the picture, and who paints what.
+// A style prepared for the picture, and its map.
 struct Painter {
   std::vector<PreparedStyle> prepared;
   std::vector<const PreparedStyle*> styles;
@@ -153,7 +154,7 @@ std::vector<Region> Tiles(int width, int height) {
   return tiles;
 }
 
-// The same exemplar with fewer pixels: large paintings would only take time, for the picture has 45 rows.
+// The exemplar with fewer pixels: large exemplars would only take time, for the picture has 45 rows.
 Exemplar Smaller(Exemplar exemplar) {
   constexpr int kSide = 128;
   if (exemplar.is_sphere || !exemplar.guides) {

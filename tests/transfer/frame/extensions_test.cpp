@@ -483,7 +483,7 @@ TEST(Variety, AWallShowsFiveTimesMoreOfTheExemplar) {
   RecordProperty("before", std::to_string(before));
   RecordProperty("after", std::to_string(after));
   EXPECT_LT(after, before / 5.0);
-  // No source is further off than the freedom and the threshold allow.
+  // No source is farther off than the freedom and the threshold allow.
   const auto prepared = Prepare(style, 700);
   const glm::vec3 normal = wall.Vec3(Layer::kNormal, 0);
   const double most = 2.0 * std::sin(0.5 * 15.0 * 3.14159265 / 180.0) + style.transfer.threshold + 1e-3;

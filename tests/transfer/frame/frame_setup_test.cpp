@@ -1,4 +1,4 @@
-// A frame begins with whatever the one before left behind, and must not show it.
+// A frame begins with any content from the previous one, and must not show it.
 #include "transfer/frame/frame_setup.h"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(FrameSetup, NothingOfTheFrameBeforeIsLeft) {
           EXPECT_TRUE(SameField(spoilt.field, fresh.field)) << soft << mapped;
           EXPECT_EQ(spoilt.active, fresh.active);
 
-          // A region changes what is in it and nothing else; the field tells of nothing that was not matched.
+          // A region changes only its own pixels; the field has no source for unmatched pixels.
           options.region = Region{17, 9, 130, 70};
           Spoil(spoilt, used);
           run(spoilt, used);

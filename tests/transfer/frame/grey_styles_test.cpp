@@ -41,7 +41,7 @@ TEST(GreyStyles, AreNeutralAndTinted) {
   }
 }
 
-// A ball of one base colour: its mean keeps that hue and stays as light, within limits.
+// A sphere of one base colour: its mean keeps that hue and stays as light, within limits.
 TEST(GreyStyles, LeaveBaseColoursFresh) {
   for (const char* name : kStyles) {
     SCOPED_TRACE(name);

@@ -1,5 +1,5 @@
-// Every extension at its neutral value is the plain engine, byte for byte: a table of what must make no difference, and
-// the plain engine written down once more, without tables, regions or threads.
+// Every extension at its neutral value is the plain engine, byte for byte: a table of settings without effect, and the
+// plain engine itself, without tables, regions or threads.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -19,7 +19,7 @@ using namespace testing;
 constexpr int kWidth = 150, kHeight = 110;
 constexpr int kOneObject = 1;
 
-// Adds what extensions read, each as rough as it may be: whoever reads it by mistake shows.
+// Adds the layers that extensions read, each as rough as possible: any mistaken read shows.
 GuideSet WithEveryLayer(GuideSet guides) {
   for (const Layer layer : {Layer::kLuminance, Layer::kAlbedo, Layer::kShadow, Layer::kMaterial, Layer::kPref}) {
     guides.Add(layer);

@@ -22,7 +22,7 @@ Picture PaintOnPaper(int size, double reach, double ragged) {
   return picture;
 }
 
-// A ball of 60 pixels' radius in the middle of background.
+// A sphere of 60 pixels' radius in the middle of background.
 GuideSet Ball() {
   return MakeGuides(200, 180, [](int x, int y) {
     const float nx = (x + 0.5f - 100) / 60, ny = -(y + 0.5f - 90) / 60, z2 = 1.0f - nx * nx - ny * ny;
@@ -116,7 +116,7 @@ TEST(PaintedEdge, ThreadsAndRegionsDoNotChangeAByte) {
   EXPECT_EQ(tiled.rgba, one.rgba);
 }
 
-// Grey paint takes on the base colour by the formula; the same grey in the edge must not stay grey beside it.
+// Grey paint takes the base colour by the formula; the same grey in the edge must not stay grey beside it.
 TEST(PaintedEdge, TakesOnItsObjectsColourAsThePaintDoes) {
   GuideSet guides = Ball();
   guides.Add(Layer::kAlbedo);
@@ -149,7 +149,7 @@ TEST(PaintedEdge, TakesOnItsObjectsColourAsThePaintDoes) {
   }
 }
 
-// Paint of 0.03 of the radius past the rim on white paper, whose colour tells the direction from the centre.
+// Paint of 0.03 of the radius past the rim on white paper, whose colour encodes the direction from the centre.
 Picture DirectionPaint(int size) {
   Picture picture(size, size);
   for (int y = 0; y < size; ++y) {
@@ -164,7 +164,7 @@ Picture DirectionPaint(int size) {
   return picture;
 }
 
-// The direction that a pixel's colour tells, in radians from +X towards +Y down.
+// The direction that a pixel's colour encodes, in radians from +X towards +Y down.
 double DirectionOf(const std::uint16_t* pixel) {
   return std::atan2(pixel[1] / 65535.0 - 0.3, pixel[0] / 65535.0 - 0.3);
 }
@@ -184,8 +184,8 @@ struct Turns {
   int count = 0;
 };
 
-// How far the rim's direction is from the ball's on the ring from 1 pixel inside the silhouette to 0.6 of the paint
-// outside.
+// The angle between the rim's direction and the sphere's on the ring from 1 pixel inside the silhouette to 0.6 of the
+// paint outside.
 Turns TurnsOnBall(int size, double radius, int exemplar) {
   Style style = PlainStyle(DirectionPaint(exemplar));
   style.transfer.edge = EdgeMode::kExemplar, style.transfer.method = Method::kLitSphere,
@@ -317,7 +317,7 @@ TEST(PaintedEdge, ThinThingsStayExactAndTheLineGrowsWithThem) {
   EXPECT_NEAR(before, 4.0, 0.8) << "8 bands of 7 pixels and more have the whole 4 pixels of paint past the rim";
 }
 
-// The lower half of what surrounds the ball is another object, which is left as it is.
+// The lower half of the sphere's surroundings is another object, which is left unpainted.
 TEST(PaintedEdge, WhatIsLeftUnpaintedCountsAsNothingUnlessItStandsBefore) {
   Style style = PlainStyle(PaintOnPaper(400, 1.02, 0.0));
   style.transfer.edge = EdgeMode::kExemplar;

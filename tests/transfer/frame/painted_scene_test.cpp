@@ -1,5 +1,5 @@
-// The painted scenes: ball, floor and wall under a lamp. Their guides are those of scenes/ball.glb, and by guides of
-// light a target's shadows take the paint of the exemplar's shadow, which by normals alone they cannot.
+// The painted scenes: sphere, floor and wall under a light. Their guides are those of scenes/ball.glb. By guides of
+// light a target's shadows take the paint of the exemplar's shadow; by normals alone they cannot.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -103,7 +103,7 @@ TEST(PaintedScene, GuidesAreThoseOfTheCommittedScene) {
   }
 }
 
-// The mean colour, in Oklab, of what a picture shows where the floor lies in the ball's shadow.
+// The mean colour, in Oklab, of a picture where the floor lies in the sphere's shadow.
 glm::dvec3 ColorInShadow(const Picture& picture, const GuideSet& guides) {
   glm::dvec3 sum(0.0);
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-// The finished picture: alpha, paper, what lies under it, determinism, sizes, refusals.
+// The finished picture: alpha, paper, the background, determinism, sizes, refusals.
 #include <limits>
 
 #include "core/image/color.h"

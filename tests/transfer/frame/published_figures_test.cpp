@@ -141,8 +141,8 @@ TEST(Figure23, ThePublishedErrorLosesItsChunksWhereTheExcessKeepsThem) {
   }
 }
 
-// A ball in stripes of red and blue, four pixels each: whatever the paint and however wide its pieces melt, each stripe
-// keeps its colour up to its last pixel.
+// A sphere in stripes of red and blue, four pixels each: for any paint and any blend width, each stripe keeps its
+// colour up to its last pixel.
 TEST(Figure21, StripesAreKept) {
   GuideSet guides = SphereGuides(160);
   guides.Add(Layer::kAlbedo);
@@ -155,7 +155,7 @@ TEST(Figure21, StripesAreKept) {
       for (int c = 0; c < 3; ++c) guides.Plane(Layer::kAlbedo, c)[i] = albedo[c];
     }
   }
-  // The share of pixels that are redder than blue in the red stripes, and the other way round in the others.
+  // The share of pixels that are redder than blue in the red stripes, and the reverse in the others.
   const auto right = [&](const Style& style) {
     const Picture picture = MustTransfer(style, guides).picture;
     double count = 0.0, covered = 0.0;

@@ -1,4 +1,4 @@
-// How the bench sums up what it timed.
+// The bench's summary of its times.
 #include "bench/performance/repeats.h"
 
 #include <gtest/gtest.h>

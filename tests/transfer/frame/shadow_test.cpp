@@ -209,7 +209,7 @@ TEST(Shadow, AHardOutlineFadesEvenlyOverAFewPixels) {
 }
 
 TEST(Shadow, APreviewOfHalfTheSizeShowsTheSamePieces) {
-  // Each place of the sphere has its own grey, so a pixel tells where it is from.
+  // Each place of the sphere has its own grey, so a pixel shows its source.
   Picture grey(512, 512);
   for (int y = 0; y < 512; ++y) {
     for (int x = 0; x < 512; ++x) {

@@ -1,4 +1,4 @@
-// The distance field of outlines, against a search of everything.
+// The distance field of outlines, against an exhaustive search.
 #include "transfer/outline/silhouettes.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Many pixels at once are tinted as each by itself is, to the last bit.
+// Many pixels tinted at once equal each tinted by itself, to the last bit.
 #include <algorithm>
 #include <cmath>
 #include <limits>

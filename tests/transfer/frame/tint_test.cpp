@@ -1,4 +1,4 @@
-// Base colours on the paint: the formulas of transfer/tint/colorize.h, written down once more in double.
+// Base colours on the paint: the formulas of transfer/tint/colorize.h, implemented once more in double.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -223,8 +223,8 @@ TEST(Tint, IsMonotoneInThePaintAndClipsNothing) {
   }
 }
 
-// Strokes on light and dark things keep the share of their contrast that the formula promises: L / R below the
-// reference, the room above it.
+// Strokes on light and dark surfaces keep the share of their contrast in the formula: L / R below the reference, the
+// room above it.
 TEST(Tint, StrokesKeepTheirContrast) {
   for (const float albedo : {0.9f, 0.6f, 0.3f, 0.1f, 0.02f}) {
     const double scene = std::cbrt(static_cast<double>(albedo)), reference = 0.6;

@@ -1,4 +1,4 @@
-// Guides of a larger picture from those of a small one: areas, edges, and what must not mix.
+// Guides of a larger picture from those of a small one: areas, edges, and layers that must not mix.
 #include "transfer/upsample_guides.h"
 
 #include <cmath>
@@ -128,7 +128,7 @@ TEST(UpsampleGuides, WhatIsLinearOnASurfaceStaysLinear) {
   }
   for (const int factor : {2, 3, 8}) {
     const GuideSet larger = Upsampled(guides, factor);
-    // At the picture's edge nothing tells a slope from a step.
+    // At the picture's edge a slope looks like a step.
     for (int y = 2 * factor; y < larger.height() - 2 * factor; ++y) {
       for (int x = 2 * factor; x < larger.width() - 2 * factor; ++x) {
         const std::size_t i = larger.Index(x, y);

@@ -1,4 +1,4 @@
-// What the bench compares with must be the same algorithm: the yardstick's picture is the engine's, bit for bit.
+// The bench's reference must be the same algorithm: the yardstick's picture is the engine's, bit for bit.
 #include "bench/performance/yardstick.h"
 
 #include "tests/support/transfer_fixtures.h"

@@ -1,5 +1,5 @@
-// The parallel StyleBlit against the brute-force oracle and against an independent scalar version, and what its chunks
-// must be in the limits.
+// The parallel StyleBlit against the brute-force oracle and against an independent scalar version, and the limits of
+// its chunks.
 #include <limits>
 #include <map>
 #include <optional>
@@ -36,7 +36,7 @@ GuideSet SampleScene(const std::string& name, int width, int height) {
   return std::move(rendered->guides);
 }
 
-// Every method's promise: a pixel's source is usable, and it is either the pixel's own nearest neighbour or alike.
+// Every method's contract: a pixel's source is usable, and it is either the pixel's own nearest neighbour or alike.
 void ExpectAcceptanceRule(const GuideSet& guides, const Style& style, const SourceField& field) {
   const auto prepared = Prepare(style, guides.height());
   const PreparedExemplar& exemplar = *prepared->exemplar;
@@ -73,9 +73,9 @@ TEST(Oracle, BothFormsObeyTheSameAcceptanceRuleOnRandomGuides) {
   }
 }
 
-// The parallel form cannot know which anchors a sequential run would choose: its chunks end at the borders of seed
-// cells as well, but it tries several seeds for a pixel where the oracle offers whatever anchor comes first. Measured
-// ratios of coherence are 0.99, 1.11 and 0.95, of chunk area 0.6, 2.6 and 0.8; the bounds leave a fifth.
+// The parallel form does not have the sequential run's anchors: its chunks end at the borders of seed cells as well,
+// but it tries several seeds for a pixel where the oracle tries the first anchor. Measured ratios of coherence are
+// 0.99, 1.11 and 0.95, of chunk area 0.6, 2.6 and 0.8; the bounds leave a fifth.
 TEST(Oracle, ParallelChunksComeCloseToTheBruteForceOnes) {
   const GuideSet scenes[] = {HillGuides(256, 192), SphereGuides(200), SampleScene("suzanne.glb", 320, 180)};
   for (const GuideSet& guides : scenes) {
@@ -185,7 +185,7 @@ TEST(Chunks, CoherenceOnTheSampleScenesIsThatOfAnIndependentScalarVersion) {
 }
 
 // With an infinite threshold and guides that every exemplar position fits, a pixel always takes its nearest seed's
-// offer on the coarsest level, unless the rim rule or a seed on nothing sends it on.
+// candidate on the coarsest level, unless the rim rule or a seed on background rejects it.
 TEST(Chunks, WithInfiniteThresholdAreTheCellsOfTheSeeds) {
   const GuideSet guides = HillGuides(160, 120);
   Style style = PlainStyle(NoisePicture(200));

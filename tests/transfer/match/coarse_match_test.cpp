@@ -1,4 +1,4 @@
-// Matching some pixels and taking the rest from those around them, against the rule pixel by pixel.
+// Matching some pixels and upsampling to the others, against the rule pixel by pixel.
 #include <limits>
 #include <optional>
 #include <vector>
@@ -171,8 +171,8 @@ TEST(MatchStep, MostPixelsKeepTheirSource) {
   }
 }
 
-// A seed that variety has sent elsewhere is compared with the guide that it was sent from, by pixels in between too.
-// (The borders of pieces follow the paint there, pixel by pixel, which matching one pixel of sixteen cannot.)
+// A seed with another source by variety is compared with the guide of that source, by pixels in between too. (The
+// borders of chunks follow the paint there, pixel by pixel, which matching one pixel of sixteen cannot.)
 TEST(MatchStep, KnowsWhatVarietyMoved) {
   const GuideSet guides = MakeGuides(200, 160, [](int, int) { return glm::normalize(glm::vec3(0.2f, 0.1f, 1.0f)); });
   Style style = PlainStyle(NoisePicture(300));

@@ -1,5 +1,5 @@
-// Coherent mode: seeds on the surface against a plain version of the rules in transfer/seeds/surface_seeds.h, and what
-// they are for: paint that stays where it is while the object or the camera moves.
+// Coherent mode: seeds on the surface against a plain version of the rules in transfer/seeds/surface_seeds.h, and their
+// purpose: paint that stays in place while the object or the camera moves.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -281,7 +281,7 @@ TEST(Coherent, AsksForPrefAndNothingElsePaysForIt) {
   }
 }
 
-// A ball in the picture, whose middle is at (cx, cy).
+// A sphere in the picture, whose middle is at (cx, cy).
 GuideSet BallAt(int width, int height, float cx, float cy, float radius, float object = 1.0f) {
   const auto normal = [=](int x, int y) {
     const float nx = (static_cast<float>(x) + 0.5f - cx) / radius, ny = (cy - static_cast<float>(y) - 0.5f) / radius;
@@ -331,7 +331,7 @@ GuideSet Wall(int size, float turned_degrees, float pixels_per_unit = 100.0f, fl
   });
 }
 
-// A quarter of a degree is one and a half exemplar pixels, and a fourteenth of a cell: that many pieces change.
+// A quarter of a degree is one and a half exemplar pixels, and a fourteenth of a grid cell: that many chunks change.
 TEST(Coherent, PaintDoesNotSlideWhileTheSurfaceTurns) {
   Style style = CoherentStyle(700, 6);
   style.transfer.rim = 0.0;
@@ -353,7 +353,7 @@ TEST(Coherent, AFloorAtHeightZeroIsOneSurface) {
   EXPECT_GT(ShareKept(flat, noisy, 0, 0), 0.999);
 }
 
-// A zoom by 3 % changes some of the largest pieces; the borders of the others stay where they are on the surface.
+// A zoom by 3 % changes some of the largest chunks; the borders of the others stay in place on the surface.
 TEST(Coherent, AZoomKeepsMostPieces) {
   const Style style = CoherentStyle(900, 5);
   const GuideSet near = Wall(200, 0.0f, 103.0f), far = Wall(200, 0.0f, 100.0f);

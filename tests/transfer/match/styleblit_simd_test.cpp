@@ -1,5 +1,5 @@
-// StyleBlit sixteen pixels at a time gives what the plain form gives, pixel by pixel, with every set of vector
-// instructions that this machine has.
+// StyleBlit sixteen pixels at a time equals the plain form, pixel by pixel, with every set of vector instructions that
+// this machine has.
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
@@ -193,9 +193,9 @@ SeedOnLine FindSeedOnLine(const Line& line, int level, int reach) {
   return {};
 }
 
-// The scene faces us; of the paint, a line as long, the middle alone does. So each seed's source is the middle, every
-// pixel that is nearest to it takes what is as far from there, at any distance of normals, and what no seed settles
-// takes the middle.
+// The scene faces the viewer; of the paint, a line as long, only the middle does. So each seed's source is the middle.
+// Every pixel nearest to the seed takes the paint equally far from the middle, at any distance of normals, and pixels
+// without a seed take the middle.
 TEST(TransferTiles, SeedsOfTheLargestCells) {
   constexpr int kPaint = 32767, kMiddle = kPaint / 2;
   for (const Line line : {Line{false}, Line{true}}) {

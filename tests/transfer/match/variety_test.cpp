@@ -1,4 +1,4 @@
-// Freedom of choice on flat surfaces: where the paint comes from, and where the borders run.
+// Source variation on flat surfaces: the sources of the paint, and the course of the borders.
 #include "transfer/match/variety.h"
 
 #include <gtest/gtest.h>
@@ -150,7 +150,7 @@ TEST(Borders, GoWhereThePaintFitsBetter) {
   EXPECT_FALSE(SecondWins(6, 0, 0)) << "the nearest seed wins where nothing speaks against it";
   EXPECT_TRUE(SecondWins(6, 0, 1)) << "midway the tone alone decides";
   EXPECT_FALSE(SecondWins(6, 1, -5));
-  // Further from the middle it takes more, in proportion; the same on every level at the same share of the grid.
+  // Farther from the middle it takes more, in proportion; equally on every level at an equal share of the grid.
   for (const int level : {3, 6, 9}) {
     const std::int64_t h2 = std::int64_t{1} << (2 * level);
     EXPECT_TRUE(InBorderBand(level, 0));

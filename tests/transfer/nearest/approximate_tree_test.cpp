@@ -31,7 +31,7 @@ double Least(const std::vector<float>& points, const float* query, std::size_t d
   return least;
 }
 
-// Rounding is on the safe side in the tree, so what is left is that of the distances here: a few ulps of a double.
+// The tree rounds on the safe side, so only the rounding of the distances here remains: a few ulps of a double.
 constexpr double kUlps = 1.0 + 1e-14;
 
 TEST(ApproximateTree, IsNeverFartherThanAllowedAndSometimesFartherThanTheNearest) {
@@ -91,7 +91,7 @@ Style RoughStyle(double error) {
   return style;
 }
 
-// Directions and usable normals have length 1, so what is compared is what the tree compares.
+// Directions and usable normals have length 1, so this compares the tree's own distances.
 TEST(ApproximateTree, SourcesOfAStyleKeepToItsError) {
   const auto exact = MustPrepare(RoughStyle(0.0)), rough = MustPrepare(RoughStyle(2.0));
   int farther = 0;

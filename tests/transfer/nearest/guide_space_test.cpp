@@ -1,4 +1,4 @@
-// Matching by normals, light and colour together: every way of it against a plain reference.
+// Matching by normals, light and colour together: every form of it against a plain reference.
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -17,7 +17,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const Layer kFifteen[] = {Layer::kAlbedo, Layer::kLpeLDE, Layer::kLpeLSE, Layer::kLpeLDDE};  // with the normal
 
-// Light of every layer from a lamp of its own for each channel, shadowed in every third of bands of 16 columns; in
+// Light of every layer from a different light for each channel, shadowed in every third of bands of 16 columns; in
 // `steps` even steps, so that equal guides abound, or in none for 0.
 void AddLight(GuideSet& guides, int steps, float scale = 1.0f) {
   const auto add = [&](Layer layer) {
@@ -142,7 +142,7 @@ class Reference {
     return best;
   }
 
-  // Whether pixel i may show u; `seed` offers it, whose nearest neighbour is `best`.
+  // Whether pixel i may show u; it comes from `seed`, whose nearest neighbour is `best`.
   bool Accepts(std::size_t i, Source u, std::size_t seed, Source best) const {
     if (!exemplar_.Usable(u.x, u.y)) return false;
     const glm::vec3 of_seed = guides_.Vec3(Layer::kNormal, seed);
@@ -330,7 +330,7 @@ TEST(GuideSpace, NormalsThatCountTwiceAreTheTreeOfNormals) {
 }
 
 TEST(GuideSpace, SharesOfTheBrightestAreWhatIsCompared) {
-  // Whatever the lamps' strength, with the exposure that fits.
+  // For any strength of the lights, with the exposure that fits.
   const Style style = LitStyle(true, Weights({{Layer::kLuminance, 1.0f}, {Layer::kLpeLDE, 1.0f}}));
   const auto prepared = Prepare(style, 64);
   ASSERT_TRUE(prepared.ok());

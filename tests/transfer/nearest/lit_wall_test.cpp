@@ -1,4 +1,4 @@
-// Where normals say nothing: a flat wall in the light of a lamp, with a shadow across it.
+// Guides without information in normals: a flat wall in the light of a point light, with a shadow across it.
 #include <algorithm>
 #include <cmath>
 
@@ -13,9 +13,9 @@ using namespace testing;
 constexpr int kWidth = 160, kHeight = 120;
 constexpr float kShade = 0.05f;
 
-// A wall that faces us, one unit behind a lamp at `lamp` (in pixels): the luminance of a point light on white Lambert
-// is proportional to cos θ / r² = (1 + d²)^(-3/2), d being the distance along the wall in units of the lamp's. Right of
-// `shadow` a screen leaves a twentieth of it.
+// A wall that faces the viewer, one unit behind a light at `lamp` (in pixels): the luminance of a point light on white
+// Lambert is proportional to cos θ / r² = (1 + d²)^(-3/2), d being the distance along the wall in units of the light's.
+// Right of `shadow` a screen leaves a twentieth of it.
 float Light(float x, float y, glm::vec2 lamp, float unit, int shadow) {
   const float d = glm::length(glm::vec2(x + 0.5f, y + 0.5f) - lamp) / unit;
   return (x < shadow ? 1.0f : kShade) / std::pow(1.0f + d * d, 1.5f);
@@ -47,7 +47,7 @@ Style WallStyle(Layer layer, float weight) {
 }
 
 struct Lit {
-  double mean_stops = 0.0;      // between what a pixel shows and what it should, of its light
+  double mean_stops = 0.0;      // between a pixel's light and its paint's
   double largest_distance = 0;  // of L / (1 + L)
 };
 
@@ -80,7 +80,7 @@ TEST(LitWall, TakesPaintThatIsLitAsItIs) {
         EXPECT_LT(lit.mean_stops, 0.05);
       } else {
         EXPECT_LT(lit.mean_stops, 0.3);
-        // No pixel of a chunk is further off than the threshold; three equal channels count √3 of one. What no chunk
+        // No pixel of a chunk is farther off than the threshold; three equal channels count √3 of one. What no chunk
         // suits is nearer still. The scene's brightest places are brighter than any of the exemplar's.
         EXPECT_LT(lit.largest_distance, 0.03 + 1e-6);
       }
@@ -96,7 +96,7 @@ TEST(LitWall, TakesPaintThatIsLitAsItIs) {
   }
 }
 
-// How many of the pairs across the shadow's edge show one piece of paint.
+// The number of pairs across the shadow's edge that show one chunk.
 int UncutPairs(const SourceField& field) {
   int uncut = 0;
   for (int y = 0; y < kHeight; ++y) {
@@ -114,7 +114,7 @@ TEST(LitWall, ShadowsCutChunks) {
   TransferOptions options;
   options.exposure = *MeasureExposure({&*prepared, 1}, guides);
   EXPECT_EQ(UncutPairs(MustTransfer(style, guides, options).field), 0);
-  // A wide search for variety finds no way around it.
+  // A wide search by variety does not avoid it either.
   style.transfer.variety = 30.0;
   EXPECT_EQ(UncutPairs(MustTransfer(style, guides, options).field), 0);
   style.transfer.guide_weights = {};

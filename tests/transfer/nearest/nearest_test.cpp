@@ -105,7 +105,7 @@ TEST(LookUpTable, AnalyticAgreesWithTheTreeWithinOnePixelInsideTheRim) {
   }
 }
 
-// Keeps what is stored, and counts.
+// Stores entries, and counts.
 class CountingCache : public TableCache {
  public:
   std::optional<std::vector<std::byte>> Load(const std::string& key) override {

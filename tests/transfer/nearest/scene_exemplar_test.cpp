@@ -213,7 +213,7 @@ TEST(Ambiguity, OfACubeIsThreeDirections) {
   EXPECT_EQ(report.flat_percent, 100.0);
   // A cap of 5° around each of three directions, of the hemisphere: 3 (1 - cos 5°).
   EXPECT_NEAR(report.covered_percent, 300.0 * (1.0 - std::cos(5.0 * std::numbers::pi / 180.0)), 0.15);
-  // The furthest from all three is the point of the rim half way between two faces: the angle to each has the cosine of
+  // The farthest from all three is the point of the rim halfway between two faces: the angle to each has the cosine of
   // 60° times that of the faces' height over the rim.
   const double furthest = 180.0 / std::numbers::pi * std::acos(std::sqrt(2.0 / 3.0) * 0.5);
   EXPECT_NEAR(report.largest_error_degrees, furthest, 1.5);

@@ -1,4 +1,4 @@
-// Trees over points against brute force, and which pixels of a painted scene may be used.
+// Trees over points against brute force, and the usable pixels of a painted scene.
 #include <cstring>
 #include <limits>
 #include <span>
@@ -75,7 +75,7 @@ TEST(PointTree, TiesGoToTheFirstPoint) {
     for (const int steps : {1, 2, 3, 5}) {
       const auto points = Scatter(std::size_t(900) * dimensions, steps, 3 + steps);
       auto queries = Scatter(std::size_t(300) * dimensions, 2 * steps, 8);
-      for (float& value : queries) value *= 0.5f;  // half way between the lattice's points: up to 2^dimensions ties
+      for (float& value : queries) value *= 0.5f;  // halfway between the lattice's points: up to 2^dimensions ties
       ExpectExact(points, dimensions, queries);
     }
   }

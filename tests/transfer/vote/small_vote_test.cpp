@@ -1,5 +1,5 @@
-// Votes in small windows, made 64 pixels at a time, against the plain form: every width, radius, instruction set and
-// number of threads gives its bytes.
+// Votes in small windows, made 64 pixels at a time, against the plain form: equal bytes for every width, radius,
+// instruction set and number of threads.
 #include "transfer/vote/small_vote.h"
 
 #include <gtest/gtest.h>
@@ -112,7 +112,7 @@ struct Variant {
 template <class Voter>
 Picture Voted(const Case& given, const Variant& way, const Voter& voter) {
   Picture out(given.width, given.height);
-  std::fill(out.rgba.begin(), out.rgba.end(), std::uint16_t{4711});  // what is not painted stays
+  std::fill(out.rgba.begin(), out.rgba.end(), std::uint16_t{4711});  // unpainted pixels stay
   internal::LazyDepthGradient slopes(given.guides);
   internal::EdgeRules edges{given.guides, slopes, way.crease, way.tolerance};
   if (way.tell_covered) edges.covered = given.covered;

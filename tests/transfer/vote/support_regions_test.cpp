@@ -1,4 +1,4 @@
-// Votes against their definition written down plainly, and steps on slanted surfaces, which no vote may cross.
+// Votes against their plain definition, and steps on slanted surfaces, which no vote may cross.
 #include "transfer/vote/edge/support_regions.h"
 
 #include <array>
@@ -184,7 +184,7 @@ TEST(Support, VotesEqualTheirPlainForm) {
   }
 }
 
-// What the fast ways rely on: q is on an arm of p where p is on one of q, and so is everything between the two.
+// The property behind the fast forms: q is on an arm of p if p is on one of q, and so are all pixels between the two.
 TEST(Support, ArmsAreSymmetricAndHereditary) {
   for (const bool extreme : {false, true}) {
     const GuideSet guides = RoughGuides(60, 44, extreme);
@@ -245,7 +245,7 @@ TEST(Support, ArmsEndWhereASurfaceTurnsByTheCrease) {
   EXPECT_EQ(highest, 9);
 }
 
-// Black paint on what stands in front and white on what is behind: grey is a vote that crossed.
+// Black paint on objects in front and white on those behind: grey is a vote that crossed.
 std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& front, int radius, double tolerance,
                    bool joined) {
   constexpr int kSize = 200;
@@ -266,8 +266,8 @@ std::size_t Ghosts(const GuideSet& guides, const std::vector<std::uint8_t>& fron
   return ghosts;
 }
 
-// One object of one normal: only depth tells. Fingers, stairs, blobs and single pixels stand before a slanted surface,
-// by more than twice its slope per pixel and the tolerance.
+// One object of one normal: only depth separates. Fingers, stairs, blobs and single pixels stand before a slanted
+// surface, by more than twice its slope per pixel and the tolerance.
 TEST(Support, StepsOnSlantedSurfacesAreNeverCrossed) {
   const auto shapes = std::array{+[](int x, int y) { return y > 8 && x % 16 > 8 && x % 16 < 13; },  // fingers
                                  +[](int x, int) { return x >= 40; },                               // one edge

@@ -1,4 +1,5 @@
-// Tone by Lit Sphere, texture by StyleBlit: the split against plain convolution, the sum against its definition.
+// Base layer by Lit Sphere, detail layer by StyleBlit: the split against plain convolution, the sum against its
+// definition.
 #include "transfer/vote/tone_texture_split.h"
 
 #include <array>
@@ -257,7 +258,7 @@ TEST(Hybrid, IsTheOwnTonePlusTheMeanOfTheTexturesVotedFor) {
           }
         }
         const double alpha = std::clamp(tone[3] + texture[3] / votes, 0.0, 65535.0);
-        // Tones are read in steps of 1/256 texel, and both parts are rounded on their own.
+        // Base layers are read in steps of 1/256 texel, and both parts are rounded separately.
         constexpr double kSlack = 300.0;
         ASSERT_NEAR(result.picture.At(x, y)[3], alpha, kSlack) << x << ", " << y;
         for (int c = 0; c < 3; ++c) {
@@ -301,7 +302,7 @@ Departure FromTheRamp(const Transferred& result, const GuideSet& guides) {
   for (std::size_t i = 0; i < off.size(); ++i) {
     const glm::vec3 n = guides.Vec3(Layer::kNormal, i);
     if (result.field.level[i] == SourceField::kNoSource || n.x * n.x + n.y * n.y > 0.3f) continue;
-    const int u = result.field.x[i], v = result.field.y[i];  // of 256: the piece's place must be as far from the rim
+    const int u = result.field.x[i], v = result.field.y[i];  // of 256: the chunk's place must be as far from the rim
     if ((u - 127.5) * (u - 127.5) + (v - 127.5) * (v - 127.5) > 85 * 85) continue;
     off[i] = result.picture.rgba[4 * i] - (32768.0 + 20000.0 * n.x);
     departure.worst = std::max(departure.worst, std::fabs(off[i]));

@@ -1,4 +1,4 @@
-// Voting, edges, and nothing from outside the painted disc.
+// Voting, edges, and no colour from outside the painted disc.
 #include "transfer/vote/vote.h"
 
 #include <limits>
@@ -223,7 +223,7 @@ class Ghosting {
   SourceField field_;
 };
 
-// A branch with leaves, a ball of wire and the frame of a chair before walls.
+// A branch with leaves, a sphere of wire and the frame of a chair before walls.
 GuideSet ThinParts() {
   Expected<Scene> scene = LoadScene(std::string(SCUMBLE_SOURCE_DIR) + "/scenes/stilllife.glb");
   EXPECT_TRUE(scene);
@@ -249,8 +249,8 @@ TEST(EdgeAware, NoGhostingAtAnyTolerance) {
   }
 }
 
-// As if the whole scene were one object, so that depth and creases alone keep its parts apart: what is left of the
-// ghosts must fall with the tolerance.
+// As if the whole scene were one object, so that only depth and creases separate its parts: the remaining ghosts must
+// decrease with the tolerance.
 TEST(EdgeAware, DepthAndCreasesAloneStopMostGhosts) {
   const GuideSet guides = ThinParts();
   const Ghosting ghosting(guides);
@@ -315,9 +315,9 @@ TEST(EdgeAware, FingersSurviveRadiusEight) {
   }
 }
 
-// An orthographic camera sees the same from wherever it stands, so where it stands is no part of what an edge is: the
-// step is measured by the height that is seen, for steps above 2^-20 of the distance at least. Depths are sixteenths of
-// a metre below 2^20 m, exact wherever the camera stands.
+// An orthographic camera's picture does not depend on its distance, so the distance must not affect edges: the step is
+// measured by the height that is seen, for steps above 2^-20 of the distance at least. Depths are sixteenths of a metre
+// below 2^20 m, exact wherever the camera stands.
 TEST(EdgeAware, AnOrthographicCameraMayStandAnywhere) {
   Style style = PlainStyle(BlackAndWhite(128));
   for (const int radius : {1, 3, 8}) {

@@ -78,7 +78,7 @@ void FillField(Case& all, Pieces pieces, int size, int exemplars, int holes) {
       if (int(Hash(x / 9, y / 7, 5) % 64) < holes) continue;
       const Source shift = PieceAt(pieces, x, y);
       Source source{(x + shift.x) % size, (y + shift.y) % size};
-      // A pixel's own source is usable, as matching promises.
+      // A pixel's own source is usable, by the contract of matching.
       while (!all.exemplar.Usable(source.x, source.y)) source = {(source.x + size / 2) / 2, (source.y + size / 2) / 2};
       const std::size_t i = all.field.Index(x, y);
       all.field.Set(i, source.x, source.y, exemplars > 1 ? int(Hash(x / 31, y / 23, 6) % exemplars) : 0, 1);
@@ -180,7 +180,7 @@ TEST(WideVote, RegionsThreadsAndAFewActivePixels) {
   EXPECT_EQ(WideVotes(all.Input(9, Whole(all))).rgba, PlainVotes(all.Input(9, Whole(all))).rgba);
 }
 
-// A rectangle that is told to be usable is; and most of the middle of a sphere is told to be.
+// A rectangle reported as usable is usable; and most of the middle of a sphere is reported so.
 TEST(UsableRows, RectanglesThatAreUsable) {
   for (const int size : {1, 2, 5, 16, 33}) {
     const PreparedExemplar exemplar = Prepared(Paints(size, 1, true), 1.0);
@@ -297,7 +297,7 @@ TEST(WideVote, EdgesAreTheDefinitions) {
   }
 }
 
-// A step in depth between two columns, at the picture's bottom: ways cross it at every slant.
+// A step in depth between two columns, at the picture's bottom: windows cross it at every slant.
 TEST(WideVote, EdgesAreTheDefinitionsAtEveryColumn) {
   for (int edge = 30; edge < 50; ++edge) {
     Case all = MakeCase(80, 56, Pieces::kSmall, 150, 1, true, 0);
@@ -351,8 +351,8 @@ TEST(WideVote, EdgesAreTheSameOnEveryInstructionSet) {
   hwy::SetSupportedTargetsForTest(0);
 }
 
-// What is done to finished pixels (here: turned to their negatives, which doing twice undoes) is done once to each,
-// when nothing writes them any more, by every way to vote.
+// The callback on finished pixels (here: turned to their negatives, which doing twice undoes) runs once for each, after
+// their last write, in every form of voting.
 TEST(Vote, TellsOfEveryFinishedPixelOnce) {
   Case all = MakeCase(2300, 70, Pieces::kMixed, 150, 1, true, 20);
   all.guides.Add(Layer::kNormal);

@@ -17,7 +17,7 @@
 #define SCUMBLE_OPEN_STEPS_ONCE
 namespace scumble::internal {
 
-// What the test reads of one row, each array from column 0 on.
+// The test's input from one row, each array from column 0 on.
 struct StepRow {
   const float* depth[4];  // of the rows from the one above to two below; NaN where nothing is covered; padded
   const float* object;
@@ -41,7 +41,7 @@ HWY_BEFORE_NAMESPACE();
 namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Depth where something is covered, NaN elsewhere. `covered` is null, or tells coverage instead.
+// Depth on covered pixels, NaN elsewhere. `covered` is null, or replaces coverage.
 void CoveredDepth(const float* depth, const float* coverage, const std::uint8_t* covered, std::size_t count,
                   float* out) {
   const hn::Rebind<std::uint8_t, decltype(kFloat)> byte;
@@ -59,17 +59,17 @@ void CoveredDepth(const float* depth, const float* coverage, const std::uint8_t*
   }
 }
 
-// As DepthSlopes has it.
+// As in DepthSlopes.
 HWY_INLINE F Slope(F before, F here, F after) {
   const F back = hn::Sub(here, before), front = hn::Sub(after, here);
   const F gentler = hn::IfThenElse(hn::Lt(hn::Abs(back), hn::Abs(front)), back, front);
   return hn::IfThenElseZero(hn::Gt(hn::Mul(back, front), hn::Zero(kFloat)), gentler);
 }
 
-// As std::min has it.
+// As std::min.
 HWY_INLINE F Least(F a, F b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
 
-// Whether depth passes between p and the neighbour q; slopes along the step.
+// Whether depth passes the test between p and the neighbour q; slopes along the step.
 HWY_INLINE hn::Mask<hn::CappedTag<float, 16>> DepthPasses(const DepthTolerance& give, F depth_p, F depth_q, F slope_p,
                                                           F slope_q) {
   const F expected = hn::Mul(hn::Set(kFloat, 0.5f), hn::Add(slope_p, slope_q));
@@ -82,7 +82,7 @@ struct StepBits {
   std::uint64_t right, down;
 };
 
-// A vector of pixels from `column` on; with kInside no guide ends within it or its neighbours.
+// A vector of pixels from `column` on; with kInside all its pixels and neighbours are inside the guides.
 template <bool kInside>
 HWY_INLINE StepBits TestSteps(const StepRow& row, int column) {
   const auto depth = [&](int k, int dx) HWY_ATTR { return hn::LoadU(kFloat, row.depth[k] + column + dx); };
@@ -141,7 +141,7 @@ HWY_EXPORT(TestRow);
 
 namespace {
 
-// The depths of four rows, of which the next takes the place of the first.
+// The depths of four rows; the next row replaces the first.
 class DepthRows {
  public:
   DepthRows(const EdgeRules& rules, int first_word, int words)
@@ -187,7 +187,7 @@ void MarkOpenSteps(const EdgeRules& rules, const MaskedTile& tile, const BitMask
   const float crease_cosine = rules.CreaseCosine();
   const DepthTolerance give = rules.Give();
   const int end = std::min(tile.first_row + tile.rows, guides.height());
-  int next = std::numeric_limits<int>::min();  // the first row of depths that is not there yet
+  int next = std::numeric_limits<int>::min();  // the first row of depths that is not filled yet
   for (int y = std::max(0, tile.first_row); y < end; ++y) {
     const std::uint64_t* row = wanted.Row(y);
     if (std::all_of(row, row + tile.words, [](std::uint64_t bits) { return bits == 0; })) continue;

@@ -11,9 +11,9 @@ struct OpenSteps {
   BitMaskRows down;   // the step to the pixel below is open
 };
 
-// Fills the steps of the tile's pixels that `wanted` marks, exactly as support_regions.h defines them; the steps of
-// other pixels are undefined. Both masks have the tile's rows and words. `active` must also hold the pixels to the
-// right and below those that are wanted; active pixels are covered. O(pixels of the tile). Safe from several threads.
+// Fills the steps of the tile's pixels in `wanted`, exactly as support_regions.h defines them; the steps of other
+// pixels are undefined. Both masks have the tile's rows and words. `active` must also hold the pixels to the right of
+// the wanted ones and below; active pixels are covered. O(pixels of the tile). Safe from several threads.
 void MarkOpenSteps(const EdgeRules& rules, const MaskedTile& tile, const BitMaskRows& active, const BitMaskRows& wanted,
                    OpenSteps& steps);
 

@@ -36,7 +36,7 @@ SupportRegions::SupportRegions(const EdgeRules& rules, std::span<const std::uint
   const int columns = grown_.x1 - grown_.x0, rows = grown_.y1 - grown_.y0;
   arms_.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   const EdgeTest test(rules);
-  // The arms of a line of pixels, `stride` apart in the guides; set(i, back, front) stores what pixel i has.
+  // The arms of a line of pixels, `stride` apart in the guides; set(i, back, front) stores the result of pixel i.
   const auto measure = [&](int count, std::size_t first, std::size_t stride, int dx, int dy, const auto& set) {
     std::vector<int> ends;
     const auto pixel = [&](int i) { return first + static_cast<std::size_t>(i) * stride; };

@@ -1,4 +1,4 @@
-// Edge-aware voting: which pixels of a window may vote, by cross-based support regions.
+// Edge-aware voting: cross-based support regions select the pixels of a window that may vote.
 //
 // A step between two pixels side by side, or one above the other, is open if both are active and EdgeTest finds one
 // surface; otherwise it is a crack. Two pixels of a row or a column, at most `radius` apart, are on one arm if
@@ -7,8 +7,8 @@
 // A pixel's vertical arm holds all pixels of its column that are on one arm with it, its horizontal arm those of its
 // row. Its support region is the union of the horizontal arms of all pixels of its vertical arm.
 //
-// To be on one arm is symmetric and hereditary: if two pixels are on one arm, so are any two between them. Therefore an
-// arm is an interval, and along a row or a column the ends of arms never move backwards.
+// An arm is an interval, and along a row or a column the ends of arms never move backwards (docs/numerics.md,
+// "Derivations").
 //
 // Zhang, Lu, Lafruit, "Cross-Based Local Stereo Matching Using Orthogonal Integral Images", IEEE Transactions on
 // Circuits and Systems for Video Technology 19(7), 2009. Their arms compare colours; these compare guides.
@@ -24,15 +24,15 @@
 
 namespace scumble::internal {
 
-// The definition in plain form. What is fast (wide_arms.h, small_vote.h) is tested against it.
+// The definition in plain form. The fast forms (wide_arms.h, small_vote.h) are tested against it.
 class SupportRegions {
  public:
   // For windows of `radius` around the active pixels of `region`. `active` has a value for every pixel of the guides;
   // an active pixel is covered. O(pixels of the region grown by the radius · radius) time, O(those pixels) memory.
   SupportRegions(const EdgeRules& rules, std::span<const std::uint8_t> active, int radius, const Region& region);
 
-  // Calls visit(q, dx, dy) for every pixel of the support region of the active pixel (x, y), in row order. q is the
-  // pixel's index in the guides, dx and dy its place as seen from (x, y). The pixel itself is among them.
+  // Calls visit(q, dx, dy) for every pixel of the support region of the active pixel (x, y), itself included, in row
+  // order. q is the pixel's index in the guides, dx and dy its offset from (x, y).
   template <class Visit>
   void ForEach(int x, int y, const Visit& visit) const {
     const Arms& vertical = arms_[Index(x, y)];

@@ -31,7 +31,7 @@ bool WideTile::Read(const VoteInput& input, const Region& area) {
   }
   for (int row = 0; row < rows; ++row) {
     const std::size_t i = field.Index(surround_.x0, surround_.y0 + row);
-    // The next tile is the one to the right: its rows are too short for the machine to see it come.
+    // Prefetches the next tile to the right: its rows are too short for the hardware prefetcher.
     if (surround_.x1 + kTileSide <= field.width) {
       const std::size_t next = i + std::size_t(columns);
       for (int x = 0; x < kTileSide; x += 32) {
@@ -44,7 +44,7 @@ bool WideTile::Read(const VoteInput& input, const Region& area) {
     MarkRuns(source, votes_.data() + std::size_t(row) * words_, changes_.data() + std::size_t(row) * words_);
     ReadRow(field, row);
   }
-  // Runs of a chunk side by side, in the order in which they were found.
+  // Sorts the runs by chunk, in the order in which they were found.
   std::uint32_t next = 0;
   for (Chunk& chunk : chunks_) {
     chunk.first = next;

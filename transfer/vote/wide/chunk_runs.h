@@ -1,4 +1,4 @@
-// One tile of a picture that is voted on with a large radius, and the chunks in and around it.
+// One tile of a picture with votes of a large radius, and the chunks in and around it.
 #pragma once
 
 #include <cstdint>
@@ -22,13 +22,13 @@ struct ChunkRun {
   std::int16_t row, begin, end;
 };
 
-// All runs in and around a tile that take their paint from one exemplar, shifted by the same.
+// All runs in and around a tile that have one exemplar and one offset.
 struct Chunk {
   int shift_x = 0, shift_y = 0, exemplar = 0;  // texel = column and row in the tile + shift
   std::uint32_t first = 0, count = 0;          // of WideTile::runs, from the top down
 };
 
-// What a thread keeps from tile to tile. O(pixels of the tile grown by the radius) memory.
+// One thread's memory, kept from tile to tile. O(pixels of the tile grown by the radius).
 class WideTile {
  public:
   // Finds the chunks in and around `area`, at most kTileSide wide and high and inside the region of `input`. False: no

@@ -52,7 +52,7 @@ HWY_ATTR void MarkRunsTarget(const FieldRow& row, std::uint64_t* votes, std::uin
   votes[0] |= row.active[0] != 0, changes[0] |= row.active[0] != 0;
   int at = 1;
   if (row.count > 64) {
-    // The last block may overlap the one before: it finds the same again.
+    // The last block may overlap the one before: its bits are equal there.
     for (; at < row.count; at += 64) {
       const int from = at + 64 <= row.count ? at : row.count - 64;
       std::uint64_t active, change;

@@ -1,4 +1,4 @@
-// Where runs of one chunk begin and end, many pixels at a time.
+// The ends of runs of one chunk, many pixels at a time.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct FieldRow {
 };
 
 // Bits by column, (count + 63) / 64 + 1 words of each, which must be 0 before. `votes`: active pixels. `changes`:
-// pixels that are not of the chunk of the one before them, where either is active; the first, if active.
+// pixels of another chunk than the one before them, where either is active; the first, if active.
 void MarkRuns(const FieldRow& row, std::uint64_t* votes, std::uint64_t* changes);
 
 }  // namespace scumble::internal

@@ -40,8 +40,8 @@ HWY_ATTR HWY_INLINE void CountRun(const ChunkRun& run, const WideArms& arms, int
   }
 }
 
-// Counts of a group's runs, from its first row down to each row: what is between two rows is the difference of theirs.
-// Rows without a run share the counts of the row above.
+// Counts of a group's runs, from its first row down to each row: the count between two rows is the difference of
+// theirs. Rows without a run share the counts of the row above.
 class PrefixRows {
  public:
   // For columns [x0, x1) of the tile and its rows [y0, y1); `storage` holds WideSums::CountedSize(radius).
@@ -72,7 +72,7 @@ class PrefixRows {
   const std::uint16_t* rows_[kTileSide + 2 * kWidestRadius + 2];
 };
 
-// Adds `n` texels times their counts to sums; up to four more may be read, before `end`, and have no weight. Clears
+// Adds `n` texels times their counts to sums; up to four more may be read, before `end`, and have no weight. Clears the
 // bits of `all`, by 32-bit lane of four pixels, that a texel lacks.
 #if HWY_TARGET == HWY_SCALAR
 
@@ -138,7 +138,7 @@ HWY_ATTR HWY_INLINE void AddTexels(const std::uint16_t* counts, const std::uint1
 
 #endif
 
-constexpr int kAhead = 4;  // rows: texels lie far apart in memory, so they are asked for before they are needed
+constexpr int kAhead = 4;  // rows: texels lie far apart in memory, so they are prefetched
 
 void AskFor(const Picture& picture, const Chunk& chunk, int x0, int x1, int y) {
   const int row = y + chunk.shift_y, from = std::max(0, x0 + chunk.shift_x),
@@ -147,7 +147,7 @@ void AskFor(const Picture& picture, const Chunk& chunk, int x0, int x1, int y) {
   for (int x = from; x < to; x += 8) hwy::Prefetch(picture.At(x, row));
 }
 
-// The same weighted by the texels' alpha: sums of count · alpha · colour and of count · alpha, and of votes.
+// Add with texels weighted by their alpha: sums of count · alpha · colour and of count · alpha, and of votes.
 HWY_ATTR void AddWeighted(const std::uint16_t* counts, const std::uint16_t* texels, int n, std::uint64_t* weighted,
                           std::uint32_t* votes, std::uint32_t* all) {
   std::uint32_t common = 65535;
@@ -217,7 +217,7 @@ Group GroupOf(const WideTile& tile, const ChunkRun* first, const ChunkRun* last)
   for (const ChunkRun* run = first; run != last; ++run) {
     begin = std::min<int>(begin, run->begin), end = std::max<int>(end, run->end);
   }
-  // From whole vectors of four pixels to whole ones: then sums are aligned, and nothing is left over at a row's end.
+  // From whole vectors of four pixels to whole ones: then sums are aligned, and a row has no partial vector at its end.
   return {first,
           last,
           std::max(0, begin - radius) & ~3,
@@ -226,7 +226,7 @@ Group GroupOf(const WideTile& tile, const ChunkRun* first, const ChunkRun* last)
           std::min(height, (last - 1)->row + radius + 1)};
 }
 
-// Pixels that a group's sums are made for: the price of it, with something for each row.
+// The cost of a group's sums in pixels, with a constant for each row.
 std::int64_t Price(const Group& group) {
   constexpr int kRow = 16;
   return group.x0 < group.x1 ? std::int64_t(group.x1 - group.x0 + kRow) * (group.y1 - group.y0) : 0;
@@ -239,7 +239,7 @@ HWY_ATTR void SumChunk(const Work& work, const Chunk& chunk, std::uint32_t* all)
   const Group whole = GroupOf(work.tile, first, last);
   const std::int64_t price = Price(whole);
   if (price == 0) return;
-  // In noise pixels of one shift meet by chance, far from each other: then each run by itself is less work.
+  // In noise, pixels far from each other share an offset by chance: then single runs are less work.
   std::int64_t apart = 0;
   const int window = 2 * work.tile.radius() + 1;
   if (std::int64_t(chunk.count) * window * window >= 2 * price) apart = price;
@@ -280,14 +280,14 @@ HWY_ATTR bool SumOpaque(const Work& work) { return SumTile<true>(work); }
 HWY_ATTR bool SumWeighted(const Work& work) { return SumTile<false>(work); }
 
 // The mean (2 · sum + votes) / (2 · votes), rounded down, of the pixels whose bit is set; also of alpha, which is 65535
-// times the votes. With half a unit more the quotient is never an integer, and at least 1 / (4 · votes) from the next:
-// far more than a double's rounding.
+// times the votes. The added half makes the quotient never an integer, and at least 1 / (4 · votes) from the next: far
+// more than a double's rounding.
 HWY_ATTR void WriteRow(std::uint64_t active, const std::uint32_t* sums, const double* inverses, std::uint16_t* out) {
   const HWY_CAPPED(double, 4) d;
   const hn::Rebind<std::uint32_t, decltype(d)> u32;
   const hn::Rebind<std::int32_t, decltype(d)> i32;
   const hn::Rebind<std::uint16_t, decltype(d)> u16;
-  // Doubles are made of signed integers.
+  // The conversion to doubles takes signed integers.
   constexpr std::uint32_t kSign = 0x80000000u;
   for (; active; active &= active - 1) {
     const int x = std::countr_zero(active);
@@ -328,7 +328,7 @@ void WideSums::Sum(const WideTile& tile, const WideArms& arms, const PreparedExe
     weights_count_ = !opaque_;
     if (opaque_) return;
   }
-  // The next tile starts as this one should have.
+  // The next tile starts with the form that this one needed.
   weights_count_ = true;
   weighted_.assign(4 * kPixels, 0), votes_.assign(kPixels, 0);
   opaque_ = HWY_DYNAMIC_DISPATCH(SumWeighted)(

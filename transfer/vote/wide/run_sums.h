@@ -1,9 +1,9 @@
-// Sums of the votes of a tile: of each chunk, how many of its pixels are in a pixel's support region (or, for plain
+// Sums of the votes of a tile. For each chunk: the number of its pixels in a pixel's support region (or, for plain
 // voting, in its window), times the chunk's texel there.
 //
-// In a chunk the texel moves along with the pixel that it is offered to, so all of a chunk's votes on a pixel are for
-// one texel. They are counted as in Zhang, Lu, Lafruit (2009): along rows the pixels of the chunk on each horizontal
-// arm, then sums of these down each column, of which a vertical arm takes the difference of two.
+// In a chunk the texel moves along with the pixel, so all of a chunk's votes on a pixel are for one texel. They are
+// counted as in Zhang, Lu, Lafruit (2009): along rows the pixels of the chunk on each horizontal arm, then sums of
+// these down each column. A vertical arm takes the difference of two such sums.
 #pragma once
 
 #include <hwy/aligned_allocator.h>
@@ -19,7 +19,7 @@
 
 namespace scumble::internal {
 
-// A tile and where its sums go; those for opaque paint or the others.
+// A tile and its sums; those for opaque paint or the others.
 struct Work {
   const WideTile& tile;
   const WideArms& arms;
@@ -36,13 +36,13 @@ class WideSums {
  public:
   static constexpr int kStride = kTileSide + 4;  // rows are written four pixels at a time
 
-  // Counts of a row, with a vector more on either side; and of all rows that a chunk may have.
+  // Counts of a row, with one more vector on either side; and of all rows that a chunk may have.
   static constexpr int kCountedStride = kTileSide + 64;
   static std::size_t CountedSize(int radius) {
     return std::size_t(kCountedStride) * std::size_t(kTileSide + 2 * radius + 2) + 64;
   }
 
-  // All votes of the tile's chunks; texels that are not usable have none.
+  // All votes of the tile's chunks; unusable texels have none.
   void Sum(const WideTile& tile, const WideArms& arms, const PreparedExemplar& exemplar, const UsableRows& usable);
 
   // The mean of the votes for every active pixel of the tile, straight alpha.
@@ -51,7 +51,7 @@ class WideSums {
  private:
   void WriteWeighted(std::uint64_t active, std::size_t first, std::uint16_t* out) const;
 
-  // By row of a chunk, how many of its pixels so far are on the columns' horizontal arms; see PrefixRows.
+  // By row of a chunk, the number of its pixels so far on the columns' horizontal arms; see PrefixRows.
   std::vector<std::uint16_t> counted_;
   // Where all texels are opaque: Σ count · texel in four channels, of which alpha is 65535 times the votes.
   hwy::AlignedFreeUniquePtr<std::uint32_t[]> sums_;

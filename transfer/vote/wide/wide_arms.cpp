@@ -33,7 +33,7 @@ namespace scumble::internal::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // Bounds over `rows` rows of 16 columns, from pixel p on. Where the picture ends within the columns, the beginning of
-// the next row counts as well. A normal that is not a number is on no arm, so it does not count.
+// the next row counts as well. A NaN normal is on no arm, so it does not count.
 void BoundCell(const NormalPlanes& planes, std::size_t p, int rows, NormalBounds& bounds) {
   constexpr float kMost = std::numeric_limits<float>::infinity();
   bounds = {{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}, kMost};
@@ -75,7 +75,7 @@ void BoundCell(const NormalPlanes& planes, std::size_t p, int rows, NormalBounds
   bounds.least_squared = std::min(bounds.least_squared, hn::GetLane(hn::MinOfLanes(kFloat, squared)));
 }
 
-// The marked pixels, bit 0 at `first`, whose normal is less than the crease from that `step` values further on.
+// The marked pixels, bit 0 at `first`, whose normal is less than the crease from the one `step` values farther on.
 std::uint64_t AlikeBits(const NormalPlanes& planes, std::ptrdiff_t first, std::ptrdiff_t step, float crease_cosine,
                         std::uint64_t marked) {
   const int lanes = static_cast<int>(hn::Lanes(kFloat));
@@ -133,7 +133,7 @@ bool MayTurn(const NormalBounds& bounds, float crease_cosine) {
 NormalPlanes PlanesOf(const VoteInput& input) {
   const GuideSet& guides = input.edges->guides;
   const auto plane = [&](int c) { return guides.Plane(Layer::kNormal, c).data(); };
-  // Of `active` only some rows may be held.
+  // Only some rows of `active` may be in memory.
   const std::size_t before = std::size_t(input.field.first_row) * std::size_t(guides.width());
   return {{plane(0), plane(1), plane(2)},
           input.active.data() - before,
@@ -183,7 +183,7 @@ void WideArms::MarkActiveAndSteps(const VoteInput& input, const Region& area) {
     }
   }
   MarkOpenSteps(*input.edges, marked_, active_, wanted_, steps_);
-  // Steps that lead out of what can be reached end no arm.
+  // Steps out of the reachable part end no arm.
   for (int y = marked_.first_row; y < marked_.first_row + marked_.rows; ++y) {
     for (int w = -1; w <= marked_.words; ++w) {
       const int column = 64 * (marked_.first_word + w);
@@ -193,7 +193,7 @@ void WideArms::MarkActiveAndSteps(const VoteInput& input, const Region& area) {
   }
 }
 
-// Marks by cell, from bounds of the cells that an arm from there reaches.
+// Sets bits by cell, from bounds of the cells that an arm from there reaches.
 void WideArms::MarkTurns(const VoteInput& input) {
   const int first = seen_.x0 / kCellColumns, across = (seen_.x1 - 1) / kCellColumns + 1 - first;
   const int down = (seen_.y1 - seen_.y0 + kCellRows - 1) / kCellRows;
@@ -228,10 +228,10 @@ void WideArms::MarkTurns(const VoteInput& input) {
 }
 
 // Longer arms from shorter ones: two pixels k apart are on one arm if both pairs k - 1 apart between them are, and
-// their own normals do not turn too far.
+// their own normals are less than the crease apart.
 void WideArms::ReadRow(const VoteInput& input, const Region& area, int y) {
   const int words = marked_.words, cells = (y - seen_.y0) / kCellRows;
-  std::uint64_t* const arm = steps_.right.Row(y);  // bit x: it is on one arm with the pixel k further right
+  std::uint64_t* const arm = steps_.right.Row(y);  // bit x: it is on one arm with the pixel k farther right
   std::uint64_t open = BitMaskRows::kAll, turns = 0;
   for (int w = 0; w < words; ++w) open &= arm[w], turns |= turns_right_.Row(cells)[w] & wanted_.Row(y)[w];
   if (open == BitMaskRows::kAll && !turns) return;

@@ -17,13 +17,13 @@ struct NormalBounds {
   float least_squared;  // length
 };
 
-// Rows and columns count from the tile's corner. What is beyond the picture ends no arm. Kept from tile to tile by a
+// Rows and columns count from the tile's corner. Pixels beyond the picture end no arm. Kept from tile to tile by a
 // thread.
 class WideArms {
  public:
   // Whole windows, for plain voting.
   void SetWhole(int radius);
-  // Arms of the active pixels in and around `area`, at most kTileSide wide and high. input.edges must be there.
+  // Reads the arms of the active pixels in and around `area`, at most kTileSide wide and high. Needs input.edges.
   void Read(const VoteInput& input, const Region& area);
 
   int radius() const { return radius_; }
@@ -31,8 +31,8 @@ class WideArms {
   // height + radius. A vector more of columns may be read.
   const std::int16_t* Low(int row) const { return Ends(row); }
   const std::int16_t* High(int row) const { return Ends(row) + kStride; }
-  // The active pixels of row y of the tile whose vertical arm is shorter than the radius on either side. For these
-  // alone Up and Down tell how many rows it reaches.
+  // The active pixels of row y of the tile whose vertical arm is shorter than the radius on either side. Only for these
+  // Up and Down give the number of rows.
   std::uint64_t Short(int y) const { return short_[y]; }
   int Up(int x, int y) const { return up_[y][x]; }
   int Down(int x, int y) const { return down_[y][x]; }
@@ -50,7 +50,7 @@ class WideArms {
   int radius_ = 0;
   // Ends of the arms of a row, low and high; the first row is that of whole windows.
   std::vector<std::int16_t> ends_;
-  std::vector<std::size_t> ends_of_row_;  // where they begin
+  std::vector<std::size_t> ends_of_row_;  // their offsets
   std::uint64_t short_[kTileSide] = {};
   std::uint8_t up_[kTileSide][kTileSide], down_[kTileSide][kTileSide];
 

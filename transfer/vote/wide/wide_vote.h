@@ -11,14 +11,14 @@
 
 namespace scumble::internal {
 
-// What one thread works in; kept from call to call.
+// One thread's working memory; kept from call to call.
 struct WideScratch {
   WideTile tile;
   WideArms arms;
   WideSums sums;
 };
 
-// What all threads share that vote with one exemplar, which must outlive it.
+// Data shared by all threads that vote with one exemplar, which must outlive it.
 class WideVotes {
  public:
   explicit WideVotes(const PreparedExemplar& exemplar) : exemplar_(exemplar), usable_(exemplar) {}
