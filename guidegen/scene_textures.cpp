@@ -27,7 +27,7 @@ std::optional<std::uint64_t> CountPixels(const EncodedTexture& texture) {
 
 // Decodes those that `wanted(scene)` names. What is left out may change materials, and with them what is wanted.
 template <class Wanted>
-Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
+Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted, const Progress& progress) {
   DecodedTextures done;
   WarningCounter warnings;
   PictureBudget budget;
@@ -36,6 +36,7 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
     const std::vector<bool> needed = wanted(scene);
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!needed[i] || !IsEncoded(scene, i)) continue;
+      if (progress && !progress(0.0)) return CancelledError();
       const std::shared_ptr<const EncodedTexture> encoded = scene.encoded_textures[i];
       // Asked by the header, and charged when it is there: one that is left out takes nothing.
       if (const auto promised = CountPixels(*encoded)) {
@@ -52,6 +53,7 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
       } else {
         warnings.Add("a texture cannot be read and is left out", Excerpt(picture.error().message));
         encoded->leave_out(scene);
+        ++done.left_out;
         again = true;
       }
     }
@@ -96,11 +98,12 @@ TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& optio
 }
 
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options) {
-  return Decode(scene, [&](const Scene& now) { return NeededTextures(now, options); });
+  return Decode(
+      scene, [&](const Scene& now) { return NeededTextures(now, options); }, options.progress);
 }
 
 Expected<DecodedTextures> DecodeAllTextures(Scene& scene) {
-  return Decode(scene, [](const Scene& now) { return std::vector<bool>(now.textures.size(), true); });
+  return Decode(scene, [](const Scene& now) { return std::vector<bool>(now.textures.size(), true); }, {});
 }
 
 }  // namespace scumble

@@ -21,7 +21,8 @@ std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& opti
 struct DecodedTextures {
   int count = 0;
   std::size_t bytes = 0;              // of the decoded pictures
-  std::vector<std::string> warnings;  // of textures that are left out
+  int left_out = 0;                   // pictures that cannot be read
+  std::vector<std::string> warnings;  // of those
 };
 
 // How many pixels those would have that are not decoded yet, by their headers; of one that cannot be read none:
@@ -35,6 +36,7 @@ TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& optio
 // Decodes what RenderGuides needs with these options and is not decoded yet. A picture that is missing or broken is an
 // error that names it, or a warning where the scene's format can do without (Wavefront's); more pixels than
 // PictureBudget has are an error that names the scene. After an error nothing that was decoded is lost.
+// options.progress is asked before each picture, with a share of 0.
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options);
 
 // The same of all there are.

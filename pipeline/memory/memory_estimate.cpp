@@ -127,7 +127,7 @@ void AddStyle(const Style& style, int height, MemoryNeed& need) {
 }
 
 // The sources of all pixels and what their match and votes look at.
-void AddSources(const PictureWork& work, const PictureRequest& options, const Size& size, MemoryNeed& need) {
+void AddSources(const PictureWork& work, const Size& size, MemoryNeed& need) {
   const Bytes pixels = PixelsOf(size);
   bool keeps = work.keeps_field, lit = false;
   Bytes of_pixel = 0, briefly = 0;
@@ -156,7 +156,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   Bytes bytes = kPaint * more.all;
   for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size() + kVertex * mesh.positions.size();
   // Embree is given each instance's triangles where they stand. Those that an exact copy covers it is not, but they are
-  // rare, and only a look at every corner tells.
+  // rare, and finding them takes a look at every corner.
   std::vector<bool> placed(scene.meshes.size());
   for (const Instance& instance : scene.instances) {
     const auto mesh = std::size_t(instance.mesh);
@@ -217,7 +217,7 @@ void AddPicture(const PictureWork& work, const PictureRequest& options, MemoryNe
   }
   for (const Style& style : work.styles) AddStyle(style, size.height, need);
   need.Take("picture", kPaint * pixels);
-  AddSources(work, options, size, need);
+  AddSources(work, size, need);
   if (options.show)
     need.TakeTransient("explaining", kExplained * pixels);
   else if (work.keeps_field)
