@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "core/io/format_dispatch.h"
 #include "core/io/picture_file.h"
 #include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
@@ -258,6 +259,10 @@ TEST(Workspace, AStyleOfASceneIsThatOfItsFolder) {
   EXPECT_EQ(b.rgba, Painted(fresh, SceneIn(folder / "b/s.glb"), StyleOf("oil")).rgba);
   EXPECT_EQ(workspace.counters().styles_loaded, 1u) << "the user's is that of before";
   EXPECT_EQ(workspace.counters().styles_prepared, 3u);
+  // A scene that asks for none has none.
+  const auto plain = workspace.Paint(SceneOf("suzanne"), StyleOf("oil"), {});
+  ASSERT_TRUE(plain.ok());
+  EXPECT_EQ(std::get<PictureReport>(plain->report.made).styles.size(), 1u);
 }
 
 TEST(Workspace, AChangedPictureUnderneathIsReadAgain) {
@@ -296,6 +301,7 @@ TEST(Workspace, ATextureThatIsMissingStaysLeftOut) {
   EXPECT_EQ(tinted.rgba, Painted(fresh, scene, StyleOf("tinted-oil")).rgba);
   EXPECT_EQ(other.rgba, Painted(fresh_turned, turned, StyleOf("tinted-oil")).rgba);
   EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+  EXPECT_EQ(workspace.counters().structures_built, 3u) << "it depends on materials, and on the camera";
 }
 
 TEST(Workspace, CountsTheMemoryOfPaintingAndRefusesInTime) {
@@ -411,6 +417,16 @@ TEST(Workspace, AnEditedAssignmentFileIsReadAgain) {
   write("* = charcoal and longer\n");
   write("* = charcoal\n");
   EXPECT_NE(Painted(workspace, SceneOf("suzanne"), style).rgba, plain.rgba);
+}
+
+TEST(Workspace, FilesAreReadWithItsThreads) {
+  RunContext context = Context();
+  context.threads = 1;
+  Workspace one(context), all(Context());
+  Painted(one, SceneOf("suzanne"), StyleOf("oil"));
+  EXPECT_EQ(internal::IoThreads(), 1);
+  Painted(all, SceneOf("suzanne"), StyleOf("oil"));
+  EXPECT_EQ(internal::IoThreads(), 0);
 }
 
 TEST(Workspace, MistakesAreErrorsAndLeaveItUsable) {
