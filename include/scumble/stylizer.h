@@ -25,11 +25,12 @@ struct StylizerOptions {
   std::uint64_t max_memory = 0;  // bytes; 0: what the machine has. What needs more is kUsage, or kMemory for 0
   std::string data_folder = SCUMBLE_DATA_FOLDER;  // share/scumble; empty: no bundled styles
   std::string cache_folder;                       // for look-up tables; empty: they are not kept
-  std::vector<std::string>
-      environment;  // of Blender, "NAME=VALUE"; its PATH finds Blender. Empty: /bin and /usr/bin do
-  std::string temporary_folder = "/tmp";                                  // for scenes that Blender exports
   std::function<void(const std::string& line, bool is_warning)> message;  // on the calling thread; null: dropped
   Progress progress;  // of each call, 0 … 1; returning false cancels it
+  // For .blend scenes. Blender is looked for in the PATH of this environment, "NAME=VALUE", and gets it; without a PATH
+  // it is looked for in /bin and /usr/bin. What it exports is in the folder until it is loaded.
+  std::vector<std::string> environment;
+  std::string temporary_folder = "/tmp";
 };
 
 struct PaintSettings {
