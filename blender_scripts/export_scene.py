@@ -113,12 +113,15 @@ def is_surely_lit(scene):
 
 
 def export_start(arguments):
-    """The data of all frames: their rate, and, where we must choose the camera or the light, the scene at its first
-    frame. False where there was nothing to export."""
+    """What is the same in all frames: their rate, the files that the scene reads, and where we must decide from where
+    the scene is seen or lit, the scene at its first frame. False where there was nothing to export."""
     scene = choose_scene(arguments.scene)
     if arguments.fps_file:
         fps, base = scene.render.fps, scene.render.fps_base
         arguments.fps_file.write_text(f"{fps}/{base:.6g}" if base > 1 else f"{fps / base:.6g}")
+    if arguments.files_file:
+        files = bpy.utils.blend_paths(absolute=True, packed=False, local=False)
+        arguments.files_file.write_bytes(b"\n".join(os.fsencode(file) for file in files))
     cameras = cameras_of(scene, Unsupported())
     if not arguments.start_file or (cameras and is_surely_lit(scene) and not arguments.start_always):
         return False
@@ -151,6 +154,8 @@ def main():
     parser.add_argument("--ahead", type=int, default=0,
                         help="with --frames: wait while so many files are there; a reader deletes them. 0: never wait")
     parser.add_argument("--fps-file", type=Path, help="write the frames a second there, as text")
+    parser.add_argument("--files-file", type=Path,
+                        help="write the libraries, pictures and other files there that the .blend reads, one a line")
     parser.add_argument("--start-file", type=Path,
                         help=".glb file for the scene at its first frame, where it has no camera or perhaps no lamp")
     parser.add_argument("--start-always", action="store_true", help="write --start-file in any case")

@@ -28,7 +28,7 @@ std::optional<std::uint64_t> CountPixels(const EncodedTexture& texture) {
 // Decodes those that `wanted(scene)` names. Leaving a texture out may change materials, and with them the wanted
 // textures.
 template <class Wanted>
-Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
+Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted, const Progress& progress) {
   DecodedTextures done;
   WarningCounter warnings;
   PictureBudget budget;
@@ -37,6 +37,7 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
     const std::vector<bool> needed = wanted(scene);
     for (std::size_t i = 0; i < needed.size(); ++i) {
       if (!needed[i] || !IsEncoded(scene, i)) continue;
+      if (progress && !progress(0.0)) return CancelledError();
       const std::shared_ptr<const EncodedTexture> encoded = scene.encoded_textures[i];
       // Checked by the header, and charged after decoding: a texture that is left out takes nothing.
       if (const auto promised = CountPixels(*encoded)) {
@@ -53,6 +54,7 @@ Expected<DecodedTextures> Decode(Scene& scene, const Wanted& wanted) {
       } else {
         warnings.Add("a texture cannot be read and is left out", Excerpt(picture.error().message));
         encoded->leave_out(scene);
+        ++done.left_out;
         again = true;
       }
     }
@@ -97,11 +99,12 @@ TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& optio
 }
 
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options) {
-  return Decode(scene, [&](const Scene& now) { return NeededTextures(now, options); });
+  return Decode(
+      scene, [&](const Scene& now) { return NeededTextures(now, options); }, options.progress);
 }
 
 Expected<DecodedTextures> DecodeAllTextures(Scene& scene) {
-  return Decode(scene, [](const Scene& now) { return std::vector<bool>(now.textures.size(), true); });
+  return Decode(scene, [](const Scene& now) { return std::vector<bool>(now.textures.size(), true); }, {});
 }
 
 }  // namespace scumble

@@ -21,7 +21,8 @@ std::vector<bool> NeededTextures(const Scene& scene, const GuidegenOptions& opti
 struct DecodedTextures {
   int count = 0;
   std::size_t bytes = 0;              // of the decoded pictures
-  std::vector<std::string> warnings;  // of textures that are left out
+  int left_out = 0;                   // pictures that cannot be read
+  std::vector<std::string> warnings;  // of those
 };
 
 // The pixels of the textures not decoded yet, by their headers. An unreadable one counts 0: decoding reports it.
@@ -33,7 +34,8 @@ TexturePixels CountNeededPixels(const Scene& scene, const GuidegenOptions& optio
 
 // Decodes the textures that RenderGuides needs with these options and that are not decoded yet. A missing or damaged
 // picture is an error that names it, or a warning where it is optional in the scene's format (Wavefront's). More pixels
-// than PictureBudget allows are an error that names the scene. After an error all decoded textures are kept.
+// than PictureBudget allows are an error that names the scene. After an error all decoded textures are kept. Calls
+// options.progress before each picture, with a share of 0.
 Expected<DecodedTextures> DecodeTextures(Scene& scene, const GuidegenOptions& options);
 
 // DecodeTextures for all textures.

@@ -19,7 +19,7 @@ Error BadFrames(const std::string& text, const std::string& part, const std::str
 // From the first frame that there may be to the last.
 constexpr std::int64_t kMaxStep = 2 * std::int64_t(kMaxFrame);
 
-// What one part between commas says.
+// One part between commas.
 struct Part {
   std::int64_t first = 0, last = 0, step = 1;
 };

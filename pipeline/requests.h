@@ -69,7 +69,7 @@ struct SceneRequest {
   double noise = 0.0;
   double time_budget_seconds = 0.0;
   std::uint64_t seed = 0;
-  // Adds the memory that the run needs besides the guides, before any is allocated; null: nothing.
+  // Adds the memory that the run needs besides the guides, before any is allocated; null: none.
   std::function<void(const Size& size, const LayerSet& layers, MemoryNeed& need)> more_memory;
   bool key_light = true;  // let one shine where the file has no light and a layer needs some
 };
@@ -91,7 +91,7 @@ struct PictureRequest {
   int png_level = 6;
   bool fast_io = false;
   std::optional<int> frame;
-  std::optional<FrameRate> fps;    // empty: what the guides say, or FrameRate()
+  std::optional<FrameRate> fps;    // empty: that of the guides, or FrameRate()
   std::optional<double> exposure;  // stops; empty: measured
   std::uint64_t seed = 0;
   int repeat = 1;                   // times to run the transfer, for the spread of its times

@@ -14,6 +14,10 @@ void RunContext::Warn(const std::string& text) const {
   if (on_message) on_message({Message::Kind::kWarning, text});
 }
 
+Status RunContext::CheckNotCancelled() const {
+  return is_cancelled && is_cancelled() ? Status(CancelledError()) : Ok();
+}
+
 void RunContext::EndStage(const std::string& name, const std::vector<std::pair<std::string, double>>& inside) const {
   if (clock) clock->End(name, inside);
 }

@@ -1,7 +1,7 @@
 // What a run is allowed, and where it reports to: threads, memory, messages, the clock of its stages, folders.
 //
-// No function of this library prints, exits, parses arguments or reads the environment. The application fills a
-// RunContext once and passes it down; a copy is cheap.
+// No function of this library prints, exits, parses arguments, reads the environment or changes what a signal does. The
+// application fills a RunContext once and passes it down; a copy is cheap.
 #pragma once
 
 #include <atomic>
@@ -14,10 +14,11 @@
 #include <vector>
 
 #include "core/image/progress.h"
+#include "core/image/status.h"
 
 namespace scumble {
 
-class FileCache;
+class ProcessGuard;
 class StageClock;
 
 struct Message {
@@ -35,6 +36,9 @@ struct RunContext {
   // Starts a progress report of this label; the report ends when the returned callback is destroyed. Null: none.
   // The callback returns false to cancel the run, which then ends with kCancelled.
   std::function<Progress(const std::string& label)> on_progress;
+  // Asked between the steps of a run, and while a program is waited for, from any thread. True cancels the run, which
+  // then ends with kCancelled. Null: nothing cancels it but a progress callback.
+  std::function<bool()> is_cancelled;
   // Receives messages on the thread that runs the request; null: they are dropped.
   std::function<void(const Message&)> on_message;
   std::shared_ptr<StageClock> clock;  // null: stages are not timed
@@ -42,17 +46,25 @@ struct RunContext {
   std::filesystem::path cache_folder;
   // Folders that may hold "exemplars" and "blender_scripts", the first match wins.
   std::vector<std::filesystem::path> data_roots;
+  // Of the programs that a run starts, Blender above all: "NAME=VALUE". They are looked for in its PATH; without one,
+  // in /bin and /usr/bin.
+  std::vector<std::string> environment;
+  std::filesystem::path temporary_folder = "/tmp";  // for exported scenes and logs, while a program runs
+  std::filesystem::path program;  // the scumble program, for measurements in a process of their own; empty: none
+  std::shared_ptr<ProcessGuard> process_guard;  // null: nobody follows the programs that run
   // The largest need of memory that was noted so far; null: needs are checked and not noted.
   std::shared_ptr<std::atomic<std::uint64_t>> noted_memory = std::make_shared<std::atomic<std::uint64_t>>(0);
 
   Progress StartProgress(const std::string& label) const { return on_progress ? on_progress(label) : Progress(); }
   void Note(const std::string& text) const;
   void Warn(const std::string& text) const;
+  // Ok, or kCancelled where is_cancelled says so.
+  Status CheckNotCancelled() const;
   // Ends a stage on the clock, as StageClock::End.
   void EndStage(const std::string& name, const std::vector<std::pair<std::string, double>>& inside = {}) const;
 
-  // This context for work beside the run: warnings are passed on, notes are dropped, no
-  // stage is timed and no progress reported.
+  // This context for work beside the run: warnings are passed on, notes are dropped, no stage is timed and no progress
+  // reported.
   RunContext WithoutNotes() const;
 
   // The folders of this name that are there, under data_roots.

@@ -18,7 +18,7 @@ struct Stage {
 class StageClock {
  public:
   // The first stage, "start", covers the time up to here: loading the program and its libraries. Its wall time is known
-  // to a tick of the kernel, 10 ms; 0 where the system does not tell.
+  // to a tick of the kernel, 10 ms; 0 where the system does not count it.
   StageClock();
 
   // Ends what has run since the last call. The stages of `inside` took that many milliseconds of wall time; the rest is

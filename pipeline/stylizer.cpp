@@ -16,6 +16,8 @@ RunContext ContextOf(const StylizerOptions& options) {
   context.threads = options.threads;
   context.max_memory = options.max_memory;
   context.cache_folder = options.cache_folder;
+  context.environment = options.environment;
+  context.temporary_folder = options.temporary_folder;
   if (!options.data_folder.empty()) {
     context.data_roots.emplace_back(options.data_folder);
     SetModuleFolder(std::filesystem::path(options.data_folder) / "../../lib/scumble");

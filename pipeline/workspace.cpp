@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "core/image/stopwatch.h"
+#include "core/io/library.h"
 #include "pipeline/frame/paint_picture.h"
 #include "pipeline/frame/provenance.h"
+#include "pipeline/memory/memory_estimate.h"
+#include "pipeline/run/picture_sequence.h"
 #include "pipeline/scene/run_inputs.h"
 #include "pipeline/scene/scene_guides.h"
 #include "pipeline/scene/scene_sequence.h"
@@ -39,7 +42,8 @@ std::string SceneStamps(const std::string& scene) {
   return StampsOf(files.Inputs());
 }
 
-std::string StyleStamps(const StyleSet& styles) {
+// By path.
+std::map<std::string, std::string> StyleStamps(const StyleSet& styles) {
   RunInputs files;
   files.ReadsStyles(styles);
   std::vector<std::string> paths = files.Inputs();
@@ -47,12 +51,19 @@ std::string StyleStamps(const StyleSet& styles) {
   for (const std::string& one : styles.options.assigned) {
     if (one.size() > 1 && one.front() == '@') paths.push_back(one.substr(1));
   }
-  return StampsOf(paths);
+  std::map<std::string, std::string> stamps;
+  for (const std::string& path : paths) stamps[path] = StampOf(path);
+  return stamps;
 }
 
 std::string TextOf(const StyleRequest& request) {
   return fmt::format("{}\n{}\n{}\n{}", request.style, fmt::join(request.sets, "\n"), fmt::join(request.assigned, "\n"),
                      request.scene_styles);
+}
+
+Status CheckArguments(const SceneRequest& scene, std::optional<int> frame) {
+  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(scene));
+  return frame ? Ok() : CheckAtRest(scene, false);
 }
 
 // Whether exemplars that were prepared for one style serve another: they have the same paint, and their settings differ
@@ -70,17 +81,30 @@ bool SharesExemplars(Style a, const Style& b) {
 }  // namespace
 
 struct Workspace::State {
+  // Cancel takes effect between two steps, and at every progress callback.
   explicit State(RunContext given) : context(std::move(given)), outer_progress(context.on_progress) {
     context.on_progress = [this](const std::string& label) -> Progress {
       return [this, next = outer_progress ? outer_progress(label) : Progress()](double share) {
-        return !cancelled && (!next || next(share));
+        return !context.is_cancelled() && (!next || next(share));
       };
+    };
+    context.is_cancelled = [this, outer = context.is_cancelled] {
+      return call == Call::kCancelled || (outer && outer());
     };
   }
 
   RunContext context;
   std::function<Progress(const std::string&)> outer_progress;
-  std::atomic<bool> working = false, cancelled = false;
+  enum class Call { kNone, kRuns, kCancelled };
+  std::atomic<Call> call = Call::kNone;
+  struct Running {  // while it lives, a call runs
+    explicit Running(State& of) : state(of) {
+      SetIoThreads(state.context.threads);
+      state.call = Call::kRuns;
+    }
+    ~Running() { state.call = Call::kNone; }
+    State& state;
+  };
   WorkspaceCounters counters;
 
   // The scene: loaded, then posed and seen.
@@ -92,53 +116,61 @@ struct Workspace::State {
   std::size_t own_lights = 0;    // of `posed`, before a key light was added
   std::string guides_key;
   std::shared_ptr<const SceneGuides> guides;
+  MemoryNeed guides_memory;  // of them, without painting
 
   // The styles, and what was prepared of them.
-  std::string style_text, style_stamps;
-  std::optional<StyleSet> styles;
+  std::string style_text;
+  std::map<std::string, std::string> style_stamps;
+  std::optional<StyleSet> styles, replaced;  // `replaced`: those that picture.prepared is of, where it is not `styles`
   PictureState picture;
+  std::string over_stamp;       // of picture.over
   bool exposure_given = false;  // by the last request, not measured
 
-  Status Continue() const { return cancelled ? Status(CancelledError()) : Ok(); }
-  Status LoadStyles(const StyleRequest& request);
+  Status LoadStyles(StyleRequest request);
+  void KeepPrepared();
+  void CloseStylesOfScene();
   Status LoadScene(const SceneRequest& request, std::optional<int> frame);
   Status Pose(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for);
-  Status Cast(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for,
-              const Progress& progress);
+  Status Cast(SceneRequest request, std::optional<int> frame, const LayersFor& layers_for, const Progress& progress);
   Expected<PaintedFrame> Paint(SceneRequest scene, const StyleRequest& style, const PictureRequest& picture);
 };
 
-Status Workspace::State::LoadStyles(const StyleRequest& request) {
+Status Workspace::State::LoadStyles(StyleRequest request) {
   const std::string text = TextOf(request);
   if (styles && text == style_text && style_stamps == StyleStamps(*styles)) return Ok();
+  request.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet loaded, OpenStyles(request, context));
   ++counters.styles_loaded;
-  if (styles && picture.prepared.size() >= styles->styles.size() && loaded.styles.size() == styles->styles.size()) {
-    std::vector<PreparedStyle> kept;
-    for (std::size_t i = 0; i < loaded.styles.size(); ++i) {
-      if (!SharesExemplars(styles->styles[i], loaded.styles[i])) break;
-      kept.push_back(picture.prepared[i]);
-      kept.back().settings = loaded.styles[i].transfer;
-      kept.back().required = scumble::RequiredLayers(loaded.styles[i]);
-    }
-    picture.prepared = std::move(kept);
-  } else {
-    picture.prepared.clear();
-  }
-  picture.exposure.reset(), picture.hashes.clear(), picture.warned = false;
+  if (!replaced) replaced = std::move(styles);
   styles = std::move(loaded), style_text = text, style_stamps = StyleStamps(*styles);
+  picture.exposure.reset(), picture.hashes.clear(), picture.warned = false;
   return Ok();
 }
 
-Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<int> frame) {
-  SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request));
-  std::string key = request.scene + "\n" + request.animation + "\n" + SceneStamps(request.scene);
-  const bool blender = IsBlenderScene(request.scene);
-  if (blender) {
-    key +=
-        fmt::format("{} {} {}", frame ? std::to_string(*frame) : "", request.blender.program, request.view.has_value());
+// Of new styles, the scene's included, keeps what is prepared as far as it is of the same paint.
+void Workspace::State::KeepPrepared() {
+  if (!replaced) return;
+  std::vector<PreparedStyle>& prepared = picture.prepared;
+  std::size_t kept = 0;
+  const std::size_t most = std::min({prepared.size(), replaced->styles.size(), styles->styles.size()});
+  while (kept < most && SharesExemplars(replaced->styles[kept], styles->styles[kept])) {
+    prepared[kept].settings = styles->styles[kept].transfer;
+    prepared[kept].required = scumble::RequiredLayers(styles->styles[kept]);
+    ++kept;
   }
-  if (key == scene_key) return Ok();
+  prepared.resize(kept);
+  replaced.reset();
+}
+
+Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<int> frame) {
+  const bool blender = IsBlenderScene(request.scene);
+  std::string text = request.scene + "\n" + request.animation + "\n";
+  if (blender) {
+    text += fmt::format("{} {} {}\n", frame ? std::to_string(*frame) : "", request.blender.program,
+                        request.view.has_value());
+  }
+  text += SceneStamps(request.scene);
+  if (text + (blender && posed ? StampsOf(posed->animation.files) : "") == scene_key) return Ok();
   scene_key.clear(), pose_key.clear(), guides_key.clear();
   rays.reset(), animation.reset(), posed.reset();
   if (!blender) {
@@ -149,10 +181,22 @@ Status Workspace::State::LoadScene(const SceneRequest& request, std::optional<in
     const LayersFor none = [](const SceneStyleRequests&) -> Expected<LayerSet> { return LayerSet(); };
     SCUMBLE_ASSIGN(posed, OpenSceneAt(frame, request, none, context));
     own_lights = posed->scene.lights.size();
+    text += StampsOf(posed->animation.files);
   }
   ++counters.scenes_loaded;
-  scene_key = key;
+  scene_key = text;
+  CloseStylesOfScene();
   return Ok();
+}
+
+void Workspace::State::CloseStylesOfScene() {
+  if (!styles || styles->wanted.empty()) return;
+  CloseSceneStyles(*styles);
+  styles->options.room = RoomForStyles(context);
+  const std::map<std::string, std::string> left = StyleStamps(*styles);
+  std::erase_if(style_stamps, [&](const auto& one) { return !left.count(one.first); });
+  if (!replaced) picture.prepared.resize(std::min(picture.prepared.size(), styles->styles.size()));
+  picture.hashes.clear(), picture.warned = false;
 }
 
 Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for) {
@@ -175,7 +219,8 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
   } else {
     const LayersFor known = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
     SCUMBLE_ASSIGN(StaticScene now, PoseScene(*animation, frame, request, known, context, false));
-    if (posed) {  // textures that were decoded stay decoded
+    if (posed) {  // textures that were decoded stay decoded, and materials do without those that were left out
+      now.scene.materials = std::move(posed->scene.materials);
       now.scene.textures = std::move(posed->scene.textures);
       now.scene.encoded_textures = std::move(posed->scene.encoded_textures);
     }
@@ -186,26 +231,22 @@ Status Workspace::State::Pose(const SceneRequest& request, std::optional<int> fr
   return Ok();
 }
 
-Status Workspace::State::Cast(const SceneRequest& request, std::optional<int> frame, const LayersFor& layers_for,
+Status Workspace::State::Cast(SceneRequest request, std::optional<int> frame, const LayersFor& layers_for,
                               const Progress& progress) {
-  if (!frame && !request.animation.empty()) {
-    return UsageError(
-        "--animation plays with the frames' numbers: give --frame N, or --frames for several where the "
-        "verb has it");
-  }
+  request.more_memory = [&, more = request.more_memory](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    guides_memory = need;
+    if (more) more(size, layers, need);
+  };
   SCUMBLE_RETURN_IF_ERROR(LoadScene(request, frame));
-  SCUMBLE_RETURN_IF_ERROR(Continue());
+  SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
   SCUMBLE_RETURN_IF_ERROR(Pose(request, frame, layers_for));
   const std::string key =
       fmt::format("{}; {}; isa {}; half {}; time {}; {}", SizeToText(request.size), GuideSettings(request), request.isa,
                   request.half, request.time_budget_seconds, seen_key);
   if (guides && key == guides_key && guides->guides.layers().Contains(posed->layers)) return Ok();
   guides_key.clear();
-  if (!rays) {
-    SCUMBLE_ASSIGN(rays, RayScene::Make(posed->scene, posed->view.camera));
-  }
   SCUMBLE_ASSIGN(SceneGuides made, CastScene(posed->scene, posed->view.camera, nullptr, request, posed->layers, context,
-                                             progress, false, &*rays));
+                                             progress, false, &rays));
   ++counters.guides_cast;
   counters.structures_built += std::size_t(made.builds);
   StoreFrameRate(request, posed->animation, made.guides);
@@ -221,19 +262,30 @@ Expected<PaintedFrame> Workspace::State::Paint(SceneRequest scene, const StyleRe
   scene.seed = request.seed, scene.fps = request.fps;
   SCUMBLE_ASSIGN(scene.size, GuideSizeFor(scene.size, request.upsample));
   const Progress progress = context.StartProgress("stylize");
+  SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, request.frame));
   SCUMBLE_RETURN_IF_ERROR(LoadStyles(style));
-  SCUMBLE_RETURN_IF_ERROR(Continue());
-  const LayersFor layers_for = [&](const SceneStyleRequests& wishes) {
-    return RequiredLayers(*styles, wishes, scene.scene);
+  scene.more_memory = [&](const Size& size, const LayerSet& layers, MemoryNeed& need) {
+    AddPicture(WorkOf(*styles, request, size, layers, false, context), request, need);
+  };
+  const LayersFor layers_for = [&](const SceneStyleRequests& of_scene) -> Expected<LayerSet> {
+    const std::size_t opened = styles->opened.size();
+    const Expected<LayerSet> layers = RequiredLayers(*styles, of_scene, scene.scene);
+    if (styles->opened.size() > opened) style_stamps.merge(StyleStamps(*styles));  // which knows the others already
+    return layers;
   };
   SCUMBLE_RETURN_IF_ERROR(Cast(scene, request.frame, layers_for, Within(progress, 0.0, 0.5)));
-  SCUMBLE_RETURN_IF_ERROR(Continue());
+  SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
+  MemoryNeed memory = guides_memory;
+  scene.more_memory(scene.size, guides->guides.layers(), memory);
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(memory, context, "take a smaller --size, or smaller exemplars"));
+  KeepPrepared();
   if (request.exposure || exposure_given) picture.exposure.reset();
   exposure_given = request.exposure.has_value();
   picture.width = picture.height = 0;  // another size is no mistake here
+  if (const std::string stamp = StampOf(request.over); stamp != over_stamp) picture.over.reset(), over_stamp = stamp;
   std::vector<std::shared_ptr<const PreparedExemplar>> before;
   for (const PreparedStyle& one : picture.prepared) before.push_back(one.exemplar);
-  const GuideSource source{scene.scene, guides->times, guides->plan, guides->cost, guides->memory};
+  const GuideSource source{scene.scene, guides->times, guides->plan, guides->cost, memory};
   SCUMBLE_ASSIGN(PaintedPicture painted,
                  PaintInMemory(*styles, guides->guides, source, request, context, Within(progress, 0.5, 1.0), picture));
   for (std::size_t i = 0; i < picture.prepared.size(); ++i) {
@@ -249,41 +301,24 @@ Workspace::~Workspace() = default;
 Workspace::Workspace(Workspace&&) noexcept = default;
 Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
-namespace {
-
-// Accepts calls to Cancel while it lives.
-class Working {
- public:
-  Working(std::atomic<bool>& working, std::atomic<bool>& cancelled) : working_(working) {
-    cancelled = false;
-    working_ = true;
-  }
-  ~Working() { working_ = false; }
-  Working(const Working&) = delete;
-  Working& operator=(const Working&) = delete;
-
- private:
-  std::atomic<bool>& working_;
-};
-
-}  // namespace
-
 Expected<PaintedFrame> Workspace::Paint(const SceneRequest& scene, const StyleRequest& style,
                                         const PictureRequest& picture) {
-  const Working working(state_->working, state_->cancelled);
+  const State::Running running(*state_);
   return state_->Paint(scene, style, picture);
 }
 
 Expected<std::shared_ptr<const GuideSet>> Workspace::Guides(const SceneRequest& scene, std::optional<int> frame,
                                                             const LayerSet& layers) {
-  const Working working(state_->working, state_->cancelled);
+  const State::Running running(*state_);
+  SCUMBLE_RETURN_IF_ERROR(CheckArguments(scene, frame));
   const LayersFor layers_for = [&](const SceneStyleRequests&) -> Expected<LayerSet> { return layers; };
   SCUMBLE_RETURN_IF_ERROR(state_->Cast(scene, frame, layers_for, state_->context.StartProgress("guides")));
   return std::shared_ptr<const GuideSet>(state_->guides, &state_->guides->guides);
 }
 
 void Workspace::Cancel() {
-  if (state_->working) state_->cancelled = true;
+  State::Call runs = State::Call::kRuns;
+  state_->call.compare_exchange_strong(runs, State::Call::kCancelled);
 }
 
 WorkspaceCounters Workspace::counters() const { return state_->counters; }

@@ -1,5 +1,5 @@
 // A workspace keeps what a caller changes one thing at a time of: the scene, its view, the guides, the styles, the
-// prepared exemplars. Each request is compared with what is there, and only what it makes stale is made again:
+// prepared exemplars. Each request is compared with what is there, and what is stale is made again:
 //
 //   changed                          made again
 //   a key of the style, the painting style; exemplars where the key concerns them; the picture. No ray is cast, unless
@@ -15,7 +15,7 @@
 
 #include <cstddef>
 #include <memory>
-#include <string>
+#include <optional>
 
 #include "core/image/guides.h"
 #include "core/image/status.h"
@@ -39,8 +39,8 @@ struct WorkspaceCounters {
 // A picture in memory, and its report.
 struct PaintedFrame {
   Picture picture;
-  std::shared_ptr<const GuideSet> guides;  // that it was painted by
-  FrameReport report;                      // without the step of writing
+  std::shared_ptr<const GuideSet> guides;
+  FrameReport report;  // without the step of writing
 };
 
 class Workspace {
@@ -50,16 +50,17 @@ class Workspace {
   Workspace(Workspace&&) noexcept;
   Workspace& operator=(Workspace&&) noexcept;
 
-  // Paints one frame; picture.output and picture.over name no file that is written. picture.seed, picture.fps and
-  // picture.frame count for the scene too. After an error, a cancelled run included, the next request starts from what
-  // is still valid. One call at a time.
+  // Paints one frame; no file is written. picture.seed, picture.fps and picture.frame count for the scene too. After an
+  // error, kCancelled included, the next request starts from what is still valid. One call at a time.
   Expected<PaintedFrame> Paint(const SceneRequest& scene, const StyleRequest& style, const PictureRequest& picture);
 
   // The guides of a scene: the layers that every guide set holds, and these.
   Expected<std::shared_ptr<const GuideSet>> Guides(const SceneRequest& scene, std::optional<int> frame,
                                                    const LayerSet& layers);
 
-  // Ends the call at work, which returns kCancelled; does nothing where none is. From any thread, any number of times.
+  // Cancels the call that runs at this moment, which then returns kCancelled. It has no effect on a call that starts
+  // later, nor where none runs. From any thread, any number of times. A call that is past its last step still returns
+  // its result. The scene file that is being read, and the exemplar that is being prepared, are finished first.
   void Cancel();
 
   WorkspaceCounters counters() const;

@@ -5,7 +5,8 @@
 
 namespace scumble {
 
-// Threads that reading and writing may use; 0 for all. Call once, before anything is read.
+// Threads that reading and writing may use; 0 for all. Holds for what begins afterwards, in the whole process. The
+// module of formats keeps the number that it is loaded with.
 void SetIoThreads(int threads);
 
 // A further folder that may hold the module of formats, for programs installed elsewhere. Call before anything is read;

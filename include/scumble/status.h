@@ -8,13 +8,13 @@
 
 namespace scumble {
 
-// What kind of failure it was. The command line turns the kind into an exit code; libraries never exit.
+// The kind of failure. The command line turns it into an exit code.
 enum class ErrorKind {
   kUsage,        // the caller asked for something that makes no sense
   kInput,        // a file or value is unreadable or invalid
   kOutput,       // something could not be written
   kUnavailable,  // understood, but not built into this version
-  kCancelled,    // the caller's progress callback asked to stop
+  kCancelled,    // the caller has cancelled it
   kMemory,       // the machine, or a limit such as ulimit's, gives no more memory or threads
 };
 

@@ -8,7 +8,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "scumble/data_folder.h"
 #include "scumble/guides.h"
 #include "scumble/picture.h"
 #include "scumble/progress.h"
@@ -16,20 +18,19 @@
 #include "scumble/status.h"
 #include "scumble/style.h"
 
-// The folder of bundled styles and of the scripts for Blender; the installed package defines it.
-#ifndef SCUMBLE_DATA_FOLDER
-#define SCUMBLE_DATA_FOLDER ""
-#endif
-
 namespace scumble {
 
 struct StylizerOptions {
-  int threads = 0;               // 0: all
-  std::uint64_t max_memory = 0;  // bytes; what needs more is refused with kMemory or kUsage. 0: what the machine has
+  int threads = 0;               // 0: all; for files, the number of the latest call of any Stylizer counts
+  std::uint64_t max_memory = 0;  // bytes; 0: what the machine has. What needs more is kUsage, or kMemory for 0
   std::string data_folder = SCUMBLE_DATA_FOLDER;  // share/scumble; empty: no bundled styles
   std::string cache_folder;                       // for look-up tables; empty: they are not kept
   std::function<void(const std::string& line, bool is_warning)> message;  // on the calling thread; null: dropped
   Progress progress;  // of each call, 0 … 1; returning false cancels it
+  // For .blend scenes. Blender is looked for in the PATH of this environment, "NAME=VALUE", and gets it; without a PATH
+  // it is looked for in /bin and /usr/bin. What it exports is in the folder until it is loaded.
+  std::vector<std::string> environment;
+  std::string temporary_folder = "/tmp";
 };
 
 struct PaintSettings {
@@ -62,7 +63,9 @@ class Stylizer {
   // The guides of a scene: A, normal, depth, object, material, and the layers asked for.
   Expected<GuideLayers> Guides(const SceneSettings& scene, const LayerSet& layers = {});
 
-  // Ends the call at work, which returns kCancelled. From any thread, any number of times.
+  // Cancels the call that runs at this moment, which then returns kCancelled. It has no effect on a call that starts
+  // later, nor where none runs. From any thread, any number of times. A call that is past its last step still returns
+  // its result. The file that is being read, and the exemplar that is being prepared, are finished first.
   void Cancel();
 
   StylizerCounters counters() const;

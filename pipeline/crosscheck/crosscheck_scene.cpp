@@ -26,7 +26,7 @@ std::vector<int> SampleCounts(int samples) {
   return counts;
 }
 
-// Both sides of a scene, and what there is to say about them.
+// Both sides of a scene, and what is reported about them.
 struct BothSides {
   Reference reference;
   GuideSet ours;

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <future>
+#include <thread>
 
 #include "core/io/guide_file.h"
 #include "pipeline/scene/blender_process.h"
@@ -43,15 +43,17 @@ double ShareDone(const std::vector<std::string>& log, const std::vector<int>& co
   return std::min(1.0, (done + within * current) / total);
 }
 
-// The program runs beside this thread, which watches its log.
+// Runs the program and reports from its log how far it is.
 Expected<ProgramEnd> RunWatched(const std::vector<std::string>& arguments, const fs::path& log,
-                                const std::vector<int>& counts, const Progress& progress) {
-  if (!progress) return RunProgram(arguments, log);
-  auto running = std::async(std::launch::async, [&] { return RunProgram(arguments, log); });
-  while (running.wait_for(std::chrono::milliseconds(200)) != std::future_status::ready) {
-    progress(ShareDone(LinesOf(log), counts));
+                                const std::vector<int>& counts, const RunContext& context, const Progress& progress) {
+  SCUMBLE_ASSIGN(const auto program, RunningProgram::Start(arguments, log, context));
+  constexpr int kPollsForReport = 20;
+  for (int polls = 1;; ++polls) {
+    SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, program->Poll());
+    if (end) return *end;
+    if (progress && polls % kPollsForReport == 0 && !progress(ShareDone(LinesOf(log), counts))) return CancelledError();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  return running.get();
 }
 
 std::vector<std::string> Arguments(const ReferenceOptions& options, const RunContext& context, const fs::path& script,
@@ -86,13 +88,14 @@ Expected<Reference> RenderReference(const ReferenceOptions& options, const RunCo
                                     const Progress& progress) {
   const BlenderTask task{options.scene, options.blender, options.blender + " rendered no reference"};
   SCUMBLE_ASSIGN(const fs::path script, FindBlenderScript("render_guides.py", task, context));
-  const ScratchFolder scratch;
+  const ScratchFolder scratch(context);
   if (scratch.path().empty())
     return OutputError("no folder can be made for temporary files: set TMPDIR to one that can");
   const fs::path picture = scratch.path() / "cycles.exr", log = scratch.path() / "log";
   context.Note(options.scene + ": " + options.blender + " renders the reference");
-  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(
-      RunWatched(Arguments(options, context, script, picture), log, options.samples, progress), task, log, picture));
+  const std::vector<std::string> arguments = Arguments(options, context, script, picture);
+  SCUMBLE_RETURN_IF_ERROR(
+      CheckProgramEnd(RunWatched(arguments, log, options.samples, context, progress), task, log, picture));
   Reference reference;
   ReadLog(LinesOf(log), reference);
   GuideReadOptions read;

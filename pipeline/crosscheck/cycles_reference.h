@@ -28,14 +28,14 @@ struct Reference {
   GuideSet data;
   std::vector<std::uint8_t> only_shines;  // by pixel: 1 where the surface has no albedo and shines
   std::vector<CyclesLight> light;         // by sample count
-  std::string version;                    // "3.4.1"; empty where Blender did not say
+  std::string version;                    // "3.4.1"; empty where Blender does not name it
   std::vector<std::string> unsupported;   // what is not rendered as authored, in the script's words
 };
 
-// Runs blender_scripts/render_guides.py on the scene; scripts inside a .blend stay asleep. Principled materials are
-// rendered as pure ones. `progress` follows the log of the renders and is called from this thread. kUnavailable where
-// Blender or the script is missing or the version is not supported, kInput where the scene cannot be rendered, with
-// Blender's reason.
+// Runs blender_scripts/render_guides.py on the scene; scripts inside a .blend do not run. Principled materials are
+// rendered as pure ones. `progress` follows the log of the renders and is called from this thread; false ends Blender.
+// kUnavailable where Blender or the script is missing or the version is not supported, kInput where the scene cannot be
+// rendered, with Blender's reason.
 Expected<Reference> RenderReference(const ReferenceOptions& options, const RunContext& context,
                                     const Progress& progress);
 

@@ -11,7 +11,7 @@
 
 namespace scumble {
 
-// What a finished transfer knows about itself.
+// A finished transfer, as --show needs it.
 struct ShownTransfer {
   const std::vector<PreparedStyle>& styles;
   const StyleMap& map;  // empty: one style everywhere

@@ -25,7 +25,7 @@ Expected<PreparedStyle> PrepareStyle(const Style& style, int height, const RunCo
 double ExposureOf(std::optional<double> given, std::span<const PreparedStyle> prepared, const GuideSet& guides,
                   int threads);
 
-// The rate that was given, or the one that the guides' attribute scumble:fps says, or FrameRate().
+// The rate that was given, or that of the guides' attribute scumble:fps, or FrameRate().
 FrameRate RateOf(std::optional<FrameRate> given, const GuideSet& guides);
 
 struct FrameSettings {

@@ -76,7 +76,7 @@ bool IsCatcher(const StyleSet& styles) {
   return std::any_of(styles.assigned.begin(), styles.assigned.end(),
                      [](const StyleSet::Assigned& one) { return one.style == StyleMap::kShadowCatcher; }) ||
          std::any_of(styles.wanted.begin(), styles.wanted.end(),
-                     [](const auto& wish) { return wish.second == StyleMap::kShadowCatcher; });
+                     [](const auto& one) { return one.second == StyleMap::kShadowCatcher; });
 }
 
 // Of what was asked for and changes nothing, once in a run.
@@ -178,6 +178,7 @@ Status PrepareFrame(StyleSet& styles, const GuideSet& guides, const PictureReque
   if (all) state.prepared.clear();
   // All of them, or those that the scene has asked for since.
   for (std::size_t i = state.prepared.size(); i < styles.styles.size(); ++i) {
+    SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
     SCUMBLE_ASSIGN(PreparedStyle one, PrepareAndWarn(styles.styles[i], height, context));
     for (const auto& [image, what, fix] : EqualLights(styles.styles[i], one)) {
       context.Warn(image + " " + what + ": " + fix);
@@ -237,7 +238,7 @@ Expected<PaintedPicture> PaintInMemory(StyleSet& styles, const GuideSet& given, 
   SCUMBLE_RETURN_IF_ERROR(PrepareFrame(styles, given, request, context, state));
   WarnOfIdleOptions(styles, request, context, state);
   StyleMap map;
-  const bool needs_map = styles.NeedsMap(guides);
+  const bool needs_map = styles.NeedsMap(guides, source.name);
   if (needs_map) {
     SCUMBLE_ASSIGN(map, MapStyles(styles, guides, source.name));
   }

@@ -38,11 +38,10 @@ std::uint64_t HashOfPaint(const Style& style);
 // Of what the first `count` styles are and who has them: settings, exemplars, light, paper, assignments.
 std::uint64_t HashOfStyles(const StyleSet& styles, std::size_t count, ExemplarHashes& known);
 
-// The text: parts "name value" with semicolons between, as core/io/existing_output.h compares them; what is not known
-// agrees with all. It holds nothing that stylize and transfer do not both know, and nothing that makes no other
-// picture, so that equal pictures stay equal files; but whether the exposure was measured, as --exposure auto is not
-// known where it is compared. The styles must be at the picture's frame (SetStyleFrame); those that a scene asks for
-// are not told of.
+// The text: parts "name value" with semicolons between, as core/io/existing_output.h compares them; a part that is left
+// out agrees with all. It holds only what both stylize and transfer know, and what changes the picture: equal pictures
+// are equal files. Whether the exposure was measured is an exception, because a measured one is not known where it is
+// compared. The styles must be at the picture's frame (SetStyleFrame). Those that a scene asks for are left out.
 std::string SettingsText(const StyleSet& styles, const PictureSettings& settings, ExemplarHashes& known);
 
 }  // namespace scumble

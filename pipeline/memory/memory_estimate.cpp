@@ -156,7 +156,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need) {
   Bytes bytes = kPaint * more.all;
   for (const Mesh& mesh : scene.meshes) bytes += kTriangle * mesh.triangles.size() + kVertex * mesh.positions.size();
   // Embree is given each instance's triangles where they stand. Those that an exact copy covers it is not, but they are
-  // rare, and only a look at every corner tells.
+  // rare, and finding them takes a look at every corner.
   std::vector<bool> placed(scene.meshes.size());
   for (const Instance& instance : scene.instances) {
     const auto mesh = std::size_t(instance.mesh);

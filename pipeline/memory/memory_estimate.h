@@ -1,4 +1,4 @@
-// What the verbs take, term by term: the formula of docs/memory.md. Every term is the most that its part takes, for
+// What a run takes, term by term: the formula of docs/memory.md. Every term is the most that its part takes, for
 // pictures that are covered from edge to edge and paint that does not pack at all;
 // tests/pipeline/memory_estimate_test.cpp holds it against what the system counted.
 #pragma once
@@ -26,7 +26,7 @@ void AddScene(const Scene& scene, const TexturePixels& more, MemoryNeed& need);
 // light paths are followed.
 void AddGuides(const Size& size, const LayerSet& layers, const SceneRequest& options, MemoryNeed& need);
 
-// TakeTransient a guide file of these layers, packed in memory before it is written.
+// A guide file of these layers, for a moment: it is packed in memory before it is written.
 void AddGuideFile(const Size& size, const LayerSet& layers, MemoryNeed& need);
 
 // A second set of guides and its file, for a sequence that writes one frame while it makes the next.

@@ -139,7 +139,7 @@ MemoryLimit LimitFor(const RunContext& context, const fs::path& root) {
   return limit;
 }
 
-Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& mend) {
+Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& fix) {
   if (need.peak() <= limit.bytes) return Ok();
   std::string parts;
   for (const MemoryNeed::Part& part : need.parts()) {
@@ -147,14 +147,14 @@ Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::
   }
   const std::string message = fmt::format(
       "this takes up to {} of memory ({}), and {} {}: {}, or {}", BytesToText(need.peak()), parts, limit.who,
-      BytesToText(limit.bytes), mend,
+      BytesToText(limit.bytes), fix,
       limit.asked ? "allow more" : "say --max-memory " + BytesToOption(need.peak()) + " to try all the same");
   return limit.asked ? UsageError(message) : MemoryError(message);
 }
 
-Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std::string& mend) {
+Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std::string& fix) {
   const MemoryLimit limit = LimitFor(context);
-  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, limit, mend));
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, limit, fix));
   if (!context.noted_memory) return Ok();
   const std::uint64_t noted = *context.noted_memory;
   if (need.peak() < kMuchMemory || need.peak() < noted + noted / 2) return Ok();
@@ -165,7 +165,8 @@ Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std:
 }
 
 std::function<Status(std::uint64_t bytes)> RoomForStyles(const RunContext& context) {
-  return [need = std::make_shared<MemoryNeed>(), limit = LimitFor(context)](std::uint64_t bytes) {
+  return [need = std::make_shared<MemoryNeed>(), limit = LimitFor(context), context](std::uint64_t bytes) -> Status {
+    SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
     need->Take("styles", bytes);
     return CheckMemory(*need, limit, "take smaller exemplars");
   };

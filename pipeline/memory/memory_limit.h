@@ -1,4 +1,4 @@
-// How much memory a run takes at its peak, said before it is taken, and refused where there is less.
+// How much memory a run takes at its peak: noted before it is taken, refused where there is less.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace scumble {
 
-// A run's memory, told in the order in which it is taken; docs/memory.md has the formula,
+// A run's memory, added up in the order in which it is taken. docs/memory.md has the formula,
 // pipeline/memory/memory_estimate.h its terms.
 class MemoryNeed {
  public:
@@ -37,35 +37,35 @@ class MemoryNeed {
   std::uint64_t peak_ = 0;
 };
 
-// What a run may take, and who says so.
+// What a run may take, and what limits it.
 struct MemoryLimit {
   std::uint64_t bytes = 0;
   std::string who;     // "the machine has", "--max-memory allows"
   bool asked = false;  // it is the user's own, by --max-memory
 };
 
-// --max-memory where it was given, else the least of what the machine has (MemAvailable of proc(5)), what the control
-// groups that this process is in leave (memory.max of version 2, memory.limit_in_bytes of 1) and what `ulimit -v`
-// leaves; what this process has already counts as there. `root` is "/", or a folder that stands for it.
+// RunContext::max_memory where it is given. Otherwise the least of three: what the machine has (MemAvailable of
+// proc(5)); what the control groups of this process leave (memory.max of version 2, memory.limit_in_bytes of 1); what
+// `ulimit -v` leaves. What this process holds already counts as available. `root` is "/", or a folder in its place.
 MemoryLimit LimitFor(const RunContext& context, const std::filesystem::path& root = "/");
 
-// Ok, or an error that says how much is needed, for what, how much there is, and what to do: kUsage where it was
-// --max-memory, kMemory otherwise. A machine that does not tell refuses nothing.
-Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& mend);
-// The same for this machine. From kMuchMemory on what fits is said before it is taken: once, and again where a later
-// check of the run comes to half as much more.
-Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std::string& mend);
+// Ok, or an error that says how much is needed, for what, how much there is, and what to do; `fix` is the last. kUsage
+// where max_memory is the limit, kMemory otherwise. Where the machine's memory is not known, nothing is refused.
+Status CheckMemory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& fix);
+// CheckMemory for this machine. A need of kMuchMemory or more is noted before it is taken: once, and again where a
+// later check of the run comes to half as much more.
+Status CheckMemory(const MemoryNeed& need, const RunContext& context, const std::string& fix);
 inline constexpr std::uint64_t kMuchMemory = std::uint64_t(4) << 30;
 
 // For StyleRequest::room: adds up what the pictures of a run's styles take, and refuses as CheckMemory does where they
-// alone are more than there is. Copies add up together.
+// alone are more than there is. Copies add up together. kCancelled where the context is cancelled.
 std::function<Status(std::uint64_t bytes)> RoomForStyles(const RunContext& context);
 
-// The most that this process has had so far, as the system counts it (VmHWM of proc(5)); 0 where it does not.
+// The most that this process has held so far, as the system counts it (VmHWM of proc(5)); 0 where it does not.
 std::uint64_t PeakMemory();
-// What it has now (VmRSS); 0 likewise.
+// What it holds now (VmRSS); 0 where the system does not count it.
 std::uint64_t ResidentMemory();
-// From here on PeakMemory is that of what comes, beside what is there; where the system cannot forget, it stays.
+// Makes PeakMemory begin again at what is held now. Does nothing where the system cannot.
 void ForgetPeakMemory();
 
 // "1.2 GiB", in powers of 1024.

@@ -32,7 +32,7 @@ namespace {
 using PaintVariant = std::function<Expected<double>(const Variant& variant)>;
 struct Trials {
   PaintVariant paint;  // milliseconds
-  PaintVariant judge;  // how far off the picture is: TrialPainter::MeasureError
+  PaintVariant judge;  // its error: TrialPainter::MeasureError
 };
 
 FileCache TimesCache(const RunContext& context) {
@@ -86,24 +86,27 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
     }
   }
   Progress progress = context.StartProgress("calibration");
-  // Each way once, the one that is taken nine times (its contender, if it has one, too), the last twice more for a cold
-  // start; and two judgements.
+  // Each variant once; the one that is taken nine times, and its contender, if it has one; the last twice more for a
+  // cold start; and two errors.
   const double usual_runs = static_cast<double>(variants.size()) + kCalibrationRuns + 2.0 + 2.0;
   int runs = 0;
-  const MeasureVariant measure = [&](std::size_t place) {
+  const auto begin_run = [&]() -> Status {
+    SCUMBLE_RETURN_IF_ERROR(context.CheckNotCancelled());
+    const double done = std::min(0.99, runs++ / usual_runs);
+    return progress && !progress(done) ? Status(CancelledError()) : Ok();
+  };
+  const MeasureVariant measure = [&](std::size_t place) -> Expected<double> {
     if (runs == 0)
       context.Note(fmt::format("--budget-ms: measuring up to {} ways on this machine, once", variants.size()));
-    const double done = std::min(0.99, runs++ / usual_runs);
-    if (progress) progress(done);
+    SCUMBLE_RETURN_IF_ERROR(begin_run());
     return trials.paint(variants[place]);
   };
   bool judges = false;
-  const MeasureErrorOf judge = [&](std::size_t place) {
+  const MeasureErrorOf judge = [&](std::size_t place) -> Expected<double> {
     if (!std::exchange(judges, true)) {
       context.Note("--budget-ms: two ways fit whose order differs by style; which is nearer is measured here, once");
     }
-    const double done = std::min(0.99, runs++ / usual_runs);
-    if (progress) progress(done);
+    SCUMBLE_RETURN_IF_ERROR(begin_run());
     return trials.judge(variants[place]);
   };
   SCUMBLE_ASSIGN(const PickedVariant picked, PickVariant(calibration, options.budget_ms, measure, judge));
@@ -124,7 +127,7 @@ Expected<Variant> VariantWithin(const BudgetRequest& options, const LadderFrame&
   choice.measured_runs = picked.measured;
   choice.options = OptionsListOf(variant);
   for (const auto& [place, off] : picked.compared) {
-    if (std::isfinite(off)) choice.compared[variants[place].name] = off;
+    if (std::isfinite(off)) choice.compared.emplace_back(variants[place].name, off);
   }
   return variant;
 }
@@ -144,8 +147,8 @@ std::uint64_t HashOfTracks(const StyleSet& styles) {
   return hash;
 }
 
-// What times depend on in either verb, as text. Frames count by what the styles say of them alone: all frames of a
-// scene are to look alike.
+// What times depend on, of guides in a file and of a scene alike, as text. A frame counts only by what the styles say
+// of it: all frames of a scene are taken to be alike.
 std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture, const RunContext& context) {
   ExemplarHashes hashes;
   const std::size_t all = styles.styles.size();
@@ -159,7 +162,8 @@ std::string CommonCircumstances(StyleSet& styles, const PictureRequest& picture,
       tracks != 0 ? fmt::format("; over time {:016x}", tracks) : "", picture.KeepsField() ? "; keeps the field" : "");
 }
 
-// Of the scene's file and of those that it names. What cannot be read counts for nothing: who needs it says so.
+// Of the scene's file and of those that it names. What cannot be read counts for nothing; the run that needs it reports
+// it.
 std::uint64_t HashOfFiles(const std::string& scene) {
   RunInputs files;
   files.ReadsScene(scene);
@@ -174,8 +178,7 @@ std::uint64_t HashOfFiles(const std::string& scene) {
   return hash;
 }
 
-// Kept beside the times, as it takes reading the scene to know, and as little true as they are of what no circumstance
-// tells: `anew` does not look there.
+// An answer that takes reading the scene; it is kept beside the times. With `anew` the kept one does not count.
 Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunContext& context,
                           const std::function<Expected<bool>()>& find) {
   FileCache cache = TimesCache(context);
@@ -187,11 +190,11 @@ Expected<bool> KeptAnswer(const std::string& question, bool anew, const RunConte
   return answer;
 }
 
-// What is opened when the first way is measured: the frame as the run will have it.
+// What is opened when the first variant is measured: the frame as the run will have it.
 Expected<StaticScene> OpenToMeasure(const SceneRequest& options, std::optional<int> frame, StyleSet& styles,
                                     const RunContext& context) {
-  const LayersFor layers = [&](const SceneStyleRequests& wishes) {
-    return RequiredLayers(styles, wishes, options.scene);
+  const LayersFor layers = [&](const SceneStyleRequests& of_scene) {
+    return RequiredLayers(styles, of_scene, options.scene);
   };
   SCUMBLE_ASSIGN(StaticScene opened, OpenSceneAt(frame, options, layers, context, false));
   MemoryNeed need;
@@ -207,7 +210,7 @@ std::string ExposureText(const PictureRequest& picture) {
   return picture.exposure ? fmt::format("{}", *picture.exposure) : "auto";
 }
 
-// What a picture of guides shows, which their size and coverage do not tell: their normals and light.
+// What the guides of a picture show beside their size and coverage: their normals and light.
 std::string PictureText(const GuideSet& guides, const PictureRequest& picture) {
   std::uint64_t hash = 0;
   for (const Layer layer : {Layer::kCoverage, Layer::kNormal, Layer::kLuminance}) {

@@ -2,9 +2,9 @@
 // painted by. One is chosen before the first picture and holds for all of them.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/image/guides.h"
@@ -20,7 +20,7 @@ struct BudgetRequest {
   std::optional<Quality> quality;  // a named step; empty: none
   double budget_ms = 0;            // 0: none
   bool recalibrate = false;        // measure again
-  bool guides_are_fixed = false;   // the user has said how large they are
+  bool guides_are_fixed = false;   // the user gave their size
 
   bool chooses() const { return quality || budget_ms > 0; }
 };
@@ -38,8 +38,8 @@ struct BudgetChoice {
   double predicted_ms = 0;
   bool fits = false;
   int measured_runs = 0;
-  std::map<std::string, double> compared;  // errors of contenders that were compared
-  std::vector<std::string> options;        // of the command line, that repeat it: "--upsample", "4", …
+  std::vector<std::pair<std::string, double>> compared;  // contenders that were compared, and their errors
+  std::vector<std::string> options;                      // of the command line, that repeat it: "--upsample", "4", …
 };
 
 // Chooses, puts the choice into `styles` and `picture`, and notes it; empty where nothing is to be chosen. Of the

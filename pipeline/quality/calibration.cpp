@@ -158,7 +158,7 @@ class Picker {
       SCUMBLE_ASSIGN(const bool fits, Fits(variant));
       if (fits) return NearerOf(variant);
     }
-    // What was given up at its first run may have been slow by chance: the least of its runs says how quick it can be.
+    // What was dropped at its first run may have been slow by chance: the least of its runs says how quick it can be.
     const auto least = [](const Runs& runs) { return *std::min_element(runs.begin(), runs.end()); };
     const auto quickest =
         std::min_element(runs_.begin(), runs_.end(), [&](const Runs& a, const Runs& b) { return least(a) < least(b); });
@@ -237,10 +237,10 @@ class Picker {
   const double budget_ms_;
   const MeasureVariant& measure_;
   const MeasureErrorOf& judge_;
-  std::vector<Runs> runs_;                  // by way
+  std::vector<Runs> runs_;                  // by variant
   std::vector<std::size_t> kept_;           // likewise: how many of them were known
   std::vector<std::optional<double>> off_;  // likewise, of those that were judged
-  std::vector<std::size_t> judged_;         // ways, now
+  std::vector<std::size_t> judged_;         // variants, now
   std::optional<double> cold_ms_;
   bool warmed_up_ = false;  // now
   int measured_ = 0;

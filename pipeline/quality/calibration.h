@@ -1,10 +1,12 @@
-// How long each variant to paint a frame takes on this machine, and which is the most accurate that fits into a budget.
+// How long each variant takes to paint a frame on this machine, and which is the most accurate that fits into a budget.
 //
-// A way is run kCalibrationRuns times. If runs are alike, whatever their distribution, one more is slower than the
+// A variant is run kCalibrationRuns times. If runs are alike, whatever their distribution, one more is slower than the
 // slowest of nine in one case of ten: that is the share of frames that may miss their budget. Two things make later
-// runs slower than those: another moment of the machine, for which the slowest run's distance from the median is added,
-// nothing on a quiet machine and much on a busy one; and a process that has just begun, whose first run wakes threads
-// and touches memory. What that costs is measured once, by the last variant, and added too.
+// runs slower than those.
+//   - The machine is busier at another moment. For that, the slowest run's distance from the median is added: nothing
+//     on a quiet machine, much on a busy one.
+//   - A process has just begun: its first run wakes threads and touches memory. What that costs is measured once, by
+//     the last variant, and added.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +14,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/image/status.h"
@@ -28,35 +31,37 @@ struct Calibration {
   std::vector<std::string> variants;  // by options, the most accurate first; at least one
   TableCache* cache = nullptr;        // where times are kept between runs; null: nowhere
   bool anew = false;                  // what is kept does not count
-  // Of a variant, a place in `ways`: one further down that may be nearer in this scene and style. Where both fit they
-  // are compared.
+  // By a variant's place, that of another one further down, which may be nearer in this scene and style. Where both
+  // fit, they are compared.
   std::map<std::size_t, std::size_t> contenders = {};
   std::string judged = {};  // what errors depend on beside the circumstances; those of anything else do not count
 };
 
-// Milliseconds that the variant, a place in Calibration::ways, takes once.
+// Milliseconds that a variant takes once; by its place in Calibration::variants.
 using MeasureVariant = std::function<Expected<double>(std::size_t variant)>;
 // How far off its picture is, 0 or more; infinity where that cannot be known.
 using MeasureErrorOf = std::function<Expected<double>(std::size_t variant)>;
 
 struct PickedVariant {
-  std::size_t variant = 0;    // in Calibration::ways
+  std::size_t variant = 0;    // its place in Calibration::variants
   double predicted_ms = 0.0;  // nine frames of ten take no longer
   bool fits = false;          // otherwise it is the quickest there is
   int measured = 0;           // runs that were made for it now; 0: all times were known
-  std::map<std::size_t, double> compared =
-      {};  // contenders that were weighed against each other, and how far off they are
+  // Contenders that were compared, in their order, and how far off they are.
+  std::vector<std::pair<std::size_t, double>> compared = {};
 };
 
 // What is predicted from times of equal runs, where the first run of a process takes `cold_ms` longer; infinity without
 // any.
 double PredictedMs(std::span<const double> runs_ms, double cold_ms);
 
-// The first of the variants whose predicted time is within the budget, or its contender if that fits, too, and is known
-// to be nearer; where none is, the quickest. How far off ways are is kept with their times, and that it cannot be
-// known, too. A way is given up at its first run beyond the budget, so what is too slow costs one run. The first of all
-// runs is one of the last variant, and is compared with the slower of two more. What was kept and makes no sense is
-// measured again. Errors are those of `measure` and `judge`, which is needed where there are contenders.
+// The first of the variants whose predicted time is within the budget. If its contender fits, too, and is known to be
+// nearer, it is the contender. Where none fits, it is the quickest.
+//
+// A variant is dropped at its first run beyond the budget: what is too slow costs one run. The very first run is one of
+// the last variant, and is compared with the slower of two more. Errors are kept with the times, also that one cannot
+// be known. What was kept and makes no sense is measured again. Fails as `measure` and `judge` do; `judge` is needed
+// where there are contenders.
 Expected<PickedVariant> PickVariant(const Calibration& calibration, double budget_ms, const MeasureVariant& measure,
                                     const MeasureErrorOf& judge = {});
 

@@ -38,7 +38,7 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
   SceneFrames scene(request.scene, layers_for, motion, context);
   const std::string settings = GuideSettings(request.scene);
   SequenceWork work;
-  // What the scene wishes is in the file as well, so that nothing is loaded where nothing is left to make.
+  // What the scene asks for is in the file as well, so that nothing is loaded where nothing is left to make.
   work.check = [&](int, const std::string& output) -> Status {
     const Expected<GuideFileInfo> info = InspectGuides(output);
     SCUMBLE_ASSIGN(LayerSet layers, layers_for(info ? SceneStyleRequestsOf(info->header) : SceneStyleRequests()));
@@ -48,19 +48,19 @@ Expected<RunReport> GuidegenSequence(const GuidegenRequest& request, const Seque
   work.begin = [&](std::span<const int> frames, const Progress& progress) { return scene.Start(frames, progress); };
   work.make = [&](int frame, const std::string& output, const Progress& progress) -> Expected<FrameWrite> {
     SCUMBLE_ASSIGN(const SceneGuides* const guides, scene.At(frame, progress));
-    SceneGuides report;  // what there is to say; the pixels stay where they are
+    SceneGuides report;  // all but the pixels
     report.times = guides->times, report.plan = guides->plan, report.cost = guides->cost;
     report.memory = guides->memory;
     report.samples = guides->samples, report.noise = guides->noise;
     NameStylesInPlan(report.plan, styles);
     return FrameWrite([&request, output, kept = scene.Keep(),
-                       told = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
+                       rest = std::make_shared<SceneGuides>(std::move(report))]() -> Expected<FrameReport> {
       Stopwatch watch;
       const std::uint64_t before = BytesWrittenByThisThread();
       SCUMBLE_RETURN_IF_ERROR(WriteGuides(output, kept->guides, request.write));
       const double ms = watch.Lap();
-      told->times.emplace_back("write", ms);
-      FrameReport done = ReportOf(request, output, kept->guides, *told);
+      rest->times.emplace_back("write", ms);
+      FrameReport done = ReportOf(request, output, kept->guides, *rest);
       done.bytes_written = BytesWrittenByThisThread() - before;
       done.write_ms = ms;
       return done;
@@ -85,18 +85,13 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
   const LayerSet asked = request.layers;
   const bool motion = asked.Has(Layer::kMotion);
   std::optional<StyleSet> styles;
-  if (request.style) {
-    if (!request.output.empty()) request.style->room = RoomForStyles(context);  // a plan refuses nothing
-    SCUMBLE_ASSIGN(styles, OpenStyles(*request.style, context));
-    context.EndStage("style");
-  }
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.scene.blender.frame, request.output));
   const bool plan_only = request.output.empty();
   RunInputs files;
-  const LayersFor layers_for = [&](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
+  const LayersFor layers_for = [&](const SceneStyleRequests& of_scene) -> Expected<LayerSet> {
     LayerSet layers = asked;
     if (!styles) return layers;
-    SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, wishes, request.scene.scene));
+    SCUMBLE_ASSIGN(const LayerSet read, RequiredLayers(*styles, of_scene, request.scene.scene));
     // Once more, where the scene has asked for styles.
     if (!plan_only && !files.KnowsStyles(*styles))
       SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
@@ -109,6 +104,12 @@ Expected<RunReport> RunGuidegen(GuidegenRequest request, const SequenceListener&
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
   if (!sequence) {
     SCUMBLE_ASSIGN(request.output, NameOfOne(request.output, request.scene.blender.frame));
+    if (!frame) SCUMBLE_RETURN_IF_ERROR(CheckAtRest(request.scene, motion));
+  }
+  if (request.style) {
+    if (!request.output.empty()) request.style->room = RoomForStyles(context);  // a plan refuses nothing
+    SCUMBLE_ASSIGN(styles, OpenStyles(*request.style, context));
+    context.EndStage("style");
   }
   if (!plan_only) SCUMBLE_RETURN_IF_ERROR(CheckFiles(files, request, sequence, styles));
   request.scene.more_memory = [behind = sequence && !plan_only](const Size& size, const LayerSet& layers,

@@ -17,8 +17,8 @@ namespace scumble {
 namespace {
 
 LayersFor RequiredOfScene(StyleSet& styles, const std::string& scene, const FilesCheck& check_files) {
-  return [&styles, scene, check_files](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
-    SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, wishes, scene));
+  return [&styles, scene, check_files](const SceneStyleRequests& of_scene) -> Expected<LayerSet> {
+    SCUMBLE_ASSIGN(const LayerSet layers, RequiredLayers(styles, of_scene, scene));
     SCUMBLE_RETURN_IF_ERROR(check_files());
     return layers;
   };
@@ -57,7 +57,7 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
     return source(*made);
   };
   const GuidesAt guides_ahead = [&](int frame, const Progress& progress) -> Expected<FrameGuides> {
-    SCUMBLE_ASSIGN(const SceneGuides* const made, scene.Ahead(frame, progress));
+    SCUMBLE_ASSIGN(const SceneGuides* const made, scene.Peek(frame, progress));
     return source(*made);
   };
   SequenceWork work;
@@ -71,13 +71,13 @@ Expected<RunReport> StylizeSequence(const StylizeRequest& request, const Sequenc
   work.begin = [&](std::span<const int> frames, const Progress& progress) -> Status {
     std::vector<int> wanted(frames.begin(), frames.end());
     const int first = sequence.frames.front();
-    // What a .blend wants is known when its first frame is there: it may be a style that is exposed.
+    // What a .blend asks for is known when its first frame is there: it may be a style that is exposed.
     const bool may_want = IsBlenderScene(options.scene) && request.style.scene_styles && !request.picture.exposure;
     SCUMBLE_RETURN_IF_ERROR(pictures.ReadOverOfAll(width, height));
     const bool look = sequence.frames.size() > 1 && (may_want || pictures.MustLookAhead(sequence));
     if (look && wanted.front() != first) wanted.insert(wanted.begin(), first);
     SCUMBLE_RETURN_IF_ERROR(scene.Start(wanted, progress));
-    if (look && !pictures.MustLookAhead(sequence) && !guides_ahead(first, {})) return Ok();  // said when it is made
+    if (look && !pictures.MustLookAhead(sequence) && !guides_ahead(first, {})) return Ok();  // reported when it is made
     return pictures.Begin(sequence, width, height, guides_ahead, {});
   };
   work.make = [&](int frame, const std::string& output, const Progress& progress) {
@@ -142,6 +142,7 @@ Expected<RunReport> RunStylize(StylizeRequest request, const SequenceListener& l
   SCUMBLE_ASSIGN(const auto sequence, PlanSequence(request.sequence, request.picture.frame, request.picture.output));
   if (!sequence) SCUMBLE_RETURN_IF_ERROR(NameOne(request.picture));
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(request.scene));
+  if (!sequence && !request.picture.frame) SCUMBLE_RETURN_IF_ERROR(CheckAtRest(request.scene, false));
   Stopwatch watch;
   request.style.room = RoomForStyles(context);
   SCUMBLE_ASSIGN(StyleSet styles, OpenStyles(request.style, context));

@@ -25,18 +25,18 @@ GuideReadOptions ReadOptions(const TransferRequest& request, const StyleSet& sty
 }
 
 // Adds what the styles read, those included that the scene of a guide file asks for. A file that cannot be read asks
-// for nothing here; reading it says why. Layers that tell of names alone are optional: a render may have one of them.
+// for nothing here; reading it is an error later. Layers of names are optional: a render may have one of them.
 Status RequireOfFile(StyleSet& styles, const std::string& file, GuideReadOptions& read) {
-  SceneStyleRequests wishes;
+  SceneStyleRequests of_scene;
   if (styles.options.scene_styles) {
-    if (const Expected<GuideFileInfo> info = InspectGuides(file)) wishes = SceneStyleRequestsOf(info->header);
+    if (const Expected<GuideFileInfo> info = InspectGuides(file)) of_scene = SceneStyleRequestsOf(info->header);
   }
-  SCUMBLE_ASSIGN(read.required, StyleLayers(styles, wishes, file));
-  read.optional = styles.LayersOfNames(wishes);
+  SCUMBLE_ASSIGN(read.required, StyleLayers(styles, of_scene, file));
+  read.optional = styles.LayersOfNames(of_scene);
   return Ok();
 }
 
-// Before any of it is taken. A file that cannot be read takes nothing; reading it says why.
+// Before any of it is taken. A file that cannot be read takes nothing; reading it is an error later.
 Expected<MemoryNeed> CheckMemoryOfFile(const TransferRequest& request, const std::string& file, const StyleSet& styles,
                                        const GuideReadOptions& read, bool is_sequence, const RunContext& context) {
   MemoryNeed need;
@@ -46,9 +46,9 @@ Expected<MemoryNeed> CheckMemoryOfFile(const TransferRequest& request, const std
     AddPicture(WorkOf(styles, request.picture, {info->width, info->height}, read.required, is_sequence, context),
                request.picture, need);
   }
-  const std::string mend =
+  const std::string fix =
       request.picture.upsample > 1 ? "take a smaller --upsample, or smaller guides" : "take smaller guides";
-  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context, mend));
+  SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context, fix));
   return need;
 }
 
@@ -78,7 +78,7 @@ Expected<RunReport> TransferSequence(const TransferRequest& request, const Seque
   };
   SequenceWork work;
   work.check = [&](int frame, const std::string& output) -> Status {
-    // Guides that are gone cannot say how large their picture was to be, and how fast it plays.
+    // Guides that are gone do not tell the size of their picture, nor its rate.
     const auto info = InspectGuides(guides_name.At(frame));
     if (!info) return pictures.Check(frame, output, 0, 0, {}, {});
     const FrameRate fps = RateOf(request.picture.fps, info->header);

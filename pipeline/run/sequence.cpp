@@ -71,7 +71,7 @@ std::string WithoutNumber(const std::string& reason, int frame) {
   return text;
 }
 
-// Whether an output can be kept; says why one that is there cannot. An error where it cannot be known.
+// Whether an output can be kept. Notes why one that is there cannot. An error where it cannot be known.
 Expected<bool> CanKeep(const Sequence& sequence, const SequenceWork& work, int frame, const RunContext& context) {
   const std::string output = sequence.output.At(frame);
   const Status whole = work.check(frame, output);

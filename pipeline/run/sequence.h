@@ -45,7 +45,7 @@ struct SequenceWork {
   std::function<Expected<FrameWrite>(int frame, const std::string& output, const Progress& progress)> make;
 };
 
-// Hears of each frame as it is settled, on the calling thread; any of them may be null.
+// Called for each frame when it is done, on the calling thread; any of them may be null.
 struct SequenceListener {
   std::function<void(int frame, const std::string& output, const FrameReport& report)> made;
   std::function<void(int frame, const std::string& output)> kept;

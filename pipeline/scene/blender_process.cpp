@@ -6,19 +6,18 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <system_error>
+#include <thread>
+#include <utility>
 
-extern char** environ;
+#include "pipeline/process_guard.h"
 
 namespace scumble {
 
@@ -29,104 +28,49 @@ namespace {
 constexpr const char* kSupported = "Blender 3.4";
 constexpr int kExitVersion = 5;  // of our scripts
 constexpr const char* kErrorMark = "scumble: error: ";
+const std::string kPath = "PATH=";
+constexpr auto kPollInterval = std::chrono::milliseconds(10);
 
-// What a signal handler may touch.
-constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU};
-std::atomic<pid_t> running_group = 0;
-std::atomic<int> caught_signal = 0;
-std::atomic<bool> ends_at_once = false;
-std::atomic<bool> has_scratch_folder = false;
-char scratch_folder[4096];  // never freed: a handler on another thread may still read it
-static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
-              std::atomic<bool>::is_always_lock_free);
-
-struct sigaction actions_before[std::size(kEndingSignals)];
-
-// A program that was killed, or works on a disk, may hang in that disk: not for long.
-void AwaitEnd(pid_t program, int most_milliseconds) {
-  const timespec millisecond{0, 1000000};
-  for (int wait = 0; wait < most_milliseconds && ::waitpid(program, nullptr, WNOHANG) == 0; ++wait)
-    ::nanosleep(&millisecond, nullptr);
-}
-
-// By another program, as nothing in this one may be called that allocates: fork() would lock the heap, _Fork() does
-// not.
-void RemoveWithoutHeap(const char* folder) {
-  const pid_t child = ::_Fork();
-  if (child == 0) {
-    const char* const remove[] = {"rm", "-rf", "--", folder, nullptr};
-    ::execv("/bin/rm", const_cast<char* const*>(remove));
-    ::_exit(127);
+// The file that the name of a program stands for, as execvp(3) finds it: one that may be run goes before one that may
+// not. Empty where there is none.
+fs::path FindProgram(const std::string& program, const std::vector<std::string>& environment) {
+  if (program.find('/') != std::string::npos) return program;
+  std::string path = "/bin:/usr/bin";
+  for (const std::string& variable : environment) {
+    if (variable.starts_with(kPath)) path = variable.substr(kPath.size());
   }
-  if (child > 0) AwaitEnd(child, 5000);
-}
-
-void EndRunningGroup(int signal) {
-  caught_signal = signal;
-  const pid_t group = running_group;
-  if (group) ::kill(-group, SIGKILL);
-  if (!ends_at_once) return;
-  if (group) AwaitEnd(group, 300);  // so that it writes nothing more
-  if (has_scratch_folder) RemoveWithoutHeap(scratch_folder);
-  for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
-    if (kEndingSignals[i] == signal) ::sigaction(signal, &actions_before[i], nullptr);
-  }
-  ::raise(signal);  // is delivered when this returns
-}
-
-// A signal that is ignored, as under nohup, stays ignored.
-void CatchSignals() {
-  for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
-    struct sigaction ours = {};
-    ours.sa_handler = EndRunningGroup;
-    ours.sa_flags = SA_RESTART;
-    ::sigfillset(&ours.sa_mask);  // for what removes the folder, too: a second Ctrl-C does not stop it
-    ::sigaction(kEndingSignals[i], nullptr, &actions_before[i]);
-    if (actions_before[i].sa_handler != SIG_IGN) ::sigaction(kEndingSignals[i], &ours, nullptr);
-  }
-}
-
-void ReleaseSignals() {
-  for (std::size_t i = 0; i < std::size(kEndingSignals); ++i) {
-    ::sigaction(kEndingSignals[i], &actions_before[i], nullptr);
-  }
-  if (const int signal = caught_signal.exchange(0)) ::raise(signal);
-}
-
-// Where the program of that name really is; the name itself where it is not found.
-fs::path RealPathOf(const std::string& program) {
   std::error_code failed;
-  if (program.find('/') != std::string::npos) return fs::canonical(program, failed);
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
+  fs::path forbidden;
+  std::istringstream folders(path);
   for (std::string folder; std::getline(folders, folder, ':');) {
     const fs::path candidate = fs::path(folder.empty() ? "." : folder) / program;
-    if (::access(candidate.c_str(), X_OK) == 0 && fs::is_regular_file(candidate, failed)) {
-      return fs::canonical(candidate, failed);
-    }
+    if (!fs::is_regular_file(candidate, failed)) continue;
+    if (::access(candidate.c_str(), X_OK) == 0) return candidate;
+    if (forbidden.empty()) forbidden = candidate;
   }
-  return {};
+  return forbidden;
 }
 
 // Blender's Python looks for its packages beside the first python3 in PATH, and where these variables send it.
-std::vector<std::string> EnvironmentFor(const std::string& program, const fs::path& temporary) {
+std::vector<std::string> EnvironmentFor(const fs::path& program, const fs::path& temporary,
+                                        const std::vector<std::string>& given) {
   std::vector<std::string> environment;
   std::string path = "/usr/bin";
-  if (const fs::path real = RealPathOf(program); real.has_parent_path() && real.parent_path() != path) {
+  std::error_code failed;
+  if (const fs::path real = fs::canonical(program, failed); real.has_parent_path() && real.parent_path() != path) {
     path = real.parent_path().string() + ":" + path;
   }
-  for (char** variable = environ; *variable; ++variable) {
-    const std::string text = *variable;
+  for (const std::string& text : given) {
     const std::string name = text.substr(0, text.find('='));
     if (name.starts_with("PYTHON") || name == "VIRTUAL_ENV" || name == "TMPDIR" || name == "TMP" || name == "TEMP") {
       continue;
     }
-    if (name == "PATH")
-      path += ":" + text.substr(5);
+    if (text.starts_with(kPath))
+      path += ":" + text.substr(kPath.size());
     else
       environment.push_back(text);
   }
-  environment.push_back("PATH=" + path);
+  environment.push_back(kPath + path);
   // What Blender leaves behind when it is killed goes with the folder.
   for (const char* name : {"TMPDIR=", "TMP=", "TEMP="}) environment.push_back(name + temporary.string());
   return environment;
@@ -140,8 +84,10 @@ std::vector<char*> Pointers(const std::vector<std::string>& texts) {
 }
 
 // 0 and the child, or what failed.
-int Spawn(const std::vector<std::string>& arguments, const fs::path& log, pid_t& child) {
-  const std::vector<std::string> environment = EnvironmentFor(arguments.front(), log.parent_path());
+int Spawn(const std::vector<std::string>& arguments, const fs::path& log, const RunContext& context, pid_t& child) {
+  const fs::path program = FindProgram(arguments.front(), context.environment);
+  if (program.empty()) return ENOENT;
+  const std::vector<std::string> environment = EnvironmentFor(program, log.parent_path(), context.environment);
   const std::vector<char*> argv = Pointers(arguments), envp = Pointers(environment);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
@@ -152,7 +98,7 @@ int Spawn(const std::vector<std::string>& arguments, const fs::path& log, pid_t&
   ::posix_spawnattr_init(&attributes);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   ::posix_spawnattr_setpgroup(&attributes, 0);
-  const int failure = ::posix_spawnp(&child, argv.front(), &actions, &attributes, argv.data(), envp.data());
+  const int failure = ::posix_spawn(&child, program.c_str(), &actions, &attributes, argv.data(), envp.data());
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   return failure;
@@ -168,51 +114,39 @@ std::string SignalText(int signal) {
 
 std::string ReasonFrom(const std::vector<std::string>& lines) {
   std::string reason, complaints;
-  std::vector<std::string> talk;
+  std::vector<std::string> rest;
   for (const std::string& line : lines) {
     if (line.rfind(kErrorMark, 0) == 0) reason = line.substr(std::strlen(kErrorMark));
     if (line.rfind("Error: ", 0) == 0) complaints += "; Blender says: " + line.substr(std::strlen("Error: "));
-    if (line.rfind("Fra:", 0) != 0) talk.push_back(line);  // Cycles' progress
+    if (line.rfind("Fra:", 0) != 0) rest.push_back(line);  // Cycles' progress
   }
   if (!reason.empty()) return reason + complaints;
   constexpr std::size_t kLastLines = 3;
-  for (std::size_t i = talk.size() - std::min(talk.size(), kLastLines); i < talk.size(); ++i) {
-    reason += (reason.empty() ? "" : " | ") + talk[i];
+  for (std::size_t i = rest.size() - std::min(rest.size(), kLastLines); i < rest.size(); ++i) {
+    reason += (reason.empty() ? "" : " | ") + rest[i];
   }
   return reason.empty() ? "it says nothing" : reason;
 }
 
-// Another way than by Blender here and now, where there is one.
+// What the user can do without this Blender.
 std::string ByHand(const BlenderTask& task) {
   return task.can_be_exported ? ", or export the scene to .glb by hand" : "";
 }
 
 }  // namespace
 
-ScratchFolder::ScratchFolder() {
-  CatchSignals();
-  std::error_code failed;
-  std::string name = (fs::temp_directory_path(failed) / "scumble-XXXXXX").string();
-  if (failed || !::mkdtemp(name.data())) return;
+ScratchFolder::ScratchFolder(const RunContext& context) : guard_(context.process_guard) {
+  if (guard_) guard_->Begin();
+  std::string name = (context.temporary_folder / "scumble-XXXXXX").string();
+  if (context.temporary_folder.empty() || !::mkdtemp(name.data())) return;
   path_ = name;
-  if (name.size() >= sizeof(scratch_folder)) return;
-  std::memcpy(scratch_folder, name.c_str(), name.size() + 1);
-  has_scratch_folder = true;
+  if (guard_) guard_->FolderMade(path_);
 }
 
 ScratchFolder::~ScratchFolder() {
   std::error_code failed;
   if (!path_.empty()) fs::remove_all(path_, failed);
-  has_scratch_folder = false;
-  ReleaseSignals();
-}
-
-void EndAtOnceOnSignals(bool at_once) { ends_at_once = at_once; }
-
-Status CheckNotSignalled(const std::string& scene) {
-  const int signal = caught_signal;
-  if (signal == 0) return Ok();
-  return Error{ErrorKind::kCancelled, scene + ": ended by a signal (" + ::strsignal(signal) + ")"};
+  if (guard_) guard_->End();
 }
 
 Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask& task, const RunContext& context) {
@@ -224,49 +158,59 @@ Expected<fs::path> FindBlenderScript(const std::string& name, const BlenderTask&
                           ByHand(task));
 }
 
+RunningProgram::RunningProgram(std::string name, int child, const RunContext& context)
+    : name_(std::move(name)), child_(child), context_(context) {
+  if (context_.process_guard) context_.process_guard->ProgramStarted(child);
+}
+
 Expected<std::unique_ptr<RunningProgram>> RunningProgram::Start(const std::vector<std::string>& arguments,
-                                                                const fs::path& log) {
+                                                                const fs::path& log, const RunContext& context) {
   pid_t child = 0;
-  const int failure = Spawn(arguments, log, child);
+  const int failure = Spawn(arguments, log, context, child);
   if (failure != 0) {
     return UnavailableError(arguments.front() + " cannot be run (" + std::strerror(failure) + ")");
   }
-  std::unique_ptr<RunningProgram> program(new RunningProgram);
-  program->name_ = arguments.front();
-  program->child_ = child;
-  running_group = child;
-  if (caught_signal) ::kill(-child, SIGKILL);  // it came before the handler knew whom to end
-  return program;
+  return std::unique_ptr<RunningProgram>(new RunningProgram(arguments.front(), child, context));
 }
 
 RunningProgram::~RunningProgram() {
-  if (end_) return;
-  ::kill(-child_, SIGTERM);
-  if (!Wait()) return;  // it is no child of ours any more
-}
-
-Expected<ProgramEnd> RunningProgram::Wait() {
-  SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, Wait(true));
-  return *end;
-}
-
-Expected<std::optional<ProgramEnd>> RunningProgram::Wait(bool patiently) {
-  if (end_) return end_;
-  int status = 0;
-  pid_t ended = 0;
-  while ((ended = ::waitpid(child_, &status, patiently ? 0 : WNOHANG)) < 0) {
-    if (errno == EINTR) continue;
-    running_group = 0;
-    return UnavailableError(name_ + " got lost: " + std::strerror(errno));
+  if (!end_ && child_ != 0) {
+    ::kill(-child_, SIGKILL);
+    while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
+    }
   }
-  if (ended != child_) return end_;
-  running_group = 0;
-  end_ = WIFSIGNALED(status) ? ProgramEnd{-1, WTERMSIG(status)} : ProgramEnd{WEXITSTATUS(status), 0};
+  if (context_.process_guard) context_.process_guard->ProgramEnded();
+}
+
+Expected<std::optional<ProgramEnd>> RunningProgram::Poll() {
+  if (!end_) {
+    int status = 0;
+    const pid_t ended = ::waitpid(child_, &status, WNOHANG);
+    if (ended < 0 && errno != EINTR) {
+      const int failure = errno;
+      child_ = 0;
+      return UnavailableError(name_ + " got lost: " + std::strerror(failure));
+    }
+    if (ended == child_) {
+      end_ = WIFSIGNALED(status) ? ProgramEnd{-1, WTERMSIG(status)} : ProgramEnd{WEXITSTATUS(status), 0};
+      if (context_.process_guard) context_.process_guard->ProgramEnded();
+    }
+  }
+  SCUMBLE_RETURN_IF_ERROR(context_.CheckNotCancelled());
   return end_;
 }
 
-Expected<ProgramEnd> RunProgram(const std::vector<std::string>& arguments, const fs::path& log) {
-  SCUMBLE_ASSIGN(const auto program, RunningProgram::Start(arguments, log));
+Expected<ProgramEnd> RunningProgram::Wait() {
+  for (;;) {
+    SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, Poll());
+    if (end) return *end;
+    std::this_thread::sleep_for(kPollInterval);
+  }
+}
+
+Expected<ProgramEnd> RunProgram(const std::vector<std::string>& arguments, const fs::path& log,
+                                const RunContext& context) {
+  SCUMBLE_ASSIGN(const auto program, RunningProgram::Start(arguments, log, context));
   return program->Wait();
 }
 
@@ -282,12 +226,12 @@ std::vector<std::string> LinesOf(const fs::path& log) {
 
 Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& task, const fs::path& log,
                        const fs::path& product) {
-  SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(task.scene));
   if (!ended) {
+    if (ended.error().kind == ErrorKind::kCancelled) return ended.error();
     return Error{ended.error().kind, task.scene + ": " + ended.error().message + ": install " + kSupported +
                                          ", or say where it is with --blender PATH" + ByHand(task)};
   }
-  // A shell that runs Blender tells its signal so.
+  // How a shell that runs Blender reports its signal.
   const int signal = ended->signal != 0                                   ? ended->signal
                      : ended->code > 128 && ended->code <= 128 + SIGRTMAX ? ended->code - 128
                                                                           : 0;

@@ -1,4 +1,4 @@
-// Running Blender with a script of ours: where script and program are, temporary files, and what went wrong in words.
+// Running Blender with a script of ours: finding program and script, temporary files, and what went wrong in words.
 #pragma once
 
 #include <filesystem>
@@ -12,25 +12,20 @@
 
 namespace scumble {
 
-// A folder of its own, gone with this. The path is empty where it could not be made. While one lives, SIGINT, SIGTERM
-// and SIGHUP end the program that RunProgram waits for; the folder is then removed and the signal acts as it would have
-// without us, when this is destroyed. One at a time, on the main thread.
+// A folder of its own in RunContext::temporary_folder, removed when this is destroyed. The path is empty where it could
+// not be made. The context's process guard follows it.
 class ScratchFolder {
  public:
-  ScratchFolder();
+  explicit ScratchFolder(const RunContext& context);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  std::shared_ptr<ProcessGuard> guard_;
   std::filesystem::path path_;
 };
-
-// For while a ScratchFolder lives and nobody asks CheckNotSignalled, whether a program runs or not: those signals then
-// end it, remove the folder and act as they would have without us, at once. One that came before still waits to be
-// asked for. To be switched off before the folder is destroyed.
-void EndAtOnceOnSignals(bool at_once);
 
 // What Blender is run for, for messages.
 struct BlenderTask {
@@ -39,9 +34,6 @@ struct BlenderTask {
   std::string failure;           // "the export by blender failed"
   bool can_be_exported = false;  // a .glb would do instead, made by hand
 };
-
-// While a ScratchFolder lives: kCancelled once one of those signals has come, which is no fault of the scene's.
-Status CheckNotSignalled(const std::string& scene);
 
 // The script of that name in blender_scripts/, beside the build or where `install` put it.
 Expected<std::filesystem::path> FindBlenderScript(const std::string& name, const BlenderTask& task,
@@ -52,41 +44,46 @@ struct ProgramEnd {
   int signal = 0;  // that ended it, if one did
 };
 
-// A program at work beside this one. Ended and waited for, at the latest, when this goes.
+// A program at work beside this one. It leads a process group of its own, which is killed and waited for, at the
+// latest, when this is destroyed.
+//
+// The program is looked for as execvp(3) does, in the PATH of RunContext::environment, and gets that environment with
+// two changes. Variables of Python and its virtual environments are left out, and the PATH begins with Blender's own
+// folder and /usr/bin: Blender would take the packages of the caller's Python for its own. The folder for temporary
+// files is that of the log.
 class RunningProgram {
  public:
-  // Both its outputs go to `log`. kUnavailable where it cannot be run.
+  // Both its outputs go to `log`. kUnavailable where it cannot be run, with the system's reason.
   static Expected<std::unique_ptr<RunningProgram>> Start(const std::vector<std::string>& arguments,
-                                                         const std::filesystem::path& log);
+                                                         const std::filesystem::path& log, const RunContext& context);
   ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  // How it ended, or nothing while it is at work.
-  Expected<std::optional<ProgramEnd>> Poll() { return Wait(false); }
+  // How it ended, or nothing while it is at work. kCancelled where the context is cancelled, however it ended.
+  Expected<std::optional<ProgramEnd>> Poll();
+  // Polls until it has ended.
   Expected<ProgramEnd> Wait();
 
  private:
-  RunningProgram() = default;
-  Expected<std::optional<ProgramEnd>> Wait(bool patiently);
+  RunningProgram(std::string name, int child, const RunContext& context);
 
   std::string name_;
   int child_ = 0;
+  RunContext context_;
   std::optional<ProgramEnd> end_;
 };
 
-// Runs a program and waits for it; both its outputs go to `log`, and its temporary files beside it. It is the first of
-// a process group of its own, which a signal ends as a whole, and does not see what the caller's shell says about
-// Python: Blender would take the packages of a virtual environment for its own. kUnavailable where it cannot be run,
-// with the system's reason.
-Expected<ProgramEnd> RunProgram(const std::vector<std::string>& arguments, const std::filesystem::path& log);
+// Runs a program and waits for it.
+Expected<ProgramEnd> RunProgram(const std::vector<std::string>& arguments, const std::filesystem::path& log,
+                                const RunContext& context);
 
 std::vector<std::string> LinesOf(const std::filesystem::path& log);
 
-// Whether the task went well, and otherwise what went wrong: kUnavailable where Blender cannot be run or its version is
-// not supported; kInput where a signal ended it, where the script failed, or where it did not write `product`. The
-// reason is the script's own ("scumble: error: …") with Blender's complaints after it; where the script did not come to
-// speak, the last lines of `log`, without Cycles' progress.
+// Ok, or what went wrong: kUnavailable where Blender cannot be run or its version is not supported; kInput where a
+// signal ended it, where the script failed, or where it did not write `product`; kCancelled as it is. The reason is the
+// script's own ("scumble: error: …") with Blender's complaints after it. Without one, it is the last lines of `log`,
+// but for Cycles' progress.
 Status CheckProgramEnd(const Expected<ProgramEnd>& ended, const BlenderTask& task, const std::filesystem::path& log,
                        const std::filesystem::path& product);
 

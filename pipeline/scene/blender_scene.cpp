@@ -16,6 +16,7 @@
 
 #include "guidegen/load/load_scene.h"
 #include "pipeline/frame_range.h"
+#include "pipeline/process_guard.h"
 #include "pipeline/requests.h"
 #include "pipeline/scene/blender_process.h"
 
@@ -34,7 +35,7 @@ Status CheckReadable(const std::string& path) {
   return Ok();
 }
 
-// Messages of the loader name the temporary file, which is none of the user's business.
+// Messages of the loader name the temporary file, which the user does not know.
 std::string Renamed(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
     text.replace(at, from.size(), to);
@@ -62,7 +63,7 @@ Expected<std::vector<std::string>> ExportCommand(const std::string& path, const 
                                   "-b",
                                   "-noaudio",
                                   "--factory-startup",
-                                  "-Y",  // the file's own scripts stay asleep
+                                  "-Y",  // the file's own scripts do not run
                                   fs::absolute(path).string(),
                                   "-P",
                                   script.string(),
@@ -92,17 +93,20 @@ fs::path In(const ScratchFolder& scratch, const char* name) {
   return scratch.path().empty() ? fs::path() : scratch.path() / name;
 }
 
-constexpr const char *kStartFile = "start.glb", *kRateFile = "fps";
+constexpr const char *kStartFile = "start.glb", *kRateFile = "fps", *kFilesFile = "files";
 
 void RequestBlenderAnimation(const ScratchFolder& scratch, const BlenderRequest& options,
                              std::vector<std::string>& arguments) {
   arguments.insert(arguments.end(),
-                   {"--fps-file", In(scratch, kRateFile).string(), "--start-file", In(scratch, kStartFile).string()});
+                   {"--fps-file", In(scratch, kRateFile).string(), "--files-file", In(scratch, kFilesFile).string(),
+                    "--start-file", In(scratch, kStartFile).string()});
   if (options.wants_start) arguments.push_back("--start-always");
 }
 
 Status LoadBlenderAnimation(const ScratchFolder& scratch, const std::string& path, BlenderAnimation& animation) {
   std::ifstream(In(scratch, kRateFile)) >> animation.fps;
+  std::ifstream files(In(scratch, kFilesFile));
+  for (std::string file; std::getline(files, file);) animation.files.push_back(file);
   std::error_code failed;
   const fs::path start = In(scratch, kStartFile);
   if (!fs::is_regular_file(start, failed)) return Ok();
@@ -125,30 +129,31 @@ bool IsBlenderScene(const std::string& path) {
 
 Expected<Scene> LoadBlenderScene(const std::string& path, const BlenderRequest& options, const RunContext& context,
                                  BlenderAnimation* animation) {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch(context);
   const fs::path exported = In(scratch, "scene.glb"), log = In(scratch, "log");
   SCUMBLE_ASSIGN(std::vector<std::string> arguments, ExportCommand(path, options, exported, context));
   if (animation) RequestBlenderAnimation(scratch, options, arguments);
   if (options.frame) arguments.insert(arguments.end(), {"--frame", std::to_string(*options.frame)});
   context.Note(path + ": " + arguments.front() + " exports it" +
                (options.frame ? " at frame " + std::to_string(*options.frame) : std::string()));
-  SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(RunProgram(arguments, log), ExportTask(path, options), log, exported));
+  SCUMBLE_RETURN_IF_ERROR(
+      CheckProgramEnd(RunProgram(arguments, log, context), ExportTask(path, options), log, exported));
   if (animation) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(scratch, path, *animation));
   return LoadExport(exported, path);
 }
 
-BlenderRange::BlenderRange() = default;
+BlenderRange::BlenderRange(const RunContext& context) : context_(context) {}
 
 BlenderRange::~BlenderRange() {
-  EndAtOnceOnSignals(false);
+  Waits(true);
   program_.reset();  // before the folder that it writes into
 }
 
 Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& path, const BlenderRequest& options,
                                                             std::span<const int> frames, const RunContext& context) {
-  std::unique_ptr<BlenderRange> range(new BlenderRange);
+  std::unique_ptr<BlenderRange> range(new BlenderRange(context));
   range->task_ = std::make_unique<BlenderTask>(ExportTask(path, options));
-  range->scratch_ = std::make_unique<ScratchFolder>();
+  range->scratch_ = std::make_unique<ScratchFolder>(context);
   SCUMBLE_ASSIGN(std::vector<std::string> arguments,
                  ExportCommand(path, options, In(*range->scratch_, kRangeOutput), context));
   // With an equals sign: a range that starts at a negative frame would look like an option.
@@ -158,21 +163,25 @@ Expected<std::unique_ptr<BlenderRange>> BlenderRange::Start(const std::string& p
   context.Note(path + ": " + arguments.front() + " exports frame" + (frames.size() == 1 ? " " : "s ") +
                FramesToText(frames));
   const fs::path log = In(*range->scratch_, "log");
-  auto program = RunningProgram::Start(arguments, log);
+  auto program = RunningProgram::Start(arguments, log, context);
   if (!program) return CheckProgramEnd(program.error(), *range->task_, log, {}).error();
   range->program_ = std::move(*program);
   SCUMBLE_RETURN_IF_ERROR(range->LeaveAlone());
   return range;
 }
 
-// Until the next Load a frame is at work, for minutes perhaps: who ends the program does not want to wait for it.
+void BlenderRange::Waits(bool waits) {
+  if (context_.process_guard) context_.process_guard->Waits(waits);
+}
+
+// Until the next Load a frame is cast, for minutes perhaps. A signal should not wait for it.
 Status BlenderRange::LeaveAlone() {
-  EndAtOnceOnSignals(true);
-  return CheckNotSignalled(task_->scene);
+  Waits(false);
+  return context_.CheckNotCancelled();
 }
 
 Expected<Scene> BlenderRange::Load(int frame) {
-  EndAtOnceOnSignals(false);
+  Waits(true);
   Expected<Scene> scene = Await(frame);
   SCUMBLE_RETURN_IF_ERROR(LeaveAlone());
   return scene;
@@ -184,14 +193,13 @@ Expected<Scene> BlenderRange::Await(int frame) {
   std::error_code failed;
   for (;;) {
     // In this order: a Blender that ends between the two questions has written its last file before.
-    SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(task_->scene));
     SCUMBLE_ASSIGN(const std::optional<ProgramEnd> end, program_->Poll());
     if (fs::is_regular_file(exported, failed)) break;  // it gets this name when it is whole
     if (end) SCUMBLE_RETURN_IF_ERROR(CheckProgramEnd(*end, *task_, In(*scratch_, "log"), exported));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  if (!has_film_) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(*scratch_, task_->scene, animation_));
-  has_film_ = true;
+  if (!has_animation_) SCUMBLE_RETURN_IF_ERROR(LoadBlenderAnimation(*scratch_, task_->scene, animation_));
+  has_animation_ = true;
   Expected<Scene> scene = LoadExport(exported, task_->scene);
   fs::remove(exported, failed);
   return scene;

@@ -20,11 +20,14 @@ TexturePixels CountNeededPixels(const Scene& scene, const SceneRequest& options,
 
 Expected<SceneCost> DecodeNeededTextures(Scene& scene, const SceneRequest& options, const LayerSet& layers,
                                          const RunContext& context) {
-  SCUMBLE_ASSIGN(const DecodedTextures decoded, DecodeTextures(scene, NeedsOf(options, layers)));
+  GuidegenOptions needs = NeedsOf(options, layers);
+  needs.progress = [&](double) { return context.CheckNotCancelled().ok(); };
+  SCUMBLE_ASSIGN(const DecodedTextures decoded, DecodeTextures(scene, needs));
   for (const std::string& warning : decoded.warnings) context.Warn(options.scene + ": " + warning);
   SceneCost cost;
   cost.textures_decoded = decoded.count;
   cost.texture_bytes = decoded.bytes;
+  cost.textures_left_out = decoded.left_out;
   return cost;
 }
 

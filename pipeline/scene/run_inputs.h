@@ -16,7 +16,7 @@ namespace scumble {
 class RunInputs {
  public:
   // A file that the run reads; `what` is for the message: "the guides". Empty names and files that are not there
-  // (reading them says so) are no matter.
+  // are passed over; reading them is an error later.
   void Reads(const std::string& what, const std::string& path);
   // A scene with the files that it names: buffers and pictures of a .gltf or .glb, the .mtl of an .obj and its
   // pictures.

@@ -122,7 +122,7 @@ std::string GuideSettings(const SceneRequest& options) {
 
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
                                 const LayerSet& layers, const RunContext& context, const Progress& progress,
-                                bool plan_only, const RayScene* rays) {
+                                bool plan_only, std::optional<RayScene>* rays) {
   const Size& size = options.size;
   SceneGuides result;
   GuidegenOptions guidegen;
@@ -148,10 +148,16 @@ Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFr
   if (plan_only) return result;
   SCUMBLE_RETURN_IF_ERROR(CheckMemory(result.memory, context, "take a smaller --size, or fewer layers"));
   Stopwatch watch;
-  SCUMBLE_ASSIGN(result.cost, DecodeNeededTextures(scene, options, layers, context));
+  Expected<SceneCost> decoded = DecodeNeededTextures(scene, options, layers, context);
+  if (rays && (!decoded || decoded->textures_left_out > 0)) rays->reset();
+  if (!decoded) return std::move(decoded).error();
+  result.cost = *decoded;
   const double textures_ms = watch.Lap();
   context.EndStage("scene");
-  SCUMBLE_ASSIGN(GuidegenResult rendered, rays && !next ? RenderGuides(*rays, guidegen)
+  if (rays && !*rays) {
+    SCUMBLE_ASSIGN(*rays, RayScene::Make(scene, camera));
+  }
+  SCUMBLE_ASSIGN(GuidegenResult rendered, rays && !next ? RenderGuides(**rays, guidegen)
                                           : next        ? RenderGuides(scene, camera, *next, guidegen)
                                                         : RenderGuides(scene, camera, guidegen));
   result.times.emplace_back("build", rendered.build_ms);

@@ -1,6 +1,7 @@
-// A scene request's way to guides: open the scene, decide how it is seen, cast.
+// From a scene request to guides: open the scene, decide how it is seen, cast.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@ struct SceneCost {
   WorkCounts work;
   int textures_decoded = 0;
   std::size_t texture_bytes = 0;  // of those
+  int textures_left_out = 0;      // that cannot be read
 };
 
 struct SceneGuides {
@@ -48,7 +50,7 @@ std::string ViewToText(const ViewAngles& view);
 // Finds mistakes in the request before a large scene is loaded: kUsage or kInput.
 Status CheckSceneRequest(const SceneRequest& request);
 
-// Loads the scene, a .blend by way of Blender; passes on its warnings if `warns`. CastScene decodes its textures, as
+// Loads the scene, a .blend through Blender; passes on its warnings if `warns`. CastScene decodes its textures, as
 // far as they are needed.
 Expected<Scene> OpenScene(const SceneRequest& options, const RunContext& context, BlenderAnimation* animation = nullptr,
                           bool warns = true);
@@ -66,11 +68,12 @@ inline constexpr const char* kSamplesKey = "scumble:samples_asked";
 std::string GuideSettings(const SceneRequest& options);
 
 // Casts the guides of a scene that is ready; textures that they need are decoded and stay in it. The layer motion
-// wants `next`, which may be null otherwise. `rays`: of this scene and camera, to cast again without building; null:
-// the acceleration structure is built for this cast.
+// needs `next`, which may be null otherwise. `rays` is for casting this scene and camera again without building: it is
+// made where it is empty, and made again where a texture has been left out, which changes materials. Null: the
+// acceleration structure is built for this cast alone.
 Expected<SceneGuides> CastScene(Scene& scene, const Camera& camera, const NextFrame* next, const SceneRequest& options,
                                 const LayerSet& layers, const RunContext& context, const Progress& progress,
-                                bool plan_only, const RayScene* rays = nullptr);
+                                bool plan_only, std::optional<RayScene>* rays = nullptr);
 
 // Casts the guides of an open scene; the key light, where one is needed, stays in it. Notes which camera and light were
 // chosen, and warns of a picture that shows nothing. With `plan_only` the guides stay empty.

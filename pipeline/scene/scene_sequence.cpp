@@ -11,7 +11,7 @@ namespace scumble {
 
 namespace {
 
-// How a frame of a .blend is seen: as the scene's first frame says, where the file leaves camera or light to us.
+// How a frame of a .blend is seen. Where the file has no camera or no light, the scene's first frame decides.
 Expected<PreparedView> ViewBlender(Scene& scene, BlenderAnimation& animation, const SceneRequest& options,
                                    const LayerSet& layers) {
   if (!animation.start) return ViewScene(scene, options, layers);
@@ -28,7 +28,7 @@ Expected<PreparedView> ViewBlender(Scene& scene, BlenderAnimation& animation, co
   return view;
 }
 
-// Of a file that moves: its camera that is looked through, by its place; none where we look for ourselves.
+// The place of the file's camera that is used; none where a view is.
 std::optional<int> OwnCamera(const Scene& scene, const SceneRequest& options, const Camera& seen_by) {
   std::optional<int> found;
   if (options.view) return found;
@@ -81,7 +81,7 @@ Status SceneFrames::StartFile(const Progress& progress) {
     AddProgram(context_.threads, need);
     AddScene(now_, CountNeededPixels(now_, options_, layers_), need);
     SCUMBLE_RETURN_IF_ERROR(CheckMemory(need, context_, "make the scene or its textures smaller"));
-    // Here, so that a picture which is missing ends the sequence, and not each of its frames.
+    // Here, so that a missing picture ends the sequence, and not each of its frames.
     SCUMBLE_ASSIGN(decoded_, DecodeNeededTextures(now_, options_, layers_, context_));
     load_ms_ = load_ms + watch.Lap();
     return Ok();
@@ -96,12 +96,12 @@ Status SceneFrames::StartFile(const Progress& progress) {
 }
 
 Expected<const SceneGuides*> SceneFrames::At(int frame, const Progress& progress) {
-  SCUMBLE_ASSIGN(const SceneGuides* const guides, Ahead(frame, progress));
+  SCUMBLE_ASSIGN(const SceneGuides* const guides, Peek(frame, progress));
   used_ = true;
   return guides;
 }
 
-Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progress) {
+Expected<const SceneGuides*> SceneFrames::Peek(int frame, const Progress& progress) {
   if (used_) guides_->times.clear(), guides_->plan.clear(), guides_->cost = {};
   used_ = false;
   if ((!blender_ && !animation_) || frame_ == frame) return guides_.get();
@@ -109,8 +109,8 @@ Expected<const SceneGuides*> SceneFrames::Ahead(int frame, const Progress& progr
   guides_ = std::make_shared<SceneGuides>();  // the last one may be being written
   SCUMBLE_ASSIGN(*guides_, blender_ ? CastBlender(frame, progress) : CastFile(frame, progress));
   SCUMBLE_RETURN_IF_ERROR(guides_->guides.Validate(options_.scene));
-  if (spoken_) guides_->plan.clear();
-  spoken_ = true, frame_ = frame;
+  if (noted_) guides_->plan.clear();
+  noted_ = true, frame_ = frame;
   return guides_.get();
 }
 
@@ -136,7 +136,7 @@ Expected<SceneGuides> SceneFrames::CastFile(int frame, const Progress& progress)
 }
 
 Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progress) {
-  const RunContext& context = spoken_ ? silent_ : context_;
+  const RunContext& context = noted_ ? silent_ : context_;
   Stopwatch watch;
   SCUMBLE_ASSIGN(Scene* const loaded, BlenderFrame(frame));
   const int place = place_.at(frame);
@@ -165,7 +165,7 @@ Expected<SceneGuides> SceneFrames::CastBlender(int frame, const Progress& progre
 }
 
 Expected<Scene*> SceneFrames::BlenderFrame(int frame) {
-  // In the order of the export: where a frame failed, what it has not asked for stands in the way of the next one.
+  // In the order of the export: a frame that failed may have left some unread, which would keep the next one waiting.
   while (!scenes_.count(frame) && loaded_ < exported_.size()) {
     const int following = exported_[loaded_++];
     Expected<Scene> scene = blender_->Load(following);
@@ -174,7 +174,7 @@ Expected<Scene*> SceneFrames::BlenderFrame(int frame) {
   }
   const auto found = scenes_.find(frame);
   if (found != scenes_.end()) return &found->second;
-  SCUMBLE_ASSIGN(Scene scene, blender_->Load(frame));  // says once more why there is none
+  SCUMBLE_ASSIGN(Scene scene, blender_->Load(frame));  // reports again why there is none
   return &(scenes_[frame] = std::move(scene));
 }
 
@@ -197,12 +197,17 @@ Expected<SceneGuides> MakeGuidesAt(int frame, const SceneRequest& options, const
   return scene.Take();
 }
 
+Status CheckAtRest(const SceneRequest& options, bool motion) {
+  const std::string fix = ": give --frame N, or --frames for several where the command has it";
+  if (motion) return UsageError("the layer motion is measured from one frame to the next" + fix);
+  if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + fix);
+  return Ok();
+}
+
 Expected<StaticScene> OpenStaticScene(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                       const RunContext& context, bool plan_only, bool warns) {
-  const std::string mend = ": give --frame N, or --frames for several where the verb has it";
-  if (motion) return UsageError("the layer motion is measured from one frame to the next" + mend);
   SCUMBLE_RETURN_IF_ERROR(CheckSceneRequest(options));
-  if (!options.animation.empty()) return UsageError("--animation plays with the frames' numbers" + mend);
+  SCUMBLE_RETURN_IF_ERROR(CheckAtRest(options, motion));
   Stopwatch watch;
   StaticScene rest;
   SCUMBLE_ASSIGN(rest.scene, OpenScene(options, context, plan_only ? nullptr : &rest.animation, warns));

@@ -19,7 +19,7 @@
 
 namespace scumble {
 
-// The layers to make of a scene whose author has these wishes.
+// The layers to make of a scene that asks for these styles.
 using LayersFor = std::function<Expected<LayerSet>(const SceneStyleRequests&)>;
 
 class SceneFrames {
@@ -34,24 +34,23 @@ class SceneFrames {
     silent_.clock = context.clock;
   }
 
-  // A scene that does not move is loaded and cast here, once for all frames. One that moves is loaded here, and how it
-  // is seen is decided as it stands at time 0, whatever the frames: a camera that frames it and a key light stay where
-  // they are then, a camera of the file moves as the file says. Of a .blend, one Blender begins to export these frames,
-  // for the layer motion the next ones too; time 0 is its own first frame there.
+  // A scene that does not move is loaded and cast here, once for all frames. One that moves is loaded here. How it is
+  // seen is decided at time 0, whatever the frames: a camera that frames it and a key light stay where they are then; a
+  // camera of the file moves as the file says. Of a .blend, one Blender begins to export these frames, for the layer
+  // motion the next ones too. Time 0 is then the scene's first frame.
   Status Start(std::span<const int> frames, const Progress& progress);
 
-  // The guides of one of the frames, to be asked for in their order; the same one may be asked for again. What the
-  // scene has to say (cameras, lights, warnings) is said once. Plan, times and cost are those of the work that this
-  // call did. Valid until the next call.
+  // The guides of one of the frames, in their order; one frame may be asked for again. Cameras, lights and warnings are
+  // noted once. Plan, times and cost are those of the work that this call did. Valid until the next call.
   Expected<const SceneGuides*> At(int frame, const Progress& progress);
 
-  // The same, for a look at a frame that At will be asked for next; plan, times and cost are kept for it.
-  Expected<const SceneGuides*> Ahead(int frame, const Progress& progress);
+  // As At, for the frame that At will be asked for next; plan, times and cost are kept for that call.
+  Expected<const SceneGuides*> Peek(int frame, const Progress& progress);
 
-  // What At has handed out last, to keep beyond the next call: only its guides, the rest may change.
+  // What At has returned last, to keep beyond the next call: only its guides, the rest may change.
   std::shared_ptr<const SceneGuides> Keep() const { return guides_; }
 
-  // Gives away what At has handed out last.
+  // Gives away what At has returned last.
   SceneGuides Take() { return std::move(*guides_); }
 
  private:
@@ -71,11 +70,11 @@ class SceneFrames {
   // A file that moves.
   std::optional<AnimatedScene> animation_;  // none: the scene stands still, or is Blender's
   LayerSet layers_;
-  std::optional<double> load_ms_;  // that no frame has told of
-  SceneCost decoded_;              // nor of these textures
+  std::optional<double> load_ms_;  // of loading, until a frame reports it
+  SceneCost decoded_;              // textures, likewise
   FrameRate rate_;
   Scene now_, next_;            // as they are posed; `next_` for the layer motion, without textures
-  Camera camera_;               // where the file's own are not looked through
+  Camera camera_;               // where none of the file's own is used
   std::optional<int> by_file_;  // otherwise, in now_.cameras
 
   std::unique_ptr<BlenderRange> blender_;  // none: no .blend
@@ -87,12 +86,12 @@ class SceneFrames {
 
   std::optional<int> frame_;  // that guides_ are of
   std::shared_ptr<SceneGuides> guides_ = std::make_shared<SceneGuides>();
-  bool used_ = false;    // At has handed out guides_
-  bool spoken_ = false;  // the first frame has said what there is to say
+  bool used_ = false;   // At has returned guides_
+  bool noted_ = false;  // the first frame is made: plan, cameras and lights are noted
   std::set<std::string> warned_;
 };
 
-// Writes the frames' rate among the attributes, where the command line or the .blend names one.
+// Stores the frames' rate among the attributes, where the request or the .blend names one.
 void StoreFrameRate(const SceneRequest& options, const BlenderAnimation& animation, GuideSet& guides);
 
 // One frame, as a sequence would have it.
@@ -108,8 +107,10 @@ struct StaticScene {
   double load_ms = 0.0;
 };
 
-// Says how it is seen, and what the scene warns of unless `warns` is false: it will be opened once more. Errors as
-// MakeStaticGuides has them.
+// Ok, or a usage error: the layer motion and --animation need a frame's number.
+Status CheckAtRest(const SceneRequest& options, bool motion);
+
+// Notes how it is seen. Passes on the scene's warnings if `warns`. Errors as MakeStaticGuides has them.
 Expected<StaticScene> OpenStaticScene(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                       const RunContext& context, bool plan_only, bool warns = true);
 
@@ -120,12 +121,11 @@ Expected<StaticScene> PoseScene(const AnimatedScene& animation, std::optional<in
 // Decides again how a posed scene of Blender's is seen, for other layers or through another camera.
 Status ViewAgain(StaticScene& rest, std::size_t lights, const SceneRequest& options, const LayerSet& layers);
 
-// The same of a frame, seen as SceneFrames sees it; without a number, at rest.
+// Opens a scene at a frame, seen as SceneFrames sees it; without a number, at rest.
 Expected<StaticScene> OpenSceneAt(std::optional<int> frame, const SceneRequest& options, const LayersFor& layers_for,
                                   const RunContext& context, bool warns = true);
 
-// The scene as it stands without a frame's number, as MakeGuidesOf has it. --animation and the layer motion are usage
-// errors.
+// The guides of a scene without a frame's number, at rest. Errors of CheckAtRest.
 Expected<SceneGuides> MakeStaticGuides(const SceneRequest& options, const LayersFor& layers_for, bool motion,
                                        const RunContext& context, const Progress& progress, bool plan_only);
 

@@ -1,4 +1,4 @@
-// What --assign takes: NAME=STYLE, or a file of such lines; and how names are matched and talked about.
+// What --assign takes: NAME=STYLE, or a file of such lines; how names are matched, and how messages list them.
 #pragma once
 
 #include <cstdint>

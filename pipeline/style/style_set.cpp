@@ -33,6 +33,7 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   const std::string path = PathOf(found);
   if (const auto known = set.opened.find(path); known != set.opened.end()) return known->second;
   if (set.styles.size() >= std::size_t(StyleMap::kMaxStyles)) return UsageError("too many styles in one picture");
+  SCUMBLE_RETURN_IF_ERROR(set.context.CheckNotCancelled());
   std::vector<std::string> overrides;
   for (const StyleSet::Override& one : set.overrides) {
     if (one.style.empty() || one.path == path) overrides.push_back(one.text);
@@ -43,7 +44,7 @@ Expected<std::uint16_t> PlaceOf(StyleSet& set, const std::string& name, const st
   return set.opened[path] = static_cast<std::uint16_t>(set.styles.size() - 1);
 }
 
-// The same, or what the reserved words mean.
+// The place of a style, or what the reserved words mean.
 Expected<std::uint16_t> PlaceOrWord(StyleSet& set, const std::string& name, const std::filesystem::path& base) {
   if (name == kRendered) return StyleMap::kPassThrough;
   if (name == kCatcher) return StyleMap::kShadowCatcher;
@@ -55,85 +56,94 @@ bool IsAssigned(const StyleSet& set, const std::string& name) {
                      [&](const StyleSet::Assigned& one) { return FitsPattern(name, one.pattern); });
 }
 
-// Opens them, and adds the places of their styles to `read`.
-Status OpenStyleRequests(StyleSet& set, const std::map<std::string, std::string>& wishes, const std::string& kind,
+// What a request means depends on the folder of the file that it is from.
+std::string KeyOf(const std::string& style, const std::string& file) {
+  return std::filesystem::path(file).parent_path().string() + "\n" + style;
+}
+
+// Opens the styles that are asked for, and adds their places to `read`.
+Status OpenStyleRequests(StyleSet& set, const std::map<std::string, std::string>& requests, const std::string& kind,
                          const std::string& file, std::set<std::size_t>& read) {
-  for (const auto& [name, wish] : wishes) {
+  for (const auto& [name, style] : requests) {
     if (IsAssigned(set, name)) continue;
-    if (const auto known = set.wanted.find(wish); known != set.wanted.end()) {
+    const std::string key = KeyOf(style, file);
+    if (const auto known = set.wanted.find(key); known != set.wanted.end()) {
       read.insert(known->second);
       continue;
     }
     const std::string who =
-        file + ": " + kind + " '" + name + "' wants the style '" + wish + "' (property scumble_style)";
-    const std::string mend = "; mend the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
-    const Expected<std::uint16_t> place = PlaceOrWord(set, wish, std::filesystem::path(file).parent_path());
-    if (!place) return Error{place.error().kind, who + ": " + place.error().message + mend};
+        file + ": " + kind + " '" + name + "' wants the style '" + style + "' (property scumble_style)";
+    const std::string fix = "; fix the property, give --assign '" + name + "=STYLE', or --no-scene-styles";
+    const Expected<std::uint16_t> place = PlaceOrWord(set, style, std::filesystem::path(file).parent_path());
+    if (!place) {
+      if (place.error().kind == ErrorKind::kCancelled) return place.error();
+      return Error{place.error().kind, who + ": " + place.error().message + fix};
+    }
     if (*place == StyleMap::kShadowCatcher && !PaintsShadows(set.first())) {
       return InputError(who + ", and the style of the picture paints no shadows that it could catch: give --set " +
-                        "transfer.shadow=paint" + mend);
+                        "transfer.shadow=paint" + fix);
     }
-    set.wanted[wish] = *place;
+    set.wanted[key] = *place;
     read.insert(*place);
   }
   return Ok();
 }
 
+// The styles of those whose request was granted, by id.
 std::map<std::uint32_t, std::uint16_t> Granted(const StyleSet& set,
-                                               const std::map<std::uint32_t, std::string>& wishes) {
+                                               const std::map<std::uint32_t, std::string>& requests,
+                                               const std::string& file) {
   std::map<std::uint32_t, std::uint16_t> styles;
-  for (const auto& [id, wish] : wishes) {
-    if (const auto found = set.wanted.find(wish); found != set.wanted.end()) styles[id] = found->second;
+  for (const auto& [id, style] : requests) {
+    if (const auto found = set.wanted.find(KeyOf(style, file)); found != set.wanted.end()) styles[id] = found->second;
   }
   return styles;
 }
 
 void NameStyleRequests(const std::map<std::uint32_t, std::string>& styles,
-                       const std::map<std::uint32_t, std::string>& names, std::map<std::string, std::string>& wishes) {
+                       const std::map<std::uint32_t, std::string>& names,
+                       std::map<std::string, std::string>& requests) {
   for (const auto& [id, style] : styles) {
     const auto name = names.find(id);
-    wishes[name != names.end() ? name->second : "id " + std::to_string(id)] = style;
+    requests[name != names.end() ? name->second : "id " + std::to_string(id)] = style;
   }
 }
 
 }  // namespace
 
-bool StyleSet::NeedsMap(const GuideSet& guides) const {
-  const auto any = [this](const auto& wishes) {
-    return std::any_of(wishes.begin(), wishes.end(),
-                       [this](const auto& wish) { return wanted.count(wish.second) > 0; });
-  };
-  return !assigned.empty() || any(guides.object_styles) || any(guides.material_styles);
+bool StyleSet::NeedsMap(const GuideSet& guides, const std::string& file) const {
+  return !assigned.empty() || !Granted(*this, guides.object_styles, file).empty() ||
+         !Granted(*this, guides.material_styles, file).empty();
 }
 
 SceneStyleRequests SceneStyleRequestsOf(std::span<const Instance> instances, const Scene& scene) {
-  SceneStyleRequests wishes;
+  SceneStyleRequests requests;
   for (const Instance& instance : instances) {
-    if (!instance.style.empty()) wishes.objects[instance.object] = instance.style;
+    if (!instance.style.empty()) requests.objects[instance.object] = instance.style;
     const Material& material = scene.materials[scene.meshes[instance.mesh].material];
-    if (!material.style.empty()) wishes.materials[material.name] = material.style;
+    if (!material.style.empty()) requests.materials[material.name] = material.style;
   }
-  return wishes;
+  return requests;
 }
 
 SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides) {
-  SceneStyleRequests wishes;
-  NameStyleRequests(guides.object_styles, guides.object_names, wishes.objects);
-  NameStyleRequests(guides.material_styles, guides.material_names, wishes.materials);
-  return wishes;
+  SceneStyleRequests requests;
+  NameStyleRequests(guides.object_styles, guides.object_names, requests.objects);
+  NameStyleRequests(guides.material_styles, guides.material_names, requests.materials);
+  return requests;
 }
 
-LayerSet StyleSet::LayersOfNames(const SceneStyleRequests& wishes) const {
-  const bool wished = options.scene_styles && (!wishes.objects.empty() || !wishes.materials.empty());
-  return wished || !assigned.empty() ? LayerSet{Layer::kObject, Layer::kMaterial} : LayerSet();
+LayerSet StyleSet::LayersOfNames(const SceneStyleRequests& requests) const {
+  const bool asked = options.scene_styles && (!requests.objects.empty() || !requests.materials.empty());
+  return asked || !assigned.empty() ? LayerSet{Layer::kObject, Layer::kMaterial} : LayerSet();
 }
 
-Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file) {
+Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& requests, const std::string& file) {
   std::set<std::size_t> read;
   for (std::size_t i = 0; i < set.chosen; ++i) read.insert(i);
   if (set.options.scene_styles) {
-    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, wishes.objects, "object", file, read));
-    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, wishes.materials, "material", file, read));
+    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, requests.objects, "object", file, read));
+    SCUMBLE_RETURN_IF_ERROR(OpenStyleRequests(set, requests.materials, "material", file, read));
   }
   LayerSet layers;
   for (const std::size_t i : read) {
@@ -144,9 +154,9 @@ Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& wishes, 
   return layers;
 }
 
-Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file) {
-  SCUMBLE_ASSIGN(LayerSet layers, StyleLayers(set, wishes, file));
-  return layers.Add(set.LayersOfNames(wishes));
+Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& requests, const std::string& file) {
+  SCUMBLE_ASSIGN(LayerSet layers, StyleLayers(set, requests, file));
+  return layers.Add(set.LayersOfNames(requests));
 }
 
 namespace {
@@ -188,7 +198,10 @@ Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& con
   for (const auto& [pattern, name, where] : assignments) {
     if (!by_name.count(name)) {
       const Expected<std::uint16_t> place = PlaceOrWord(set, name, {});
-      if (!place) return Error{place.error().kind, where + ": " + place.error().message};
+      if (!place) {
+        if (place.error().kind == ErrorKind::kCancelled) return place.error();
+        return Error{place.error().kind, where + ": " + place.error().message};
+      }
       by_name[name] = *place;
     }
     const std::uint16_t place = by_name[name];
@@ -212,6 +225,13 @@ void WarnOnce(StyleSet& set, const std::string& text) {
 }
 
 }  // namespace
+
+void CloseSceneStyles(StyleSet& set) {
+  set.styles.erase(set.styles.begin() + std::ptrdiff_t(set.chosen), set.styles.end());
+  set.given.resize(set.chosen);
+  set.wanted.clear();
+  std::erase_if(set.opened, [&](const auto& one) { return one.second >= set.chosen; });
+}
 
 Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file) {
   static const std::map<std::uint32_t, std::string> kNone;
@@ -238,18 +258,18 @@ Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::s
                         DescribeNames(one.pattern, objects, materials) + "; it lacks the " + lacks +
                         ", which may know more: make guides with scumble guidegen, or render with that Cryptomatte");
     }
-    if (!fits && !one.named && !one.told) {
-      one.told = true;
+    if (!fits && !one.named && !one.warned) {
+      one.warned = true;
       WarnOnce(set, one.where + ": the scene has no such object or material; " +
                         DescribeNames(one.pattern, objects, materials));
     }
     one.named = one.named || fits;
   }
-  const auto wished = [&](bool has, const auto& wishes) {
-    return has ? Granted(set, wishes) : std::map<std::uint32_t, std::uint16_t>();
+  const auto granted = [&](bool has, const auto& requests) {
+    return has ? Granted(set, requests, file) : std::map<std::uint32_t, std::uint16_t>();
   };
-  StyleMap map =
-      MapStyles(guides, {wished(has_objects, guides.object_styles), wished(has_materials, guides.material_styles), 0});
+  StyleMap map = MapStyles(
+      guides, {granted(has_objects, guides.object_styles), granted(has_materials, guides.material_styles), 0});
   std::vector<std::size_t> pixels(set.assigned.size());
   AssignStyles(guides, assignment, map, pixels);
   for (std::size_t rank = 0; rank < pixels.size(); ++rank) set.assigned[rank].pixels += pixels[rank];

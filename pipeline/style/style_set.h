@@ -1,4 +1,4 @@
-// The styles of one run: a default one, and those that --assign gives to objects and materials.
+// The styles of one run: a default one, and those that --assign or the scene gives to objects and materials.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ struct StyleSet {
     std::uint16_t style = 0;
     std::string where;       // the option, or the file and its line, for messages
     bool named = false;      // some frame so far has such an object or material
-    bool told = false;       // that one has none
+    bool warned = false;     // that none has
     std::size_t pixels = 0;  // that it has painted in all frames so far
   };
   // One --set.
@@ -36,21 +36,22 @@ struct StyleSet {
   std::vector<std::string> given;  // by style: its name as the user or the scene gives it
   std::vector<Assigned> assigned;
   std::vector<Override> overrides;
-  std::map<std::string, std::uint16_t> wanted;  // by what the scene says; below `assigned`
+  std::map<std::string, std::uint16_t> wanted;  // by the scene, with the folder of its file; goes after `assigned`
   StyleRequest options;                         // that it was opened with
   RunContext context;                           // likewise
   std::size_t chosen = 1;                       // so many of `styles` are the user's, the others the scene's
   std::map<std::string, std::uint16_t> opened;  // by path
-  std::vector<std::string> warnings;            // said so far
+  std::vector<std::string> warnings;            // that were given
 
   const Style& first() const { return styles.front(); }
-  // Whether any of these guides' pixels may have another style than the default.
-  bool NeedsMap(const GuideSet& guides) const;
+  // Whether any pixel of these guides, which are `file`'s, may have another style than the default.
+  bool NeedsMap(const GuideSet& guides, const std::string& file) const;
   // The layers that say which object or material a pixel belongs to, where that matters. One of them may do.
-  LayerSet LayersOfNames(const SceneStyleRequests& wishes) const;
+  LayerSet LayersOfNames(const SceneStyleRequests& requests) const;
 };
 
-// What a scene's author wants painted otherwise, by name. From a scene: of the instances, and of materials in use.
+// The styles that a scene's author asks for, by the name of the object or material. From a scene: of the instances, and
+// of materials in use.
 struct SceneStyleRequests {
   std::map<std::string, std::string> objects;
   std::map<std::string, std::string> materials;
@@ -58,21 +59,24 @@ struct SceneStyleRequests {
 SceneStyleRequests SceneStyleRequestsOf(std::span<const Instance> instances, const Scene& scene);
 SceneStyleRequests SceneStyleRequestsOf(const GuideSet& guides);
 
-// Opens what is wished for and not opened yet, except for what --assign settles and under --no-scene-styles, and
-// returns everything that the user's styles and these read, in any frame. Paths are relative to the folder of `file`,
-// the scene or guide file that the wishes are from. A kInput error names the object.
-Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file);
+// Opens the styles that are asked for, unless --assign decides or StyleRequest::scene_styles is off. Returns the layers
+// that the user's styles and these read, in any frame. Paths are relative to the folder of `file`, the scene or guide
+// file that asks. A kInput error names the object.
+Expected<LayerSet> StyleLayers(StyleSet& set, const SceneStyleRequests& requests, const std::string& file);
 
-// The same with LayersOfNames: what guides must be made with.
-Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& wishes, const std::string& file);
+// StyleLayers and LayersOfNames: what guides must be made with.
+Expected<LayerSet> RequiredLayers(StyleSet& set, const SceneStyleRequests& requests, const std::string& file);
 
-// Opens the default style and every assigned one, each once. "rendered" leaves objects as they are,
-// "catcher" shows nothing of them but the shadows on them.
+// Drops the styles that a scene asked for, before another scene is painted.
+void CloseSceneStyles(StyleSet& set);
+
+// Opens the default style and every assigned one, each once. "rendered" leaves objects as they are, "catcher" shows
+// nothing of them but the shadows on them. Cancelled between two styles.
 Expected<StyleSet> OpenStyles(const StyleRequest& options, const RunContext& context);
 
-// Which style paints which pixel, by the names in the guides, which are `file`'s; the last assignment that fits a
-// pixel's object or material wins, and any before what the scene says, an object's before its material's. Warns, once
-// in all frames, of a pattern that fits nothing; it is kInput where the guides lack the layer in which it might.
+// Which style paints which pixel, by the names in the guides, which are `file`'s. The last assignment that fits a
+// pixel's object or material wins. Without any, it is what the scene asks for, an object before its material. A pattern
+// that fits nothing is warned of once in all frames; it is kInput where the guides lack the layer in which it might.
 Expected<StyleMap> MapStyles(StyleSet& set, const GuideSet& guides, const std::string& file);
 
 // After the last frame: warns of assignments that have painted no pixel. Returns all warnings about assignments.

@@ -1,4 +1,4 @@
-// The grid that `scumble tradeoff` measures: ways to stylise a scene around a style's own settings.
+// The grid that `scumble tradeoff` measures: variants around a style's own settings.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct TradeGridOptions {
 
 struct TradeGrid {
   std::vector<Variant> variants;      // "the style" first, then "the exact variant", then axis by axis
-  std::vector<std::string> left_out;  // in words, with why
+  std::vector<std::string> left_out;  // each with its reason
 };
 
 // Names of axes for what changes nothing and for what the others are measured against.
@@ -33,8 +33,8 @@ TradeGrid MakeTradeGrid(const Style& style, const TradeGridOptions& options);
 // The axes in the grid's order, each once.
 std::vector<std::string> AxesOf(const std::vector<Variant>& variants);
 
-// The ways that --only names, "levels,nearest*": those of an axis of that name, and those whose own name fits; with the
-// style in any case. A kUsage error lists the axes where a part names nothing.
+// The variants that --only names, "levels,nearest*": those of an axis of that name, and those whose own name fits; with
+// the style in any case. A kUsage error lists the axes where a part names nothing.
 Expected<std::vector<Variant>> ChooseVariants(const std::vector<Variant>& variants, const std::string& only);
 
 }  // namespace scumble

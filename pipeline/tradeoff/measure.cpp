@@ -52,7 +52,7 @@ Quartiles TotalOf(const std::vector<double>& guides, const std::vector<double>& 
   return QuartilesOf(std::move(sums));
 }
 
-// A way that takes longer has no process of its own to tell its memory.
+// The memory of a variant that takes longer is not measured.
 constexpr double kMostForMemoryMs = 60000.0;
 
 void AddNote(TradeMeasure& measure, const std::string& note) {
@@ -70,6 +70,11 @@ class Trade {
   }
 
   Expected<TradeReport> Measure() {
+    if (asks_for_memory_ && context_.program.empty()) {
+      return UnavailableError(
+          "memory is measured by running the program scumble again, and it is not known where that is: name it in "
+          "RunContext::program, or leave memory out (--no-memory)");
+    }
     SCUMBLE_ASSIGN(stage_, OpenTradeStage(setup_, context_));
     SCUMBLE_ASSIGN(std::vector<Variant> variants, ChosenVariants());
     if (setup_.exposure && !LooksAtLight(stage_.style)) {
@@ -106,12 +111,14 @@ class Trade {
 
  private:
   // Shares of the bar, a transfer being 1.
-  static constexpr int kReferenceSeed = 1 << 20;  // added to the verb's; that of no variant
+  static constexpr int kReferenceSeed = 1 << 20;  // added to --seed; no variant has it
   static constexpr double kGuidesWork = 2.0, kMeasureWork = 20.0, kMemoryWork = 10.0;
 
-  void Finished(double work) {
+  // kCancelled where the progress callback asks to stop.
+  Status Finished(double work) {
     done_ += work;
-    if (progress_) progress_(std::min(1.0, done_ / work_));
+    SCUMBLE_RETURN_IF_ERROR(context_.CheckNotCancelled());
+    return progress_ && !progress_(std::min(1.0, done_ / work_)) ? Status(CancelledError()) : Ok();
   }
 
   Expected<std::vector<Variant>> ChosenVariants() const {
@@ -123,8 +130,8 @@ class Trade {
     return UsageError("--only " + setup_.only + ": --quick leaves that out; leave out --quick");
   }
 
-  // Guides larger than the picture, and exemplars that fit them, may be too large to be made; that is told before much
-  // else.
+  // Guides larger than the picture, and exemplars that fit them, may be too large to be made. That is found before
+  // minutes of work.
   Status LeaveOutWhatIsTooLarge(std::vector<Variant>& variants) {
     std::vector<Variant> left;
     for (const Variant& variant : variants) {
@@ -160,7 +167,7 @@ class Trade {
     return Ok();
   }
 
-  // What there is whichever ways are at work: among others the guides of the exact variant and those of the style
+  // What there is whichever variants are at work: among others the guides of the exact variant and those of the style
   // itself.
   Expected<MemoryNeed> NeedOfAll(const std::vector<Variant>& variants) {
     const LayerSet& layers = stage_.scene.layers;
@@ -173,8 +180,8 @@ class Trade {
     return std::move(plan.memory);
   }
 
-  // Each style is opened once, as what is wrong with one is told before minutes of work, and so is memory that is not
-  // there. None is kept: their pictures take memory.
+  // Each style is opened once, so that a mistake in one, or memory that is short, is found before minutes of work. None
+  // is kept: their pictures take memory.
   Status OpenStyles(const std::vector<Variant>& variants) {
     SCUMBLE_ASSIGN(const MemoryNeed all, NeedOfAll(variants));
     MemoryNeed most = all, together;
@@ -204,7 +211,7 @@ class Trade {
     return variant;
   }
 
-  // Kept as long as some way needs them.
+  // Kept as long as some variant needs them.
   Expected<std::shared_ptr<const VariantGuides>> GuidesOf(const Variant& variant, const LayerSet& layers) {
     const std::string key = GuidesKey(variant, layers, true);
     if (auto known = guides_[key].lock()) return known;
@@ -255,7 +262,7 @@ class Trade {
 
   // The first run warms up, and counts only where it is slow.
   Status TimeGuides(const Variant& variant, const LayerSet& layers, int run, std::vector<double>& times) {
-    Finished(kGuidesWork);
+    SCUMBLE_RETURN_IF_ERROR(Finished(kGuidesWork));
     if (run > 0 && !times.empty() && times.front() > kSlowMs) return Ok();
     SCUMBLE_ASSIGN(const VariantGuides made, MakeVariantGuides(stage_.scene, setup_.scene, variant, layers, silent_));
     if (run > 0 || made.ms > kSlowMs) times.push_back(made.ms);
@@ -266,7 +273,7 @@ class Trade {
     std::vector<VariantPainter> painters;
     std::vector<double> first_ms;
     std::vector<std::vector<double>> times(end - begin);
-    // Most ways have the style's own guides, and it has turns with all: they are cast once.
+    // Most variants have the style's own guides, and it has turns with all: they are cast once.
     SCUMBLE_ASSIGN(style_guides_, GuidesOf(variants.front(), layers_.front()));
     for (std::size_t i = begin; i < end; ++i) {
       SCUMBLE_ASSIGN(const Style style, StyleOfVariant(setup_, variants[i], context_));
@@ -291,13 +298,13 @@ class Trade {
       first_ms.push_back(ms);
       times.emplace_back();
     }
-    // Slow ways have turns of their own: after them a quick one would find the processor's caches cold.
+    // Slow variants have turns of their own: after them a quick one would find the processor's caches cold.
     const double quick_ms = 4.0 * *std::min_element(first_ms.begin(), first_ms.end());
     for (const bool slow : {false, true}) {
       for (int run = 1; run <= setup_.repeats; ++run) {
         for (std::size_t i = 0; i < painters.size(); ++i) {
           if ((first_ms[i] > quick_ms) != slow) continue;
-          Finished(1.0);
+          SCUMBLE_RETURN_IF_ERROR(Finished(1.0));
           if (first_ms[i] > kSlowMs) continue;
           SCUMBLE_ASSIGN(const double ms, painters[i].Paint());
           times[i].push_back(ms);
@@ -326,7 +333,7 @@ class Trade {
           AddNote(measure, "the process that was to tell its memory failed");
         }
       }
-      Finished(kMemoryWork);
+      SCUMBLE_RETURN_IF_ERROR(Finished(kMemoryWork));
     }
     return Ok();
   }
@@ -356,7 +363,7 @@ class Trade {
                    [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
     SCUMBLE_RETURN_IF_ERROR(MeasurePaint(painter, measure));
     report_.variants.push_back(std::move(measure));
-    Finished(kMeasureWork);
+    SCUMBLE_RETURN_IF_ERROR(Finished(kMeasureWork));
     return Ok();
   }
 
@@ -395,13 +402,13 @@ class Trade {
   double work_ = 1.0, done_ = 0.0;
   TradeStage stage_;
   TradeMemory memory_{setup_, stage_, context_};
-  std::vector<LayerSet> layers_;  // by way
+  std::vector<LayerSet> layers_;  // by variant
   std::map<std::string, std::weak_ptr<const VariantGuides>> guides_;
   std::map<std::string, std::vector<double>> guides_ms_;
   std::shared_ptr<const VariantGuides> exact_guides_, style_guides_;
   std::optional<TradeReference> reference_;
   std::map<std::size_t, std::size_t> pictures_;  // of variants, by a hash of 64 bits
-  double style_first_ms_ = 0.0;                  // of the style as it is, the first way
+  double style_first_ms_ = 0.0;                  // of the style as it is, the first variant
   std::vector<double> style_ms_;                 // all its transfers
   TradeReport report_;
 };

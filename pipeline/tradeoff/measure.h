@@ -27,9 +27,9 @@ struct TradeSetup {
 inline constexpr double kSlowMs = 5000.0;
 
 // Everything that was measured. Guides are timed first, all variants' in turn, then transfers, those of a few variants
-// in turn, quick ones before slow ones: what else the machine does then is spread over ways. Each run is one of a
+// in turn, quick ones before slow ones: what else the machine does then is spread over variants. Each run is one of a
 // single picture (VariantPainter::Paint). Wrong options are kUsage; a scene that shows nothing is kInput; what would
-// take more memory than there is, as CheckMemory.
+// take more memory than there is, as CheckMemory; memory without RunContext::program is kUnavailable.
 Expected<TradeReport> MeasureTradeoff(const TradeSetup& setup, const RunContext& context);
 
 // The command line that measures all this again.

@@ -1,4 +1,4 @@
-// What `scumble tradeoff` takes at its peak, told before any of it is taken; docs/memory.md has it in words.
+// What `scumble tradeoff` takes at its peak, before any of it is taken; docs/memory.md explains it.
 #pragma once
 
 #include <cstddef>
@@ -18,12 +18,12 @@ class TradeMemory {
   TradeMemory(const TradeSetup& setup, const TradeStage& stage, const RunContext& context)
       : setup_(setup), stage_(stage), context_(context) {}
 
-  // Adds what there is whichever ways are at work: the style and what all are measured against, one more picture, made
-  // without the scene's colours, and the pictures of so many variants, as files and in the page. `need` has the
+  // Adds what there is whichever variants are at work: the style and what all are measured against, one more picture,
+  // made without the scene's colours, and the pictures of so many variants, as files and in the page. `need` has the
   // program, the scene and the guides that last already.
   void AddReport(std::size_t variants, MemoryNeed& need) const;
 
-  // Adds a variant that is at work, and the energy of its picture. `own_guides`: no other that is there has the same.
+  // Adds a variant that is at work, and the energy of its picture. `own_guides`: no other one at work shares them.
   void AddVariant(const Variant& variant, const Style& style, const LayerSet& layers, bool own_guides,
                   MemoryNeed& need) const;
 

@@ -62,17 +62,15 @@ std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContex
 }
 
 Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& variant, const RunContext& context) {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch(context);
   if (scratch.path().empty()) return std::size_t(0);
-  std::error_code failed;
-  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe", failed).string()};
-  if (failed) return std::size_t(0);
+  std::vector<std::string> words = {context.program.string()};
   for (std::string& word : TradeArguments(setup, context)) words.push_back(std::move(word));
   words.push_back("--peak-of=" + variant);
   words.push_back("--quiet");
   const std::filesystem::path log = scratch.path() / "log";
-  const Expected<ProgramEnd> end = RunProgram(words, log);
-  SCUMBLE_RETURN_IF_ERROR(CheckNotSignalled(setup.scene.scene));
+  const Expected<ProgramEnd> end = RunProgram(words, log, context);
+  if (!end && end.error().kind == ErrorKind::kCancelled) return end.error();
   if (!end || end->code != 0) return std::size_t(0);
   for (const std::string& line : LinesOf(log)) {
     std::size_t bytes = 0;

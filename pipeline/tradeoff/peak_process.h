@@ -15,11 +15,11 @@ namespace scumble {
 // are not the usual ones.
 std::vector<std::pair<std::string, std::string>> SceneArguments(const TradeSetup& setup);
 
-// The verb's arguments that set this up, behind the program's name. No option of output is among them.
+// The command's arguments that set this up, behind the program's name. No option of output is among them.
 std::vector<std::string> TradeArguments(const TradeSetup& setup, const RunContext& context);
 
-// Runs this program again for one variant. 0 where that fails: memory is not worth an error. kCancelled where a signal
-// has come.
+// Runs RunContext::program, which must be set, for one variant. 0 where that fails: memory is not worth an error.
+// kCancelled where the context is cancelled.
 Expected<std::size_t> AskForPeak(const TradeSetup& setup, const std::string& variant, const RunContext& context);
 
 }  // namespace scumble

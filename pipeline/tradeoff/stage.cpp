@@ -67,8 +67,8 @@ Expected<TradeStage> OpenTradeStage(const TradeSetup& setup, const RunContext& c
   stage.style.paper = {};
   const Size& size = setup.scene.size;
   stage.width = size.width, stage.height = size.height;
-  const auto layers = [&](const SceneStyleRequests& wishes) -> Expected<LayerSet> {
-    stage.has_wishes = !wishes.objects.empty() || !wishes.materials.empty();
+  const auto layers = [&](const SceneStyleRequests& of_scene) -> Expected<LayerSet> {
+    stage.asks_for_styles = !of_scene.objects.empty() || !of_scene.materials.empty();
     return LayersOverTime(stage.style);
   };
   SCUMBLE_ASSIGN(stage.scene, OpenSceneAt(setup.frame, setup.scene, layers, context));
@@ -104,7 +104,7 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
     add("--max-bounces", std::to_string(setup.scene.max_bounces));
   }
   if (!variant.robust) text += " --no-robust";
-  if (stage.has_wishes) text += " --no-scene-styles";
+  if (stage.asks_for_styles) text += " --no-scene-styles";
   if (const std::uint64_t seed = SeedOf(setup, variant); seed != 0) add("--seed", std::to_string(seed));
   return {text, ""};
 }

@@ -1,4 +1,4 @@
-// One way of `scumble tradeoff`, ready to paint.
+// One variant of `scumble tradeoff`, ready to paint.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ struct TradeStage {
   StaticScene scene;
   Style style;  // as it is, but for its paper
   bool has_paper = false;
-  bool has_wishes = false;  // the scene asks for other styles
+  bool asks_for_styles = false;  // the scene asks for other styles
   bool chance = false;
   int width = 0, height = 0;
   TradeGrid grid;
@@ -38,15 +38,15 @@ RepeatOptions RepeatVariant(const TradeSetup& setup, const TradeStage& stage, co
 // The picture of a variant, painted as often as asked for. Not for several threads at once.
 class VariantPainter {
  public:
-  // `guides` are those of this way, and are kept.
+  // `guides` are those of this variant, and are kept.
   static Expected<VariantPainter> Prepare(const TradeSetup& setup, const Variant& variant, const Style& style,
                                           std::shared_ptr<const VariantGuides> guides, const RunContext& context);
 
-  // Returns the milliseconds of wall clock that it took: of the transfer, into memory that it is given then, as the
-  // first picture of a run of stylize is painted. Seeds that a sequence would know again are looked for anew each time.
+  // Returns the milliseconds of wall clock that the transfer took, into new memory, as the first picture of a run of
+  // stylize is painted. Nothing that a sequence keeps from frame to frame is used.
   Expected<double> Paint(bool keep_field = false);
 
-  // The same without base colours of the scene, which no exemplar has. Only for measures of the paint.
+  // The picture without base colours of the scene, which no exemplar has. Only for measures of the paint.
   bool is_tinted() const { return prepared_.settings.colorize > 0.0; }
   Expected<Picture> PaintUntinted();
 

@@ -45,8 +45,8 @@ const VariantSetting& SettingOf(const std::string& text) {
   return VariantSettings().front();
 }
 
-// Of a pixel: what they cost is noise that the energy does not see, so they go before all else, but for those that the
-// eye sees.
+// Of a pixel. Fewer samples cost noise that the energy hardly measures, so they are dropped first, but for those that
+// the eye would miss.
 constexpr int kManySamples = std::numeric_limits<int>::max(), kSomeSamples = 16, kFewSamples = 4;
 
 struct LadderStep {
@@ -58,8 +58,8 @@ struct LadderStep {
 constexpr const char *kStyleBlit = "transfer.method=styleblit", *kLitSphere = "transfer.method=litsphere",
                      *kUnsplit = "transfer.hybrid=0", *kCrisp = "transfer.blend_radius=0";
 
-// By rising energy, the mean over scenes and styles: docs/budget.md. But for guides of an eighth, whose steps it hardly
-// sees: they stand below no blending and the Lit Sphere, which have whole outlines.
+// By rising energy, the mean over scenes and styles: docs/budget.md. Guides of an eighth are an exception, because the
+// energy hardly measures their stairs: they stand below no blending and the Lit Sphere, which have whole outlines.
 const std::vector<LadderStep>& LadderSteps() {
   static const std::vector<LadderStep> kSteps = {
       {1, {}, kManySamples},
@@ -109,24 +109,24 @@ bool RaisesSomething(const VariantSetting& setting, const StyleSet& styles) {
   return false;
 }
 
-// Then a search in the tree for each pixel takes longer than the chunks' for each seed.
+// Then a search in the tree for each pixel takes longer than that of the chunks for each seed.
 bool WeighGuides(const StyleSet& styles) {
   return std::any_of(styles.styles.begin(), styles.styles.end(),
                      [](const Style& style) { return !style.transfer.guide_weights.ArePlain(); });
 }
 
-// How much smaller the guides can be, where so much is wanted.
+// How much smaller the guides can be, at most `upsample` times.
 int SmallerBy(int upsample, const LadderFrame& frame) {
   if (!frame.casts || frame.fixed_guides) return 1;
   while (frame.width % upsample || frame.height % upsample) upsample /= 2;
   return upsample;
 }
 
-Variant MakeVariant(const LadderStep& rung, const StyleSet& styles, const LadderFrame& frame) {
+Variant MakeVariant(const LadderStep& step, const StyleSet& styles, const LadderFrame& frame) {
   Variant variant;
-  variant.guide_scale = 1.0 / SmallerBy(rung.upsample, frame);
-  if (rung.samples < frame.samples) variant.samples = rung.samples;
-  for (std::string setting : rung.settings) {
+  variant.guide_scale = 1.0 / SmallerBy(step.upsample, frame);
+  if (step.samples < frame.samples) variant.samples = step.samples;
+  for (std::string setting : step.settings) {
     if (setting == kLitSphere && WeighGuides(styles)) setting = kStyleBlit;
     if (!ChangesSomething(SettingOf(setting), styles)) continue;
     // All styles take one setting, and none may come to more than it has: then all take the least.
@@ -143,8 +143,8 @@ Variant MakeVariant(const LadderStep& rung, const StyleSet& styles, const Ladder
 
 std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& frame) {
   std::vector<Variant> variants;
-  for (const LadderStep& rung : LadderSteps()) {
-    Variant variant = MakeVariant(rung, styles, frame);
+  for (const LadderStep& step : LadderSteps()) {
+    Variant variant = MakeVariant(step, styles, frame);
     const bool known =
         std::any_of(variants.begin(), variants.end(), [&](const Variant& other) { return other.name == variant.name; });
     if (!known) variants.push_back(std::move(variant));
@@ -163,15 +163,14 @@ bool AreContenders(const Variant& a, const Variant& b) {
 
 Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& frame) {
   if (quality == Quality::kFinal) return MakeVariant(LadderSteps().front(), styles, frame);
-  LadderStep rung{4, {kLitSphere, kUnsplit}};
-  if (quality == Quality::kPreview) rung = {2, {kStyleBlit, kUnsplit}};
+  LadderStep step{4, {kLitSphere, kUnsplit}};
+  if (quality == Quality::kPreview) step = {2, {kStyleBlit, kUnsplit}};
   // Guides of normals alone take so little that nothing is gained which would not be seen.
   const bool lit = std::any_of(styles.styles.begin(), styles.styles.end(), LooksAtLight);
-  const bool drafts_guides =
-      quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks: that is all there is
-  if (frame.casts && !lit && !drafts_guides) return MakeVariant({1, rung.settings}, styles, frame);
-  if (SmallerBy(rung.upsample, frame) == 1) rung.settings.push_back(kCrisp);
-  return MakeVariant(rung, styles, frame);
+  const bool drafts_guides = quality == Quality::kDraft && WeighGuides(styles);  // which keep their chunks
+  if (frame.casts && !lit && !drafts_guides) return MakeVariant({1, step.settings}, styles, frame);
+  if (SmallerBy(step.upsample, frame) == 1) step.settings.push_back(kCrisp);
+  return MakeVariant(step, styles, frame);
 }
 
 std::string OptionsOf(const Variant& variant) {

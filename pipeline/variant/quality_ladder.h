@@ -1,9 +1,8 @@
-// The ladder of --quality and --budget-ms: ways to do it with less, from the style itself down to the quickest.
+// The ladder of --quality and --budget-ms: steps from the style itself down to the quickest variant.
 //
-// A step takes from the style what makes accuracy, never what makes its look: guides may be cast with fewer samples and
-// smaller, and the paint's places be found more simply; colours, thresholds, edges and sizes are the artist's. The
-// order is that of the measured energy (measure/energy/energy.h); bench/ladder_bench measures it, and docs/budget.md
-// has the table.
+// A step lowers the accuracy of a style, never its look. Guides are cast smaller or with fewer samples, or sources are
+// found more simply; colours, thresholds, edges and sizes are the artist's. The steps are ordered by measured energy
+// (measure/energy/energy.h). bench/ladder_bench measures it; docs/budget.md has the table.
 #pragma once
 
 #include <string>
@@ -20,38 +19,38 @@ struct LadderFrame {
   bool casts = false;  // guides are made, so they may be smaller than the picture
   // Of the picture. Guides are 2, 4 or 8 times smaller where that divides both, else not as small as a step asks.
   int width = 0, height = 0;
-  bool fixed_guides = false;  // the user has said how large they are
-  int samples = 0;  // that a pixel of light gets; 0: no choice, as no light is cast, by no chance, or the user has said
+  bool fixed_guides = false;  // the user gave their size
+  int samples = 0;  // of a pixel of light; 0: no choice, because no layer takes samples or the user gave their number
 };
 
-// The most accurate first: the style as it is. What a --set of the user decides stays so, and ways that then come to
-// the same, or that change nothing of any of the styles, are left out. Never empty.
+// The most accurate first: the style as it is. What a --set of the user decides stays so. Steps that change nothing, or
+// that equal another one then, are left out. Never empty.
 std::vector<Variant> QualityLadder(const StyleSet& styles, const LadderFrame& frame);
 
-// Whether which of two steps is nearer differs by style, so that their order in the ladder is little more than chance:
-// one without blending, the other by the Lit Sphere, with guides of one size.
+// Whether it differs by style which of two steps is more accurate, so that their order in the ladder is little more
+// than chance: one is without blending, the other by the Lit Sphere, with guides of one size.
 bool AreContenders(const Variant& a, const Variant& b);
 
-// Named points of it.
+// Named steps.
 enum class Quality {
-  // For finding a camera: the Lit Sphere, and guides of a quarter of the size where they may be smaller and hold light
-  // or
-  // are weighed, with few samples. Of guides of normals alone smaller ones save less than it takes to upsample them.
+  // To find a camera: the Lit Sphere. Guides that hold light or are weighed are a quarter of the size, with few
+  // samples.
+  // Guides of normals alone keep their size: smaller ones save less than upsampling them takes.
   kDraft,
-  // For judging a style: guides of half the size and with few samples where they hold light, which is what makes them
-  // slow, or no blending where the guides are as they are. What casts normals alone is quick enough as it is, but for
-  // the split.
+  // To judge a style: guides that hold light, which are slow, are half the size, with few samples. Where guides keep
+  // their size, nothing is blended. A picture without light in its guides is quick enough: only its hybrid base and
+  // detail layers are not split.
   kPreview,
   kFinal,  // the style as it is
 };
 Variant VariantOf(Quality quality, const StyleSet& styles, const LadderFrame& frame);
 
-// The options of stylize and transfer that repeat it: "--upsample 4 --samples 4 --set transfer.method=litsphere"; empty
-// for the style as it is.
+// The options of stylize and transfer that repeat a variant: "--upsample 4 --samples 4 --set
+// transfer.method=litsphere"; empty for the style as it is.
 std::string OptionsOf(const Variant& variant);
 
-// Puts the variant's settings into all styles, and into those that the scene asks for later, as --set options before
-// the user's would: the same bytes.
+// Puts the variant's settings into all styles, and into those that the scene asks for later. Pictures are those that
+// --set options before the user's would make.
 Status ApplyVariant(const Variant& variant, StyleSet& styles);
 
 }  // namespace scumble

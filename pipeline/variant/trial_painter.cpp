@@ -61,7 +61,7 @@ Expected<const Picture*> TrialPainter::Over(const GuideSet& guides) {
 
 Status TrialPainter::Transfer(const GuideSet& guides, bool bare, TransferScratch& scratch, Picture& picture,
                               double& ms) {
-  const bool needs_map = styles_.NeedsMap(guides);
+  const bool needs_map = styles_.NeedsMap(guides, name_);
   StyleMap map;
   if (needs_map) {
     SCUMBLE_ASSIGN(map, MapStyles(styles_, guides, name_));
@@ -96,7 +96,7 @@ Expected<double> TrialPainter::Paint(const Variant& variant, const GuideSet& giv
 Expected<double> TrialPainter::MeasureError(const Variant& variant, const GuideSet& given) {
   SCUMBLE_CHECK_EQ(UpsampleOf(variant), 1);
   constexpr double kNotKnown = std::numeric_limits<double>::infinity();
-  if (styles_.styles.size() > 1 || styles_.NeedsMap(given)) return kNotKnown;
+  if (styles_.styles.size() > 1 || styles_.NeedsMap(given, name_)) return kNotKnown;
   const int upsample = picture_.upsample;
   std::optional<GuideSet> larger;
   if (upsample > 1) {

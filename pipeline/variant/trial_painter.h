@@ -1,4 +1,4 @@
-// Painting a frame by one variant after another to see how long it takes.
+// Painting a frame by one variant after another: how long each takes, and how accurate it is.
 #pragma once
 
 #include <cstddef>
@@ -18,25 +18,25 @@ namespace scumble {
 
 class TrialPainter {
  public:
-  // All are borrowed. `styles` as the user has them, without any way. `frame`: whose guides are painted, for what
-  // changes over time. `name`: of the guides' file or scene. `over`: the file of the picture underneath; empty: none.
+  // All are borrowed. `styles` as the user has them, without any variant. `frame`: whose guides are painted, for
+  // what changes over time. `name`: of the guides' file or scene. `over`: the file of the picture underneath; empty:
+  // none.
   TrialPainter(StyleSet& styles, const PictureRequest& picture, std::optional<int> frame, const std::string& name,
                const std::string& over, const RunContext& context)
       : styles_(styles), picture_(picture), frame_(frame), name_(name), over_file_(over), context_(context) {}
 
-  // Upsamples the guides, if the variant or the picture's options say so, and paints with memory that is new, as the
-  // first picture of a run is. What is underneath is read once and not counted; one of another size is left out, the
-  // run will refuse it. Returns the milliseconds of wall clock that both took; preparing the style is not counted.
+  // Upsamples the guides, if the variant or the request asks for it, and paints into new memory, as the first picture
+  // of a run is painted. Returns the milliseconds of wall clock that both took. Preparing the style and reading the
+  // picture underneath are not counted. One of another size is left out; the run will refuse it.
   Expected<double> Paint(const Variant& variant, const GuideSet& guides);
 
-  // How far the picture of a variant that leaves the guides' size alone is from what the painting shows under these
-  // guides, and what of the painting it misses: `both` of measure/energy/energy.h, at kErrorPatches patches, the same
-  // ones for each variant. Without paper, what is underneath, and the scene's colours. 0 where nothing is covered;
-  // infinity where several styles paint, memory for it is not there or guides are no numbers. Errors as of Paint.
+  // The error of a variant that keeps the guides' size: how far its picture is from what the painting shows under these
+  // guides, and what of the painting it misses. That is `both` of measure/energy/energy.h, at kErrorPatches patches,
+  // which do not differ by variant; without paper, the picture underneath and the scene's colours. 0 where nothing is
+  // covered. Infinity where several styles paint, memory is short or guides are no numbers. Errors as of Paint.
   Expected<double> MeasureError(const Variant& variant, const GuideSet& guides);
 
-  // So few that a judgement takes a second or two. Contenders that are closer than that can tell are as good as each
-  // other.
+  // So few that measuring an error takes a second or two. Contenders that are closer than that shows are equally good.
   static constexpr std::size_t kErrorPatches = 1024;
 
  private:

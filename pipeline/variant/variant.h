@@ -1,4 +1,4 @@
-// A way to stylise a scene: what it changes of the style's own settings and of the guides. The grid that `tradeoff`
+// A variant of a style: what it changes of the style's own settings and of the guides. The grid that `tradeoff`
 // measures is a list of variants, and so is the ladder that --quality and --budget-ms choose from.
 #pragma once
 
@@ -18,9 +18,9 @@ struct Variant {
   std::vector<std::string> settings;  // KEY=VALUE, as --set takes them, in this order
   GuidePrecision precision = GuidePrecision::kFloat;
   double guide_scale = 1.0;  // width and height of the guides against the picture's: 0.5 is upsampled, 2 is thinned out
-  int samples = 0;           // of a pixel, for guides of light; 0: as the verb's --samples
+  int samples = 0;           // of a pixel, for guides of light; 0: as many as --samples
   bool robust = true;        // Embree's robust mode, GuidegenOptions::robust
-  int more_seed = 0;         // added to the verb's --seed
+  int more_seed = 0;         // added to --seed
   int table_resolution = LookUpTable::kResolution;  // cells a side, where nearest neighbours come from a table
 };
 

@@ -31,7 +31,7 @@ class TradeReference {
   // take less. `options` as they are but for `sources` and `threads`.
   Status MeasurePaint(const Picture& picture, const SourceField* field, EnergyOptions options,
                       TradeMeasure& measure) const;
-  // Fills in what the field says of the mosaic.
+  // Fills in what the field shows of the mosaic.
   Status MeasureMosaic(const Picture& picture, const SourceField& field, TradeMeasure& measure) const;
 
   // Over pixels that both cover: of normals the root of the mean squared distance, and FLIP of (n + 1) / 2 as a

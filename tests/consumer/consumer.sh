@@ -16,8 +16,8 @@ cd "$work"
 cmake -S project -B by-cmake -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" > log 2>&1 &&
   cmake --build by-cmake >> log 2>&1 || { cat log; exit 1; }
 # shellcheck disable=SC2046
-PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig" sh -c 'eval "${CXX:-c++} -std=c++20 project/main.cpp -o by-pkg-config \
-  $(pkg-config --cflags --libs scumble)"' > log 2>&1 || { cat log; exit 1; }
+PKG_CONFIG_PATH="$work/prefix/lib/pkgconfig" sh -c '${CXX:-c++} -std=c++20 project/main.cpp -o by-pkg-config \
+  $(pkg-config --cflags --libs scumble)' > log 2>&1 || { cat log; exit 1; }
 
 prefix/bin/scumble stylize suzanne.glb --style oil --size 640x360 --quiet -o wanted.png > log
 by-cmake/paint suzanne.glb oil one.png

@@ -1,5 +1,7 @@
-// Running Blender: its environment, cleaning up after a signal, and messages of failures. Scripts of a few lines
-// replace it.
+// How Blender is run: in whose environment, what a signal leaves behind, and what a failure says. Scripts of a few
+// lines stand in for it.
+#include "pipeline/scene/blender_process.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -7,7 +9,9 @@
 #include <cstdlib>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "pipeline/tradeoff/measure.h"
 #include "tests/support/cli_harness.h"
 #include "tests/support/scoped_variable.h"
 
@@ -44,6 +48,66 @@ TEST_F(BlenderProcess, AVirtualEnvironmentIsNotItsOwn) {
   EXPECT_NE(seen.find("\nSCUMBLE_KEPT=yes\n"), std::string::npos) << seen;
   EXPECT_NE(seen.find(At("venv/bin").string()), std::string::npos) << "the caller's PATH stands behind";
   for (const char* gone : {"\nPYTHON", "\nVIRTUAL_ENV="}) EXPECT_EQ(seen.find(gone), std::string::npos) << gone;
+}
+
+// Who uses the library has no signal handler changed, and says what a program sees of its environment.
+TEST_F(BlenderProcess, ALibrarysUserIsLeftAlone) {
+  WriteProgram("tools/sketch", "env > \"" + At("seen").string() + "\"");
+  const ScopedVariable hidden("SCUMBLE_HIDDEN", "yes"), temporary("TMPDIR", "/nowhere");
+  RunContext context;
+  context.environment = {"PATH=" + At("tools").string() + ":/usr/bin", "SCUMBLE_KEPT=yes", "PYTHONHOME=/nowhere"};
+  context.temporary_folder = At("");
+  const auto handlers = [] {
+    std::vector<void (*)(int)> all;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU, SIGCHLD}) {
+      struct sigaction action = {};
+      ::sigaction(signal, nullptr, &action);
+      all.push_back(action.sa_handler);
+    }
+    return all;
+  };
+  const auto before = handlers();
+  fs::path made;
+  {
+    const ScratchFolder scratch(context);
+    made = scratch.path();
+    EXPECT_EQ(made.parent_path(), At("").parent_path());
+    const auto program = RunningProgram::Start({"sketch"}, made / "log", context);
+    ASSERT_TRUE(program.ok()) << program.error().message;
+    EXPECT_EQ(handlers(), before);
+    const auto end = (*program)->Wait();
+    ASSERT_TRUE(end.ok());
+    EXPECT_EQ(end->code, 0);
+  }
+  EXPECT_FALSE(fs::exists(made));
+  const std::string seen = Bytes("seen");
+  EXPECT_NE(seen.find("SCUMBLE_KEPT=yes\n"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("TMPDIR=" + made.string() + "\n"), std::string::npos) << seen;
+  for (const char* gone : {"SCUMBLE_HIDDEN", "PYTHONHOME"}) EXPECT_EQ(seen.find(gone), std::string::npos) << gone;
+
+  context.environment.clear();
+  const auto none = RunProgram({"sketch"}, At("log"), context);
+  ASSERT_FALSE(none.ok());
+  EXPECT_EQ(none.error().kind, ErrorKind::kUnavailable);
+  EXPECT_EQ(none.error().message, "sketch cannot be run (No such file or directory)");
+}
+
+TEST_F(BlenderProcess, ACancelledRunEndsItWithItsChildren) {
+  WriteProgram("slow", "sleep 60 & echo $! > \"" + At("sleeper").string() + "\"; wait");
+  RunContext context;
+  context.is_cancelled = [&] { return !Bytes("sleeper").empty(); };
+  const auto end = RunProgram({At("slow").string()}, At("log"), context);
+  ASSERT_FALSE(end.ok());
+  EXPECT_EQ(end.error().kind, ErrorKind::kCancelled);
+}
+
+TEST_F(BlenderProcess, MemoryOfVariantsNeedsTheProgram) {
+  TradeSetup setup;
+  setup.scene.scene = Scene("ball.glb"), setup.style.style = "oil";
+  const auto report = MeasureTradeoff(setup, RunContext());
+  ASSERT_FALSE(report.ok());
+  EXPECT_EQ(report.error().kind, ErrorKind::kUnavailable);
+  EXPECT_NE(report.error().message.find("RunContext::program"), std::string::npos) << report.error().message;
 }
 
 // Whether a process still runs; a zombie does not.

@@ -11,6 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/quality/budget_choice.h"
+#include "tests/support/sphere_guides.h"
+
 namespace scumble {
 namespace {
 
@@ -293,7 +296,7 @@ TEST(Calibration, OfRivalsThatFitTheNearerIsTaken) {
   const PickedVariant nearer = pick(40.0);
   EXPECT_EQ(nearer.variant, 2u);
   EXPECT_EQ(nearer.predicted_ms, 32.0);
-  EXPECT_EQ(nearer.compared, (std::map<std::size_t, double>{{1, 0.5}, {2, 0.4}}));
+  EXPECT_EQ(nearer.compared, (std::vector<std::pair<std::size_t, double>>{{1, 0.5}, {2, 0.4}}));
   EXPECT_EQ(judged, 2);
   const int runs = clock.Total();
   EXPECT_EQ(pick(40.0).variant, 2u);
@@ -344,6 +347,26 @@ TEST(Calibration, WhatCannotBeMeasuredIsAnError) {
   });
   ASSERT_FALSE(picked.ok());
   EXPECT_EQ(picked.error().message, "the scene is gone");
+}
+
+TEST(ChooseForGuides, StopsWhereTheProgressCallbackAsksForIt) {
+  RunContext context;
+  context.data_roots = {SCUMBLE_SOURCE_DIR};
+  int calls = 0;
+  context.on_progress = [&](const std::string&) -> Progress { return [&](double) { return ++calls < 2; }; };
+  StyleRequest style;
+  style.style = "oil";
+  auto styles = OpenStyles(style, context);
+  ASSERT_TRUE(styles.ok()) << styles.error().message;
+  BudgetRequest budget;
+  budget.budget_ms = 1000.0;
+  PictureRequest picture;
+  GuideSet guides = SphereGuides(16);
+  guides.Add(Layer::kObject);
+  const auto choice = ChooseForGuides(budget, guides, {}, "sphere", "", *styles, picture, context);
+  ASSERT_FALSE(choice.ok());
+  EXPECT_EQ(choice.error().kind, ErrorKind::kCancelled) << choice.error().message;
+  EXPECT_EQ(calls, 2);
 }
 
 }  // namespace

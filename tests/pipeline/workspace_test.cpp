@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <thread>
 
+#include "core/io/format_dispatch.h"
 #include "core/io/picture_file.h"
+#include "tests/support/gltf_builder.h"
 #include "tests/support/temporary_folder.h"
 
 namespace scumble {
@@ -200,6 +203,208 @@ TEST(Workspace, AGivenExposureIsThatOfItsRequestAlone) {
   EXPECT_EQ(Painted(workspace, SceneOf("suzanne"), StyleOf("chiaroscuro")).rgba, measured.rgba);
 }
 
+// A triangle before the camera, that asks for a style.
+void WriteSceneWithStyle(const fs::path& file, const std::string& style) {
+  GltfBuilder b;
+  const int position = b.Floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  b.Mesh({{{"attributes", {{"POSITION", position}}}}});
+  b.Root({{"name", "Tile"}, {"mesh", 0}, {"extras", {{"scumble_style", style}}}});
+  const std::vector<unsigned char> glb = b.Glb();
+  fs::create_directories(file.parent_path());
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(glb.data()), std::streamsize(glb.size()));
+}
+
+void CopyStyle(const std::string& bundled, const fs::path& folder) {
+  fs::copy(kSource + "/exemplars/" + bundled, folder, fs::copy_options::recursive);
+}
+
+SceneRequest SceneIn(const fs::path& file) {
+  SceneRequest request = SceneOf("suzanne");
+  request.scene = file.string();
+  return request;
+}
+
+TEST(Workspace, TheStylesOfASceneAreKept) {
+  const TemporaryFolder folder;
+  WriteSceneWithStyle(folder / "a/s.glb", "mine");
+  CopyStyle("charcoal", folder / "a/mine");
+  Workspace workspace(Context());
+  const Picture first = Painted(workspace, SceneIn(folder / "a/s.glb"), StyleOf("oil"));
+  EXPECT_EQ(Painted(workspace, SceneIn(folder / "a/s.glb"), StyleOf("oil")).rgba, first.rgba);
+  EXPECT_EQ(workspace.counters().styles_loaded, 1u);
+  EXPECT_EQ(workspace.counters().styles_prepared, 2u);
+  // A key that exemplars do not depend on, for both styles.
+  Painted(workspace, SceneIn(folder / "a/s.glb"), StyleOf("oil", {"transfer.threshold=0.4"}));
+  EXPECT_EQ(workspace.counters().styles_loaded, 2u);
+  EXPECT_EQ(workspace.counters().styles_prepared, 2u);
+  EXPECT_EQ(workspace.counters().guides_cast, 1u);
+  // A painting of the scene's own style.
+  fs::copy_file(kSource + "/exemplars/ink/lit.png", folder / "a/mine/lit.png", fs::copy_options::overwrite_existing);
+  EXPECT_NE(Painted(workspace, SceneIn(folder / "a/s.glb"), StyleOf("oil")).rgba, first.rgba);
+  EXPECT_EQ(workspace.counters().styles_prepared, 3u);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+}
+
+TEST(Workspace, AStyleOfASceneIsThatOfItsFolder) {
+  const TemporaryFolder folder;
+  for (const auto& [name, style] : {std::pair("a", "charcoal"), {"b", "oil"}}) {
+    WriteSceneWithStyle(folder / name / "s.glb", "mine");
+    CopyStyle(style, folder / name / "mine");
+  }
+  Workspace workspace(Context());
+  const Picture a = Painted(workspace, SceneIn(folder / "a/s.glb"), StyleOf("oil"));
+  const Picture b = Painted(workspace, SceneIn(folder / "b/s.glb"), StyleOf("oil"));
+  EXPECT_NE(a.rgba, b.rgba);
+  Workspace fresh(Context());
+  EXPECT_EQ(b.rgba, Painted(fresh, SceneIn(folder / "b/s.glb"), StyleOf("oil")).rgba);
+  EXPECT_EQ(workspace.counters().styles_loaded, 1u) << "the user's is that of before";
+  EXPECT_EQ(workspace.counters().styles_prepared, 3u);
+  // A scene that asks for none has none.
+  const auto plain = workspace.Paint(SceneOf("suzanne"), StyleOf("oil"), {});
+  ASSERT_TRUE(plain.ok());
+  EXPECT_EQ(std::get<PictureReport>(plain->report.made).styles.size(), 1u);
+}
+
+TEST(Workspace, AChangedPictureUnderneathIsReadAgain) {
+  const TemporaryFolder folder;
+  PictureRequest picture;
+  picture.over = (folder / "over.png").string();
+  Workspace workspace(Context());
+  Picture over(96, 54);
+  std::fill(over.rgba.begin(), over.rgba.end(), std::uint16_t(0xffff));
+  ASSERT_TRUE(WritePicture(picture.over, over));
+  const Picture bright = Painted(workspace, SceneOf("suzanne"), StyleOf("oil"), picture);
+  for (std::size_t i = 0; i < over.rgba.size(); i += 4) over.rgba[i] = 0;
+  ASSERT_TRUE(WritePicture(picture.over, over));
+  const Picture dark = Painted(workspace, SceneOf("suzanne"), StyleOf("oil"), picture);
+  EXPECT_NE(dark.rgba, bright.rgba);
+  Workspace fresh(Context());
+  EXPECT_EQ(dark.rgba, Painted(fresh, SceneOf("suzanne"), StyleOf("oil"), picture).rgba);
+  EXPECT_EQ(workspace.counters().guides_cast, 1u);
+}
+
+// Wavefront's materials do without a texture that cannot be read, in every pose and in every later cast.
+TEST(Workspace, ATextureThatIsMissingStaysLeftOut) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const char* text) { std::ofstream(folder / name) << text; };
+  write("tile.mtl", "newmtl m\nKd 0.9 0.2 0.1\nmap_Kd gone.png\n");
+  write("tile.obj",
+        "mtllib tile.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl m\n"
+        "f 1/1 2/2 3/3 4/4\n");
+  SceneRequest scene = SceneIn(folder / "tile.obj"), turned = scene;
+  turned.view = ViewAngles{30.0, 10.0, 0.0};
+  Workspace workspace(Context());
+  Painted(workspace, scene, StyleOf("oil"));  // looks at no texture
+  const Picture tinted = Painted(workspace, scene, StyleOf("tinted-oil"));
+  const Picture other = Painted(workspace, turned, StyleOf("tinted-oil"));
+  Workspace fresh(Context()), fresh_turned(Context());
+  EXPECT_EQ(tinted.rgba, Painted(fresh, scene, StyleOf("tinted-oil")).rgba);
+  EXPECT_EQ(other.rgba, Painted(fresh_turned, turned, StyleOf("tinted-oil")).rgba);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+  EXPECT_EQ(workspace.counters().structures_built, 3u) << "it depends on materials, and on the camera";
+}
+
+TEST(Workspace, CountsTheMemoryOfPaintingAndRefusesInTime) {
+  Workspace workspace(Context());
+  const auto painted = workspace.Paint(SceneOf("suzanne"), StyleOf("oil"), {});
+  ASSERT_TRUE(painted.ok());
+  const std::uint64_t peak = painted->report.memory.peak();
+  const auto paint_within = [&](std::uint64_t bytes, const std::string& style) {
+    RunContext context = Context();
+    context.max_memory = bytes;
+    return Workspace(context).Paint(SceneOf("suzanne"), StyleOf(style), {});
+  };
+  EXPECT_TRUE(paint_within(peak, "oil").ok());
+  for (const auto& [bytes, part] :
+       {std::pair(peak - 1, "exemplars"), {std::uint64_t(1000), "take smaller exemplars"}}) {
+    const auto refused = paint_within(bytes, "oil");
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(refused.error().message.find(part), std::string::npos) << refused.error().message;
+  }
+  // What is painted later counts, too, without a ray.
+  RunContext context = Context();
+  context.max_memory = peak;
+  Workspace small(context);
+  ASSERT_TRUE(small.Paint(SceneOf("suzanne"), StyleOf("oil"), {}).ok());
+  EXPECT_FALSE(small.Paint(SceneOf("suzanne"), StyleOf("oil", {"transfer.scale=8"}), {}).ok());
+  EXPECT_TRUE(small.Paint(SceneOf("suzanne"), StyleOf("oil"), {}).ok());
+  EXPECT_EQ(small.counters().guides_cast, 1u);
+}
+
+TEST(Workspace, IsCancelledBeforeAnyWork) {
+  RunContext context = Context();
+  context.is_cancelled = [] { return true; };
+  Workspace workspace(context);
+  const auto painted = workspace.Paint(SceneOf("suzanne"), StyleOf("oil"), {});
+  ASSERT_FALSE(painted.ok());
+  EXPECT_EQ(painted.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(workspace.counters().styles_loaded, 0u);
+}
+
+// Stands for Blender, as export_scene.py would be run.
+class FakeBlender {
+ public:
+  // `body` finds the values of --output and --files-file in $output and $files.
+  explicit FakeBlender(const std::string& body) {
+    fs::create_directory(folder_ / "tmp");
+    std::ofstream(folder_ / "shot.blend");
+    std::ofstream(folder_ / "blender")
+        << "#!/bin/sh\nfor word; do\n"
+           "case \"$last\" in --output) output=$word;; --files-file) files=$word;; esac\n"
+           "last=$word; done\n"
+        << body << "\n";
+    fs::permissions(folder_ / "blender", fs::perms::owner_all);
+  }
+  SceneRequest Scene() const {
+    SceneRequest request = SceneOf("suzanne");
+    request.scene = (folder_ / "shot.blend").string();
+    request.blender.program = (folder_ / "blender").string();
+    return request;
+  }
+  RunContext Environment() const {
+    RunContext context = Context();
+    context.temporary_folder = folder_ / "tmp";
+    return context;
+  }
+  const TemporaryFolder& folder() const { return folder_; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+TEST(Workspace, ALinkedLibraryThatChangedExportsAgain) {
+  const TemporaryFolder libraries;
+  const std::string library = (libraries / "library.blend").string();
+  std::ofstream(library) << "one";
+  const FakeBlender blender("cp " + kSource + "/scenes/suzanne.glb \"$output\"; echo " + library + " > \"$files\"");
+  Workspace workspace(blender.Environment());
+  const Picture first = Painted(workspace, blender.Scene(), StyleOf("oil"));
+  EXPECT_EQ(Painted(workspace, blender.Scene(), StyleOf("oil")).rgba, first.rgba);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 1u);
+  std::ofstream(library) << "another";
+  EXPECT_EQ(Painted(workspace, blender.Scene(), StyleOf("oil")).rgba, first.rgba);
+  EXPECT_EQ(workspace.counters().scenes_loaded, 2u);
+  EXPECT_EQ(workspace.counters().styles_prepared, 1u);
+}
+
+TEST(Workspace, AnExportByBlenderIsCancelled) {
+  const FakeBlender blender("echo > \"$(dirname \"$output\")/../../runs\"; sleep 60");
+  Workspace workspace(blender.Environment());
+  std::thread canceller([&] {
+    while (!fs::exists(blender.folder() / "runs")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    workspace.Cancel();
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const auto painted = workspace.Paint(blender.Scene(), StyleOf("oil"), {});
+  canceller.join();
+  ASSERT_FALSE(painted.ok());
+  EXPECT_EQ(painted.error().kind, ErrorKind::kCancelled) << painted.error().message;
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+  EXPECT_TRUE(fs::is_empty(blender.folder() / "tmp"));
+  Painted(workspace, SceneOf("suzanne"), StyleOf("oil"));
+}
+
 TEST(Workspace, AnEditedAssignmentFileIsReadAgain) {
   const TemporaryFolder folder;
   const std::string sheet = (folder.path() / "sheet.txt").string();
@@ -212,6 +417,16 @@ TEST(Workspace, AnEditedAssignmentFileIsReadAgain) {
   write("* = charcoal and longer\n");
   write("* = charcoal\n");
   EXPECT_NE(Painted(workspace, SceneOf("suzanne"), style).rgba, plain.rgba);
+}
+
+TEST(Workspace, FilesAreReadWithItsThreads) {
+  RunContext context = Context();
+  context.threads = 1;
+  Workspace one(context), all(Context());
+  Painted(one, SceneOf("suzanne"), StyleOf("oil"));
+  EXPECT_EQ(internal::IoThreads(), 1);
+  Painted(all, SceneOf("suzanne"), StyleOf("oil"));
+  EXPECT_EQ(internal::IoThreads(), 0);
 }
 
 TEST(Workspace, MistakesAreErrorsAndLeaveItUsable) {

@@ -1,11 +1,14 @@
 #include "apps/cli/app/command.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
 #include <vector>
 
+#include "apps/cli/app/program_guard.h"
 #include "apps/cli/app/progress_bar.h"
 
 namespace scumble {
@@ -41,11 +44,9 @@ fs::path CacheFolder() {
   return {};
 }
 
-// Beside the build, and the place of `install` for the program's files.
-std::vector<fs::path> DataRoots() {
-  std::error_code failed;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  if (failed) return {};
+// Beside the build, and where `install` puts the program's files.
+std::vector<fs::path> DataRoots(const fs::path& program) {
+  if (program.empty()) return {};
   const fs::path above = program.parent_path().parent_path();
   return {above, above / "share" / "scumble"};
 }
@@ -53,8 +54,13 @@ std::vector<fs::path> DataRoots() {
 }  // namespace
 
 void ConnectToTerminal(Globals& globals) {
+  std::error_code failed;
+  globals.program = fs::read_symlink("/proc/self/exe", failed);
   globals.cache_folder = CacheFolder();
-  globals.data_roots = DataRoots();
+  globals.data_roots = DataRoots(globals.program);
+  for (char** variable = environ; *variable; ++variable) globals.environment.emplace_back(*variable);
+  globals.temporary_folder = fs::temp_directory_path(failed);
+  GuardPrograms(globals);
   globals.on_message = [&globals](const Message& message) {
     if (message.kind == Message::Kind::kNote && globals.quiet) return;
     ClearProgress();

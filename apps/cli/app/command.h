@@ -30,8 +30,8 @@ struct Globals : RunContext {
   bool json = false;
 };
 
-// Sets the folders of this program's files, and prints messages and progress to stderr. `globals` must outlive every
-// user of it.
+// Fills in where this program keeps and finds its files, the environment and what signals do, and prints messages and
+// progress to stderr. `globals` must outlive what it is passed to.
 void ConnectToTerminal(Globals& globals);
 
 // A command's work: returns the exit code, or the error that decides it.

@@ -300,6 +300,17 @@ TEST_F(CliBadOutput, StandardOutputThatTakesNothing) {
   EXPECT_TRUE(ReadGuides(At("new.exr")));
 }
 
+// Of several mistakes, those in the arguments are reported before any file is opened.
+TEST_F(CliBadContent, ArgumentsAreCheckedBeforeFiles) {
+  const Arguments guidegen = {"guidegen", Scene("ball.glb"), "--style", "no-such-style"};
+  ExpectError(guidegen, 2, {"-o FILE is required"});
+  ExpectError(With(guidegen, {"-o", "g.exr", "--frames", "1-2"}), 2, {"is one file for 2 frames"});
+  ExpectError(With(guidegen, {"-o", "g.exr", "--layers", "motion"}), 2, {"the layer motion", "--frame N"});
+  ExpectError(With(guidegen, {"-o", "g.exr"}), 3, {"no-such-style"});
+  ExpectError({"stylize", Scene("toys.glb"), "--style", "no-such-style", "--animation", "*", "-o", "p.png"}, 2,
+              {"--animation plays with the frames' numbers"});
+}
+
 TEST_F(CliBadContent, CrosscheckNeedsWhatBlenderReads) {
   WriteText("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   ExpectError({"crosscheck", "tri.obj"}, 3, {"tri.obj", ".glb"});
